@@ -1,4 +1,5 @@
-# runstone-server: built in one stage, copied without compilers into the next. Build from the repository root:
+# runstone-server: built in one stage, copied without compilers into the next. Build from the
+# repository root:
 #   docker build -f docker/server.Dockerfile -t runstone-server .
 FROM debian:bookworm-slim AS build
 RUN apt-get update && apt-get install -y --no-install-recommends \

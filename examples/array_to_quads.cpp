@@ -13,7 +13,8 @@ int main() {
   const std::array visibility = {Visibility::empty, Visibility::opaque, Visibility::transparent};
   const VisibilityTable table{visibility};
 
-  // 32 x 32 x 32 voxels: stone up to y = 9, and water in one half up to y = 11. x is the fastest axis.
+  // 32 x 32 x 32 voxels: stone up to y = 9, and water in one half up to y = 11. x is the fastest
+  // axis.
   const Extent extent = Extent::cube(32);
   std::vector<Material> voxels(extent.volume(), kEmpty);
   for (unsigned z = 0; z < 32; ++z) {

@@ -1,6 +1,7 @@
 // A bot: joins a server, places one voxel of stone above the spawn point and leaves.
 //   example-bot HOST PORT
-// Exit codes: 0 if the server ordered the edit, 1 if it did not within ten seconds, 2 on a bad command line.
+// Exit codes: 0 if the server ordered the edit, 1 if it did not within ten seconds, 2 on a bad
+// command line.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -87,7 +88,7 @@ class ExampleBot {
   ClientSession session_;
   ConnectionNumber connection_ = 0;
   bool placed_ = false;
-  NetClient net_;  // last: its thread stops before the rest goes
+  NetClient net_;  // the last member: its thread stops before the others are destroyed
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ int main() {
   Digest digest = digest_of(chunk);
   const VoxelPos origin{0, 0, 0};
 
-  // Dig a ball of radius 3 out of the surface, but only where there is stone.
+  // The edit removes a ball of radius 3 from the surface, but only where there is stone.
   const std::array edits = {
       EditDescriptor{FillSphere{{16, 15, 16}, 3}, {MaskKind::only_material, 1}, kEmpty}};
   ApplyScratch scratch;  // one per thread, reused

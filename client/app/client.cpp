@@ -21,9 +21,9 @@
 namespace runstone {
 namespace {
 
-/// The longest pause of the loop. The session needs a tick about this often.
+/// The longest pause of the loop. The session needs a tick at least this often.
 constexpr TimeUs kRestUs = 10'000;
-/// The longest pause of the loop with a window: a key or click waits no longer.
+/// The longest pause of the loop with a window. A key or a click waits no longer than this.
 constexpr TimeUs kRestUsWindow = 2'000;
 constexpr TimeUs kTitleUs = 500'000;
 /// The log is divided into this many steps of `[` and `]`.
@@ -80,7 +80,7 @@ int Client::run(const volatile std::sig_atomic_t& stop) {
   try {
     code = run_turns(stop);
   } catch (const std::exception& error) {
-    // The measurements so far and the script's failures are still written.
+    // The program still writes the measurements so far and the script's failures.
     std::fprintf(stderr, "runstone-client: %s\n", error.what());
   }
   return finish(code);

@@ -33,8 +33,8 @@ class Client {
   ~Client();
 
   /// Runs until the script, the user, the server, `stop` (set by a signal) or a failing driver ends
-  /// it, and returns the exit code. In each of these cases it says goodbye and writes the files of
-  /// the options.
+  /// the client. Then it sends a goodbye and writes the files of the options. Returns the exit
+  /// code.
   int run(const volatile std::sig_atomic_t& stop);
 
  private:
@@ -43,7 +43,7 @@ class Client {
   int run_turns(const volatile std::sig_atomic_t& stop);
   void on_world_opened();
   void poll_window(TimeUs now_us);
-  /// Moves the view by so many steps in time. Beyond the newest edit lies the live world.
+  /// Moves the view by `steps` in time. The step after the newest edit is the live world.
   void scrub(int steps);
   void follow_player(TimeUs now_us);
   /// Sends what is queued, and meshes what changed.
@@ -55,8 +55,8 @@ class Client {
   /// Returns the exit code if the program is to end now.
   std::optional<int> exit_code(TimeUs now_us);
   void rest(TimeUs now_us);
-  /// Says goodbye, writes the files of the options and prints the table. Returns `code`, or
-  /// kExitFailed where that is greater and a file cannot be written.
+  /// Sends a goodbye, writes the files of the options and prints the table. Returns `code`, or
+  /// kExitFailed if `code` is kExitOk and a file cannot be written.
   int finish(int code);
   ClientReport report() const;
   bool drift_found() const { return session_.replica().counters().drifted != 0; }

@@ -23,9 +23,9 @@ namespace {
 
 std::atomic<bool> client_runs{false};
 
-/// Ends the process with kExitNoStart. Xlib calls exit(1) on the thread that notices a lost
-/// display. To scripts, 1 has another meaning, and exit() would destroy objects that other threads
-/// still use.
+/// Ends the process with kExitNoStart. Xlib calls exit(1) on the thread that finds the display
+/// lost. For scripts the exit code 1 has another meaning, and exit() would destroy objects that
+/// other threads still use.
 void end_after_lost_display() {
   if (client_runs) std::_Exit(runstone::kExitNoStart);
 }

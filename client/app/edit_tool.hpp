@@ -1,5 +1,5 @@
-// EditTool: makes edits of clicks and hands edits of clicks and scripts to the session, and records
-// when each was submitted. One thread.
+// EditTool: makes edits from clicks, submits the edits of clicks and scripts to the session, and
+// records when each was submitted. One thread.
 #pragma once
 #include <cstdint>
 #include <optional>

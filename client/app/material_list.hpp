@@ -11,7 +11,7 @@ namespace runstone {
 /// Returns one line for each material in id order: "ID NAME", ids aligned to the right.
 std::string material_list(const MaterialTable& materials);
 
-/// Connects, prints material_list() to standard output and says goodbye. Returns kExitOk, or
+/// Connects, prints material_list() to standard output and sends a goodbye. Returns kExitOk, or
 /// kExitNoStart with a line on standard error if no world opened or `stop` was set by a signal.
 int list_materials(const ClientOptions& options, const volatile std::sig_atomic_t& stop);
 

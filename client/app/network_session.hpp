@@ -42,11 +42,11 @@ class NetworkSession {
   bool take_world_opened();
   /// Queues the session's outgoing messages on the network thread.
   void flush();
-  /// Passes lookups and their results between session and cache, and hands the cache the chunks to
+  /// Passes lookups and their results between session and cache, and gives the cache the chunks to
   /// keep, at most every kKeepUs.
   void step_cache(TimeUs now_us);
-  /// Writes the last chunks to the cache, says goodbye and stops both threads. Waits for the disk,
-  /// and for the network at most kGoodbyeMs.
+  /// Writes the last chunks to the cache, sends a goodbye and stops both threads. Waits for the
+  /// disk, and for the network at most kGoodbyeMs.
   void finish();
 
   bool is_connected() const { return !lost_us_.has_value(); }
@@ -58,8 +58,8 @@ class NetworkSession {
   /// Adds the counts of network, snapshots and cache.
   void add_to(ClientReport& report) const;
 
-  static constexpr TimeUs kReceiveUsMax =
-      1'000;                                    // a call; local edits, meshes and frames come next
+  // The time limit of a call of receive(), because local edits, meshes and frames wait for it.
+  static constexpr TimeUs kReceiveUsMax = 1'000;
   static constexpr TimeUs kKeepUs = 2'000'000;  // between two batches for the cache
   static constexpr std::int64_t kGoodbyeMs = 1'000;
 

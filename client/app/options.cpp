@@ -21,7 +21,7 @@ std::string parse_size(const std::string& text, ClientOptions& out) {
   return {};
 }
 
-/// Values that become options only after the whole command line was read.
+/// Values that are converted to options after the whole command line was read.
 struct RawOptions {
   std::string address, size, encoding = "auto";
   unsigned view = ClientOptions{}.view_radius, view_v = 0;
@@ -49,8 +49,9 @@ void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
                  "end after this time without the server; default 30")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--cache-dir", out.cache_dir,
-                 "keep chunks for the next run in this folder; default $XDG_CACHE_HOME/runstone "
-                 "with a window, no cache with --headless or --no-render");
+                 "keep chunks for the next run in this folder; "
+                 "default $XDG_CACHE_HOME/runstone with a window, "
+                 "no cache with --headless or --no-render");
   app.add_option("--cache-mib", out.cache_mib, "greatest size of the cache in MiB; default 256")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 20));
   app.add_flag("--no-cache", raw.no_cache, "keep no chunks on disk");

@@ -34,7 +34,7 @@ struct ClientOptions {
   bool draw = false;  // take draw orders from standard input instead of playing (docs/client.md)
 };
 
-/// Holds options, or nullopt and an exit code if the program is to end. The reason has been
+/// The parsed options, or nullopt and an exit code if the program is to end. The reason has been
 /// printed.
 struct ParsedOptions {
   std::optional<ClientOptions> options;

@@ -21,7 +21,7 @@ class Player {
   /// Call it when a world opens. The player keeps the position if the world is the one of the last
   /// call, and otherwise moves to `spawn`.
   void enter(const WorldId& world, const WorldPos& spawn);
-  /// Sets the direction. Radians; pitch is limited to just less than straight up and down.
+  /// Sets the direction, in radians. The pitch is limited to just less than straight up and down.
   void look(double yaw, double pitch);
   LookDirection direction() const { return look_direction(yaw_, pitch_); }
   Pose pose() const;

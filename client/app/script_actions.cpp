@@ -54,7 +54,7 @@ bool ScriptActions::loaded() const {
 }
 
 bool ScriptActions::synced(std::uint64_t mark) const {
-  // Two pongs: the first one may answer a ping that was sent before the mark.
+  // Two pongs are needed, because the first one may answer a ping that was sent before the mark.
   return view_.is_complete() && session_.pongs() >= mark + 2 &&
          session_.replica().local_edits().unanswered().empty();
 }

@@ -1,4 +1,4 @@
-// ScriptActions: what a script does to this client. One thread.
+// ScriptActions: carries out the commands of a script in this client. One thread.
 #pragma once
 #include <memory>
 #include <optional>
@@ -53,8 +53,8 @@ class ScriptActions final : public ScriptHost {
   std::optional<bool> screenshot_written() const override;
   bool digests(const std::string& file) override { return write_digests(file, session_); }
 
-  /// With everything in view here, loaded() waits this long for a moment without unfinished meshes.
-  /// Where others edit all the time there may be no such moment.
+  /// The longest time for which loaded() waits for a moment without unfinished meshes once all
+  /// chunks in view have arrived. While others edit all the time there may be no such moment.
   static constexpr TimeUs kMeshWaitUsMax = 10'000'000;
 
  private:

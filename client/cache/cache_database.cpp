@@ -18,8 +18,7 @@ bool CacheDatabase::is_corrupt() const {
   switch (failure_->kind) {
     case sql::Error::Kind::corrupt:
     case sql::Error::Kind::constraint:
-    // A table or a column is missing: the database of another program, or one that was damaged into
-    // another shape.
+    // A table or a column is missing: the database belongs to another program, or it is damaged.
     case sql::Error::Kind::bad_statement:
       return true;
     case sql::Error::Kind::io:

@@ -48,8 +48,8 @@ class CacheThread {
 
   std::unique_ptr<ChunkCache> cache_;  // used by the thread only
   const std::function<void()> wake_;
-  mutable std::mutex
-      mutex_;  // guards all members below except thread_; no other lock is taken under it
+  // It guards all members below except thread_. No other lock is taken while it is locked.
+  mutable std::mutex mutex_;
   std::condition_variable has_work_;
   std::deque<CacheLookup> questions_;
   std::deque<Batch> batches_;

@@ -23,14 +23,13 @@ constexpr const char* kSchema =
     "PRAGMA synchronous = NORMAL;"
     "PRAGMA journal_size_limit = 4194304;"
     "PRAGMA cell_size_check = ON;"
-    "CREATE TABLE IF NOT EXISTS world (id INTEGER PRIMARY KEY, world_id BLOB NOT NULL UNIQUE,"
-    " chunk_edge INTEGER NOT NULL, epoch INTEGER NOT NULL, durable INTEGER NOT NULL, head INTEGER "
-    "NOT NULL);"
-    "CREATE TABLE IF NOT EXISTS chunk (world INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT "
-    "NULL,"
-    " z INTEGER NOT NULL, epoch INTEGER NOT NULL, seq INTEGER NOT NULL, used INTEGER NOT NULL,"
-    " bytes INTEGER NOT NULL, checksum INTEGER NOT NULL, digest BLOB NOT NULL, data BLOB NOT NULL,"
-    " UNIQUE (world, x, y, z));"
+    "CREATE TABLE IF NOT EXISTS world (id INTEGER PRIMARY KEY, world_id BLOB NOT NULL UNIQUE, "
+    "chunk_edge INTEGER NOT NULL, epoch INTEGER NOT NULL, durable INTEGER NOT NULL, "
+    "head INTEGER NOT NULL);"
+    "CREATE TABLE IF NOT EXISTS chunk (world INTEGER NOT NULL, x INTEGER NOT NULL, "
+    "y INTEGER NOT NULL, z INTEGER NOT NULL, epoch INTEGER NOT NULL, seq INTEGER NOT NULL, "
+    "used INTEGER NOT NULL, bytes INTEGER NOT NULL, checksum INTEGER NOT NULL, "
+    "digest BLOB NOT NULL, data BLOB NOT NULL, UNIQUE (world, x, y, z));"
     "CREATE INDEX IF NOT EXISTS chunk_used ON chunk (used, bytes);"
     "CREATE INDEX IF NOT EXISTS chunk_version ON chunk (world, seq, epoch);";
 constexpr std::int64_t kLayout = 1;
@@ -76,21 +75,20 @@ struct ChunkCache::Tables {
   explicit Tables(CacheDatabase& d)
       : find_world(d.prepare(
             "SELECT id, chunk_edge, epoch, durable, head FROM world WHERE world_id = ?1")),
-        add_world(d.prepare("INSERT INTO world (world_id, chunk_edge, epoch, durable, head) VALUES "
-                            "(?1,?2,?3,?4,?5)")),
+        add_world(d.prepare("INSERT INTO world (world_id, chunk_edge, epoch, durable, head) "
+                            "VALUES (?1,?2,?3,?4,?5)")),
         mark_world(d.prepare(
             "UPDATE world SET chunk_edge=?2, epoch=?3, durable=?4, head=?5 WHERE id = ?1")),
         drop_lost(d.prepare("DELETE FROM chunk WHERE world = ?1 AND seq > ?2 AND epoch < ?3")),
         drop_all(d.prepare("DELETE FROM chunk WHERE world = ?1")),
         drop_edited(d.prepare("DELETE FROM chunk WHERE world = ?1 AND seq > 0")),
-        find(d.prepare("SELECT epoch, seq, used, checksum, digest, data, rowid FROM chunk"
-                       " WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4")),
+        find(d.prepare("SELECT epoch, seq, used, checksum, digest, data, rowid FROM chunk "
+                       "WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4")),
         use(d.prepare("UPDATE chunk SET used = ?2 WHERE rowid = ?1")),
         drop(d.prepare("DELETE FROM chunk WHERE rowid = ?1")),
         keep(d.prepare(
             "INSERT OR REPLACE INTO chunk (world, x, y, z, epoch, seq, used, bytes, checksum, "
-            "digest, data)"
-            " VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11)")),
+            "digest, data) VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11)")),
         size(
             d.prepare("SELECT bytes FROM chunk WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4")),
         oldest(d.prepare("SELECT rowid, bytes FROM chunk ORDER BY used LIMIT ?1")) {}

@@ -72,8 +72,8 @@ class ChunkCache {
   void evict();
   /// Renames the damaged database.
   void set_aside();
-  /// Handles a failure of the last batch: sets a damaged database aside, and ends the cache after
-  /// any other failure.
+  /// Handles a failure of the last batch: renames a damaged database, and ends the cache after any
+  /// other failure.
   void handle_failure();
   std::optional<KeyedChunk> read(const CachedWorld& world, std::int64_t row, const ChunkKey& key);
 

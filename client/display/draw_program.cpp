@@ -96,7 +96,7 @@ class DrawService {
     send(DrawFailed{why});
     return kExitNoStart;
   }
-  /// Returns false if the answer cannot be written.
+  /// Writes an answer. Returns false if it cannot be written.
   bool send(const DrawAnswer& answer) {
     const std::string line = to_line(answer);
     std::size_t done = 0;

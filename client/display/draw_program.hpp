@@ -2,7 +2,7 @@
 // (protocol/codec/draw_order.hpp), draws each picture off screen into a PNG file and answers with a
 // line (protocol/codec/draw_answer.hpp). Programs without OpenGL, the server and runstone-replay,
 // start it as a child process. A driver that crashes ends only the child. One thread handles the
-// orders one after another; the pipe holds the sender back meanwhile. The process runs at low
+// orders one after another. A sender that is faster waits at the full pipe. The process runs at low
 // priority.
 #pragma once
 #include <functional>

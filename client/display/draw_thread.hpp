@@ -1,5 +1,5 @@
 // DrawThread: the thread that owns the screen. A frame may take long (a tenth of a second in
-// software). Changes are queued meanwhile, so the main thread never waits and applies, meshes and
+// software). Meanwhile changes are queued. So the main thread never waits, and applies, meshes and
 // sends edits on time.
 //   in    changes (meshes, removals, materials), of which the newest per chunk is kept, and at most
 //         one frame order; bounded by the number of chunks

@@ -1,7 +1,7 @@
 // DrawnWorld: the world of the draw program. It receives whole chunks, meshes them and uploads them
 // to a screen. A changed chunk is meshed again, together with each neighbour that touches a changed
-// border layer. In a client that is played, Replica, MeshPlanner and DrawThread do this work.
-// Thread: that of the screen. The pool's threads mesh while draw() waits for them.
+// border layer. In the normal client, Replica, MeshPlanner and DrawThread do this work. Thread:
+// that of the screen. The pool's threads mesh while draw() waits for them.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace runstone {
 
 class DrawnWorld {
  public:
-  /// The greatest number of chunks held. It keeps a peer from filling the memory with empty chunks.
+  /// The greatest number of chunks. It prevents a peer from filling the memory with empty chunks.
   static constexpr std::size_t kChunksMax = 1U << 18;
 
   /// `screen` must outlive the world. `edge` is the edge of every chunk in voxels. `workers` is the

@@ -52,8 +52,8 @@ class MeshPipeline {
   void draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,
             const std::function<std::vector<Marker>()>& markers);
 
-  /// Writes a PNG of the next frame that no unfinished mesh is missing from, or of the first frame
-  /// after kScreenshotWaitUs. Requires draws().
+  /// Writes a PNG of the next frame that is drawn while no mesh is unfinished, or of the first
+  /// frame after kScreenshotWaitUs. Requires draws().
   void request_screenshot(std::string path, TimeUs now_us);
   bool screenshots_done() const { return screenshots_.empty() && !frame_.screenshots; }
   /// Returns true if the newest completed screenshots could be written.
@@ -76,11 +76,13 @@ class MeshPipeline {
   /// Sets the counts of meshes and frames.
   void add_to(ClientReport& report) const;
 
-  /// In a window, the least time between two frame orders. The swap paces frames more finely.
+  /// The least time between two frame orders in a window. The swap decides the exact time of a
+  /// frame.
   static constexpr TimeUs kFrameUs = 16'000;
-  /// The time per turn that mesh() spends on meshes of changed layers. The workers make the rest.
+  /// The time per turn that mesh() spends on meshes of changed layers. The workers make the other
+  /// meshes.
   static constexpr TimeUs kMeshHereUs = 1'000;
-  /// Off screen, the least time between a frame and the next one that shows no new edit.
+  /// The least time off screen between a frame and the next one that shows no new edit.
   static constexpr TimeUs kFrameOffScreenUs = 100'000;
   static constexpr TimeUs kScreenshotWaitUs = 10'000'000;
 
@@ -111,7 +113,7 @@ class MeshPipeline {
   bool edits_waiting_ = false;    // a mesh with edits was queued for upload
   struct {
     bool in_progress = false, uploads = false, screenshots = false;
-  } frame_;  // the frame in progress: whether it shows new meshes and becomes screenshots
+  } frame_;  // the frame in progress; true if it shows new meshes, and if it becomes screenshots
   std::uint64_t frames_ordered_ = 0;
   std::optional<std::uint64_t> last_frame_;  // has_caught_up(): the frame to wait for
   TimeUs next_frame_us_ = 0;                 // the earliest time of a frame without new edits
@@ -119,8 +121,8 @@ class MeshPipeline {
   TimeUs screenshot_since_us_ = 0;
   bool screenshots_written_ = true;
   std::unique_ptr<DrawThread> draw_thread_;  // may be null
-  std::unique_ptr<MeshPool>
-      pool_;  // set with the materials; last: its threads use the members above
+  // Null until the materials are set. It is the last member, because its threads use the others.
+  std::unique_ptr<MeshPool> pool_;
 };
 
 }  // namespace runstone

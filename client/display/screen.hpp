@@ -25,7 +25,7 @@ class Screen {
   /// Returns the name of the OpenGL context, a static string.
   virtual const char* name() const = 0;
   virtual void set_materials(const MaterialTable& materials) = 0;
-  /// Same as Renderer::upload() and Renderer::remove().
+  /// Do the same as Renderer::upload() and Renderer::remove().
   virtual void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh) = 0;
   virtual void remove(const ChunkKey& key) = 0;
   /// Draws a frame of width x height pixels. Waits for the fence after the frame off screen, and

@@ -98,8 +98,8 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
       "play the edits of this .rlog instead: a bot for each author, each edit at its time");
   app.add_option_function<std::string>(
          "--speed", [&out](const std::string& text) { out.speed = speed_of(text); },
-         "play: 2 is twice as fast as recorded, 0 or max as fast as the server takes them; default "
-         "1")
+         "play: 2 is twice as fast as recorded, 0 or max as fast as the server takes them; "
+         "default 1")
       ->needs(play);
   for (const char* other :
        {"--count", "--behaviour", "--mix", "--replicas", "--join-rate", "--name", "--key-dir",

@@ -22,7 +22,7 @@ class FleetBot {
   /// Returns a line such as "bot-3 does not see the world around it: the server is full".
   virtual std::string failure(const std::string& what) const = 0;
   virtual void step(TimeUs now_us) = 0;
-  /// Says goodbye and ends the link after `milliseconds` of running the io_context at most.
+  /// Sends a goodbye and ends the link after `milliseconds` of running the io_context at most.
   virtual void leave(std::int64_t milliseconds) = 0;
   virtual void add_to(FleetReport& report) const = 0;
 };

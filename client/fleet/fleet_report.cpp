@@ -101,8 +101,8 @@ std::string to_table(const FleetReport& report) {
     return each_second(report, report.class_bytes[static_cast<std::size_t>(frame_class)]);
   };
   std::string table = fmt::format(
-      "bots {} ({} with a replica): {} edits due in {:.1f} s, {} submitted, {} confirmed, {} "
-      "rejected, {} durable; {} not ready, {} refused\n",
+      "bots {} ({} with a replica): {} edits due in {:.1f} s, {} submitted, {} confirmed, "
+      "{} rejected, {} durable; {} not ready, {} refused\n",
       report.bots, report.replicas, c.due, report.seconds, c.submitted, c.confirmed, c.rejected,
       c.durable, c.not_ready, c.refused);
   table += histogram_line("due to confirmed", c.confirm_us);

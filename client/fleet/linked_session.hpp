@@ -25,15 +25,15 @@ class LinkedSession final : private LinkEvents {
   const NetStats& stats() const { return link_.stats(); }
   /// Returns why the last connection ended, or an empty text if none did.
   const std::string& last_failure() const { return last_failure_; }
-  /// Returns the number of connections that could not be made or ended without the session asking
-  /// for it, by reason.
+  /// Returns the number of connections that could not be made, or that ended although the session
+  /// did not end them, by reason.
   const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
   /// Returns true if the server refused this session for good.
   bool is_final() const { return session_.end() && session_.end()->final; }
 
   /// Sends the session's queued messages. Call it after every change of the session.
   void flush();
-  /// Says goodbye and ends the link after `milliseconds` of running the io_context at most.
+  /// Sends a goodbye and ends the link after `milliseconds` of running the io_context at most.
   void leave(std::int64_t milliseconds);
 
  private:

@@ -28,7 +28,7 @@ SessionConfig new_player() {
   return config;
 }
 
-/// Grows with every sign of progress of a bot.
+/// A count that grows with every progress of any bot.
 std::uint64_t progress_of(const PlayBot& bot) {
   const PlayCounts& counts = bot.counts();
   return counts.confirmed + counts.durable + sum_of(counts.rejected) + counts.unseen +

@@ -49,8 +49,9 @@ std::string to_json(const PlayReport& report) {
 std::string to_table(const PlayReport& report) {
   const PlayCounts& c = report.counts;
   std::string table = fmt::format(
-      "bots {}: {} recorded edits, {} due in {:.1f} s, {} submitted, {} confirmed, {} durable; {} "
-      "offered again, {} rejected, {} refused here, {} without an answer\n{}",
+      "bots {}: {} recorded edits, {} due in {:.1f} s, {} submitted, {} confirmed, {} durable; "
+      "{} offered again, {} rejected, {} refused here, {} without an answer\n"
+      "{}",
       report.bots, report.edits, c.due, report.seconds, c.submitted, c.confirmed, c.durable,
       c.retried, sum_of(c.rejected), sum_of(c.refused), c.unseen,
       histogram_line("due to confirmed", c.confirm_us));

@@ -1,4 +1,4 @@
-// Reads a recorded log from a file. It waits for the disk, so it is for the start of a program.
+// The reader of recorded logs. It waits for the disk, so it is for the start of a program.
 #pragma once
 #include <string>
 

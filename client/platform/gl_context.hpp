@@ -16,7 +16,7 @@ class GlContext {
   /// Returns the address of a GL function by its name.
   using Loader = void (*(*)(const char*))();
   virtual Loader loader() const = 0;
-  /// "EGL surfaceless", "OSMesa" or "GLFW".
+  /// Returns "EGL surfaceless", "OSMesa" or "GLFW".
   virtual const char* name() const = 0;
   /// Returns true if the default framebuffer is that of a window.
   virtual bool is_window() const { return false; }

@@ -1,5 +1,5 @@
-// Move-only owners of GL names. Thread: the GL thread, with the context current, also for
-// destruction.
+// GlHandle: a move-only owner of a GL name. Thread: the GL thread, with the context current, also
+// for destruction.
 #pragma once
 #include <glad/gl.h>
 

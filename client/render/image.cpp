@@ -36,7 +36,7 @@ Image halved(const Image& image) {
 }
 
 bool write_png(const std::string& file, const Image& image) {
-  // Flat faces repeat. Without a filter before compression the file is smaller and takes half the
+  // The pixels of flat faces repeat. Without a PNG filter the file is smaller and takes half the
   // time.
   stbi_write_force_png_filter = 0;
   return stbi_write_png(file.c_str(), image.width, image.height, 3, image.rgb.data(),

@@ -132,7 +132,7 @@ struct Renderer::State {
     glUniform1i(glGetUniformLocation(quad_program.get(), "palette"), 0);
     glEnable(GL_CULL_FACE);
     glUniform1f(glGetUniformLocation(quad_program.get(), "seam"), 0.0002F);
-    // From near to far, so that hidden pixels fail the depth test early.
+    // Chunks are drawn from near to far, so that hidden pixels fail the depth test early.
     for (const Visible& v : visible) {
       place(v);
       v.buffers->draw_opaque();
@@ -236,8 +236,8 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
 
 void Renderer::finish() {
   const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  constexpr GLuint64 kNanosecondsMax =
-      30'000'000'000;  // a driver that hangs must not hang the client
+  // The wait is bounded, so that a driver that hangs does not block the client for ever.
+  constexpr GLuint64 kNanosecondsMax = 30'000'000'000;
   const GLenum waited = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanosecondsMax);
   glDeleteSync(fence);
   if (waited == GL_TIMEOUT_EXPIRED)

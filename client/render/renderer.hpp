@@ -38,8 +38,8 @@ struct Marker {
   bool filled = false;  // false: edges only
 };
 
-/// Finds a GL function by name. eglGetProcAddress, OSMesaGetProcAddress and glfwGetProcAddress have
-/// this type.
+/// A function that returns a GL function by name. eglGetProcAddress, OSMesaGetProcAddress and
+/// glfwGetProcAddress have this type.
 using GlContextLoader = void (*(*)(const char*))();
 
 class Renderer {

@@ -73,9 +73,8 @@ inline constexpr const char* kQuadFragmentShader =
     "  vec3 dir = relative / far;\n"
     "  float sun = max(dot(normal, kSun), 0.0);\n"
     "  float skylight = 0.5 + 0.5 * normal.y;\n"
-    "  vec3 light = vec3(1.00, 0.93, 0.80) * (0.75 * sun) + mix(vec3(0.33, 0.31, 0.30), vec3(0.44, "
-    "0.52, "
-    "0.62), skylight);\n"
+    "  vec3 light = vec3(1.00, 0.93, 0.80) * (0.75 * sun) + mix(vec3(0.33, 0.31, 0.30), "
+    "vec3(0.44, 0.52, 0.62), skylight);\n"
     // Each voxel has a slightly different tint, so that merged faces still look like voxels. The
     // tint fades out with distance before it would flicker.
     "  vec3 face = abs(normal);\n"
@@ -88,8 +87,7 @@ inline constexpr const char* kQuadFragmentShader =
     "  vec3 lit = colour.rgb * light * tint;\n"
     "  float fog = smoothstep(fog_start, fog_end, far);\n"
     "  fragment = vec4(pow(mix(lit, pow(sky(dir), vec3(2.2)), fog), vec3(1.0 / 2.2)), "
-    "mix(colour.a, 1.0, "
-    "fog));\n"
+    "mix(colour.a, 1.0, fog));\n"
     "}\n";
 
 // One triangle covers the screen. The inverse of view and projection gives the direction of each

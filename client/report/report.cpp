@@ -142,8 +142,8 @@ void add_chunk_lines(std::string& out, const ClientReport& report, std::int32_t 
   const MeshStats& meshes = report.meshes;
   const Extent extent = Extent::cube(static_cast<unsigned>(std::max(edge, 0)));
   fmt::format_to(into,
-                 "chunks: {} snapshots; means: {:.0f} runs, {:.0f} bytes on the wire, {:.0f} as "
-                 "raw runs, {} as a dense grid; unpack {:.1f} us, mesh {:.1f} us\n",
+                 "chunks: {} snapshots; means: {:.0f} runs, {:.0f} bytes on the wire, "
+                 "{:.0f} as raw runs, {} as a dense grid; unpack {:.1f} us, mesh {:.1f} us\n",
                  snapshots.count, snapshots.runs.mean().value_or(0), each(snapshots.wire_bytes),
                  each(snapshots.raw_bytes), extent.volume() * sizeof(Material),
                  snapshots.unpack_ns.mean().value_or(0) / 1000,

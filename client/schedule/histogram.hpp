@@ -1,6 +1,6 @@
 // Histogram: a histogram of durations with log-linear buckets. A percentile is off by at most 1/256
-// of its value, and values below 256 are exact. Nothing is dropped: what never happened counts as
-// infinite. Source: the bucket layout of HdrHistogram (G. Tene).
+// of its value, and values below 256 are exact. No sample is dropped: an event that never happened
+// counts as infinite. Source: the bucket layout of HdrHistogram (G. Tene).
 #pragma once
 #include <cstdint>
 #include <limits>

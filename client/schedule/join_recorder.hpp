@@ -33,7 +33,8 @@ class JoinRecorder {
   void begin(const View& view, TimeUs began_us);
   /// Returns true if the first view is known and not all of it is done.
   bool is_open() const { return view_ && report_.view.done != report_.view.chunks; }
-  /// The chunk has a mesh, or will never have one. Each chunk counts once. Cost: O(log chunks).
+  /// Records that the chunk has a mesh, or will never have one. Each chunk counts once. Cost: O(log
+  /// chunks).
   void done(const ChunkKey& key, TimeUs at_us);
   const JoinReport& report() const { return report_; }
 

@@ -24,10 +24,10 @@ const char* to_string(EditPath path) {
 }
 
 void LatencyRecorder::not_submitted() {
-  for (const EditPath path : {EditPath::own_predicted, EditPath::own_confirmed}) {
+  for (const EditPath path : {EditPath::local_predicted, EditPath::local_confirmed}) {
     PathReport& report = done_.paths[static_cast<std::size_t>(path)];
     ++report.edits;
-    const LatencyStage end = path == EditPath::own_confirmed ? LatencyStage::applied : last_;
+    const LatencyStage end = path == EditPath::local_confirmed ? LatencyStage::applied : last_;
     for (std::size_t s = index(LatencyStage::applied); s <= index(end); ++s)
       report.since_submit[s].add_infinite();
   }
@@ -75,8 +75,8 @@ void LatencyRecorder::take_edit(const EditChange& change,
   const auto [it, is_new] = open_.try_emplace(key);
   OpenEdit& edit = it->second;
   if (is_new) {
-    edit.path = change.predicted  ? EditPath::own_predicted
-                : change.is_local ? EditPath::own_confirmed
+    edit.path = change.predicted  ? EditPath::local_predicted
+                : change.is_local ? EditPath::local_confirmed
                                   : EditPath::remote;
     if (is_submitted) {
       edit.submitted_us = local->second;
@@ -93,7 +93,7 @@ void LatencyRecorder::take_edit(const EditChange& change,
     }
     reach(edit, LatencyStage::applied, change.applied_us);
   }
-  if (edit.path == EditPath::own_confirmed) {
+  if (edit.path == EditPath::local_confirmed) {
     unconfirmed_.erase(change.op.seq);
     finish(edit);
     open_.erase(it);
@@ -219,7 +219,7 @@ LatencyReport LatencyRecorder::report() const {
       }
     }
   }
-  PathReport& confirmed = report.paths[static_cast<std::size_t>(EditPath::own_confirmed)];
+  PathReport& confirmed = report.paths[static_cast<std::size_t>(EditPath::local_confirmed)];
   for (std::size_t i = 0; i < unconfirmed_.size(); ++i) {
     ++confirmed.edits;
     for (std::size_t s = 0; s <= index(LatencyStage::applied); ++s)

@@ -2,9 +2,9 @@
 // latency-plus-mesh).
 //   submit -> ordered -> received -> unpacked -> applied -> meshed -> uploaded -> presented
 // Three paths are recorded separately:
-//   - own_predicted: a local edit, as predicted: submit -> applied (to the shown runs) -> meshed ->
-//     uploaded -> presented;
-//   - own_confirmed: a local edit, as confirmed: submit -> ordered -> received -> unpacked ->
+//   - local_predicted: a local edit, as predicted: submit -> applied (to the shown runs) -> meshed
+//     -> uploaded -> presented;
+//   - local_confirmed: a local edit, as confirmed: submit -> ordered -> received -> unpacked ->
 //     applied. The time until it is durable is recorded apart;
 //   - remote: all stages. Times of the server's clock are converted with the offset known when the
 //     edit arrived.
@@ -41,20 +41,21 @@ enum class LatencyStage : std::uint8_t {
 inline constexpr std::size_t kLatencyStageCount = 7;
 const char* to_string(LatencyStage stage);
 
-enum class EditPath : std::uint8_t { own_predicted, own_confirmed, remote };
+enum class EditPath : std::uint8_t { local_predicted, local_confirmed, remote };
 inline constexpr std::size_t kEditPathCount = 3;
+/// Returns the name in reports: "own_predicted", "own_confirmed" or "remote".
 const char* to_string(EditPath path);
 
 struct PathReport {
-  /// From submit to the end of each stage. `meshed` is latency-plus-mesh, `presented` is "to
-  /// pixels".
+  /// The times from submit to the end of each stage. `meshed` is latency-plus-mesh, `presented` is
+  /// "to pixels".
   std::array<Histogram, kLatencyStageCount> since_submit;
-  /// From the end of the previous recorded stage, or from submit for the first one.
+  /// The times from the end of the previous recorded stage, or from submit for the first one.
   std::array<Histogram, kLatencyStageCount> step;
   std::uint64_t edits = 0;           // seen on this path, or due and never seen
   std::uint64_t without_effect = 0;  // no visible voxel changed: no later stage is recorded
   std::uint64_t left_view = 0;       // its chunks left the view before they were drawn
-  /// Its sender or this client had no clock offset: recorded in `step` only.
+  /// Edits recorded in `step` only, because their sender or this client had no clock offset.
   std::uint64_t unknown_submit = 0;
 };
 
@@ -63,7 +64,7 @@ struct LatencyReport {
   // Local edits:
   Histogram durable;           // submit -> known to be on disk
   std::uint64_t rejected = 0;  // rejected by the server; in none of the above
-  std::uint64_t unseen = 0;    // resolved while not connected; not in own_confirmed and durable
+  std::uint64_t unseen = 0;    // resolved while not connected; not in local_confirmed and durable
   const PathReport& operator[](EditPath path) const {
     return paths[static_cast<std::size_t>(path)];
   }
@@ -74,17 +75,18 @@ class LatencyRecorder {
   /// `last`: the last recorded stage: presented, or meshed for a client that draws nothing.
   explicit LatencyRecorder(LatencyStage last = LatencyStage::presented) : last_(last) {}
 
-  /// A local edit was submitted. Call it before take() gets the changes that contain the edit.
+  /// Records that a local edit was submitted. Call it before take() gets the changes that contain
+  /// the edit.
   void submitted(ClientSequence seq, TimeUs scheduled_us) { local_[seq] = scheduled_us; }
-  /// A local edit was due, but submit() failed: it counts as infinitely late.
+  /// Records that a local edit was due and submit() failed. The edit counts as infinitely late.
   void not_submitted();
   void take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us);
 
-  /// A mesh made from the chunk's shown runs is ready, or on the GPU. `serial`: the
-  /// Replica::shown_serial() of these runs.
+  /// Record that a mesh made from the chunk's shown runs is ready, and that it is on the GPU.
+  /// `serial`: the Replica::shown_serial() of these runs.
   void meshed(const ChunkKey& key, std::uint64_t serial, TimeUs at_us);
   void uploaded(const ChunkKey& key, std::uint64_t serial, TimeUs at_us);
-  /// The frame with everything uploaded so far is on the screen.
+  /// Records that the frame with everything uploaded so far is on the screen.
   void presented(TimeUs at_us);
 
   /// Returns the number of edits that have not reached the last stage.

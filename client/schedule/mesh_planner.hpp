@@ -40,7 +40,7 @@
 
 namespace runstone {
 
-/// Null if there is no mesh.
+/// The pointer is null if there is no mesh.
 using MeshPtr = std::shared_ptr<const ChunkMesh>;
 
 struct MeshJob {
@@ -65,7 +65,8 @@ class MeshPlanner {
   explicit MeshPlanner(const Replica& replica) : replica_(replica) {}
 
   void take(std::span<const ChunkChange> changes);
-  /// The view of the replica moved. Chunks at its edge may not have to wait any longer.
+  /// Call it when the view of the replica moved. Chunks at its edge may not have to wait any
+  /// longer.
   void view_changed();
   void set_eye(ChunkCoord eye);
 
@@ -79,7 +80,7 @@ class MeshPlanner {
   /// chunk is meshed again.
   void forget_meshes();
 
-  /// The number of chunks to mesh, and of those among them that do not have to wait.
+  /// Return the number of chunks to mesh, and the number of those that do not have to wait.
   std::size_t dirty_count() const { return dirty_; }
   std::size_t ready_count() const { return ready_.size(); }
   std::uint64_t jobs() const { return jobs_; }

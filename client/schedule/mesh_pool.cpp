@@ -8,8 +8,8 @@ MeshPool::MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, 
     : visibility_(std::move(visibility)),
       clock_(std::move(clock)),
       wake_(std::move(wake)),
-      // Large enough that no worker is idle until the main thread pushes again. Small enough that
-      // new work does not queue behind old work.
+      // The capacity is large enough that no worker is idle until the main thread pushes again, and
+      // small enough that new work does not queue behind old work.
       capacity_(workers == 0 ? 1 : workers * 8) {
   for (unsigned i = 0; i < workers; ++i) {
     threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });

@@ -1,7 +1,7 @@
 // MeshPool: threads that mesh chunks. One thread, the client's main thread, pushes jobs and takes
-// results. At most `capacity` jobs wait or run. When it is reached, push() returns false and the
-// planner keeps the work, merged. Without workers push() meshes the job itself: for tests and
-// machines with one core.
+// results. At most `capacity` jobs wait or run. Beyond that, push() returns false, and the planner
+// keeps the changes and merges them. Without workers push() meshes the job itself, which is for
+// tests and machines with one core.
 #pragma once
 #include <condition_variable>
 #include <cstdint>

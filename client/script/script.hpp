@@ -108,8 +108,8 @@ struct Repeat {
 struct End {
   std::size_t repeat = 0;  // index of its Repeat
 };
-/// Open loop: edit i is due i / rate seconds after the start, whatever happened to the edits
-/// before.
+/// A burst is open loop: edit i is due i / rate seconds after the start, whatever happened to the
+/// earlier edits.
 struct Burst {
   std::uint32_t count = 0;
   double rate = 1;
@@ -147,8 +147,8 @@ struct Script {
   std::vector<ScriptCommand> commands;
 };
 
-inline constexpr double kScriptWaitSecondsMax =
-    120;  // default limit of commands that wait for a state
+/// The default time limit of commands that wait for a state.
+inline constexpr double kScriptWaitSecondsMax = 120;
 
 /// Parses a script. Fails with the first wrong line. Names of materials are not checked, because
 /// only the world knows them. `file` is for error messages.

@@ -67,7 +67,7 @@ class ByteReader {
   /// Reads a signed varint. Fails if it lies outside [low, high].
   std::int64_t svarint_in(std::int64_t low, std::int64_t high, const char* what);
   ByteView bytes(std::size_t count);
-  /// Marks the input as bad: for a value that decodes but is not allowed.
+  /// Marks the input as bad. It is for a value that decodes but is not allowed.
   void reject(ErrorCode code, const char* what);
   /// Returns success if every read succeeded and no byte is left over.
   Result<void> finish();

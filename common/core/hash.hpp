@@ -13,8 +13,8 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// Seeded stream of 64-bit words (SplitMix64). It gives the same numbers on every platform. Not for
-/// secrets.
+/// Seeded stream of 64-bit words (SplitMix64). It gives the same numbers on every platform. It must
+/// not be used for secrets.
 class SplitMix64 {
  public:
   explicit constexpr SplitMix64(std::uint64_t seed) : state_(seed) {}

@@ -1,4 +1,4 @@
-// Bytes as text: two lower-case hex digits each.
+// Bytes as text: two lower-case hex digits for each byte.
 #pragma once
 #include <string>
 

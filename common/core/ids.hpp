@@ -12,11 +12,11 @@ inline constexpr std::size_t kMaterialCountMax = 65536;
 
 using TimeUs = std::int64_t;  // microseconds; each use names its clock
 
-using LogId = std::uint32_t;     // 0 today; one per shard later
+using LogId = std::uint32_t;     // number of a log; the only log is 0
 using Epoch = std::uint32_t;     // raised by each server start; 0: before the first start
 using Sequence = std::uint64_t;  // place in the log, from 1, without gaps; 0: the base
 /// Largest sequence and client sequence. Databases store signed integers: a larger value would be
-/// read back as the smallest number.
+/// read back as a negative number.
 inline constexpr Sequence kSequenceMax = 0x7fff'ffff'ffff'ffff;
 
 /// Version of a chunk: the last edit that touched it by geometry, even if no voxel changed. (0, 0)

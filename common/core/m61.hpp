@@ -12,8 +12,8 @@ constexpr std::uint64_t reduce(std::uint64_t v) {
   v = (v & kPrime) + (v >> 61);
   return v >= kPrime ? v - kPrime : v;
 }
-/// Requires both arguments below kPrime. The result is below kPrime too. The same holds for sub and
-/// mul.
+/// Return the sum, the difference and the product. They require both arguments below kPrime, and
+/// the result is below kPrime too.
 constexpr std::uint64_t add(std::uint64_t a, std::uint64_t b) {
   const std::uint64_t s = a + b;
   return s >= kPrime ? s - kPrime : s;

@@ -49,14 +49,11 @@ inline Unexpected<Error> fail(ErrorCode code, const char* what, std::uint64_t of
 template <class T, class E = Error>
 class [[nodiscard]] Result {
  public:
+  /// Both constructors are implicit, so that a function can return a value or fail(...).
   template <class U = T>
     requires std::is_convertible_v<U, T> && (!std::is_same_v<std::remove_cvref_t<U>, Result>)
-  Result(U&& value)
-      : state_(std::in_place_index<0>, std::forward<U>(value)) {
-  }  // NOLINT(google-explicit-constructor)
-  Result(Unexpected<E> error)
-      : state_(std::in_place_index<1>, std::move(error.error)) {
-  }  // NOLINT(google-explicit-constructor)
+  Result(U&& value) : state_(std::in_place_index<0>, std::forward<U>(value)) {}
+  Result(Unexpected<E> error) : state_(std::in_place_index<1>, std::move(error.error)) {}
 
   bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }
@@ -92,8 +89,7 @@ template <class E>
 class [[nodiscard]] Result<void, E> {
  public:
   Result() = default;
-  Result(Unexpected<E> error)
-      : error_(std::move(error.error)) {}  // NOLINT(google-explicit-constructor)
+  Result(Unexpected<E> error) : error_(std::move(error.error)) {}
 
   bool has_value() const { return !error_.has_value(); }
   explicit operator bool() const { return has_value(); }

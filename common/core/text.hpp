@@ -1,4 +1,5 @@
-// Text from outside: names and messages that appear in log lines, on terminals and on screens.
+// Checks for text from outside: names and messages that appear in log lines, on terminals and on
+// screens.
 #pragma once
 #include <cstddef>
 #include <string_view>

@@ -121,7 +121,7 @@ std::optional<TimeUs> parse_duration(std::string_view text) {
   constexpr std::string_view kUnits = "wdhms";
   constexpr std::int64_t kSeconds[] = {7 * kDaySeconds, kDaySeconds, 3600, 60, 1};
   std::int64_t seconds = 0;
-  // Units that may still follow: each once, the longest first.
+  // The units that may still follow. Each unit occurs at most once, the longest first.
   std::size_t next = 0;
   do {
     const std::size_t digits = digits_of(text);

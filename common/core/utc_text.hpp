@@ -1,5 +1,5 @@
-// Points in time as people read and type them: UTC, by the calendar. No clock is read and no locale
-// is used.
+// Points in time and durations as text, in the form that people read and type. Times are UTC. No
+// clock is read and no locale is used.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,8 +12,8 @@ namespace runstone {
 /// Returns text such as "2026-11-21T23:57:42Z", rounded down to the second.
 std::string utc_text(TimeUs utc_us);
 
-/// Parses text such as "2026-11-21T23:57:42.25Z" to microseconds since 1970. Optional are the Z,
-/// the decimals (six at most), the seconds and the time of day. Years are 1970 .. 9999. Returns
+/// Parses text such as "2026-11-21T23:57:42.25Z" to microseconds since 1970. The Z, the decimals
+/// (six at most), the seconds and the time of day are optional. Years are 1970 .. 9999. Returns
 /// nullopt on any other text.
 std::optional<TimeUs> parse_utc(std::string_view text);
 

@@ -1,5 +1,5 @@
-// Assembles 16^3 blocks of another program's world into world chunks, from runs to runs. There is
-// no voxel buffer, only one cursor per block.
+// The block assembler joins 16^3 blocks of another program's world to world chunks, from runs to
+// runs. It has no voxel buffer, only one cursor per block.
 #pragma once
 #include <functional>
 #include <span>

@@ -46,7 +46,7 @@ Result<Bytes> decompress(ByteView in) {
       return out;
     }
     if (filled < out.size()) {
-      // Room was left, so the stream needs more input, but all of it was consumed.
+      // The output has room left, so the stream needs more input, but all input was consumed.
       return fail(ErrorCode::truncated, "luanti block: the zstd stream ends early", offset);
     }
     if (out.size() == kLuantiBlockBytesMax) {
@@ -57,7 +57,7 @@ Result<Bytes> decompress(ByteView in) {
   }
 }
 
-/// Big-endian reads with the common reader.
+/// Reads big-endian numbers with the common reader.
 class BigEndian {
  public:
   explicit BigEndian(ByteReader& in) : in_(in) {}

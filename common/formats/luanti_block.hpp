@@ -16,7 +16,7 @@
 namespace runstone {
 
 inline constexpr std::int32_t kLuantiBlockEdge = 16;
-/// Bound of one block's decompressed bytes: 16 KiB of nodes plus the contents of chests and signs.
+/// The maximum size of a decompressed block: 16 KiB of nodes, and the contents of chests and signs.
 inline constexpr std::size_t kLuantiBlockBytesMax = std::size_t{1} << 20;
 
 struct LuantiBlock {

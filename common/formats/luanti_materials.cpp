@@ -130,8 +130,8 @@ constexpr Look kNodes[] = {
     {"butterflies:butterfly_violet", 0x8d5cb8, Kind::thin},
 };
 
-/// For names not listed above. The first word found decides, so specific words precede general
-/// ones.
+/// Colours of names that are not listed above. The first word found decides, so specific words
+/// precede general ones.
 constexpr Look kWords[] = {
     {"torch", 0xffd27a, Kind::thin},
     {"lantern", 0xffe2a0},
@@ -203,10 +203,10 @@ constexpr Look kWords[] = {
     {"trunk", 0x6a4f31},
 };
 
-// Of thin nodes that are kept: a cube that one can see through.
+// The alpha of thin nodes that are kept, which become see-through cubes.
 constexpr std::uint8_t kThinAlpha = 176;
 
-/// FNV-1a, then mixed: the same number for a name on every platform.
+/// Returns the FNV-1a hash of a name, mixed. It is the same on every platform.
 std::uint64_t hash_of(std::string_view name) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;

@@ -1,5 +1,5 @@
-// Column: the materials of one vertical line of the world, painted interval by interval; later
-// paint wins. It holds a few spans, never a voxel buffer.
+// Column: the materials of one vertical line of the world, painted interval by interval. A later
+// interval replaces earlier ones. A column holds a few spans, never a voxel buffer.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -99,8 +99,8 @@ class Column {
   }
 
  private:
-  /// Does paint() from the lowest voxel, as nearly every layer of terrain does: removes the covered
-  /// spans in place.
+  /// Does the same as paint() for an interval that begins at the lowest voxel, as nearly every
+  /// layer of terrain does. It removes the covered spans in place.
   void paint_bottom(std::int32_t to, Material material) {
     std::size_t covered = 0;  // spans that end at or below `to`
     while (covered < spans_.size() && spans_[covered].end <= to) ++covered;

@@ -1,5 +1,5 @@
-// ColumnsWorld: a small world written out as columns of runs; outside of it everything is empty. It
-// holds the voxels of the thesis' noise scenario (number 5), whose noise no generator of this
+// ColumnsWorld: a small world that is given as columns of runs. Everything outside of it is empty.
+// It holds the voxels of the thesis' noise scenario (number 5), whose noise no generator of this
 // project makes. The text, as in the thesis data, is a header line and then one line per column:
 //   x,y,runs                  x, y: the thesis' horizontal axes, here x and z
 //   -32,-32,3:41|0:44|-1:11   runs id:length upwards from the thesis' z = -32, here y; ids are

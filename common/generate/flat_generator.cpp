@@ -30,7 +30,8 @@ std::unique_ptr<Generator> FlatGenerator::make_empty() {
 
 RunChunk FlatGenerator::generate(VoxelPos origin, Extent extent) const {
   if (origin.y + extent.y <= y_min_ || origin.y >= y_max_) return uniform_chunk(extent, kEmpty);
-  // y is slowest: at most one append per layer, and the fewest runs.
+  // With y as the slowest axis, a layer takes at most one append, and the chunk has the fewest
+  // runs.
   RunBuilder out(extent, AxisOrder::xzy);
   const std::uint32_t layer = std::uint32_t{extent.x} * extent.z;
   for (std::int32_t y = 0; y < extent.y; ++y) out.append(layer, column_.at(origin.y + y));

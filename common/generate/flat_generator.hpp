@@ -1,4 +1,5 @@
-// FlatGenerator: the same few layers everywhere, or no layer at all. For building on.
+// FlatGenerator: the same few layers everywhere, or no layer at all. Its worlds are for builders
+// who want an empty place.
 #pragma once
 #include "common/generate/column.hpp"
 #include "common/generate/generator.hpp"

@@ -14,8 +14,8 @@
 
 namespace runstone {
 
-/// The fields that pin a generator. `parameters` is canonical TOML of that generator alone, empty
-/// for its defaults. to_toml() in generator_parameters.hpp writes it.
+/// The fields that pin a generator. `parameters` is canonical TOML of that generator alone, and
+/// empty for its defaults. to_toml() in generator_parameters.hpp writes it.
 struct GeneratorPin {
   std::string name;  // "empty", "flat", "terrain", "scenario"
   std::uint32_t version = 1;
@@ -30,7 +30,7 @@ class Generator {
   /// Returns the chunk whose first voxel is `origin`. It is canonical and in the order that suits
   /// the generator; callers that keep the chunk rotate it with in_cheapest_order(). Thread: any.
   virtual RunChunk generate(VoxelPos origin, Extent extent) const = 0;
-  /// Vertical range outside of which chunks are uniform: empty or one material.
+  /// Return the vertical range outside of which chunks are uniform: empty or of one material.
   virtual std::int32_t y_min() const = 0;
   virtual std::int32_t y_max() const = 0;  // one past
   /// Returns the highest non-empty voxel of a column + 1, where a player may stand. It makes no

@@ -32,9 +32,9 @@ class ValueNoise {
     std::uint64_t key;
     double frequency;
     double weight;
-    double shift_x,
-        // In lattice cells. The shifts keep the octaves' lattices from meeting at the origin.
-        shift_z;
+    // Shifts of the octave, in lattice cells. They keep the octaves' lattices from meeting at the
+    // origin.
+    double shift_x, shift_z;
   };
   void add_octave(const Octave& octave, std::int32_t x, std::int32_t z, std::uint32_t width,
                   std::uint32_t depth, std::span<double> out) const;

@@ -1,4 +1,4 @@
-// Finds a material by the name that a person types.
+// The search for a material by the name that a person types.
 #pragma once
 #include <string>
 #include <string_view>

@@ -38,10 +38,8 @@ struct GenerationRule {
 
 struct MaterialInfo {
   std::string name;  // unique, 1 .. 64 bytes of UTF-8 without control characters
-  std::array<std::uint8_t, 4> colour{0, 0, 0,
-                                     // sRGB and alpha. Alpha is below 255 only for transparent
-                                     // materials.
-                                     255};
+  // sRGB and alpha. Alpha is below 255 only for transparent materials.
+  std::array<std::uint8_t, 4> colour{0, 0, 0, 255};
   Visibility visibility = Visibility::opaque;
   std::optional<GenerationRule> generation;
   friend bool operator==(const MaterialInfo&, const MaterialInfo&) = default;

@@ -13,7 +13,8 @@
 
 namespace runstone {
 
-/// Quads of one pass, ordered by direction, then layer. The order within a layer is deterministic.
+/// The quads of one pass, ordered by direction, then layer. The order within a layer is
+/// deterministic.
 struct QuadLayers {
   std::vector<Quad> quads;
   /// The first quad of each (direction, layer): layer l of direction d starts at first[d * kSideMax

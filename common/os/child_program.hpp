@@ -1,4 +1,4 @@
-// Starting child programs.
+// Functions that start child programs.
 #pragma once
 #include <sys/types.h>
 

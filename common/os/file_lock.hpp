@@ -11,8 +11,8 @@
 namespace runstone {
 
 struct FileLockError {
-  bool is_held =
-      false;  // true: another lock holds the file; false: the file cannot be opened or locked
+  // true: another lock holds the file; false: the file cannot be opened or locked
+  bool is_held = false;
   std::string what;  // the system's message
 };
 

@@ -1,4 +1,4 @@
-// Low priority for background work.
+// The low priority of background work.
 #pragma once
 
 namespace runstone {

@@ -15,18 +15,18 @@
 
 namespace runstone {
 
-/// The first bytes of every .rlog. The bytes around the name change if a program transfers the file
-/// as text.
+/// The first bytes of every .rlog. The bytes before and after the name change if a program
+/// transfers the file as text.
 inline constexpr std::array<std::uint8_t, 8> kRlogMark = {0x89, 'R',  'L',  'O',
                                                           'G',  '\r', '\n', 0x1a};
 inline constexpr std::uint32_t kRlogVersion = 1;
 inline constexpr std::size_t kRlogFileHeadBytes = 12;  // mark and version
 inline constexpr std::size_t kRlogHeaderBytes = 64;
-/// Bounds of one block, and so of a reader's memory.
+/// The maximum sizes of one block. They also bound a reader's memory.
 inline constexpr std::uint32_t kRlogRawBytesMax = std::uint32_t{1} << 22;
 inline constexpr std::uint32_t kRlogCountMax = std::uint32_t{1} << 16;
 
-/// Stored.
+/// The kind of a block. The values are stored.
 enum class RlogKind : std::uint32_t { world = 1, players = 2, edits = 3, end = 4 };
 
 struct RlogBlock {

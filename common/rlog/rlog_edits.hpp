@@ -14,11 +14,12 @@
 
 namespace runstone {
 
-/// Client, epoch, client sequence, time, cause, subject, descriptor length, descriptor.
+/// The columns are client, epoch, client sequence, time, cause, subject, descriptor length,
+/// descriptor.
 inline constexpr std::size_t kRlogColumns = 8;
 using RlogClient = std::pair<AuthorId, ClientInstance>;
 
-/// Collects one block.
+/// Collects the edits of one block.
 class RlogEditsWriter {
  public:
   /// Requires a valid record that continues the previous one: the next sequence; epoch and time do
@@ -33,7 +34,7 @@ class RlogEditsWriter {
 
  private:
   std::map<RlogClient, std::uint32_t> index_;  // into clients_
-  // In order of appearance, with the last client sequence.
+  // The clients in order of appearance, with the last client sequence of each.
   std::vector<std::pair<RlogClient, ClientSequence>> clients_;
   std::array<Bytes, kRlogColumns> columns_;
   std::uint32_t count_ = 0;

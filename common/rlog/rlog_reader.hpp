@@ -42,9 +42,9 @@ class RlogReader {
   /// `each` returns false, and then returns false.
   RlogResult<bool> read_block(const std::function<bool(const EditRecord&)>& each);
 
-  /// Does both for every remaining edit from `from` on. Of the blocks before `from` only the
-  /// headers are checked. Stops if `each` returns false; otherwise returns at the valid end of the
-  /// file.
+  /// Calls next_block() and read_block() for all remaining edits from `from` on. Only the headers
+  /// of the blocks before `from` are checked. Stops if `each` returns false; otherwise returns at
+  /// the valid end of the file.
   RlogResult<void> read(const RlogFrom& from, const std::function<bool(const EditRecord&)>& each);
 
  private:

@@ -65,7 +65,7 @@ Result<RlogWorld> decode_rlog_world(ByteView in) {
   world.generator.parameters = read_text(r, kRlogRawBytesMax);
   for (double& coordinate : world.spawn) {
     coordinate = std::bit_cast<double>(r.u64());
-    // Also false for a NaN.
+    // The condition is also false for a NaN.
     if (r.ok() && !(coordinate >= -kWorldLimit && coordinate < kWorldLimit)) {
       r.reject(ErrorCode::bad_value, "spawn lies outside the world");
     }

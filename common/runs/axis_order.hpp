@@ -11,7 +11,7 @@
 
 namespace runstone {
 
-/// Named fastest axis first. The numbers break ties and are written to wire and disk.
+/// Each order is named fastest axis first. The numbers break ties and are written to wire and disk.
 enum class AxisOrder : std::uint8_t { xyz = 0, xzy = 1, yxz = 2, yzx = 3, zxy = 4, zyx = 5 };
 inline constexpr int kAxisOrderCount = 6;
 inline constexpr std::array<AxisOrder, kAxisOrderCount> kAxisOrders = {

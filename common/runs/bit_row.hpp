@@ -41,7 +41,8 @@ constexpr unsigned highest_bit(Row128 row) {
   return high != 0 ? 64 + highest_bit(high) : highest_bit(static_cast<Row64>(row));
 }
 
-/// Bit i of the result is the parity of bits [0, i] of `row`: marks of changes become states.
+/// Returns a row whose bit i is the parity of bits [0, i] of `row`. It turns marks of changes into
+/// states.
 template <class Row>
 constexpr Row prefix_xor(Row row) {
   for (unsigned shift = 1; shift < kRowBits<Row>; shift *= 2) row ^= row << shift;

@@ -1,5 +1,6 @@
-// Walks one layer of a chunk stretch by stretch with one forward cursor, for each axis of the
-// layer. An axis is named by its rank in the chunk's order: 0 fastest, 1 middle, 2 slowest.
+// The layer walk visits one layer of a chunk stretch by stretch, with one forward cursor. The layer
+// may lie across any axis. An axis is named by its rank in the chunk's order: 0 fastest, 1 middle,
+// 2 slowest.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace runstone {
 template <class Runs, class F>
 void walk_layer(Runs runs, OrderedExtent e, int rank, std::uint32_t at, F&& stretch) {
   RunCursor<Runs> cursor(runs);
-  if (rank == 2) {  // the layer is contiguous
+  if (rank == 2) {  // the layer is one stretch of the index order
     cursor.seek(at * e.layer());
     for (std::uint32_t m = 0; m < e.m; ++m) {
       const std::uint32_t line = at * e.layer() + m * e.f;
@@ -29,7 +30,7 @@ void walk_layer(Runs runs, OrderedExtent e, int rank, std::uint32_t at, F&& stre
     }
     return;
   }
-  if (rank == 1) {  // one line of every layer
+  if (rank == 1) {  // the layer has one line of each slow layer
     for (std::uint32_t s = 0; s < e.s; ++s) {
       const std::uint32_t line = s * e.layer() + at * e.f;
       cursor.seek(line);
@@ -42,9 +43,8 @@ void walk_layer(Runs runs, OrderedExtent e, int rank, std::uint32_t at, F&& stre
     }
     return;
   }
-  for (std::uint32_t s = 0; s < e.s;
-       // One voxel of every line. A long run covers many lines at once.
-       ++s) {
+  // The layer has one voxel of every line. A long run covers many lines at once.
+  for (std::uint32_t s = 0; s < e.s; ++s) {
     const std::uint32_t base = s * e.layer() + at;
     for (std::uint32_t m = 0; m < e.m;) {
       const std::uint32_t voxel = base + m * e.f;

@@ -146,10 +146,11 @@ RunList reordered(Runs runs, OrderedExtent e, std::array<int, 3> ranks, std::uin
   return out;
 }
 
-/// The number of places where two lines that are consecutive in an order meet with different
+/// The numbers of places where two lines that are consecutive in an order meet with different
 /// materials.
 struct Seams {
-  // For the orders in which the faster of the other two axes is the middle one, and for the others.
+  // For the orders in which the faster of the other two axes is the middle one, and for the other
+  // orders.
   std::uint32_t faster_next = 0;
   std::uint32_t slower_next = 0;
 };

@@ -155,7 +155,7 @@ class PrefixDigest {
 
   void move_to(std::uint32_t line) {
     line_ = line;
-    // At the very end of the chunk, this is one past the last layer.
+    // The layer is one past the last layer at the very end of the chunk.
     const std::uint32_t s = line / e_.m;
     const std::uint32_t m = line - s * e_.m;
     for (Lane& lane : lanes_) {

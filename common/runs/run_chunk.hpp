@@ -1,8 +1,8 @@
 // RunChunk: the voxels of one chunk, kept as runs in index order. Disk, memory, wire and mesher
 // share this form. Invariants (validate() checks them; the codec, the edits and the mesher rely on
 // them):
-//   - the extent is valid, the run list has the form its volume asks for, and there is at least one
-//     run;
+//   - the extent is valid, the run list has the form that its volume requires, and there is at
+//     least one run;
 //   - run ends ascend strictly and the last one is the volume, so the runs tile the chunk exactly;
 //   - neighbouring runs differ in material, so equal voxels in equal axis order have equal runs
 //     (canonical).
@@ -58,16 +58,17 @@ bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material mater
 /// Fails with the first broken invariant; the offset of the error is the run index. Bytes from
 /// outside pass this check before use.
 Result<void> validate(const RunChunk& chunk);
-/// Checks the same except the extent, which may be that of a part: for runs that are no chunk, such
-/// as the cells of a clipboard.
+/// Checks the same, but allows the extent of a part. It is for runs that are no chunk, such as the
+/// cells of a clipboard.
 Result<void> validate_runs(const RunChunk& chunk);
 
-/// Returns the digest, computed from scratch. A run is at most five boxes. Here each run is the
-/// difference of two prefix sums over whole layers, whole lines and part of a line. Cost: O(runs).
+/// Returns the digest, computed from all runs. The term of a run is the difference of two prefix
+/// sums over whole layers, whole lines and part of a line. Cost: O(runs).
 Digest digest_of(const RunChunk& chunk);
 
-/// Returns the digest of voxels [first, last) of the flattened chunk as if all were `material`. A
-/// digest follows an edit with it: new = old - span(old material) + span(new material). Cost: O(1).
+/// Returns the digest of voxels [first, last) of the flattened chunk as if all were `material`. It
+/// serves to update a digest after an edit: new = old - span(old material) + span(new material).
+/// Cost: O(1).
 Digest digest_of_span(const RunChunk& shape, VoxelIndex first, VoxelIndex last, Material material);
 
 }  // namespace runstone

@@ -33,8 +33,8 @@ static_assert(sizeof(PackedRun) == 4);
 
 inline constexpr std::uint32_t kNarrowVolumeMax = 65535;
 
-/// Read-only views with one interface. Hot code is a template over the view, so the branch on the
-/// form is outside its loop.
+/// Two read-only views with one interface. Hot code is a template over the view, so that the branch
+/// on the form is outside its loop.
 class NarrowRuns {
  public:
   explicit NarrowRuns(std::span<const PackedRun> runs) : runs_(runs) {}

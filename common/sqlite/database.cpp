@@ -7,11 +7,11 @@
 namespace runstone::sql {
 namespace {
 
-// A reader waits while a writer holds the file exclusively: during recovery and at the end of a
-// checkpoint.
+// The time that a connection waits for a lock. A writer holds the file exclusively during recovery
+// and at the end of a checkpoint.
 constexpr int kBusyMsMax = 2000;
 
-/// Returns the URI of a file. Characters that mean something in a URI are escaped.
+/// Returns the URI of a file. Characters with a special meaning in a URI are escaped.
 std::string uri_of(const std::string& file) {
   // A path that begins with "//" would read as the name of a host; an empty host comes before it.
   std::string uri = file.starts_with("//") ? "file://" : "file:";
@@ -88,22 +88,25 @@ Result<Statement> Database::prepare(std::string_view sql) {
   return Statement(statement);
 }
 
-Result<std::int64_t> Database::integer(std::string_view sql) {
+Result<Statement> Database::first_row(std::string_view sql) {
   auto statement = prepare(sql);
-  if (!statement) return Unexpected<Error>{statement.error()};
+  if (!statement) return statement;
   const auto row = statement->step();
   if (!row) return Unexpected<Error>{row.error()};
   if (!*row) return failure(handle_.get(), SQLITE_CORRUPT);
-  return statement->integer(0);
+  return statement;
+}
+
+Result<std::int64_t> Database::integer(std::string_view sql) {
+  const auto row = first_row(sql);
+  if (!row) return Unexpected<Error>{row.error()};
+  return row->integer(0);
 }
 
 Result<std::string> Database::text(std::string_view sql) {
-  auto statement = prepare(sql);
-  if (!statement) return Unexpected<Error>{statement.error()};
-  const auto row = statement->step();
+  const auto row = first_row(sql);
   if (!row) return Unexpected<Error>{row.error()};
-  if (!*row) return failure(handle_.get(), SQLITE_CORRUPT);
-  return std::string(statement->text(0));
+  return std::string(row->text(0));
 }
 
 std::int64_t Database::changes() const { return sqlite3_changes64(handle_.get()); }

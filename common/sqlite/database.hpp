@@ -45,6 +45,9 @@ class Database {
   const std::string& file() const { return file_; }
 
  private:
+  /// Returns the statement at its first row. Fails if there is no row.
+  Result<Statement> first_row(std::string_view sql);
+
   struct Close {
     void operator()(sqlite3* handle) const;
   };

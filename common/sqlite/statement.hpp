@@ -17,7 +17,7 @@ enum class Type { integer, text, blob, other };
 /// Parameters count from 1, columns from 0. A statement must not outlive its database.
 class Statement {
  public:
-  /// An empty statement: every call of step() fails.
+  /// Makes an empty statement. Every call of step() fails.
   Statement() = default;
   explicit Statement(sqlite3_stmt* handle) : handle_(handle) {}
 

@@ -1,5 +1,5 @@
-# Sourced. install_packages SET...: installs the Debian packages of these sets that are missing (scripts/packages),
-# says which, and uses sudo only when not root.
+# Sourced. install_packages SET...: installs the Debian packages of these sets that are missing
+# (scripts/packages), says which, and uses sudo only when not root.
 install_packages() {
   local wanted=() missing=() package set
   while read -r set package; do
@@ -16,8 +16,8 @@ install_packages() {
   DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# build PRESET [TARGET...]: configures once, then builds. In a terminal Ninja shows its progress line; in a log it prints
-# errors only.
+# build PRESET [TARGET...]: configures once, then builds. In a terminal Ninja shows its progress
+# line; in a log it prints errors only.
 build() {
   local preset=$1 quiet=--quiet
   shift

@@ -1,4 +1,4 @@
-// AuthorNames: the names of the authors in a log, and the author that a name means.
+// AuthorNames: finds the name of an author of the log, and the author with a name.
 #pragma once
 #include <map>
 #include <string>

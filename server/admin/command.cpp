@@ -180,8 +180,8 @@ Result<Command, std::string> preview_command(Reader reader) {
   // A preview without filters would select the whole world, most likely by mistake.
   if (preview.filter == CommandFilter{}) {
     return mistake(
-        "rollback preview: say whose edits, when, where or why: author, since, until, box or "
-        "cause");
+        "rollback preview: say whose edits, when, where or why: author, since, until, "
+        "box or cause");
   }
   return Command(preview);
 }
@@ -249,28 +249,27 @@ bool is_for_everybody(const Command& command) {
 std::string command_help(bool is_operator) {
   std::string text =
       "help                      this list\n"
-      "materials [PART]          the materials of this world; with PART those whose name contains "
-      "it\n"
+      "materials [PART]          the materials of this world; "
+      "with PART those whose name contains it\n"
       "undo                      take back your last edit; what others built there since stays\n"
       "redo                      do again what you undid last";
   if (!is_operator) return text;
   return text +
          "\nstatus                    what the server does\n"
-         "players                   who is here, who has ever built, and who else was here since "
-         "the "
-         "server started\n"
+         "players                   who is here, who has ever built, "
+         "and who else was here since the server started\n"
          "log FILTERS [limit N]     the newest edits, the last one at the bottom\n"
          "rollback preview FILTERS [picture]\n"
-         "                          what a rollback of these edits would do; `picture` draws the "
-         "area before and after\n"
-         "rollback apply ID         do it, while people go on playing; what others built since "
-         "stays\n"
+         "                          what a rollback of these edits would do; "
+         "`picture` draws the area before and after\n"
+         "rollback apply ID         do it, while people go on playing; "
+         "what others built since stays\n"
          "rollback cancel ID        stop it, or forget a preview\n"
          "rollback undo ID          take a rollback back\n"
          "rollback list             previews, and the rollbacks so far\n"
          "stop                      stop the server\n"
-         "FILTERS, any of: author NAME or author #N (several: any of them), since 1h or since "
-         "2026-11-21T23:57:42Z,\n"
+         "FILTERS, any of: author NAME or author #N (several: any of them), "
+         "since 1h or since 2026-11-21T23:57:42Z,\n"
          "  until likewise, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import";
 }
 

@@ -1,6 +1,6 @@
 // Command: one line of the console, of `runstone-server control` or of a client, as a value.
-// Parsing knows neither world nor clock: names stay names, and the current time is an argument. An
-// error names the wrong word and lists what is allowed in its place.
+// Parsing uses neither world nor clock: names are not looked up, and the current time is an
+// argument. An error names the wrong word and lists what is allowed in its place.
 #pragma once
 #include <cstdint>
 #include <optional>

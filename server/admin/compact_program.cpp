@@ -17,8 +17,8 @@ constexpr TimeUs kDayUs = 86'400'000'000;
 Unexpected<std::string> failure(const StoreError& error) {
   if (error.kind != StoreError::Kind::full) return {error.message()};
   return {error.message() +
-          ". The disk is full: nothing was lost, and the world stands as before; make room and "
-          "compact again"};
+          ". The disk is full: nothing was lost, and the world stands as before; "
+          "make room and compact again"};
 }
 
 std::uint64_t bytes_of(const std::string& file) {
@@ -79,8 +79,8 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
     return Unexpected<std::string>{
         shrunk.error().message() +
         ". The world is compacted and sound, but its file keeps the free space, "
-        "which new edits will use; to give it back, make room for "
-        "a second copy of the world and run VACUUM"};
+        "which new edits will use; to give it back, make room for a second copy of the world and "
+        "run VACUUM"};
   }
   out << "file        " << before << " bytes before, " << bytes_of(store.file()) << " now\n";
   return {};

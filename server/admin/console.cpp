@@ -14,7 +14,7 @@ namespace runstone {
 Result<std::shared_ptr<Console>, std::string> Console::open(asio::io_context& loop, Handler handler,
                                                             OnFailure on_failure, int descriptor,
                                                             std::ostream& out) {
-  // Reading the terminal from the background would otherwise stop the process.
+  // Without this, a read of the terminal from the background would stop the process.
   std::signal(SIGTTIN, SIG_IGN);
   auto console = std::make_shared<Console>(loop, std::move(handler), std::move(on_failure), out);
   asio::error_code error;
@@ -34,7 +34,8 @@ void Console::read() {
                                                 const asio::error_code& error, std::size_t bytes) {
     if (error == asio::error::operation_aborted || !self->input_.is_open()) return;
     if (error == asio::error::eof) {
-      // The line may be incomplete, and a part of a command can be another command.
+      // The last line may be incomplete, and a part of a command can be another command. So it is
+      // not carried out.
       if (!self->line_.empty())
         self->out_ << "the last line has no end, and is left out" << std::endl;
       return;

@@ -21,11 +21,11 @@ namespace runstone {
 class Console : public std::enable_shared_from_this<Console> {
  public:
   using Handler = std::function<void(const std::string& line, CommandReply reply)>;
-  /// Called once, with the reason, if reading fails before the end of the input.
+  /// The console calls it once, with the reason, if reading fails before the end of the input.
   using OnFailure = std::function<void(const std::string& line)>;
 
   /// Starts reading from a copy of the descriptor. A line that is longer than a command is
-  /// rejected. Fails if the descriptor cannot be waited for, as that of a regular file.
+  /// rejected. Fails if the descriptor cannot be waited for, such as that of a regular file.
   static Result<std::shared_ptr<Console>, std::string> open(asio::io_context& loop, Handler handler,
                                                             OnFailure on_failure,
                                                             int descriptor = STDIN_FILENO,

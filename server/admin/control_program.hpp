@@ -1,4 +1,4 @@
-// runstone-server control: gives one command to a running server and prints its answer.
+// runstone-server control: sends one command to a running server and prints the answer.
 #pragma once
 #include <iosfwd>
 #include <string>
@@ -18,7 +18,7 @@ struct ControlRequest {
 /// has removed the quotes around them.
 std::string control_line(const std::vector<std::string>& words);
 
-/// Gives the command and prints each line of the answer to `out` as it arrives. Returns true if the
+/// Sends the command and prints each line of the answer to `out` as it arrives. Returns true if the
 /// command succeeded. The error is one line: no server runs that world. Blocks until the answer is
 /// complete.
 Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out);

@@ -30,7 +30,8 @@ constexpr std::size_t kConnectionsMax = 16;
 constexpr auto kRetryInterval = std::chrono::milliseconds(200);
 constexpr std::size_t kPathBytesMax = sizeof(sockaddr_un::sun_path) - 1;
 
-/// One connection: reads a line, hands it to the handler, writes the answer, reads the next line.
+/// One connection. It reads a line, passes it to the handler, writes the answer, and reads the next
+/// line.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(Local::socket socket, Strand strand, ControlSocket::Handler handler,
@@ -120,7 +121,8 @@ struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
         strand, [self = shared_from_this()](const asio::error_code& error, Local::socket socket) {
           if (error == asio::error::operation_aborted) return;
           if (error) return self->accept_later();  // for example, too many open files
-          // A user has no reason for more programs at a time, so further connections are closed.
+          // The maximum number of connections. A user needs no more at a time, so further ones are
+          // closed.
           if (self->slots.use_count() <= static_cast<long>(kConnectionsMax)) {
             const auto connection = std::make_shared<Connection>(std::move(socket), self->strand,
                                                                  self->handler, self->slots);

@@ -2,7 +2,7 @@
 
 namespace runstone {
 
-/// Lines below the level are not logged.
+/// The least severity of the lines that are logged.
 enum class LogLevel { debug, info, warn, error };
 
 }  // namespace runstone

@@ -1,4 +1,4 @@
-// One edit of the log as a line of text, for the command `log`.
+// The text of an edit of the log, for the command `log`.
 #pragma once
 #include <string>
 

@@ -8,10 +8,10 @@
 
 namespace runstone {
 
-/// Returns one line per player with name, author number and key, ascending by author number.
-/// Players who are present have their position, visitors a note that they left. Everybody can make
-/// keys, so at most 500 players of the store who are not present are listed; a last line counts the
-/// others.
+/// Returns one line per player with name, author number and key, ascending by author number. The
+/// line of a player who is present has the position. The line of a visitor says that the visitor
+/// left. Anybody can make any number of keys, so at most 500 players of the store who are not
+/// present are listed; a last line counts the others.
 std::string player_list(const std::vector<PlayerRow>& stored,
                         const std::vector<WorldServer::OnlinePlayer>& present,
                         const std::vector<PlayerRow>& visitors);

@@ -19,11 +19,11 @@ struct NumberField {
   std::uint64_t ServerConfig::* member;
   std::uint64_t min, max;
 };
-/// Any text that is not empty.
+/// A field that takes any text that is not empty.
 struct TextField {
   std::string ServerConfig::* member;
 };
-/// A text with a form of its own.
+/// A field whose text has a form of its own.
 struct FormField {
   /// Sets the member, or returns what is wrong with the text.
   std::optional<std::string> (*set)(ServerConfig& config, const std::string& text);

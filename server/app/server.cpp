@@ -56,7 +56,8 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
                                                            std::function<void()> on_failure,
                                                            std::function<void()> on_stop) {
   if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
-  // A start that fails must neither make a new world nor raise the epoch.
+  // A start that fails must neither make a new world nor raise the epoch, so the address is checked
+  // first.
   if (const auto free = can_listen(config.listen); !free)
     return Unexpected<std::string>{free.error()};
   auto world = open_or_create_world(config.world, creation);

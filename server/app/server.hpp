@@ -17,9 +17,9 @@ namespace runstone {
 class Server {
  public:
   /// Opens or makes the world, binds the port, recovers, and runs. The error is one line for the
-  /// operator; nothing was overwritten. `on_failure` is called once, from another thread, if the
-  /// log cannot be written any more; the caller then stops the server. `on_stop` is called in the
-  /// same way when an operator gives the command `stop`.
+  /// operator; after an error nothing was overwritten. `on_failure` is called once, from another
+  /// thread, if the log cannot be written any more; the caller then stops the server. `on_stop` is
+  /// called in the same way when an operator gives the command `stop`.
   static Result<std::unique_ptr<Server>, std::string> start(
       const ServerConfig& config, const WorldCreation& creation,
       std::function<void()> on_failure = [] {}, std::function<void()> on_stop = [] {});
@@ -31,7 +31,7 @@ class Server {
   /// Carries out a command as an operator. Replies come from another thread; the last one has
   /// is_done. A server that stops may leave out replies.
   void command(const std::string& line, CommandReply reply);
-  /// Says goodbye to all sessions, waits for the log, writes all snapshots and ends all threads.
+  /// Sends a goodbye to all sessions, waits for the log, writes all snapshots and ends all threads.
   /// Blocks. Call it once.
   StopReport stop();
 

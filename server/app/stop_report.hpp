@@ -14,9 +14,9 @@ namespace runstone {
 struct StopReport {
   bool is_clean = false;  // every ordered edit is on disk, in the log and in snapshots
   Digest world_digest;    // of `digests`; it is the world's digest only if the stop was clean
-  /// After a clean stop: all chunks ever edited; those in memory recomputed from their runs, the
-  /// others from their snapshots. After any other stop: the snapshots only, because chunks in
-  /// memory may contain edits that are lost.
+  /// After a clean stop, the list has all chunks ever edited: those in memory recomputed from their
+  /// runs, the others from their snapshots. After any other stop it has the snapshots only, because
+  /// chunks in memory may contain edits that are lost.
   DigestList digests;
   std::size_t live_chunks = 0;  // edited chunks that were in memory
   std::string error;  // the first row that cannot be read or differs from memory; empty: none

@@ -68,7 +68,8 @@ void DrawChild::close_and_kill() {
 DrawChild::Outcome<DrawChild> DrawChild::start(const DrawChildOptions& options) {
   const std::string program =
       sibling_program(options.program, "RUNSTONE_CLIENT", "runstone-client");
-  // A pair of sockets instead of two pipes: a write to a closed socket is an error, not a signal.
+  // A pair of sockets is used instead of two pipes, because a write to a closed socket can return
+  // an error instead of raising a signal.
   std::array<int, 2> ends{-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return failure(program + ": no pair of sockets: " + std::strerror(errno));
@@ -195,7 +196,7 @@ DrawChild::Outcome<void> DrawChild::wait_for(short events) {
                   " s and was stopped");
     }
     pollfd poll{socket_, events, 0};
-    // In steps of a second, because the limit may not fit into an int.
+    // The wait has steps of at most a second, because the limit may not fit into an int.
     const int count =
         ::poll(&poll, 1, static_cast<int>(std::min<Milliseconds::rep>(left.count(), 1000)));
     if (count > 0) return {};

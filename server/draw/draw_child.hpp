@@ -52,12 +52,12 @@ class DrawChild {
   /// Kills the child if it runs, and waits for its end.
   ~DrawChild();
 
-  /// "EGL surfaceless" or "OSMesa".
+  /// Returns the child's OpenGL context: "EGL surfaceless" or "OSMesa".
   const std::string& renderer() const { return renderer_; }
 
   /// Sends the edge of a chunk in voxels and the materials. Call it once, before all other orders.
   Outcome<void> world(std::int32_t edge, const MaterialTable& materials);
-  /// Sets the voxels of a chunk, a cube of the world's edge. Cost: O(runs).
+  /// Sets the voxels of a chunk, which must be a cube of the world's edge. Cost: O(runs).
   Outcome<void> chunk(const ChunkKey& key, const RunChunk& voxels);
   /// Makes the chunk empty.
   Outcome<void> forget(const ChunkKey& key);

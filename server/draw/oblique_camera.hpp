@@ -5,8 +5,8 @@
 
 namespace runstone {
 
-/// Direction of view, in radians, as the angles of DrawCamera. The default looks down at 35
-/// degrees, diagonally past two walls.
+/// The direction of view, in radians, in the form of the angles of DrawCamera. The default looks
+/// down at 35 degrees, diagonally past two walls.
 struct ViewDirection {
   double yaw = 0.65, pitch = -0.61;
 };

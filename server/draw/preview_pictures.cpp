@@ -17,7 +17,7 @@ namespace {
 
 constexpr PictureSize kSize{960, 540};
 constexpr std::chrono::seconds kAnswerMax{20};
-/// Chunks drawn around those that change, so that people recognise the place.
+/// The number of chunks drawn around those that change, so that people recognise the place.
 constexpr std::int32_t kLandAround = 2;
 constexpr std::size_t kLandMax = 4096;  // chunks drawn around, at most
 

@@ -18,7 +18,7 @@ namespace runstone {
 
 class PreviewPictures {
  public:
-  /// If more chunks would change, no picture is drawn.
+  /// The maximum number of changing chunks. If more would change, no picture is drawn.
   static constexpr std::size_t kChunksMax = 1024;
 
   explicit PreviewPictures(std::string world_folder)

@@ -20,8 +20,8 @@ namespace runstone {
 /// one chunk for so many edits. The place depends on the log alone.
 struct KeyframePolicy {
   std::uint64_t edits_min = 32'768;  // since the keyframe before; 0: none is ever due
-  std::uint64_t edits_per_chunk =
-      16;  // at least; since the keyframe before, for each touched chunk
+  // The least number of edits since the keyframe before, for each chunk that they touch.
+  std::uint64_t edits_per_chunk = 16;
 };
 
 class KeyframeMaker {

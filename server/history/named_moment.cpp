@@ -13,8 +13,8 @@ Result<NamedMoment, std::string> parse_moment(std::string_view text) {
   const auto wrong = [&] {
     return Unexpected<std::string>{
         "\"" + std::string(text) +
-        "\" is no moment: write a sequence (9120), a time in UTC (2026-11-21T23:05:00Z) or a "
-        "time before the end of the log (-2h30m)"};
+        "\" is no moment: write a sequence (9120), a time in UTC (2026-11-21T23:05:00Z) or a time "
+        "before the end of the log (-2h30m)"};
   };
   if (text.starts_with('-')) {
     const auto duration = parse_duration(text.substr(1));

@@ -132,12 +132,12 @@ StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key) {
   const Edited* edited = found == chunks_.end() ? nullptr : &found->second;
   auto chunk = start_of(key, edited);
   if (!chunk || edited == nullptr || edited->edits.empty()) return chunk;
-  ReplayedChunk followed(*std::move(chunk), origin_of(key.at, edge_));
+  ReplayedChunk replayed(*std::move(chunk), origin_of(key.at, edge_));
   for (const std::uint32_t edit : edited->edits)
-    followed.add(edits_[edit], versions_[edit], scratch_);
-  followed.settle(scratch_);
-  followed.chunk().voxels = in_cheapest_order(std::move(followed.chunk().voxels));
-  return std::move(followed.chunk());
+    replayed.add(edits_[edit], versions_[edit], scratch_);
+  replayed.flush(scratch_);
+  replayed.chunk().voxels = in_cheapest_order(std::move(replayed.chunk().voxels));
+  return std::move(replayed.chunk());
 }
 
 }  // namespace runstone

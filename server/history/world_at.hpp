@@ -21,8 +21,8 @@ namespace runstone {
 
 class WorldAt {
  public:
-  /// Is called from time to time with the sequence that was read and the last one to be read. If it
-  /// returns false, the work fails with Kind::cancelled.
+  /// A function that long calls use from time to time to report the sequence that was read and the
+  /// last one to be read. If it returns false, the call fails with Kind::cancelled.
   using Progress = std::function<bool(Sequence, Sequence)>;
 
   /// Opens the world after edit `at`; 0 means before the first edit. Reader and generator must
@@ -76,7 +76,7 @@ class WorldAt {
   std::vector<EditDescriptor> edits_;
   std::vector<Version> versions_;  // of edits_
   std::map<ChunkKey, Edited> chunks_;
-  FollowScratch scratch_;
+  ReplayScratch scratch_;
 };
 
 }  // namespace runstone

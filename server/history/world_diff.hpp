@@ -1,8 +1,8 @@
-// WorldDiff: the differences of a world between two moments, and the authors of what is new. Each
-// chunk that edits between the moments touched is made as it was at the first moment. Then it gets
-// these edits one by one. Each stretch that an edit really changed is written into a second chunk,
-// whose "materials" are authors. In the end the chunk is compared with its first state run by run,
-// and the second chunk gives the author of each stretch that differs.
+// WorldDiff: the differences of a world between two moments, and the authors of the voxels that
+// differ. Each chunk that edits between the moments touched is made as it was at the first moment.
+// Then it gets these edits one by one. Each stretch that an edit really changed is written into a
+// second chunk, whose "materials" are authors. At the end the chunk is compared with its first
+// state run by run, and the second chunk gives the author of each stretch that differs.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -27,13 +27,13 @@ struct LuantiImportOptions {
 };
 
 struct LuantiImportSink {
-  /// Is called once, before the first chunk. Id 0 is air. The names that occur follow in ascending
-  /// order of bytes.
+  /// The import calls it once, before the first chunk. Id 0 is air. The names that occur follow in
+  /// ascending order of bytes.
   std::function<void(const MaterialTable&)> materials;
-  /// Is called for each chunk that is not all empty, ascending by (z, y, x), in its cheapest axis
-  /// order. If it returns false, the import ends with an error.
+  /// The import calls it for each chunk that is not all empty, ascending by (z, y, x). The chunk is
+  /// in its cheapest axis order. If it returns false, the import ends with an error.
   std::function<bool(const ChunkKey&, RunChunk&&)> chunk;
-  /// Is called from time to time with the part of the work that is done. It may be empty.
+  /// The import calls it from time to time with the part of the work that is done. It may be empty.
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;
 };
 

@@ -7,7 +7,8 @@ namespace {
 
 constexpr const char* kScan = "SELECT pos, data FROM blocks ORDER BY pos";
 constexpr const char* kFind = "SELECT data FROM blocks WHERE pos = ?1";
-// Of the layout of Luanti 5.12. Both statements of a layout exist, or none.
+// The statements of the layout of Luanti 5.12. Either both statements of a layout can be prepared,
+// or none.
 constexpr const char* kScanByCoordinates =
     "SELECT (z * 4096 + y) * 4096 + x AS pos, data FROM blocks ORDER BY z, y, x";
 constexpr const char* kFindByCoordinates =

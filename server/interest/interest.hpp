@@ -34,7 +34,7 @@ class Interest {
   /// Sets the session's view. Returns how many chunks it added.
   std::size_t set_view(SessionId session, const View& view);
   /// Makes chunks wanted again that lie outside of any of the `skipped` views, or all chunks if
-  /// there are none. For a client that had other views in between and may have dropped those
+  /// there are none. It is for a client that had other views in between and may have dropped those
   /// chunks.
   void want_again(SessionId session, std::span<const View> skipped);
   std::optional<ChunkKey> nearest_wanted(SessionId session);

@@ -91,7 +91,7 @@ void SessionInterest::set_state(const ChunkKey& key, ChunkInterest state) {
 std::optional<ChunkKey> SessionInterest::next_for_digest_check() {
   if (count(ChunkInterest::subscribed) == 0) return std::nullopt;
   auto at = digest_checked_ ? chunks_.upper_bound(*digest_checked_) : chunks_.begin();
-  // At most one round: there is a subscribed chunk.
+  // The loop makes at most one round, because there is a subscribed chunk.
   for (std::size_t step = 0; step <= chunks_.size(); ++step) {
     if (at == chunks_.end()) at = chunks_.begin();
     if (at->second == ChunkInterest::subscribed) {

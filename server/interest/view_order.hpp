@@ -1,7 +1,6 @@
 // ViewOrder: the order in which the chunks of a view are sent: first the chunks around the viewer,
 // then the chunks in the cone of sight, then the rest. Within each group the nearest chunk comes
-// first; ties are ordered by key.
-// Pure.
+// first; ties are ordered by key. It is pure.
 #pragma once
 #include <cstdint>
 

@@ -41,7 +41,7 @@ std::optional<double> number_in(std::string_view word, double low, double high) 
   return value;
 }
 
-/// Parses a sequence number, or a percentage as the sequence number that it means.
+/// Parses a sequence number, or converts a percentage to a sequence number.
 std::optional<double> moment_of(std::string_view word, Sequence first, Sequence last) {
   if (word.ends_with('%')) {
     const auto share = number_in(word.substr(0, word.size() - 1), 0, 100);

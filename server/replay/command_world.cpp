@@ -2,7 +2,6 @@
 
 #include <iomanip>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <utility>
 
@@ -12,12 +11,15 @@
 
 namespace runstone {
 
-Result<CommandWorld, std::string> open_for_reading(const std::string& folder) {
+Result<CommandWorld, std::string> open_for_reading(const std::string& folder,
+                                                   const std::optional<NamedMoment>& end) {
   auto store = open_world(folder, StoreAccess::read_only);
   if (!store) return Unexpected<std::string>{store.error().message()};
   auto generator = generator_of(**store);
   if (!generator) return Unexpected<std::string>{generator.error()};
-  return CommandWorld{*std::move(store), *std::move(generator)};
+  const auto last = end_of_replay(**store, end);
+  if (!last) return Unexpected<std::string>{last.error()};
+  return CommandWorld{*std::move(store), *std::move(generator), *last};
 }
 
 Result<Sequence, std::string> end_of_replay(Store& store,
@@ -36,10 +38,9 @@ void print_world(std::ostream& out, const Store& store) {
   row(out, "world") << to_hex(store.meta().world_id) << "  " << store.file() << '\n';
 }
 
-Result<void, std::string> write_report(const std::string& file,
-                                       const nlohmann::ordered_json& json) {
+Result<void, std::string> write_report(const std::string& file, const std::string& json) {
   if (file.empty()) return {};
-  const auto written = write_text_file(file, json.dump(1) + "\n");
+  const auto written = write_text_file(file, json + "\n");
   if (!written) return Unexpected<std::string>{written.error().message()};
   return {};
 }

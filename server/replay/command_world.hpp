@@ -1,9 +1,8 @@
-// What the subcommands of runstone-replay share: opening a world, finding the end of a replay, and
-// printing a report.
+// Functions that the subcommands of runstone-replay share. They open a world, find the end of a
+// replay, and print a report.
 #pragma once
 #include <iosfwd>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -18,11 +17,14 @@ namespace runstone {
 struct CommandWorld {
   std::unique_ptr<Store> store;
   std::unique_ptr<Generator> generator;
+  Sequence end = 0;  // end_of_replay() of the requested moment
 };
 
 /// Opens the world in `folder` for reading; a server may be running it. Fails if there is no world,
-/// or if this program lacks its generator. The error is one line.
-Result<CommandWorld, std::string> open_for_reading(const std::string& folder);
+/// if this program lacks its generator, or if the world does not have the moment `end`. The error is
+/// one line.
+Result<CommandWorld, std::string> open_for_reading(const std::string& folder,
+                                                   const std::optional<NamedMoment>& end = {});
 
 /// Returns the sequence number of the moment in this world, or the greatest sequence number if
 /// there is no moment.
@@ -33,7 +35,8 @@ std::ostream& row(std::ostream& out, const char* name);
 /// Writes the row "world": id and file.
 void print_world(std::ostream& out, const Store& store);
 
-/// Writes the report to `file`, or does nothing if `file` is empty. The error is one line.
-Result<void, std::string> write_report(const std::string& file, const nlohmann::ordered_json& json);
+/// Writes a report, given as JSON text, to `file`, or does nothing if `file` is empty. The error is
+/// one line.
+Result<void, std::string> write_report(const std::string& file, const std::string& json);
 
 }  // namespace runstone

@@ -25,14 +25,12 @@ void declare_copy(SubcommandOptions& command_line, CopyOptions& options) {
 }
 
 Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out) {
-  const auto world = open_for_reading(options.common.world);
+  const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;
   const auto last = store.last_sequence();
   if (!last) return failure(last.error().message());
-  const auto end = end_of_replay(store, options.at);
-  if (!end) return failure(end.error());
-  const Sequence at = std::min(*end, *last);
+  const Sequence at = std::min(world->end, *last);
   const auto copy = [&] {
     ProgressLine line("chunks written", options.common.progress);
     return copy_world(store, *world->generator, at, options.folder,
@@ -46,12 +44,12 @@ Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out)
   row(out, "moment") << "after sequence " << at << '\n';
   row(out, "written") << options.folder << ", " << copy->chunks << " chunks\n";
   row(out, "digest") << to_hex(copy->world_digest) << '\n';
-  const auto written =
-      write_report(options.common.json, {{"world_id", to_hex(store.meta().world_id)},
-                                         {"seq", at},
-                                         {"written", options.folder},
-                                         {"chunks", copy->chunks},
-                                         {"world_digest", to_hex(copy->world_digest)}});
+  const nlohmann::ordered_json json = {{"world_id", to_hex(store.meta().world_id)},
+                                       {"seq", at},
+                                       {"written", options.folder},
+                                       {"chunks", copy->chunks},
+                                       {"world_digest", to_hex(copy->world_digest)}};
+  const auto written = write_report(options.common.json, json.dump(1));
   if (!written) return failure(written.error());
   return kReplayEqual;
 }

@@ -101,7 +101,7 @@ Result<int, std::string> run_diff(const DiffOptions& options, std::ostream& out)
   Names names;
   for (const PlayerRow& player : *players) names[player.author] = player.name;
   print_table(out, store, *diff, names);
-  const auto written = write_report(options.common.json, report_json(store, *diff, names));
+  const auto written = write_report(options.common.json, report_json(store, *diff, names).dump(1));
   if (!written) return failure(written.error());
   return kReplayEqual;
 }

@@ -26,10 +26,9 @@ Result<int, std::string> run_export(const ExportOptions& options, std::ostream& 
   print_world(out, **store);
   row(out, "edits") << done->edits << ", sequences " << done->first << " to " << done->last << '\n';
   row(out, "written") << options.file << ", " << done->bytes << " bytes\n";
-  const auto written = write_report(options.common.json, {{"edits", done->edits},
-                                                          {"first", done->first},
-                                                          {"last", done->last},
-                                                          {"bytes", done->bytes}});
+  const nlohmann::ordered_json json = {
+      {"edits", done->edits}, {"first", done->first}, {"last", done->last}, {"bytes", done->bytes}};
+  const auto written = write_report(options.common.json, json.dump(1));
   if (!written) return Unexpected<std::string>{written.error()};
   return kReplayEqual;
 }

@@ -21,12 +21,10 @@ Result<int, std::string> run_import(const ImportOptions& options, std::ostream& 
   row(out, "edits") << done->added << " added, " << done->known << " known, " << done->compacted
                     << " compacted\n";
   row(out, "log") << "ends with sequence " << done->last << '\n';
-  const auto written = write_report(options.common.json, {{"made_world", done->made_world},
-                                                          {"added", done->added},
-                                                          {"known", done->known},
-                                                          {"compacted", done->compacted},
-                                                          {"last", done->last},
-                                                          {"stopped", done->stopped}});
+  const nlohmann::ordered_json json = {
+      {"made_world", done->made_world}, {"added", done->added}, {"known", done->known},
+      {"compacted", done->compacted},   {"last", done->last},   {"stopped", done->stopped}};
+  const auto written = write_report(options.common.json, json.dump(1));
   if (!done->stopped.empty()) return Unexpected<std::string>{done->stopped};
   if (!written) return Unexpected<std::string>{written.error()};
   return kReplayEqual;

@@ -45,10 +45,10 @@ Result<int, std::string> run_keyframes(const KeyframesOptions& options, std::ost
   }
   row(out, "keyframes") << maker.made() << " made of " << chunks_written << " chunks, "
                         << before->size() << " there before\n";
-  const auto written =
-      write_report(options.common.json, {{"made", maker.made()},
-                                         {"chunks", chunks_written},
-                                         {"keyframes", before->size() + maker.made()}});
+  const nlohmann::ordered_json json = {{"made", maker.made()},
+                                       {"chunks", chunks_written},
+                                       {"keyframes", before->size() + maker.made()}};
+  const auto written = write_report(options.common.json, json.dump(1));
   if (!written) return Unexpected<std::string>{written.error()};
   return kReplayEqual;
 }

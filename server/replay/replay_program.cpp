@@ -44,7 +44,7 @@ std::vector<Subcommand> subcommands() {
   };
 }
 
-/// The flags that chose what to do before there were subcommands.
+/// Flags that a person may type in place of a subcommand, and the command line to use instead.
 struct OldFlag {
   std::string_view flag, spelling;
 };
@@ -104,8 +104,8 @@ int replay_program(int argc, const char* const* argv, std::ostream& out, std::os
     return cannot_read(err, wrong);
   }
   CLI::App program(
-      "Rebuilds a world from base and edit log. Exit code 0: done, and equal; 1: different; 2: "
-      "cannot read.",
+      "Rebuilds a world from base and edit log. Exit code 0: done, and equal; 1: different; "
+      "2: cannot read.",
       "runstone-replay");
   program.require_subcommand(1);
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);

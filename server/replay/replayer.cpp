@@ -58,7 +58,7 @@ StoreResult<void> Replayer::compare(const ChunkKey& key, ReplayedChunk& rebuilt)
   const Version version = rebuilt.chunk().version;
   if (const auto snapshot = snapshots_.find(key);
       snapshot != snapshots_.end() && snapshot->second == version) {
-    rebuilt.settle(scratch_);
+    rebuilt.flush(scratch_);
     const auto stored = store_.load_snapshot(key);
     if (!stored) return Unexpected<StoreError>{stored.error()};
     // A running server may have replaced the snapshot. Then there is none to compare at this
@@ -74,7 +74,7 @@ StoreResult<void> Replayer::compare(const ChunkKey& key, ReplayedChunk& rebuilt)
   const auto listed = listed_.find(key);
   if (listed == listed_.end()) return {};
   const auto [first, last] = listed->second.equal_range(version);
-  if (first != last) rebuilt.settle(scratch_);
+  if (first != last) rebuilt.flush(scratch_);
   for (auto row = first; row != last; ++row) {
     check(key, row->second, rebuilt.chunk());
     count(row->second);
@@ -187,7 +187,7 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
   if (!replayed) return Unexpected<StoreError>{replayed.error()};
 
   for (auto& [key, rebuilt] : chunks_) {
-    rebuilt.settle(scratch_);
+    rebuilt.flush(scratch_);
     const Chunk& chunk = rebuilt.chunk();
     // The digest that followed every edit must be that of the runs.
     check(key, {"followed digest", chunk.version, digest_of(chunk.voxels)}, chunk);

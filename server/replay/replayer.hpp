@@ -47,8 +47,8 @@ struct ReplayReport {
 
 class Replayer {
  public:
-  /// Both must outlive the replayer. The store may be open for reading only while a server writes
-  /// it.
+  /// Store and generator must outlive the replayer. The store may be open for reading only while a
+  /// server writes it.
   Replayer(WorldReader& store, const Generator& generator);
 
   /// Adds the chunks of a list. Each is compared when the replay brings it to the listed version. A
@@ -59,7 +59,8 @@ class Replayer {
   /// Adds the chunks of keyframes in the same way.
   void expect_keyframes(const std::vector<StoredChunk>& chunks);
 
-  /// Called every 1024 edits with the sequence number reached and the last one.
+  /// A function that run() calls every 1024 edits with the sequence number reached and the last
+  /// one.
   using Progress = std::function<void(Sequence, Sequence)>;
   /// Replays the edits of the log up to min(at, last). Call it once. Memory: all edited chunks as
   /// runs. Fails with the store's error if a row cannot be read, and with bad_request if the log
@@ -92,7 +93,7 @@ class Replayer {
   std::map<ChunkKey, ReplayedChunk> chunks_;
   std::map<ChunkKey, std::multimap<Version, Expected>> listed_;
   std::map<ChunkKey, Version> snapshots_;
-  FollowScratch scratch_;
+  ReplayScratch scratch_;
   ReplayReport report_;
 };
 

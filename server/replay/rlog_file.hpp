@@ -1,5 +1,5 @@
-// Writes a world's log to an .rlog file and reads it back (docs/edit-log.md has the bytes). Calls
-// block on the disk.
+// Export of a world's log to an .rlog file, and import from one (docs/edit-log.md has the bytes).
+// Calls block on the disk.
 #pragma once
 #include <cstdint>
 #include <string>

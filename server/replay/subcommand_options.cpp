@@ -66,8 +66,8 @@ void SubcommandOptions::moment(const std::string& name, std::optional<NamedMomen
   };
   parsed(name, parse,
          help +
-             ": a sequence number, a time (2026-11-21T23:05:00Z), or a time before the last "
-             "edit (-2h30m)",
+             ": a sequence number, a time (2026-11-21T23:05:00Z), "
+             "or a time before the last edit (-2h30m)",
          presence);
 }
 

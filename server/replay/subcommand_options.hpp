@@ -39,7 +39,7 @@ class SubcommandOptions {
   void text(const std::string& name, std::string& out, const std::string& help,
             Presence presence = Presence::optional);
   void existing_file(const std::string& name, std::string& out, const std::string& help);
-  /// One or more values behind one name.
+  /// Declares one or more values behind one name.
   void texts(const std::string& name, std::vector<std::string>& out, const std::string& help);
   void number(const std::string& name, std::uint64_t& out, std::uint64_t min, std::uint64_t max,
               const std::string& help);

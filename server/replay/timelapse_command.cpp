@@ -71,12 +71,12 @@ void declare_timelapse(SubcommandOptions& command_line, TimelapseCommandOptions&
         timelapse.from = from;
         return {};
       },
-      "sequence number of the edit that the first frame shows last; default: before the first "
-      "edit");
+      "sequence number of the edit that the first frame shows last; "
+      "default: before the first edit");
   command_line.moment("--at", options.at, "moment of the last frame");
   command_line.number("--every", timelapse.every, 1, kSequenceMax,
-                      "edits from one frame to the next; default: so many that there are about 300 "
-                      "frames");
+                      "edits from one frame to the next; default: "
+                      "so many that there are about 300 frames");
   command_line.parsed(
       "--size", [&timelapse](const std::string& text) { return parse_size(text, timelapse.size); },
       "WIDTHxHEIGHT of the frames; default 1280x720");
@@ -86,19 +86,17 @@ void declare_timelapse(SubcommandOptions& command_line, TimelapseCommandOptions&
                       "chunks of untouched world around the edits; default 3");
   command_line.number("--fps", options.fps, 1, 120, "frames a second of the video; default 30");
   command_line.text("--client", timelapse.client,
-                    "path of runstone-client; default: RUNSTONE_CLIENT, or runstone-client beside "
-                    "this program");
+                    "path of runstone-client; default: RUNSTONE_CLIENT, "
+                    "or runstone-client beside this program");
 }
 
 Result<int, std::string> run_timelapse(const TimelapseCommandOptions& options, std::ostream& out) {
-  const auto world = open_for_reading(options.common.world);
+  const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;
-  const auto at = end_of_replay(store, options.at);
-  if (!at) return failure(at.error());
   const auto report = [&] {
     ProgressLine line("frames drawn", options.common.progress);
-    return make_timelapse(store, *world->generator, options.timelapse, *at,
+    return make_timelapse(store, *world->generator, options.timelapse, world->end,
                           [&](std::uint64_t done, std::uint64_t all) { line.show(done, all); });
   }();
   if (!report) return failure(report.error());
@@ -119,7 +117,7 @@ Result<int, std::string> run_timelapse(const TimelapseCommandOptions& options, s
                       << video_command(fps) << '\n';
   }
   const auto written =
-      write_report(options.common.json, report_json(store, *report, video.has_value()));
+      write_report(options.common.json, report_json(store, *report, video.has_value()).dump(1));
   if (!written) return failure(written.error());
   return kReplayEqual;
 }

@@ -74,7 +74,7 @@ StoreResult<void> TimelapseWorld::set_stage(std::uint32_t radius,
   for (const ChunkCoord& eye : eyes) add_columns(eye);
   if (columns.size() > kChunksMax) return too_large();
   for (const Column& column : columns) add_surface(column);
-  // What was built before may lie above the ground or below it.
+  // Earlier buildings may lie above the ground or below it.
   for (const ChunkKey& key : start_.edited()) {
     if (columns.contains({key.at.x, key.at.z})) add_around(key.at);
   }
@@ -126,8 +126,8 @@ void TimelapseWorld::add_surface(const Column& column) {
 Unexpected<StoreError> TimelapseWorld::too_large() const {
   return {{StoreError::Kind::bad_request, reader_->file(), "",
            "the edits and the ground around them are more than " + std::to_string(kChunksMax) +
-               " chunks: too many for a picture; choose a smaller --radius, or fewer edits by "
-               "--from and --at"}};
+               " chunks: too many for a picture; choose a smaller --radius, "
+               "or fewer edits by --from and --at"}};
 }
 
 VoxelBox TimelapseWorld::stage() const {
@@ -167,7 +167,7 @@ StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
   at_ = seq;
   for (const ChunkKey& key : touched) {
     ReplayedChunk& replayed = replayed_.at(key);
-    replayed.settle(scratch_);
+    replayed.flush(scratch_);
     if (replayed.take_changed() && !each(key, replayed.chunk().voxels)) return {};
   }
   return {};

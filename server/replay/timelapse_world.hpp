@@ -23,7 +23,8 @@ namespace runstone {
 
 class TimelapseWorld {
  public:
-  /// More chunks would need gigabytes in the program that draws, and minutes for each frame.
+  /// The maximum number of chunks on the stage. More would need gigabytes in the program that
+  /// draws, and minutes for each frame.
   static constexpr std::size_t kChunksMax = 1U << 16;
 
   /// Opens the world after edit `from`, to be advanced up to `to`. `eyes` are the chunks in which
@@ -73,7 +74,7 @@ class TimelapseWorld {
   std::set<ChunkKey> edited_chunks_;            // between from and to; if there are none, before
   std::map<ChunkKey, ReplayedChunk> replayed_;  // edited_chunks_, after begin()
   Sequence at_ = 0;
-  FollowScratch scratch_;
+  ReplayScratch scratch_;
 };
 
 }  // namespace runstone

@@ -68,10 +68,10 @@ std::string report_json(const Store& store, const ReplayReport& report, double s
                                  {"edits_per_second", rate_of(report, seconds)}};
   std::string json = to_json(list);
   json.resize(json.rfind('}'));  // removes the end of the object, so that a member can follow
-  return json + ",\n\"report\":" + more.dump() + "}\n";
+  return json + ",\n\"report\":" + more.dump() + "}";
 }
 
-/// Hands the lists, and the keyframes unless the replay is quick, to the replayer.
+/// Passes the lists to the replayer, and also the keyframes unless the replay is quick.
 Result<void, std::string> expect_all(Replayer& replayer, Store& store,
                                      const VerifyOptions& options) {
   for (const std::string& file : options.against) {
@@ -100,11 +100,9 @@ void declare_verify(SubcommandOptions& command_line, VerifyOptions& options) {
 }
 
 Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& out) {
-  const auto world = open_for_reading(options.common.world);
+  const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;
-  const auto at = end_of_replay(store, options.at);
-  if (!at) return failure(at.error());
   Replayer replayer(store, *world->generator);
   if (const auto expected = expect_all(replayer, store, options); !expected) {
     return failure(expected.error());
@@ -112,15 +110,13 @@ Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& 
   const auto start = std::chrono::steady_clock::now();
   const StoreResult<ReplayReport> report = [&] {
     ProgressLine line("edits replayed", options.common.progress);
-    return replayer.run(*at, [&](Sequence done, Sequence last) { line.show(done, last); });
+    return replayer.run(world->end, [&](Sequence done, Sequence last) { line.show(done, last); });
   }();
   const double seconds = seconds_since(start);
   if (!report) return failure(report.error().message());
   print_table(out, store, *report, seconds, !options.quick);
-  if (!options.common.json.empty()) {
-    const auto written = write_text_file(options.common.json, report_json(store, *report, seconds));
-    if (!written) return failure(written.error().message());
-  }
+  const auto written = write_report(options.common.json, report_json(store, *report, seconds));
+  if (!written) return failure(written.error());
   return report->differences == 0 ? kReplayEqual : kReplayDifferent;
 }
 

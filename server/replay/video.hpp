@@ -1,4 +1,4 @@
-// Joins numbered pictures into a video with ffmpeg, if it is installed.
+// Videos: numbered pictures are joined by ffmpeg, if it is installed.
 #pragma once
 #include <cstdint>
 #include <string>

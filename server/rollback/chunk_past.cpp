@@ -35,23 +35,23 @@ StoreResult<Chunk> stored_form(WorldReader& reader, const Generator& generator, 
 }  // namespace
 
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
-                              Sequence at, FollowScratch& scratch) {
+                              Sequence at, ReplayScratch& scratch) {
   ChunkLogs logs(reader);
   return chunk_past(reader, generator, logs, key, at, scratch);
 }
 
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, ChunkLogs& logs,
-                              const ChunkKey& key, Sequence at, FollowScratch& scratch) {
+                              const ChunkKey& key, Sequence at, ReplayScratch& scratch) {
   auto start = stored_form(reader, generator, key, at);
   if (!start || start->version.seq >= at) return start;
   const Sequence first = start->version.seq + 1;
-  ReplayedChunk followed(*std::move(start), origin_of(key.at, reader.meta().chunk_edge));
+  ReplayedChunk replayed(*std::move(start), origin_of(key.at, reader.meta().chunk_edge));
   const auto read = logs.visit(key, first, at, [&](const EditRecord& record) {
-    followed.add(record.edit, record.version, scratch);
+    replayed.add(record.edit, record.version, scratch);
   });
   if (!read) return Unexpected<StoreError>{read.error()};
-  followed.settle(scratch);
-  return std::move(followed.chunk());
+  replayed.flush(scratch);
+  return std::move(replayed.chunk());
 }
 
 }  // namespace runstone

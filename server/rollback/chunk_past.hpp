@@ -16,9 +16,9 @@ namespace runstone {
 /// reader, and (bad_request) if the chunk's base is younger than `at`: a compaction removed the
 /// edits before it.
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
-                              Sequence at, FollowScratch& scratch);
+                              Sequence at, ReplayScratch& scratch);
 /// Does the same, and reads the log through `logs`, which must use the same reader.
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, ChunkLogs& logs,
-                              const ChunkKey& key, Sequence at, FollowScratch& scratch);
+                              const ChunkKey& key, Sequence at, ReplayScratch& scratch);
 
 }  // namespace runstone

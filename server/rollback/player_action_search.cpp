@@ -27,9 +27,9 @@ struct PlayerEdit {
 StoreResult<std::vector<PlayerEdit>> player_edits(WorldReader& reader, AuthorId author,
                                                   Sequence end,
                                                   const ShouldContinue& should_continue) {
-  // The index can be read upward only. The log is therefore read in windows from its end, each
-  // twice as wide as the one before. A window with too much in it is dropped, and half of it is
-  // read.
+  // The index can be read only in ascending order. The log is therefore read in windows from its
+  // end, each twice as wide as the one before. If a window has too many records, half of it is read
+  // instead.
   const std::int32_t edge = reader.meta().chunk_edge;
   std::vector<PlayerEdit> newest;
   std::size_t actions = 0, touches = 0;

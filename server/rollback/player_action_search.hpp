@@ -1,6 +1,6 @@
-// Player action search: finds the next action that undo or redo of a player would change something
-// with. It reads the player's newest actions from the end of the log backwards. It blocks on the
-// disk.
+// Player action search: finds the action that a player's next undo or redo takes, the first one for
+// which it changes a voxel. It reads the player's newest actions from the end of the log backwards.
+// It blocks on the disk.
 #pragma once
 #include <cstddef>
 #include <optional>

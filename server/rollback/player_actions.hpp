@@ -30,8 +30,8 @@ struct PlayerRecord {
 struct PlayerAction {
   Sequence seq = 0;               // of the edit
   std::vector<Sequence> toggles;  // ascending
-  std::vector<Sequence>
-      last_undo;  // toggles of the undo in force; empty unless the action is undone
+  // The toggles of the undo in force; empty unless the action is undone.
+  std::vector<Sequence> last_undo;
   bool is_undone() const { return !last_undo.empty(); }
 };
 

@@ -52,7 +52,7 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
     plan.version = record.version;
   });
   if (!read) return Unexpected<StoreError>{read.error()};
-  restore.settle(scratch_.apply);
+  restore.flush(scratch_.apply);
   plan.now = restore.now();
   plan.restored = restore.restored();
   append_differences(plan.now, plan.restored, plan.differences);

@@ -50,7 +50,7 @@ class RestorePlanner {
   const Generator& generator_;
   ShouldContinue should_continue_;
   ChunkLogs logs_;
-  FollowScratch scratch_;
+  ReplayScratch scratch_;
 };
 
 }  // namespace runstone

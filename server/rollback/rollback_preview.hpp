@@ -1,5 +1,5 @@
-// RollbackPreview: what a rollback would change. A worker computes it; the world strand keeps it
-// under an id and answers from it.
+// RollbackPreview: the changes that a rollback would make. A worker computes it; the world strand
+// keeps it under an id and answers from it.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -15,9 +15,10 @@ namespace runstone {
 
 struct RollbackPreview {
   enum class State { computing, ready, applied };
-  /// Gets the plan of each chunk that would change, one after another, on the worker.
+  /// A function that gets the plan of each chunk that would change, one after another, on the
+  /// worker.
   using PlanViewer = std::function<void(const RestorePlan&)>;
-  /// Is called on the worker after the last plan. Returns lines for the answer.
+  /// A function that the worker calls after the last plan. It returns lines for the answer.
   using Summary = std::function<std::string(WorldReader& reader, const Generator& generator,
                                             const std::string& id)>;
 

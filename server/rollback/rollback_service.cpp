@@ -10,8 +10,8 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kPreviewsMax =
-    16;  // selections are large: beyond it the oldest preview is discarded
+// Selections are large, so the oldest preview is discarded when there are more.
+constexpr std::size_t kPreviewsMax = 16;
 constexpr std::size_t kListedMax = 20;
 constexpr TimeUs kSliceIntervalUs = 45'000;  // of one job: a little less than a tick
 
@@ -106,8 +106,8 @@ void RollbackService::start_player_change(AuthorId author, Cause cause, SearchRe
   }
   if (!found->change && found->has_given_up) {
     return refuse(reply, name + ": nothing is left of the " + std::to_string(kPassedActionsMax) +
-                             " edits that are next: others have built over them, or they changed "
-                             "nothing; it looks no further back");
+                             " edits that are next: others have built over them, "
+                             "or they changed nothing; it looks no further back");
   }
   if (!found->change) return refuse(reply, "nothing to " + name);
   PlayerChange& change = *found->change;
@@ -320,8 +320,8 @@ RollbackService::Job& RollbackService::start_job(RestoreOrder order, std::string
 }
 
 void RollbackService::step(Job& job, const Clocks& now) {
-  // tick() is also called whenever a worker has answered. The interval bounds the writes all the
-  // same.
+  // tick() is also called whenever a worker has answered, so the interval bounds the rate of
+  // writes.
   if (!job.wrote_us || now.steady_us - *job.wrote_us >= kSliceIntervalUs) {
     const std::uint64_t written = job.job.progress().edits;
     job.job.step(world_, now);

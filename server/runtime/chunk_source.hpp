@@ -1,6 +1,7 @@
-// ChunkSource: loads chunks that are not in memory: the newest snapshot, else the base, else
-// generated. It keeps a pool of readers of the world folder.
-// Threads: any. Calls block on the disk, so workers make them. Each call uses a reader of its own.
+// ChunkSource: loads chunks that are not in memory. It reads the newest snapshot. If there is none,
+// it reads the base chunk. If there is none either, it generates the chunk. It keeps a pool of
+// readers of the world folder. Threads: any. Calls block on the disk, so workers make them. Each
+// call uses a reader of its own.
 #pragma once
 #include <functional>
 #include <memory>

@@ -32,7 +32,7 @@ class CommandRunner final : private RollbackService::Workers {
 
   /// Lets rollback jobs go on. Call it on every tick, and when the log became durable or failed.
   void tick(const Clocks& now) { rollback_.tick(now); }
-  /// The server stops: jobs and workers end soon.
+  /// Makes jobs and workers end soon. Call it when the server stops.
   void stop() { rollback_.stop(); }
 
  private:

@@ -18,7 +18,8 @@ void CommitScheduler::schedule() {
                               net_.commits_due.load()};
   const TimeUs due_us = pace_.due(now_us, sending);
   if (due_us <= now_us) {
-    // The commit runs behind everything that is queued on the strand now, so those edits join it.
+    // The commit runs after everything that is queued on the strand now, so it includes those
+    // edits.
     strand_.post([this] { commit_now(); });
     return;
   }

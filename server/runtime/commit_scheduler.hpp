@@ -15,7 +15,7 @@ class CommitScheduler {
   /// `strand` and `net` must outlive the object.
   CommitScheduler(WorldStrand& strand, const NetCounters& net, std::function<void()> commit);
 
-  /// Edits are queued: schedules a commit. Does nothing while a commit is scheduled.
+  /// Schedules a commit of the queued edits. Does nothing while a commit is scheduled.
   void schedule();
 
  private:

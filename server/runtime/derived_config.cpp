@@ -3,10 +3,10 @@
 namespace runstone {
 namespace {
 
-// Enough that no worker waits for the world strand. Few enough that chunks to be encoded do not
-// wait for loads.
+// The loads under way for each worker. They are enough that no worker waits for the world strand,
+// and few enough that chunks to be encoded do not wait for loads.
 constexpr std::size_t kLoadsPerWorker = 4;
-// Connections beyond sessions_max that may be in the handshake.
+// The number of connections beyond sessions_max that may be in the handshake.
 constexpr std::size_t kHandshakesMax = 64;
 constexpr std::size_t kKib = 1024;
 constexpr TimeUs kUsPerMs = 1'000, kUsPerSecond = 1'000'000;

@@ -20,7 +20,7 @@ DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string&
   limits.queued_records_max = options.queued_records_max;
   writer_ = std::make_unique<LogWriter>(store, std::move(callbacks), limits);
   // The writer's callbacks read keyframes_. Nobody can append before this constructor returns, so
-  // none comes before.
+  // no callback runs before.
   if (options.keyframes) {
     keyframes_ = std::make_unique<KeyframeThread>(folder, generator, *options.keyframes, *writer_);
   }

@@ -26,13 +26,13 @@ class DurableLog {
     std::optional<KeyframePolicy> keyframes;  // nullopt: no keyframes are made
   };
   struct Events {
-    /// Every edit up to the sequence is on disk.
+    /// Reports that every edit up to the sequence is on disk.
     std::function<void(Sequence)> on_durable;
-    /// The oldest save_snapshots() that was not reported yet is on disk.
+    /// Reports that the snapshots of the oldest save_snapshots() not reported yet are on disk.
     std::function<void()> on_snapshots_saved;
-    /// The log cannot be written any more. Called at most once.
+    /// Reports, at most once, that the log cannot be written any more.
     std::function<void()> on_failed;
-    /// As on_failed, but called at once from the writer's thread.
+    /// Reports the same, at once and on the writer's thread.
     std::function<void()> on_failed_in_writer;
   };
 

@@ -12,7 +12,8 @@ namespace runstone {
 
 namespace {
 
-// The thread waits for so many new edits, so that a commit of one edit does not wake it.
+// The number of new edits for which the thread waits, so that a commit of one edit does not wake
+// it.
 constexpr Sequence kPortionEdits = 1024;
 
 /// The result of a slice that the writer saves. It is shared with the writer, which may answer

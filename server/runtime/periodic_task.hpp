@@ -1,6 +1,6 @@
-// PeriodicTask: runs a function on the world strand again and again. The interval counts from the
-// end of one run to the start of the next one.
-// Threads: start() may be called from any thread, stop() from the world strand.
+// PeriodicTask: runs a function on the world strand repeatedly. The interval counts from the end of
+// one run to the start of the next one. Threads: start() may be called from any thread, stop() from
+// the world strand.
 #pragma once
 #include <chrono>
 #include <functional>
@@ -16,11 +16,11 @@ class PeriodicTask {
   PeriodicTask(WorldStrand& strand, std::chrono::milliseconds interval, std::function<void()> task)
       : strand_(strand), interval_(interval), task_(std::move(task)), timer_(strand.make_timer()) {}
 
-  /// The first run comes one interval later. Call it once.
+  /// Starts the task. The first run comes one interval later. Call it once.
   void start() {
     strand_.post([this] { schedule(); });
   }
-  /// No run starts after this call.
+  /// Stops the task: no run starts after this call.
   void stop() {
     is_stopped_ = true;
     timer_.cancel();

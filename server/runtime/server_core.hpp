@@ -1,9 +1,8 @@
 // ServerCore: connects the parts of a running server around the world strand and starts and stops
-// them. What sessions and timers report becomes calls of WorldServer; ServerEnvironment does the
-// other direction.
-// Threads: I/O threads run the strands; workers load, generate and encode chunks; readers and the
-// log writer have threads of their own. The world and the connected sessions belong to the world
-// strand.
+// them. It turns events of sessions and timers into calls of WorldServer. ServerEnvironment is the
+// other direction. Threads: I/O threads run the strands; workers load, generate and encode chunks;
+// readers and the log writer have threads of their own. The world and the connected sessions belong
+// to the world strand.
 #pragma once
 #include <asio/io_context.hpp>
 #include <asio/thread_pool.hpp>
@@ -84,7 +83,7 @@ class ServerCore final : public NetEvents {
  private:
   DurableLog::Events log_events();
   void tick();
-  /// Runs behind every task of the world strand.
+  /// Runs after every task of the world strand.
   void after_task();
   void finish_stop_if_flushed();
   void write_counters();
@@ -102,10 +101,10 @@ class ServerCore final : public NetEvents {
   ServerEnvironment environment_;
   CommitScheduler commits_;
   PeriodicTask ticks_, counters_;
-  // On the world strand: set while begin_stop() waits for its answer.
+  // The answer of begin_stop(), set while it waits. Used on the world strand.
   std::shared_ptr<std::promise<bool>> stopping_;
 
-  // From recover() on.
+  // These parts exist from recover() on.
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<DurableLog> log_;
   std::unique_ptr<CommandRunner> commands_;

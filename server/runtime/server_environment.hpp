@@ -1,7 +1,6 @@
-// ServerEnvironment: the WorldEnvironment of the server program. It carries out what the world
-// strand asks for with connections, readers and the log writer, and brings the answers to
-// WorldServer as tasks of the world strand.
-// Threads: the world strand.
+// ServerEnvironment: the WorldEnvironment of the server program. It carries out the requests of the
+// world strand with connections, readers and the log writer, and passes the answers to WorldServer
+// in tasks of the world strand. Threads: the world strand.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -35,8 +34,8 @@ class ServerEnvironment final : public WorldEnvironment {
     commands_ = &commands;
   }
 
-  /// Returns the processor time that send_to_all() took since the start. Sending itself is not in
-  /// it.
+  /// Returns the processor time that send_to_all() took since the start. It does not include the
+  /// time of sending.
   std::int64_t enqueue_ns() const { return enqueue_ns_; }
 
   bool send(SessionId session, const EncodedMessage& message) override;

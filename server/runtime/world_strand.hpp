@@ -1,8 +1,7 @@
 // WorldStrand: runs tasks one at a time, in the order in which they were posted, on the I/O
-// threads. Everything that touches WorldServer runs as a task of this strand. Behind every task the
-// strand calls `after_task`, so that no caller can forget the work that every task may have made
-// necessary.
-// Threads: post() may be called from any thread.
+// threads. Everything that touches WorldServer runs as a task of this strand. After every task the
+// strand calls `after_task`, so that no caller can forget the work that any task may make
+// necessary. Threads: post() may be called from any thread.
 #pragma once
 #include <asio/bind_executor.hpp>
 #include <asio/error_code.hpp>

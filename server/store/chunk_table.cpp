@@ -40,10 +40,9 @@ StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
   auto save = database.prepare(
       "INSERT INTO " + table +
       "(lod, x, y, z, epoch, seq, digest0, digest1, checksum, data) "
-      "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT(lod, x, y, z) DO UPDATE SET "
-      "epoch = excluded.epoch, seq = excluded.seq, digest0 = excluded.digest0, digest1 = "
-      "excluded.digest1, "
-      "checksum = excluded.checksum, data = excluded.data");
+      "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT(lod, x, y, z) "
+      "DO UPDATE SET epoch = excluded.epoch, seq = excluded.seq, digest0 = excluded.digest0, "
+      "digest1 = excluded.digest1, checksum = excluded.checksum, data = excluded.data");
   if (!save) return failed(save.error());
   return ChunkTable(database.file(), kind, table, *std::move(load), *std::move(rows),
                     *std::move(version), *std::move(save));

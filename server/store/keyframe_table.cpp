@@ -44,16 +44,15 @@ StoreResult<KeyframeTable> KeyframeTable::open(sql::Database& database) {
     return statement ? *std::move(statement) : sql::Statement();
   };
   Statements statements{
-      prepare("SELECT seq, epoch, time_us, chunks, digest0, digest1, checksum FROM keyframe ORDER "
-              "BY seq"),
-      prepare("SELECT lod, x, y, z, epoch, seq, digest0, digest1 FROM keyframe_chunk INDEXED BY "
-              "keyframe_chunk_digest WHERE seq <= ?1 ORDER BY seq, lod, x, y, z"),
-      prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk WHERE lod = "
-              "?1 AND x = ?2 "
-              "AND y = ?3 AND z = ?4 AND seq = ?5"),
-      prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk WHERE lod = "
-              "?1 AND x = ?2 "
-              "AND y = ?3 AND z = ?4 AND seq <= ?5 ORDER BY seq DESC LIMIT 1"),
+      prepare("SELECT seq, epoch, time_us, chunks, digest0, digest1, checksum FROM keyframe "
+              "ORDER BY seq"),
+      prepare("SELECT lod, x, y, z, epoch, seq, digest0, digest1 FROM keyframe_chunk "
+              "INDEXED BY keyframe_chunk_digest WHERE seq <= ?1 ORDER BY seq, lod, x, y, z"),
+      prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk "
+              "WHERE lod = ?1 AND x = ?2 AND y = ?3 AND z = ?4 AND seq = ?5"),
+      prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk "
+              "WHERE lod = ?1 AND x = ?2 AND y = ?3 AND z = ?4 AND seq <= ?5 "
+              "ORDER BY seq DESC LIMIT 1"),
       prepare(
           "INSERT INTO keyframe_chunk(lod, x, y, z, seq, epoch, digest0, digest1, checksum, data) "
           "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)"),

@@ -6,8 +6,7 @@
 //     completed. The keyframe holds the number of these chunks and the digest over them, as a
 //     proof.
 // Rows may therefore be written in several transactions before their keyframe. Rows of a keyframe
-// that was never finished do no harm.
-// Threads: the one that owns the store.
+// that was never finished are harmless. Threads: the one that owns the store.
 #pragma once
 #include <optional>
 #include <string>

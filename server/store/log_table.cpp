@@ -14,10 +14,8 @@ namespace {
 
 constexpr const char* kSelect =
     "SELECT seq, epoch, author, instance, client_seq, time_us, cause, subject, min_x, min_y, "
-    "min_z, "
-    "max_x, max_y, max_z, descriptor, checksum FROM edit_log WHERE log = 0 AND seq BETWEEN ?1 AND "
-    "?2 ORDER "
-    "BY seq";
+    "min_z, max_x, max_y, max_z, descriptor, checksum FROM edit_log "
+    "WHERE log = 0 AND seq BETWEEN ?1 AND ?2 ORDER BY seq";
 
 bool in_range(std::int64_t value, std::uint64_t max) {
   return value >= 0 && static_cast<std::uint64_t>(value) <= max;
@@ -63,13 +61,13 @@ std::optional<EditRecord> record_of(const sql::Statement& row) {
 }  // namespace
 
 StoreResult<LogTable> LogTable::open(sql::Database& database) {
-  // The statements below do not see a row with a damaged log id. It would lie at one of the two
+  // The statements below do not find a row with a damaged log id. Such a row lies at one of the two
   // ends of the key order.
-  const auto strangers = database.integer(
-      "SELECT EXISTS(SELECT 1 FROM edit_log WHERE log < 0) + EXISTS(SELECT 1 FROM edit_log WHERE "
-      "log > 0)");
-  if (!strangers) return failed(strangers.error());
-  if (*strangers != 0) {
+  const auto misplaced_rows = database.integer(
+      "SELECT EXISTS(SELECT 1 FROM edit_log WHERE log < 0) + "
+      "EXISTS(SELECT 1 FROM edit_log WHERE log > 0)");
+  if (!misplaced_rows) return failed(misplaced_rows.error());
+  if (*misplaced_rows != 0) {
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, database.file(), "edit_log",
                                    "holds rows of a log other than 0"}};
   }
@@ -80,8 +78,7 @@ StoreResult<LogTable> LogTable::open(sql::Database& database) {
   if (!last) return failed(last.error());
   auto insert = database.prepare(
       "INSERT INTO edit_log(log, seq, epoch, author, instance, client_seq, time_us, cause, "
-      "subject, "
-      "min_x, min_y, min_z, max_x, max_y, max_z, descriptor, checksum) "
+      "subject, min_x, min_y, min_z, max_x, max_y, max_z, descriptor, checksum) "
       "VALUES(0, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)");
   if (!insert) return failed(insert.error());
   return LogTable(database, *std::move(first), *std::move(last), *std::move(insert));

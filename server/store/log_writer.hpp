@@ -2,8 +2,8 @@
 // snapshots and keyframes, from bounded queues.
 //   - Group commit: all batches that were queued during the last fsync become one transaction, and
 //     one call of on_durable. A slow disk makes larger groups. No clock is needed.
-//   - Full: has_room() turns false, and the world rejects edits as busy. A job that finds no room
-//     is refused, and the world offers its chunks again later.
+//   - Full: has_room() returns false, and the world rejects edits as busy. A job is refused if the
+//     queue of jobs is full, and the world offers its chunks again later.
 //   - Order: records go before jobs, and a job is written in slices. A record therefore never waits
 //     for many chunks.
 //   - Failure: after the first error nothing more is written, on_failed is called once, and queued

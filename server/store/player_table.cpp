@@ -37,15 +37,13 @@ StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {
   auto mark = database.prepare(mark_row + " WHERE author = ?1 AND instance = ?2");
   if (!mark) return failed(mark.error());
   auto put = database.prepare(
-      "INSERT INTO player(author, key, name, checksum) VALUES(?1, ?2, ?3, ?4) "
-      "ON CONFLICT(author) DO UPDATE SET key = excluded.key, name = excluded.name, checksum = "
-      "excluded.checksum");
+      "INSERT INTO player(author, key, name, checksum) VALUES(?1, ?2, ?3, ?4) ON CONFLICT(author) "
+      "DO UPDATE SET key = excluded.key, name = excluded.name, checksum = excluded.checksum");
   if (!put) return failed(put.error());
   auto raise = database.prepare(
-      "INSERT INTO player_instance(author, instance, decided, last_us, checksum) VALUES(?1, ?2, "
-      "?3, ?4, ?5) "
-      "ON CONFLICT(author, instance) DO UPDATE SET decided = excluded.decided, last_us = "
-      "excluded.last_us, "
+      "INSERT INTO player_instance(author, instance, decided, last_us, checksum) "
+      "VALUES(?1, ?2, ?3, ?4, ?5) ON CONFLICT(author, instance) "
+      "DO UPDATE SET decided = excluded.decided, last_us = excluded.last_us, "
       "checksum = excluded.checksum");
   if (!raise) return failed(raise.error());
   return PlayerTable(database.file(), *std::move(players), *std::move(marks), *std::move(mark),

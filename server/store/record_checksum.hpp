@@ -6,8 +6,8 @@
 
 namespace runstone {
 
-/// Returns XXH3-64 of encode_record(record). It is stored beside the record, so that a damaged row is
-/// rejected and never applied.
+/// Returns XXH3-64 of encode_record(record). It is stored beside the record, so that a damaged row
+/// is rejected and never applied.
 std::uint64_t record_checksum(const EditRecord& record);
 
 }  // namespace runstone

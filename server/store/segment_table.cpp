@@ -81,8 +81,7 @@ StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<Voxe
                                                         Sequence first, Sequence last) {
   std::string text =
       "SELECT first_seq, last_seq, author, min_x, min_y, min_z, max_x, max_y, max_z FROM log_box "
-      "WHERE "
-      "first_seq <= ?1 AND last_seq >= ?2";
+      "WHERE first_seq <= ?1 AND last_seq >= ?2";
   if (author) text += " AND author = ?3";
   if (box)
     text +=

@@ -1,4 +1,4 @@
-// The part of SqliteStore that shortens the log: the base takes the edits in, then they are
+// The part of SqliteStore that shortens the log: the edits are applied to the base, then they are
 // deleted.
 #include <map>
 #include <memory>

@@ -1,5 +1,5 @@
-// Creation and opening of a world: files, lock, marks and pragmas. sqlite_store.cpp has what
-// happens afterwards.
+// Creation and opening of a world: files, lock, marks and pragmas. sqlite_store.cpp has the calls
+// on an open world.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -74,7 +74,7 @@ StoreResult<void> make_folder(const std::string& folder, const std::string& file
   return {};
 }
 
-/// EXTRA is the same as FULL for WAL. During creation it also syncs the folder after the rollback
+/// For WAL, EXTRA is the same as FULL. During creation it also syncs the folder after the rollback
 /// journal is deleted. The journal then cannot reappear after a crash and undo a world that is
 /// already in use.
 const char* sync_pragma(bool sync) {
@@ -90,7 +90,7 @@ StoreResult<void> set_pragmas(sql::Database& database, StoreAccess access, bool 
   if (*mode != "wal")
     return failure(StoreError::Kind::io, database.file(),
                    "the file system has no shared memory for WAL");
-  // Freed pages need not be zeroed: the rows of the log hold no secret.
+  // Freed pages need not be overwritten with zeros, because the rows of the log hold no secret.
   return store_result(database.run(
       "PRAGMA secure_delete = OFF; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;"));
 }

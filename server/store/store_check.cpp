@@ -12,7 +12,7 @@ namespace runstone {
 StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
   const auto rows = rows_of(table);
   if (!rows) return failed(rows.error());
-  // Both are read after the rows: a running server only increases them.
+  // Both are read after the rows, because a running server only increases them.
   const auto range = log_range();
   if (!range) return failed(range.error());
   const auto head = meta_table_.log_head();
@@ -34,7 +34,7 @@ StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
 }
 
 StoreResult<void> SqliteStore::check_marks_cover_log() {
-  // The log is read before the watermarks: a running server increases both.
+  // The log is read before the watermarks, because a running server increases both.
   const auto last = last_sequence();
   if (!last) return failed(last.error());
   const auto rows = player_table_.high_waters();
@@ -59,7 +59,7 @@ StoreResult<void> SqliteStore::check_marks_cover_log() {
 }
 
 StoreResult<void> SqliteStore::check_segments_cover_log() {
-  // The range is read before the segments: a running server adds to both.
+  // The range is read before the segments, because a running server adds to both.
   const auto range = log_range();
   if (!range) return failed(range.error());
   const auto segments = segments_.find(std::nullopt, std::nullopt, 1, kSequenceMax);
@@ -84,7 +84,7 @@ StoreResult<void> SqliteStore::check_segments_cover_log() {
 }
 
 StoreResult<void> SqliteStore::check_keyframes() {
-  // All reads are at one moment: a running server adds rows and keyframes.
+  // All reads are in one transaction, because a running server adds rows and keyframes.
   return at_one_moment<void>([&]() -> StoreResult<void> {
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());

@@ -20,8 +20,8 @@ struct StoreError {
   };
   Kind kind = Kind::io;
   std::string file;  // the database
-  std::string
-      where;  // table and row, e.g. "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty
+  // The table and row, such as "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty.
+  std::string where;
   std::string what;
   /// Returns one line: "FILE: WHERE: WHAT".
   std::string message() const;

@@ -1,5 +1,5 @@
-// WorldInfo: what every reader of a world knows: the values that are pinned when a world is
-// created, and its name.
+// WorldInfo: the information that every reader of a world has: the values that are pinned when a
+// world is created, and the name of its database.
 #pragma once
 #include <array>
 #include <cstdint>

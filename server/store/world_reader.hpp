@@ -13,8 +13,8 @@ class WorldReader : public LogReader,
                     public KeyframeReader,
                     public PlayerReader {
  public:
-  /// Reads and verifies every row of every table, and runs the database's own check. It is slow:
-  /// use it for audits.
+  /// Reads and verifies every row of every table, and runs the database's own check. It is slow,
+  /// and meant for audits.
   virtual StoreResult<void> check() = 0;
 };
 

@@ -109,8 +109,8 @@ StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
   auto database = sql::Database::open(file, sql::Database::Mode::header, vfs);
   if (!database)
     return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + database.error().what);
-  // The bytes are read, and no PRAGMA: after a crash during a checkpoint the main file is no sound
-  // database until its WAL is applied. The marks are in it all the same, because they were written
+  // The bytes are read directly, without a PRAGMA: after a crash during a checkpoint the main file
+  // is not valid until its WAL is applied. The marks are in it even then, because they were written
   // before the WAL existed.
   const auto header = database->header();
   constexpr std::string_view kMagic("SQLite format 3\0", 16);

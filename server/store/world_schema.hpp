@@ -12,7 +12,8 @@ namespace runstone {
 
 /// "RunS": PRAGMA application_id of every world.
 inline constexpr std::uint32_t kApplicationId = 0x52756e53;
-/// PRAGMA user_version of every world: the version of the schema and of what its columns hold.
+/// PRAGMA user_version of every world: the version of the schema and of the contents of its
+/// columns.
 inline constexpr std::uint32_t kWorldFormat = 1;
 
 /// Makes all tables and sets both marks, in the caller's transaction.
@@ -22,8 +23,8 @@ StoreResult<void> create_schema(sql::Database& database);
 /// is that of sql::Database::open(). Fails with not_a_world, newer_version or corrupt.
 StoreResult<void> check_marks(const std::string& file, const std::string& vfs);
 
-/// The checksum of a row: XXH3-64 of the table's name and every other column in the order of the
-/// schema.
+/// Computes the checksum of a row: XXH3-64 of the table's name and of every other column, in the
+/// order of the schema.
 ///   - An integer is 8 bytes, little-endian.
 ///   - A text or a blob is its length (8 bytes) and its bytes.
 ///   - edit_log differs: its checksum is record_checksum() of the record.

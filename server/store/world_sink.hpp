@@ -1,4 +1,4 @@
-// WorldSink: what a running server writes: edits, snapshots and keyframes. Each call is one
+// WorldSink: the writes of a running server: edits, snapshots and keyframes. Each call is one
 // transaction.
 #pragma once
 #include <optional>

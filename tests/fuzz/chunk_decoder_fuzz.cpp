@@ -1,5 +1,5 @@
-// Decodes any bytes as chunk bytes. A chunk that decodes must be valid and come back from all
-// encodings. Raw and coded bytes have one spelling.
+// The target decodes any bytes as chunk bytes. A chunk that decodes must be valid and come back
+// from all encodings. Raw and coded bytes have one spelling.
 #include <cstdint>
 
 #include "common/core/assert.hpp"

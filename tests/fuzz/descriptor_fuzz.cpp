@@ -1,5 +1,5 @@
-// Decodes any bytes as a descriptor and as a record. A decoded value is valid, encodes to the same
-// bytes, and its geometry is consistent.
+// The target decodes any bytes as a descriptor and as a record. A decoded value is valid, encodes
+// to the same bytes, and its geometry is consistent.
 #include <cstdint>
 #include <vector>
 

@@ -1,6 +1,6 @@
-// Reads any bytes as draw orders. Input: 1 byte that seeds the split, then the stream. The stream
-// must give the same orders however it is split. Each order must be inside its limits and come back
-// unchanged when it is encoded again.
+// The target reads any bytes as draw orders. Input: 1 byte that seeds the split, then the stream.
+// The stream must give the same orders however it is split. Each order must be inside its limits
+// and come back unchanged when it is encoded again.
 #include <algorithm>
 #include <cstdint>
 #include <vector>

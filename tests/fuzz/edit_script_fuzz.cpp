@@ -1,5 +1,5 @@
-// Reads bytes as a chunk and a script of edit stacks, and applies them to runs and to the dense
-// oracle side by side.
+// The target reads bytes as a chunk and a script of edit stacks, and applies them to runs and to
+// the dense oracle side by side.
 //   chunk:  side x, y, z (8 + byte % 17), axis order, shape, seed (u16)
 //   stack:  depth (1 + byte % 8), then per edit: kind, mask, mask material, material, x, y, z,
 //           three sizes; from kind 192 on a paste in orientation (kind - 192) % 48, then the

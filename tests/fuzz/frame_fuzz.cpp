@@ -1,6 +1,6 @@
-// Reads any bytes as a stream from either side. Input: 1 byte (bit 0: sender; the other bits seed
-// the split), then the stream. The stream must give the same messages and the same result however
-// it is split. No message may exceed its limit.
+// The target reads any bytes as a stream from either side. Input: 1 byte (bit 0: sender; the other
+// bits seed the split), then the stream. The stream must give the same messages and the same result
+// however it is split. No message may exceed its limit.
 #include <algorithm>
 #include <cstdint>
 #include <vector>

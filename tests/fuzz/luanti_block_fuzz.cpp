@@ -1,5 +1,6 @@
-// Decodes foreign blocks in two ways: the bytes as a whole row (the zstd stream is hostile), and as
-// the content of the stream (its fields are hostile, which random streams would hardly ever reach).
+// The target decodes foreign blocks in two ways: the bytes as a whole row (the zstd stream is
+// hostile), and as the content of the stream (its fields are hostile, which random streams would
+// hardly ever reach).
 #include <cstdint>
 
 #include "common/core/assert.hpp"

@@ -1,5 +1,5 @@
-// Compares meshers with the face oracle on scenes that bytes describe, and remeshing with meshing.
-// Every input is a scene and some edits:
+// The target compares meshers with the face oracle on scenes that bytes describe, and remeshing
+// with meshing. Every input is a scene and some edits:
 //   - 3 bytes sides (8 + b % 9; the first one of 252 .. 255 is 33, 64, 65 or 128);
 //   - 1 byte axis order;
 //   - 1 byte mask of neighbours (bit 6: every run of stone becomes a material of its own);
@@ -40,14 +40,14 @@ class Input {
  public:
   explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes), rng_(seed_of(bytes)) {}
   bool empty() const { return bytes_.empty(); }
-  /// Returns the next byte, or 0 behind the end.
+  /// Returns the next byte, or 0 after the end of the input.
   std::uint8_t next() {
     if (bytes_.empty()) return 0;
     const std::uint8_t byte = bytes_.front();
     bytes_ = bytes_.subspan(1);
     return byte;
   }
-  /// Returns the next byte, or a random one behind the end.
+  /// Returns the next byte, or a random one after the end of the input.
   std::uint8_t next_or_drawn() {
     return empty() ? static_cast<std::uint8_t>(rng_.below(256)) : next();
   }
@@ -155,16 +155,16 @@ class Trial {
   /// Meshes a scene. The oracle checks this mesh and those of all reference meshers; every path
   /// must give the same mesh.
   void mesh(const test::MeshScene& scene) {
-    const std::string fault = jury_.fault(scene);
+    const std::string fault = checks_.fault(scene);
     demand(fault.empty(), fault.c_str());
-    const std::string of_polygons = polygon_jury_.fault(scene, test::mesh_visibility(),
-                                                        test::mesh_materials(), jury_.exposed());
+    const std::string of_polygons = polygon_checks_.fault(
+        scene, test::mesh_visibility(), test::mesh_materials(), checks_.exposed());
     demand(of_polygons.empty(), of_polygons.c_str());
     mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), scratch_, mesh_);
     const auto difference =
-        test::mesh_difference(mesh_, scene.chunk.extent, test::mesh_materials(), jury_.exposed());
+        test::mesh_difference(mesh_, scene.chunk.extent, test::mesh_materials(), checks_.exposed());
     demand(!difference, difference.value_or("").c_str());
-    demand(mesh_.quad_count() >= jury_.optimal_quads(), "RDM has fewer quads than the optimum");
+    demand(mesh_.quad_count() >= checks_.optimal_quads(), "RDM has fewer quads than the optimum");
 
     mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), plain_, other_);
     demand(equal(mesh_, other_), "the plain path gives other quads");
@@ -201,8 +201,8 @@ class Trial {
   const ChunkMesh& last() const { return mesh_; }
 
  private:
-  test::MesherChecks jury_;
-  test::PolygonChecks polygon_jury_;
+  test::MesherChecks checks_;
+  test::PolygonChecks polygon_checks_;
   RdmScratch scratch_, plain_;
   ChunkMesh mesh_, other_;
   std::array<ChunkBorders, kDirectionCount> kept_;

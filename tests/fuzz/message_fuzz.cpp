@@ -1,6 +1,7 @@
-// Decodes any bytes as a message. Input: 1 byte (bits 0-4: kind, modulo their count; bit 5: the edge
-// of the world is known and 16; bit 6: of a kind that both sides send, the server is the sender),
-// then the message. A message that decodes is encoded again and must decode to the same message.
+// The target decodes any bytes as a message. Input: 1 byte (bits 0-4: kind, modulo their count;
+// bit 5: the edge of the world is known and 16; bit 6: of a kind that both sides send, the server is
+// the sender), then the message. A message that decodes is encoded again and must decode to the same
+// message.
 #include <cstdint>
 
 #include "protocol/codec/message_table.hpp"

@@ -1,5 +1,5 @@
-// Runs a fuzz target over every file of a corpus folder, so that past findings are tests under
-// every compiler.
+// This program runs a fuzz target over every file of a corpus folder, so that past findings are
+// tests under every compiler.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>

@@ -1,6 +1,6 @@
-// Reads any bytes as an .rlog in two ways: unchanged (checksums reject nearly everything), and with
-// every checksum corrected, so that lengths, columns and zstd frames are hostile. Whatever is read
-// is a valid log, and reads the same after it is written again.
+// The target reads any bytes as an .rlog in two ways: unchanged (checksums reject nearly
+// everything), and with every checksum corrected, so that lengths, columns and zstd frames are
+// hostile. Whatever is read is a valid log, and reads the same after it is written again.
 #include <cstdint>
 
 #include "common/core/assert.hpp"

@@ -1,5 +1,5 @@
-// Turns bytes into a small chunk and a script of fills. Runs, areas and digest must equal those of
-// the dense oracle.
+// The target reads bytes as a small chunk and a script of fills. Runs, areas and digest must equal
+// those of the dense oracle.
 //   byte 0: axis order; bytes 1-3: sides - 8, modulo 6 (8 .. 13); byte 4: first material
 //   then 5 bytes a fill: first (u16), count - 1 (u16), material
 #include <cstdint>

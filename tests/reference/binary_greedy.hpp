@@ -14,7 +14,7 @@
 
 namespace runstone::reference {
 
-/// Buffers that are reused between calls; in the steady state nothing is allocated. Thread: one.
+/// Buffers that are reused between calls, so that a steady state allocates nothing. Thread: one.
 struct BinaryScratch {
   OccupancyMask mask;                 // of the functions that make their mask
   DenseGrid grid;                     // of the function that decodes

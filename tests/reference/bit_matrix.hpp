@@ -1,5 +1,5 @@
-// Transposes a matrix of 64 x 64 bits in place. Source: recursive block swaps (Warren, Hacker's
-// Delight, 7-3).
+// The transposition of a matrix of 64 x 64 bits in place. Source: recursive block swaps (Warren,
+// Hacker's Delight, 7-3).
 #pragma once
 #include <cstdint>
 

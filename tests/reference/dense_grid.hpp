@@ -29,11 +29,11 @@ class DenseGrid {
   AxisOrder order() const { return order_; }
   /// Returns the sides without the border: fastest, middle and slowest axis.
   OrderedExtent sides() const { return sides_; }
-  /// Return the voxels from one line to the next and from one slow layer to the next, border
-  /// included.
+  /// Return the distance in voxels from one line to the next, and from one slow layer to the next,
+  /// border included.
   std::ptrdiff_t line_stride() const { return line_stride_; }
   std::ptrdiff_t layer_stride() const { return layer_stride_; }
-  /// Returns the voxels from a voxel to the next one along an axis.
+  /// Returns the distance in voxels from a voxel to the next one along an axis.
   std::ptrdiff_t stride(Axis axis) const;
   /// Returns the bytes of the voxels of grid and border.
   std::size_t byte_size() const { return volume_ * sizeof(Material); }
@@ -48,8 +48,8 @@ class DenseGrid {
   /// Returns the voxel at 0 0 0. Others lie at multiples of stride().
   const Material* origin() const { return line(0, 0); }
 
-  /// The materials behind the last voxel that may be overwritten, so that fills need not stop
-  /// exactly.
+  /// The number of materials behind the last voxel that may be overwritten, so that fills need not
+  /// stop exactly.
   static constexpr std::size_t kSlack = 32;
 
  private:

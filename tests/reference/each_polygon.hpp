@@ -1,4 +1,4 @@
-// Visits the polygons of a surface one by one, quads and triangles alike.
+// The traversal of the polygons of a surface, quads and triangles alike.
 #pragma once
 #include <array>
 #include <cstddef>

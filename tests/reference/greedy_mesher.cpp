@@ -5,7 +5,8 @@
 namespace runstone::reference {
 namespace {
 
-/// Returns the widest, then highest rectangle that starts at a face of the plane.
+/// Returns the rectangle that starts at a face of the plane, as wide as possible and then as high
+/// as possible.
 PlaneRectangle grow(const FacePlane& plane, std::uint32_t u, std::uint32_t v) {
   const Material* row = plane.row(v) + u;
   const Material material = *row;

@@ -12,7 +12,8 @@ using Strip = GridRdmScratch::Strip;
 struct Traversal {
   Axis layer, row, run;
 };
-/// By axis of the faces. The thesis' axes are x, y, z with z up; here they are x, z, y.
+/// The run and row axes, by axis of the faces. The thesis' axes are x, y, z with z up; here they
+/// are x, z, y.
 constexpr std::array<Traversal, 3> kTraversals = {
     {{Axis::x, Axis::y, Axis::z}, {Axis::y, Axis::x, Axis::z}, {Axis::z, Axis::y, Axis::x}}};
 

@@ -8,7 +8,7 @@
 
 namespace runstone::reference {
 
-/// Vertices of two sides. Edges run between the sides only.
+/// A graph with vertices on two sides. Edges join the two sides only.
 struct BipartiteGraph {
   std::uint32_t right_count = 0;
   std::vector<std::uint32_t> first = {0};  // edges of left vertex l: from first[l] to first[l + 1]
@@ -24,7 +24,7 @@ struct BipartiteGraph {
   void end_left() { first.push_back(static_cast<std::uint32_t>(edges.size())); }
 };
 
-/// Keeps its buffers between calls. Thread: one.
+/// Finds such sets. An object keeps its buffers between calls. Thread: one.
 class IndependentSet {
  public:
   /// Finds the set of a graph. Cost: O(edges * sqrt(vertices)).
@@ -42,14 +42,13 @@ class IndependentSet {
 
   // A partner is an index on the other side, or kFar if there is none.
   std::vector<std::uint32_t> left_partner_, right_partner_;
-  // Of left vertices: pairs of edges from an unmatched one.
+  // The distance of each left vertex from an unmatched one, in pairs of edges.
   std::vector<std::uint32_t> distance_;
-  // Right vertices that the same search reached.
+  // The right vertices that the same search reached.
   std::vector<std::uint8_t> reached_;
   std::vector<std::uint32_t> queue_, next_edge_, path_;
-  std::uint32_t shortest_ =
-      // Distance of the left vertices before the nearest unmatched right ones.
-      kFar;
+  // The distance of the left vertices before the nearest unmatched right ones.
+  std::uint32_t shortest_ = kFar;
 };
 
 }  // namespace runstone::reference

@@ -5,14 +5,13 @@
 namespace runstone::reference {
 namespace {
 
-constexpr std::array<std::uint8_t, 2> kWall = {
-    // By Line: the edge from here to the next corner.
-    1, 2};
+// The flags of the edge from a corner to the next one, by Line.
+constexpr std::array<std::uint8_t, 2> kWall = {1, 2};
 constexpr std::uint8_t kConcave = 4;
 constexpr std::uint8_t kServed = 8;  // a chord of the set ends here
 
 /// Returns true if exactly three of the four faces around a corner have one material: two faces
-/// across the corner are equal, and one of the others has their material, too.
+/// across the corner are equal, and one of the others has their material too.
 bool turns_inwards(Material a, Material b, Material c, Material d) {
   if (a == d) return a != kEmpty && (b == a) != (c == a);
   return b == c && b != kEmpty && (a == b) != (d == b);
@@ -29,11 +28,11 @@ void MinimumPartition::find(const FacePlane& plane, std::vector<PlaneRectangle>&
   read_off(plane, out);
 }
 
-/// Walls stand between faces of different material and at the plane's border.
+/// Walls lie between faces of different material and at the plane's border.
 void MinimumPartition::find_corners(const FacePlane& plane) {
   step_ = {1, static_cast<std::size_t>(plane.width) + 1};
   corners_.assign(step_[along_v] * (plane.height + 1), 0);
-  // -1 wraps to a number beyond the width
+  // -1 wraps to a number beyond the width.
   const auto face = [&plane](std::uint32_t u, std::uint32_t v) {
     return u < plane.width && v < plane.height ? plane.row(v)[u] : kEmpty;
   };

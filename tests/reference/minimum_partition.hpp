@@ -29,7 +29,7 @@
 
 namespace runstone::reference {
 
-/// Keeps its buffers between calls. Thread: one.
+/// Finds such partitions. An object keeps its buffers between calls. Thread: one.
 class MinimumPartition {
  public:
   /// Replaces `out` by rectangles that cover each face of `plane` once, by row and place of their
@@ -53,7 +53,7 @@ class MinimumPartition {
   void cut(std::size_t from, std::size_t to, Line line);
 
   // The corners of faces, row after row, one more a row than faces. Flags: the edges from it along
-  // u and v are walls; it is concave; it needs no cut of its own any more.
+  // u and v are walls; it is concave; it needs no further cut of its own.
   std::vector<std::uint8_t> corners_;
   std::array<std::size_t, 2> step_{};         // to the next corner, by Line
   std::array<std::vector<Chord>, 2> chords_;  // by Line

@@ -18,13 +18,13 @@
 
 namespace runstone::reference {
 
-/// Keeps its buffers between calls. Thread: one.
+/// An object keeps its buffers between calls. Thread: one.
 class MonotoneTriangulation {
  public:
   // Indices of points(), counter-clockwise over u, v.
   using Triangle = std::array<std::uint32_t, 3>;
 
-  /// Triangulates a region of `outlines`. Cost: O(n log n), plus a look at every open slab where
+  /// Triangulates a region of `outlines`. Cost: O(n log n), and O(open slabs) for each corner where
   /// one splits.
   void run(const Outlines& outlines, const Outlines::Region& region);
 
@@ -72,13 +72,13 @@ class MonotoneTriangulation {
 
   SweepPoints sweep_;
   std::vector<Triangle> triangles_;
-  // Of the last region: those below piece_count_, some of them free.
+  // The pieces of the last region are those below piece_count_. Some of them are free.
   std::vector<Piece> pieces_;
   std::vector<PieceId> free_pieces_;
   std::uint32_t piece_count_ = 0, slab_count_ = 0;
   std::vector<Slab> slabs_;
   std::vector<SlabId> free_slabs_, open_slabs_;
-  // By corner: the slab whose left or right side ends there.
+  // The slab whose left or right side ends at a corner, by corner.
   std::vector<SlabId> left_of_, right_of_;
   std::vector<Stacked> row_, stack_;  // of triangulate()
 };

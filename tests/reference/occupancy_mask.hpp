@@ -14,20 +14,18 @@ namespace runstone::reference {
 inline constexpr unsigned kBinarySideMax = 64;
 
 struct OccupancyMask {
-  /// By line, border lines included: line m of slow layer s is word (m + 1) + (m's side + 2) * (s +
-  /// 1), and bit f is its voxel f. The border voxels of a line are in `ends`.
+  /// A word for each line, border lines included: line m of slow layer s is word (m + 1) + (m's
+  /// side + 2) * (s + 1), and bit f is its voxel f. The border voxels of a line are in `ends`.
   std::vector<std::uint64_t> opaque, transparent;
-  std::vector<std::uint8_t>
-      // Bits 0 and 1: opaque before and behind the line; bits 2 and 3: transparent before and
-      // behind it.
-      ends;
+  // Bits 0 and 1: opaque before and behind the line; bits 2 and 3: transparent before and
+  // behind it.
+  std::vector<std::uint8_t> ends;
   /// True if no two opaque (transparent) materials occur. Then faces merge and cull without reading
   /// the grid.
   bool one_opaque = true, one_transparent = true;
   bool any_opaque = false, any_transparent = false;
-  Material opaque_material = kEmpty,
-           // A material that occurs; the only one if the flag above is set.
-      transparent_material = kEmpty;
+  // A material that occurs; the only one if the flag above is set.
+  Material opaque_material = kEmpty, transparent_material = kEmpty;
   friend bool operator==(const OccupancyMask&, const OccupancyMask&) = default;
 };
 

@@ -5,8 +5,8 @@
 // A region may touch itself at a corner only, with two faces on one diagonal and none on the other.
 // It is not connected there: the ring stays with the face along which it came, passes the corner
 // once for each of the two faces, and is weakly simple. A hole that touches the outline, or another
-// hole, is therefore part of that ring. Traced across the corner they would be rings that share a
-// point, which Poly2Tri's original rejects.
+// hole, is therefore part of that ring. If the rings were traced across the corner, they would
+// share a point, which the original Poly2Tri rejects.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -39,7 +39,7 @@ struct Outlines {
   }
 };
 
-/// Traces the regions of planes. Keeps its buffers between calls. Thread: one.
+/// Traces the regions of planes. An object keeps its buffers between calls. Thread: one.
 class OutlineTracer {
  public:
   /// Replaces `out` by the outlines of a plane, regions by their lowest row, then along u. Cost:
@@ -57,10 +57,9 @@ class OutlineTracer {
   void trace_ring(int u, int v, Outlines& out);
 
   std::size_t stride_ = 0;
-  std::vector<std::uint32_t>
-      // The region of each face, from 1. A margin of 0 lies around the plane.
-      region_;
-  // Whether the side of a face towards -v belongs to a ring.
+  // The region of each face, from 1. A margin of 0 lies around the plane.
+  std::vector<std::uint32_t> region_;
+  // 1 if the side of a face towards -v belongs to a ring, otherwise 0.
   std::vector<std::uint8_t> traced_;
   std::vector<Cell> cells_;  // of the present region
   std::uint32_t regions_ = 0;

@@ -1,5 +1,5 @@
-// Compares materials that lie side by side, up to 64 in a word of 64 bits. SSE2 is part of every
-// x86-64; elsewhere a loop makes the same words.
+// Comparison of adjacent materials, up to 64 in a word of 64 bits. SSE2 is part of every x86-64; on
+// other machines a loop makes the same words.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ constexpr std::uint64_t low_bits(std::uint32_t count) {
   return ~std::uint64_t{0} >> ((64 - count) & 63);
 }
 
-/// The materials that differing_bits() may read beyond the last one that it compares.
+/// The number of materials that differing_bits() may read beyond the last one that it compares.
 inline constexpr std::size_t kCompareSlack = 16;
 
 /// Returns a word with bit i set if a[i] != b[i], for i < count. Requires 0 < count <= 64 and

@@ -16,15 +16,14 @@ namespace runstone::reference {
 /// The effect of a hidden face of the same material on a run.
 enum class HiddenFaces : std::uint8_t {
   end_run,  // ends the run: only exposed faces are drawn
-  // Nothing, as in the original: fewer quads and comparisons, and drawn hidden faces.
+  // has no effect, as in the original: fewer quads and comparisons, but hidden faces are drawn
   run_on
 };
 
 /// Buffers that are reused between calls. Thread: one.
 struct RunStripScratch {
-  std::vector<std::uint8_t>
-      // A byte a voxel, y fastest, then x, then z: bit d for direction d.
-      covered;
+  // A byte a voxel, y fastest, then x, then z: bit d for direction d.
+  std::vector<std::uint8_t> covered;
 };
 
 /// Replaces `out` by the mesh of `grid`, by z, x and y of the first voxel of a run and by

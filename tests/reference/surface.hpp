@@ -9,7 +9,7 @@
 
 namespace runstone::reference {
 
-/// A mesher fills one of the two and clears the other.
+/// A mesher fills one of the two lists and clears the other.
 struct Surface {
   std::vector<Quad> quads;
   TriangleMesh triangles;

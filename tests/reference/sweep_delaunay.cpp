@@ -134,7 +134,7 @@ void SweepDelaunay::mark(PointId from, PointId to) {
 void SweepDelaunay::cross(PointId from, PointId to) {
   crossed_.clear();
   fresh_.clear();
-  // From the right of the side to its left, like all that follow.
+  // The edge leads from the right of the side to its left, like all that follow.
   EdgeId e = edge_across(from, to);
   crossed_.push_back({from_[e], end_of(e)});
   for (PointId apex = apex_of(twin_[e]); apex != to; apex = apex_of(twin_[e])) {

@@ -24,7 +24,7 @@
 
 namespace runstone::reference {
 
-/// Keeps its buffers between calls. Thread: one.
+/// An object keeps its buffers between calls. Thread: one.
 class SweepDelaunay {
  public:
   // Indices of points(), counter-clockwise over u, v.
@@ -40,10 +40,9 @@ class SweepDelaunay {
 
  private:
   using PointId = std::uint32_t;
-  using EdgeId =
-      // 3 t + i: the edge from corner i of triangle t to the next corner, with the triangle on its
-      // left.
-      std::uint32_t;
+  // 3 t + i: the edge from corner i of triangle t to the next corner, with the triangle on its
+  // left.
+  using EdgeId = std::uint32_t;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   /// The position of an edge relative to the region. outer: the region is on its right.
   enum class Side : std::uint8_t { free, inner, outer };
@@ -79,12 +78,12 @@ class SweepDelaunay {
   std::vector<EdgeId> twin_;   // kNone on the hull
   std::vector<Side> side_;
   std::vector<EdgeId> edge_of_;  // by point: an edge that starts there
-  // By point on the hull, counter-clockwise.
+  // The neighbours of each point on the hull, counter-clockwise.
   std::vector<PointId> hull_next_, hull_prev_;
-  // By point on the hull: the edge to the next one.
+  // The edge from each point on the hull to the next one.
   std::vector<EdgeId> hull_edge_;
   std::vector<EdgeId> doubtful_;  // edges that may have to be flipped
-  // By their ends, since flips change the indices of edges.
+  // Edges given by their ends, since flips change the indices of edges.
   std::vector<std::array<PointId, 2>> crossed_, fresh_;
   std::vector<std::uint8_t> kept_;  // by triangle
 };

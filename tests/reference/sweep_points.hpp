@@ -7,8 +7,8 @@
 
 namespace runstone::reference {
 
-/// Corners are passages of a ring, points are places. Where a region touches itself a point has two
-/// corners.
+/// A point is a place, and a corner is one passage of a ring through it. Where a region touches
+/// itself, a point has two corners.
 struct SweepPoints {
   struct Corner {
     std::uint32_t point = 0;  // index in `points`

@@ -1,5 +1,4 @@
-// Quads of single faces for the plain reference meshers: a raw list in the order of creation, four
-// vertices each, as the thesis counts them.
+// Quads for the plain reference meshers, which write them to a list in the order of creation.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,8 +9,8 @@
 
 namespace runstone::reference {
 
-/// Returns a rectangle of faces in one direction that starts at `at`, `along_u` and `along_v` faces
-/// large.
+/// Returns a rectangle of faces in one direction that starts at `at` and has `along_u` by `along_v`
+/// faces.
 constexpr Quad face_quad(LocalPos at, Direction direction, Material material,
                          std::uint32_t along_u = 1, std::uint32_t along_v = 1) {
   return pack({at.x, at.y, at.z, static_cast<std::uint8_t>(along_u),

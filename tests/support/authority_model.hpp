@@ -33,7 +33,7 @@ class AuthorityModel {
 
   ChunkSnapshot snapshot(ChunkCoord at) { return {{0, at}, chunk(at)}; }
 
-  /// Gives the edits the next sequence numbers and applies them.
+  /// Assigns the next sequence numbers to the edits and applies them.
   Commit commit(const std::vector<std::pair<OperationId, EditDescriptor>>& edits,
                 TimeUs now_us = 0) {
     Commit out;

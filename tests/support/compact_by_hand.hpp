@@ -1,5 +1,5 @@
-// compact_by_hand: makes what a compaction leaves on disk: a newer base, a log that begins behind
-// it, and the head of the removed part.
+// compact_by_hand: writes the result of a compaction to the disk: a newer base, a log that begins
+// after it, and the head of the removed part.
 #pragma once
 #include <catch2/catch.hpp>
 #include <string>

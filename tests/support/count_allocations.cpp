@@ -20,7 +20,7 @@ static void count_allocation(std::size_t size) {
 
 }  // namespace runstone::test
 
-// Not inlined: g++ would see free() meet operator new and warn.
+// The function is not inlined, because g++ would warn about free() of memory from operator new.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   runstone::test::count_allocation(size);
   return std::malloc(size == 0 ? 1 : size);

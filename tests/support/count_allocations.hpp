@@ -1,6 +1,6 @@
-// Counts what a program takes from the heap. A program that calls allocations() links a global operator new that counts
-// (with and without an alignment); other programs keep the standard one. Thread: the counters are atomic; read them while
-// the threads that allocate are at rest.
+// A counter of the heap allocations of a program. A program that calls allocations() links a global
+// operator new that counts (with and without an alignment); other programs keep the standard one.
+// Thread: the counters are atomic. Read them while no thread allocates.
 #pragma once
 #include <cstddef>
 

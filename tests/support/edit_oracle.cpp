@@ -292,7 +292,8 @@ std::shared_ptr<const Clipboard> random_clipboard(SplitMix64& rng, unsigned side
   };
   const Extent extent{side(), side(), side()};
   const AxisOrder order = random_order(rng);
-  // From one stretch a cell to few long ones, and from all touched cells to hardly any.
+  // Clipboards range from one stretch per cell to a few long ones, and from all cells touched to
+  // hardly any.
   const std::uint32_t stretch_max = rng.below(3) == 0 ? 1 : rng.below(2) == 0 ? 9 : extent.volume();
   const std::uint32_t untouched_of_8 = rng.below(8);
   ClipboardBuilder builder(extent, order);
@@ -307,7 +308,7 @@ std::shared_ptr<const Clipboard> random_clipboard(SplitMix64& rng, unsigned side
     }
   }
   const auto cheapest = *builder.finish();
-  // A descriptor may have any order.
+  // The clipboard of a descriptor may have any axis order.
   if (rng.below(2) == 0) return cheapest;
   return *Clipboard::of(cheapest->palette(), reorder(cheapest->cells(), random_order(rng)));
 }

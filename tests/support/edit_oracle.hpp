@@ -27,7 +27,7 @@ std::ostream& operator<<(std::ostream& out, const EditDescriptor& edit);
 
 namespace runstone::test {
 
-/// Mistakes that the oracle makes on demand, so that a test can show that it would notice them.
+/// Mistakes that the oracle makes on request, so that a test can show that it detects them.
 enum class OracleFault {
   none,
   thin_sphere,       // |d| <= r instead of |d| < r + 1/2

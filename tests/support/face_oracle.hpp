@@ -26,7 +26,7 @@ struct UnitFace {
 };
 std::ostream& operator<<(std::ostream& out, const UnitFace& face);
 
-/// By Direction. Null means missing: nothing but empty voxels.
+/// The neighbours by Direction. A missing neighbour is null and has only empty voxels.
 using DenseNeighbours = std::array<const DenseChunk*, kDirectionCount>;
 
 /// Returns the unit faces of one chunk, sorted. A neighbour has the chunk's sides across its

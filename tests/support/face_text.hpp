@@ -12,8 +12,8 @@ namespace runstone::test {
 /// any other letter none. Requires rows of one length.
 reference::FacePlane face_plane(const std::vector<std::string>& rows);
 
-/// Returns seeded rows of up to `side_max` a side: noise of any density, boxes on top of each
-/// other, or both.
+/// Returns random rows of up to `side_max` letters and up to `side_max` rows: noise of any density,
+/// boxes on top of each other, or both.
 std::vector<std::string> random_face_text(SplitMix64& rng, unsigned side_max);
 
 }  // namespace runstone::test

@@ -1,4 +1,4 @@
-// Turns hex digits into bytes, for golden bytes; common/core/hex.hpp does the opposite.
+// Golden bytes written as hex digits; common/core/hex.hpp has the opposite conversion.
 #pragma once
 #include <cstdint>
 #include <stdexcept>
@@ -9,8 +9,8 @@
 
 namespace runstone::test {
 
-/// Skips blanks and line ends. Throws on any other character that is no hex digit, and on half a
-/// byte.
+/// Returns the bytes. Blanks and line ends are skipped. Throws on any other character that is no
+/// hex digit, and on half a byte.
 inline Bytes from_hex(std::string_view text) {
   Bytes out;
   int high = -1;

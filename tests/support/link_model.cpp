@@ -22,7 +22,8 @@ LinkPassage LinkModel::push(std::uint64_t bytes, TimeNs now_ns) {
   free_ns_ = std::max(free_ns_, now_ns) + profile_.transmit_ns(bytes);
   constexpr std::uint32_t kScale = 1U << 31;
   const bool lost = random_.below(kScale) < profile_.loss * kScale;
-  // Drawn even if there is no jitter, so that one seed gives the same losses with any jitter.
+  // The number is drawn even if there is no jitter, so that one seed gives the same losses with any
+  // jitter.
   const double swing = static_cast<double>(random_.below(kScale)) / kScale * 2 - 1;
   const TimeNs jitter = static_cast<TimeNs>(swing * static_cast<double>(profile_.jitter_ns));
   const TimeNs due_ns = std::max(last_due_ns_, free_ns_ + profile_.round_trip_ns / 2 + jitter);

@@ -1,8 +1,8 @@
 // LinkModel: a model of one direction of a link: a drop-tail queue, a transmitter of fixed rate,
 // loss, and a delay with jitter that never reorders. It is pure: time is an argument, so that the
 // testbed's forwarder and shaper use it with the clock and tests in virtual time. No packet
-// overtakes one that was delayed longer. So dense packets are nearly all as late as the latest, and
-// a lone packet is early or late as it is drawn. Thread: one.
+// overtakes one that was delayed longer. So nearly all packets of a dense stream are as late as the
+// latest one, and the delay of a lone packet is random. Thread: one.
 #pragma once
 #include <cstdint>
 
@@ -15,7 +15,7 @@ enum class LinkFate : std::uint8_t { arrives, lost, no_room };
 
 struct LinkPassage {
   LinkFate fate = LinkFate::arrives;
-  // When its last bit arrives, or would have arrived; not set for no_room.
+  // The time at which its last bit arrives, or would have arrived. Not set for no_room.
   TimeNs due_ns = 0;
 };
 

@@ -40,7 +40,8 @@ Bytes luanti_row(const Bytes& plain, std::uint8_t version) {
   out[0] = version;
   ZSTD_outBuffer target{out.data() + 1, out.size() - 1, 0};
   ZSTD_inBuffer source{plain.data(), plain.size(), 0};
-  // Two calls: with all input in the end call, zstd would know the size and write it.
+  // There are two calls. If the call that ends the frame had all input, zstd would write the
+  // content size.
   ZSTD_compressStream2(stream, &target, &source, ZSTD_e_continue);
   const std::size_t left = ZSTD_compressStream2(stream, &target, &source, ZSTD_e_end);
   RUNSTONE_ASSERT(left == 0);

@@ -1,5 +1,5 @@
-// Writes Luanti map blocks for tests, from the published format. It shares no code with the
-// decoder.
+// A writer of Luanti map blocks for tests, made from the published format. It shares no code with
+// the decoder.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 // MesherChecks: checks all reference meshers with the oracle that also checks the product: exposed
 // unit faces with material and direction, each covered once by quads that wind outwards. Meshers
-// that cull less are compared with what they do show, face by face.
+// that cull less are compared with the faces that they are to show.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -22,8 +22,8 @@ class MesherChecks {
   /// Returns the first mesher with a wrong mesh of the scene and its fault, or an empty text.
   /// Leaves binary greedy out where a side is above 64.
   std::string fault(const MeshScene& scene);
-  /// Does the same for the meshers that show the exposed faces and no others. Several times as
-  /// fast.
+  /// Does the same for the meshers that show the exposed faces and no others. It is several times
+  /// as fast.
   std::string fault_of_exposed(const MeshScene& scene);
 
   /// Results of the last scene.

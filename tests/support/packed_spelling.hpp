@@ -1,5 +1,5 @@
-// Writes packed chunk bytes field by field as docs/protocol.md lists them, right or wrong,
-// including what an honest encoder would never write. It shares no code with the codec.
+// A writer of packed chunk bytes, field by field as docs/protocol.md lists them. It can also write
+// invalid bytes that an honest encoder never writes. It shares no code with the codec.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -29,7 +29,8 @@ inline void spell_varint(Bytes& out, std::uint64_t v, int extra = 0) {
 /// size.
 Bytes zstd_frame(ByteView body, bool announce = true);
 
-/// By default: 8x8x8, three runs of 3, 197 and 312 voxels of materials 1, 0 and 300.
+/// The default is a chunk of 8x8x8 with three runs of 3, 197 and 312 voxels of materials 1, 0 and
+/// 300.
 struct PackedSpelling {
   PackedSpelling();
   std::uint8_t encoding = 2, version = 1, order = 2;

@@ -77,7 +77,7 @@ class Components {
   }
   int at(int u, int v) const { return of_[slot(u, v)]; }
   /// Returns the number of holes. The cells outside a component are one piece around it and one
-  /// more for each hole. Those pieces are connected across corners, too.
+  /// more for each hole. Those pieces are also connected across corners.
   int holes(int component) const {
     std::vector<bool> seen(of_.size(), false);
     int pieces = 0;

@@ -1,5 +1,6 @@
-// The fewest rectangles that tile a region of equal faces, found without the tested algorithm: by
-// trying all partitions of small regions, and by counting corners, chords and holes of any region.
+// The partition oracle finds the fewest rectangles that tile a region of equal faces, without the
+// tested algorithm. For small regions it tries all partitions. For any region it counts corners,
+// chords and holes.
 #pragma once
 #include <cstddef>
 #include <cstdint>

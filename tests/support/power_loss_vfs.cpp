@@ -32,9 +32,8 @@ struct PowerLossCalls {
     std::uint64_t generation;
     int lock;
     bool delete_on_close;
-    bool
-        // The next sync is the first of a new journal: SQLite's VFS then syncs the folder.
-        sync_names;
+    // The next sync is the first of a new journal: SQLite's VFS then syncs the folder.
+    bool sync_names;
 
     bool alive() const { return generation == vfs->generation_ && !vfs->cut_; }
   };

@@ -38,8 +38,8 @@ class PowerLossVfs {
   /// deletions count, from 1. That operation and every later one of open connections fail.
   void cut_after(std::uint64_t operations) { cut_at_ = operations_ + operations; }
   bool is_cut() const { return cut_; }
-  /// Makes the power fail now if it has not yet, and restores it. Files hold what chance (and sync)
-  /// left of them. Old connections stay dead.
+  /// Makes the power fail now if it has not failed yet, and restores it. Files keep their synced
+  /// data and a random part of the rest. Old connections keep failing.
   void power_loss(SplitMix64& chance);
 
   /// Makes the next sync fail with an I/O error, as fsync does once on a dying disk. The power
@@ -73,9 +73,8 @@ class PowerLossVfs {
     const void* pending_lock = nullptr;
     const void* exclusive = nullptr;
     std::vector<std::unique_ptr<Bytes>> shared_memory;
-    std::vector<const void*>
-        // The holders of each lock; exclusive if the flag is set.
-        shared_memory_users[8];
+    // The holders of each lock; exclusive if the flag is set.
+    std::vector<const void*> shared_memory_users[8];
     bool shared_memory_exclusive[8] = {};
   };
 

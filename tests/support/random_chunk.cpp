@@ -77,7 +77,7 @@ bool in_box(const Blob& b, int x, int y, int z) {
 Extent random_extent(SplitMix64& rng, unsigned side_max) {
   RUNSTONE_ASSERT(side_max >= kSideMin && side_max <= kSideMax);
   const auto side = [&] {
-    // Of two draws the smaller wins: small sides are frequent and large ones occur.
+    // The smaller of two draws is taken, so that small sides are frequent and large ones occur.
     const std::uint32_t a = rng.below(side_max - kSideMin + 1);
     const std::uint32_t b = rng.below(side_max - kSideMin + 1);
     return static_cast<std::uint8_t>(kSideMin + (a < b ? a : b));
@@ -160,7 +160,8 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
 }
 
 RunChunk random_chunk(SplitMix64& rng, unsigned side_max, unsigned materials) {
-  // a separate statement: arguments have no order
+  // This is a separate statement, because the order in which arguments are evaluated is
+  // unspecified.
   const Extent extent = random_extent(rng, side_max);
   const AxisOrder order = random_order(rng);
   return random_chunk(rng, extent, order, materials);

@@ -1,4 +1,4 @@
-// Runs runstone-replay as a function. Requires a link with server/app.
+// runstone-replay as a function, for tests. They must link server/app.
 #pragma once
 #include <sstream>
 #include <string>

@@ -18,7 +18,7 @@ std::unique_ptr<Generator> scenario_generator(unsigned number, unsigned edge);
 const VisibilityTable& scenario_visibility();
 
 /// Returns one chunk of such a world in its cheapest axis order, alone or with those of its six
-/// neighbours that are among the 27.
+/// neighbours that are among the 27 chunks.
 MeshScene scenario_scene(const Generator& world, ChunkCoord at, unsigned edge, bool alone);
 
 /// Returns all 27 chunks as Voxel Plugin would store them.

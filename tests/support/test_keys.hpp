@@ -1,4 +1,4 @@
-// Keys that are the same in every run.
+// Key pairs that are the same in every run.
 #pragma once
 #include <cstdint>
 

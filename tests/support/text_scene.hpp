@@ -9,8 +9,8 @@
 
 namespace runstone::test {
 
-/// Returns a plane. A digit is a material, a point none. Rows lie along u, and follow each other
-/// along v.
+/// Returns a plane. A digit is a material, and a point is no face. Rows lie along u and follow each
+/// other along v.
 reference::FacePlane plane_of(const std::vector<std::string>& rows);
 
 /// Returns a chunk of edge 8 with a drawing of up to 6 x 6 at y = 4, one voxel away from its

@@ -1,5 +1,5 @@
-// Reads the thesis' tables in tests/data/thesis: a line of column names, then rows of values. A
-// value in quotes may contain commas.
+// The thesis' tables in tests/data/thesis: a line of column names, then rows of values. A value in
+// quotes may contain commas.
 #pragma once
 #include <map>
 #include <string>

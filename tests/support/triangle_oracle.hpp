@@ -1,4 +1,5 @@
-// Triangle oracle: does for triangles what the face oracle does for quads, exactly and in integers.
+// Triangle oracle: checks meshes of triangles as the face oracle checks meshes of quads, exactly
+// and in integers.
 //
 // Triangles of one direction, plane and material, all wound outwards, cover every point of the
 // plane some whole number of times. That number is a function of finite extent. Such a function is

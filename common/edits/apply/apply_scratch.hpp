@@ -1,6 +1,6 @@
 // ApplyScratch: the buffers that apply_stack() keeps between calls. With them a steady state
 // allocates nothing, except for a paste, whose part in the chunk is cut out in each call. Callers
-// make one per thread and pass it in; its contents concern common/edits alone.
+// make one per thread and pass it in. Only common/edits uses its contents.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -32,8 +32,7 @@ struct Change {
 };
 
 /// Caches g(material) of both digest lanes for recent materials, direct-mapped by the low bits. All
-/// zero is a valid start: slot 0 then holds g(kEmpty) = 0, and no other slot is asked for material
-/// 0.
+/// zero is a valid start: slot 0 then holds g(kEmpty) = 0, and material 0 belongs to slot 0 alone.
 class MaterialFactors {
  public:
   using Lanes = std::array<std::uint64_t, kDigestLanes>;

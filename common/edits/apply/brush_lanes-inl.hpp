@@ -1,5 +1,6 @@
 // Brush: the mask and the material of one edit as vectors. It draws over stretches of a line
-// without a branch on mask or material. Included once per instruction set, inside no namespace.
+// without a branch on mask or material. Highway includes this file once per instruction set,
+// outside of any namespace.
 #if defined(RUNSTONE_EDITS_BRUSH_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_EDITS_BRUSH_LANES_INL
 #undef RUNSTONE_EDITS_BRUSH_LANES_INL
@@ -21,7 +22,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// As many voxels as a vector holds, at most the voxels of a canvas block.
+/// The voxels of one vector, at most the voxels of a canvas block.
 using Voxels = hn::CappedTag<Material, LayerCanvas::kBlock>;
 
 class Brush {
@@ -34,13 +35,13 @@ class Brush {
 
   static std::int32_t lanes() { return static_cast<std::int32_t>(hn::Lanes(Voxels())); }
 
-  /// Draws voxels [first, last) of a line of the canvas, and nothing if last <= first. Reads and
-  /// writes whole vectors around them.
+  /// Draws the voxels [first, last) of a line of the canvas, and nothing if last <= first. Reads
+  /// and writes whole vectors around them.
   HWY_INLINE void stroke(Material* line, std::int32_t first, std::int32_t last) const {
     for (std::int32_t at = first & -lanes(); at < last; at += lanes())
       stroke_at(at, line, first, last);
   }
-  /// Draws the same for a line of at most lanes() voxels.
+  /// Does the same for a line of at most lanes() voxels.
   HWY_INLINE void stroke_short(Material* line, std::int32_t first, std::int32_t last) const {
     stroke_at(0, line, first, last);
   }
@@ -68,8 +69,8 @@ class Brush {
   Material material_, looked_at_, wanted_, refused_;
 };
 
-/// Sets [from, stop) and up to a vector behind. Runs are unpacked in ascending order, so the next
-/// run overwrites the excess.
+/// Sets the voxels [from, stop), and up to one vector of voxels behind them. Runs are unpacked in
+/// ascending order, so the next run overwrites the excess.
 inline void fill_ahead(Material* from, const Material* stop, Material material) {
   const auto v = hn::Set(Voxels(), material);
   for (; from < stop; from += Brush::lanes()) hn::StoreU(v, Voxels(), from);

@@ -22,11 +22,12 @@ struct AxisSums;
 
 class ChangeTally {
  public:
-  /// `shape` gives extent and order only. Appends to `changes`. Requires empty `changes`.
+  /// Only extent and order of `shape` are used. Appends to `changes`. Requires that `changes` is
+  /// empty.
   ChangeTally(const RunChunk& shape, std::vector<Change>& changes, MaterialFactors& factors);
 
-  /// Voxels [first, last), all `before`, become `after`. Requires ascending, disjoint stretches
-  /// that differ.
+  /// Adds a stretch: the voxels [first, last), which all were `before`, became `after`. Requires
+  /// `before` != `after`, and stretches that ascend and do not overlap.
   void stretch(VoxelIndex first, VoxelIndex last, Material before, Material after) {
     voxels_ += last - first;
     note(first, last, after);

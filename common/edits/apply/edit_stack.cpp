@@ -30,7 +30,7 @@ std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const Edi
   return count;
 }
 
-// For a layer that edits cover completely, the sweep looks only at runs, even if the layer has many
+// For a layer that edits cover completely, the sweep visits only runs, even if the layer has many
 // voxels.
 ChangeSearch cheaper_search(std::size_t edits, const RunChunk& chunk,
                             std::span<const StackedEdit> stack) {

@@ -28,17 +28,17 @@ struct ApplyResult {
 
 /// Applies `edits`, bottom of the stack first, to the chunk whose first voxel is `origin`, and
 /// updates the digest. The result is canonical, and equal to applying the edits one after another,
-/// voxel by voxel. Edits that miss the chunk do nothing. It works in two steps:
-///   - It finds the changes in ascending order. One edit: by walking the runs inside its spans.
-///     Several edits: in one pass (edit_sweep.hpp, layer_painter.hpp).
-///   - It replaces the runs of the edit areas, in place or all at once.
+/// voxel by voxel. Edits that miss the chunk do nothing. The function works in two steps:
+///   - Find the changes in ascending order. For one edit, walk the runs inside the edit's spans.
+///     For several edits, make one pass (edit_sweep.hpp, layer_painter.hpp).
+///   - Replace the runs of the edit areas, in place or all at once.
 ///
 /// Requires a valid chunk and valid edits. Thread: any, with one scratch each. Cost: O(rows of the
 /// edits + runs crossed + log runs) to search, O(runs behind the first edit area) to write.
 ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
                         std::span<const EditDescriptor> edits, ApplyScratch& scratch);
 
-/// Applies the edits into a result that is reused: a steady state allocates nothing.
+/// Does the same with a `result` that the caller reuses, so that a steady state allocates nothing.
 void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
                  std::span<const EditDescriptor> edits, ApplyScratch& scratch, ApplyResult& result);
 

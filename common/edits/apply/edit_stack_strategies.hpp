@@ -8,12 +8,14 @@ namespace runstone {
 
 /// The ways to find the changes.
 enum class ChangeSearch : std::uint8_t {
-  // Span by span. It requires that at most one edit of the stack touches the chunk, and is used for
-  // all such stacks.
+  // Walks the runs span by span. Requires that at most one edit of the stack touches the chunk.
+  // apply_stack() uses it for all such stacks.
   walk,
-  // Any stack. Used for several edits if some of them cover whole layers.
+  // Sweeps run by run (edit_sweep.hpp). It takes any stack. apply_stack() uses it for several edits
+  // if some of them cover whole layers.
   sweep,
-  // Any stack. Used for all others.
+  // Draws layer by layer (layer_painter.hpp). It takes any stack. apply_stack() uses it for all
+  // other stacks.
   paint,
 };
 

@@ -23,8 +23,8 @@ struct LineBuffer {
   Material* line() { return voxels.data() + kBefore; }
 };
 
-// Sets [first, last) and up to 7 voxels behind. Runs are unpacked in ascending order, so the next
-// run overwrites the excess.
+// Sets the voxels [first, last), and up to 7 voxels behind them. Runs are unpacked in ascending
+// order, so the next run overwrites the excess.
 void fill_loosely(Material* line, std::uint32_t first, std::uint32_t last, Material material) {
   const std::uint64_t four = material * 0x0001000100010001ULL;
   for (std::uint32_t i = first; i < last; i += 8) {
@@ -140,9 +140,9 @@ class Sweep {
     return whole;
   }
 
-  // Puts the rows of the layer into the chains of their lines, from the top of the stack downward,
-  // so each chain is bottom first. A row that edits without a mask cover from above cannot matter
-  // and is left out.
+  // Adds the rows of the layer to the chains of their lines, from the top of the stack downward, so
+  // that each chain begins at the bottom. A row is left out if edits above it without a mask cover
+  // it.
   void enter_rows(std::uint32_t s) {
     std::fill_n(lines_.begin(), extent_.m, 0u);
     std::fill_n(covered_.begin(), extent_.m, LineBits{});

@@ -1,9 +1,10 @@
 // The edit sweep: finds the changes of a stack of edits in a chunk, in one ascending pass over
 // layers, lines and runs. In each layer it scans the active set from the top of the stack. An edit
-// that the edits above cover without a mask is dropped, and the scan ends when the layer is
-// covered. The remaining edits of a line are evaluated from the bottom upward, masks in order.
-// Where they cover the same voxels, this is done run by run; otherwise on the unpacked line (at
-// most 128 voxels; thesis 7.3.3 unpacks its edit areas likewise). Internal to edits.
+// is dropped if edits above it that have no mask cover it, and the scan ends when such edits cover
+// the layer. The remaining edits of a line are evaluated from the bottom upward, masks in order.
+// Where they cover the same voxels, this is done run by run. Otherwise it is done on the unpacked
+// line, which has at most 128 voxels (thesis 7.3.3 unpacks its edit areas likewise). Internal to
+// edits.
 #pragma once
 #include "common/edits/apply/apply_scratch.hpp"
 #include "common/edits/apply/change_tally.hpp"
@@ -16,7 +17,7 @@ namespace runstone {
 /// layers * edits / 64).
 void sweep_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally);
 
-/// The same for a stack that is one edit, which may have several parts. It walks the runs inside
+/// Does the same for a stack of one edit, which may have several parts. It walks the runs inside
 /// each span. Cost: O(spans * log(runs between) + runs crossed); for a stroke, also O(n log n) of
 /// the spans of its segments.
 void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally);

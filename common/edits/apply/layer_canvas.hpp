@@ -21,7 +21,7 @@ class LayerCanvas {
   /// Makes room for a layer of this shape. Its contents are unspecified.
   void fit(OrderedExtent e) {
     line_blocks_ = (e.f + kBlock - 1) / kBlock;
-    // One block to either side is touched as well.
+    // Vectors may reach into one block before the first line and one behind the last.
     const std::size_t blocks = std::size_t{2} + line_blocks_ * e.m;
     if (blocks_.size() < blocks) blocks_.resize(blocks);
   }

@@ -50,7 +50,7 @@ class Painter {
 
  private:
   void make_plan() {
-    // By layer: the number of parts that begin minus the number of parts that end.
+    // The number of parts that begin minus the number of parts that end, by layer.
     std::array<std::uint32_t, LayerPlan::kBand + 1> parts{};
     for (const StackedEdit& part : stack_) {
       const auto [first, last] = layers_of(part.shape);

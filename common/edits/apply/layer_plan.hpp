@@ -19,10 +19,11 @@ struct LayerPiece {
 };
 
 struct LayerPlan {
-  /// Number of layers planned at once. The rows of a part are found together and take 8 KB at most.
+  /// The number of layers that are planned together. The rows of one part in them take 8 KB at
+  /// most.
   static constexpr std::uint32_t kBand = 32;
 
-  // Layer by layer; in each layer from the bottom of the stack to its top.
+  // The order is layer by layer, and in each layer from the bottom of the stack to its top.
   std::vector<LayerPiece> pieces;
   // The pieces of layer i of the band are [begin[i], end[i]).
   std::array<std::uint32_t, kBand> begin{};

@@ -1,5 +1,6 @@
-// ReplayedChunk: a chunk that follows the log. Edits collect on its stack, and each full stack is
-// applied in one sweep. A replay looks at the voxels seldom, not after every edit.
+// ReplayedChunk: a chunk that follows the log. Edits are collected on its stack, and each full
+// stack is applied in one sweep. This is cheaper than one edit at a time, and a replay does not
+// need the voxels after every edit.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,12 +13,12 @@
 
 namespace runstone {
 
-/// Maximum number of edits in one sweep. It bounds memory; a larger stack gains little
-/// (docs/performance.md).
-inline constexpr std::size_t kFollowedEditsMax = 64;
+/// The maximum number of edits in one sweep. It bounds memory. A larger stack would save little
+/// time (docs/performance.md).
+inline constexpr std::size_t kReplayStackMax = 64;
 
 /// The state that all replayed chunks of a thread share: buffers, and counts since it was made.
-struct FollowScratch {
+struct ReplayScratch {
   ApplyScratch apply;
   ApplyResult result;
   StackDepths depths;
@@ -33,13 +34,13 @@ class ReplayedChunk {
 
   /// Adds the next edit of the log that touches the chunk. The chunk takes `version`. Cost: that of
   /// apply_stack(), amortised.
-  void add(const EditDescriptor& edit, Version version, FollowScratch& scratch) {
+  void add(const EditDescriptor& edit, Version version, ReplayScratch& scratch) {
     stack_.push_back(edit);
     chunk_.version = version;
-    if (stack_.size() == kFollowedEditsMax) settle(scratch);
+    if (stack_.size() == kReplayStackMax) flush(scratch);
   }
   /// Applies the edits on the stack.
-  void settle(FollowScratch& scratch) {
+  void flush(ReplayScratch& scratch) {
     if (stack_.empty()) return;
     apply_stack(chunk_.voxels, chunk_.digest, origin_, stack_, scratch.apply, scratch.result);
     scratch.depths.add(stack_.size());
@@ -47,7 +48,7 @@ class ReplayedChunk {
     has_changed_ = has_changed_ || scratch.result.changed;
     stack_.clear();
   }
-  /// Returns true if any voxel changed since the last call. Requires an empty stack: call settle()
+  /// Returns true if any voxel changed since the last call. Requires an empty stack: call flush()
   /// first.
   bool take_changed() { return std::exchange(has_changed_, false); }
 

@@ -17,9 +17,9 @@ class Planner {
     cursor_.seek(c.first);
     const std::size_t from = cursor_.run();
     // A kept neighbour of the new material would merge with the change, so it belongs to the area.
-    const bool melts =
+    const bool merges =
         from > 0 && old_.end(from - 1) == c.first && old_.material(from - 1) == c.material;
-    const std::size_t low = melts ? from - 1 : from;
+    const std::size_t low = merges ? from - 1 : from;
     if (!open_ || low > last_) {
       close();
       open_ = true;

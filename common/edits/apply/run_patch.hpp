@@ -1,7 +1,7 @@
-// Run patch: a list of changes as edit areas (thesis 7.3.3): the runs to remove and the runs that
-// replace them. An area is a maximal group of neighbouring runs that the edit replaces; every other
-// run is kept. So the areas depend only on the chunk before and after, not on the way in which the
-// changes were found. Internal to edits.
+// Run patch: a list of changes in the form of edit areas (thesis 7.3.3), which name the runs to
+// remove and the runs that replace them. An area is a maximal group of neighbouring runs that the
+// edit replaces; every other run is kept. So the areas depend only on the chunk before and after,
+// not on the way in which the changes were found. Internal to edits.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -18,7 +18,8 @@ namespace runstone {
 void plan_patch(const RunChunk& chunk, std::span<const Change> changes,
                 std::vector<EditArea>& areas, std::vector<Run>& runs);
 
-/// Two ways to write a patch, with the same result. The run counts decide which is cheaper.
+/// The two ways to write a patch. Their results are equal, and the run counts decide which is
+/// cheaper.
 enum class PatchWrite : std::uint8_t {
   pieces,  // splice area by area: each splice moves the runs behind it
   whole,   // copy the kept runs between the areas and splice once

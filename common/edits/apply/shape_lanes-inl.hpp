@@ -1,8 +1,8 @@
 // The rows of a shape in many lines or layers at once, one to a lane of a vector. They are the same
 // rows as those of for_each_row() (ordered_shape.hpp), computed in floating point without rounding
-// errors. Included once per instruction set, inside no namespace.
+// errors. Highway includes this file once per instruction set, outside of any namespace.
 //
-// Why it is exact: every number is an integer below 2^53, so sums and products are exact as
+// The results are exact: every number is an integer below 2^53, so sums and products are exact as
 // doubles.
 //   - Roots: for an integer v < 2^52 the rounded square root has the right integer part. Just below
 //     a square k^2 the true root is at most k - 1/(2k), and doubles below k <= 2^26 lie closer
@@ -37,8 +37,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The place where results are written: half-open stretches, one for each line or layer of Places,
-/// empty where last <= first. Up to a vector more than requested may be written.
+/// The arrays to which results are written: half-open stretches, one for each line or layer of
+/// Places, empty where last <= first. Up to one vector more than requested may be written.
 struct Ends {
   static constexpr std::size_t kBehind = 8;
   std::uint8_t* first;
@@ -50,7 +50,8 @@ struct Places {
   std::int32_t q_first = 0, count = 0;
 };
 
-/// Results are clipped to low .. high. `centre` lies along the lines, `centre_q` across them.
+/// The bounds and the centre of a slice. Results are clipped to low .. high. `centre` counts along
+/// the lines, `centre_q` across them.
 struct SliceFrame {
   std::int32_t centre = 0, centre_q = 0, low = 0, high = 0;
 };
@@ -171,7 +172,7 @@ class CapsuleLanes {
   }
 
  private:
-  /// The steps of capsule_row() without its early returns, which do not change the result.
+  /// Does the steps of capsule_row() without its early returns, which do not change the result.
   HWY_INLINE void row(V p, V c0, V n0, V& first, V& last) const {
     const V zero = hn::Zero(D()), df = whole(df_), across = whole(across_);
     const V c = hn::Add(hn::Mul(p, dq_), c0);

@@ -16,7 +16,7 @@ constexpr std::size_t kPaletteMax = kClipboardBytesMax;
 
 // Neighbouring runs differ, so a number is encoded among the numbers that the previous run does not
 // have.
-std::uint64_t told_number(std::uint16_t number, std::uint16_t before) {
+std::uint64_t encoded_number(std::uint16_t number, std::uint16_t before) {
   return number > before ? number - 1U : number;
 }
 
@@ -115,7 +115,7 @@ void write_clipboard(ByteWriter& w, const Clipboard& clipboard) {
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const std::uint64_t numbers = i == 0 ? palette.size() + 1 : palette.size();
       const std::uint64_t number =
-          i == 0 ? runs.material(i) : told_number(runs.material(i), before);
+          i == 0 ? runs.material(i) : encoded_number(runs.material(i), before);
       w.varint((runs.end(i) - begin - 1) * numbers + number);
       begin = runs.end(i);
       before = runs.material(i);
@@ -154,12 +154,12 @@ std::shared_ptr<const Clipboard> read_clipboard(ByteReader& r) {
   while (r.ok() && filled < volume) {
     const bool first = filled == 0;
     const std::uint64_t numbers = first ? count + 1 : count;
-    const std::uint64_t told =
+    const std::uint64_t code =
         r.varint_max((volume - filled) * numbers - 1, "clipboard runs end behind its volume");
     if (!r.ok()) break;
-    auto number = static_cast<std::uint16_t>(told % numbers);
+    auto number = static_cast<std::uint16_t>(code % numbers);
     if (!first && number >= before) ++number;
-    filled += static_cast<std::uint32_t>(told / numbers) + 1;
+    filled += static_cast<std::uint32_t>(code / numbers) + 1;
     before = number;
     cells.runs.push_back({filled, number});
   }

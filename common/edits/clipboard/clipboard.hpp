@@ -24,8 +24,8 @@
 
 namespace runstone {
 
-/// Bounds the memory that one edit request can take at every client in view: a byte is at most one
-/// run.
+/// The maximum size of an encoded clipboard. A byte encodes at most one run, so this bounds the
+/// memory that one edit request takes at every client that sees it.
 inline constexpr std::size_t kClipboardBytesMax = 48 * 1024;
 
 /// A box of cells of a clipboard.
@@ -37,8 +37,9 @@ struct CellBox {
 
 class Clipboard {
  public:
-  /// `cells` holds cell numbers in place of materials. Fails with bad_value, not_canonical,
-  /// broken_invariant or limit_exceeded for the first broken invariant. Cost: O(runs + palette).
+  /// Makes a clipboard. `cells` holds cell numbers in place of materials. Fails with bad_value,
+  /// not_canonical, broken_invariant or limit_exceeded for the first broken invariant. Cost: O(runs
+  /// + palette).
   static Result<std::shared_ptr<const Clipboard>> of(std::vector<Material> palette, RunChunk cells);
 
   Extent extent() const { return cells_.extent; }

@@ -1,7 +1,7 @@
 // CapsuleRow: the voxels of a line that lie in a capsule, that is, within a distance of a segment.
-// The form is closed and exact. It works in two dimensions as in three; then "across" has one axis
-// less. Integers only: distances to the segment are compared by cross-multiplication, and the two
-// divisions are those of integer bounds, rounded inwards. Internal to edits.
+// The formula is closed and exact. It also works in two dimensions, where "across" has one axis
+// less. It uses integers only: distances to the segment are compared by cross-multiplication, and
+// the only two divisions compute integer bounds, rounded inwards. Internal to edits.
 //
 // A line runs along one axis; u counts from the segment's first point a. With the segment d = (df,
 // across axes) and the line's offset q across: A = |d across|^2, c = q . d across, n = |q|^2, L =
@@ -10,13 +10,14 @@
 //   the ball at a:    u^2 <= R - n
 //   the ball at b:    (u - df)^2 <= R - n + 2c - A
 //   between them:     0 <= t <= L and (u^2 + n) * L - t^2 <= R * L,
-//                     that is, A u^2 - 2 df c u + .. <= 0, with the roots (df c +- sqrt(L * E)) / A, E = c^2 + A * (R - n)
-// A capsule is convex. So the three rows of a line, each the integers of an interval, join without
-// a gap.
+//                     that is, A u^2 - 2 df c u + .. <= 0, with the roots
+//                     (df c +- sqrt(L * E)) / A, where E = c^2 + A * (R - n)
+// A capsule is convex. So the three rows of a line, each of which is an interval of integers, join
+// without a gap.
 //
-// No overflow: segments reach at most S = 1,024 along an axis and R = r * r + r with r <= 512.
-// Callers pass only lines within r of the segment's bounding box. So |q| per axis <= S + r = 1,536
-// and
+// No number overflows: segments reach at most S = 1,024 along an axis and R = r * r + r with r <=
+// 512. Callers pass only lines within r of the segment's bounding box. So |q| per axis <= S + r =
+// 1,536 and
 //   A <= 2 S^2 = 2^21, L <= 3 S^2 < 2^21.6, R < 2^18.01, n <= 2 * 1,536^2 < 2^22.2, |c| < 2^21.6;
 //   |E| <= c^2 + A * max(R, n) < 2^44.2, and where E >= 0 counts, E <= A * R < 2^39.1 since
 //   c^2 <= A * n;
@@ -28,7 +29,7 @@
 
 namespace runstone {
 
-/// Integers first .. last, both included. Empty if last < first.
+/// The integers first .. last, both included. The row is empty if last < first.
 struct CapsuleRow {
   std::int64_t first = 0, last = -1;
   constexpr bool empty() const { return last < first; }
@@ -60,8 +61,8 @@ constexpr void join(CapsuleRow& row, std::int64_t first, std::int64_t last) {
 
 }  // namespace detail
 
-/// Returns the row of the line with these numbers (comment of this file), counted from the
-/// segment's first point. Cost: O(1).
+/// Returns the row of the line with these numbers, which the comment of this file defines. It
+/// counts from the segment's first point. Cost: O(1).
 inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t c, std::int64_t n,
                               std::int64_t reach) {
   if (df < 0) {

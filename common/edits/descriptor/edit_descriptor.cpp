@@ -268,8 +268,7 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
   if (!is_kind(tag)) {
     r.reject(ErrorCode::unknown_kind, "unknown edit kind");
   }
-  // This is the bound of the kind; a record has room for more. It is checked before the rest is
-  // read.
+  // The bound of the kind is checked before the rest is read; a record has room for more.
   if (r.ok() && in.size() > descriptor_bytes_max(static_cast<EditKind>(tag)))
     r.reject(ErrorCode::limit_exceeded, "descriptor too long");
   const std::uint8_t mask = r.u8();

@@ -17,8 +17,8 @@
 
 namespace runstone {
 
-/// Tags; they are stored. 5 is unused: fill_box with the mask only_material replaces a material in
-/// a box.
+/// The tags of the kinds, as they are stored. 5 is unused, because fill_box with the mask
+/// only_material replaces a material in a box.
 enum class EditKind : std::uint8_t {
   set_voxel = 1,
   fill_box = 2,
@@ -27,7 +27,8 @@ enum class EditKind : std::uint8_t {
   paste = 6
 };
 
-/// The voxels of the geometry that an edit may write. Stored.
+/// The condition on the present voxels of the geometry that an edit may write. The values are
+/// stored.
 enum class MaskKind : std::uint8_t {
   everything = 0,
   only_empty = 1,

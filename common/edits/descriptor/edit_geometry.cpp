@@ -200,7 +200,7 @@ std::uint64_t touched_chunks_bound(const EditDescriptor& edit, std::int32_t edge
     for (std::size_t i = 0; i < segment_count(*stroke); ++i) {
       count += chunks_of(chunk_range(segment_box(*stroke, i), edge));
     }
-    // Segments share chunks.
+    // Several segments may touch one chunk.
     return std::min(count, chunks_of(chunk_range(bounding_box(edit), edge)));
   }
   return chunks_of(chunk_range(bounding_box(edit), edge));

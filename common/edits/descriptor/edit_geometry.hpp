@@ -22,24 +22,24 @@ VoxelBox segment_box(const FillStroke& stroke, std::size_t i);
 /// touched cells. Cost: O(1); sphere: O(r^2); stroke: O(points).
 std::uint64_t counted_voxels(const EditDescriptor& edit);
 
-/// Returns true if the geometry has a voxel in this box. Exact. Cost: O(1); stroke: O(points), and
-/// O(lines of the box that a segment meets) where one is close; paste: O(lines of the clipboard in
-/// the box * log runs).
+/// Returns true if the geometry has a voxel in this box. The answer is exact. Cost: O(1); stroke:
+/// O(points), and O(lines of the box that a segment meets) where one is close; paste: O(lines of
+/// the clipboard in the box * log runs).
 bool touches(const EditDescriptor& edit, const VoxelBox& box);
 
 /// Returns the chunks (lod 0) in which the geometry has a voxel, ascending by x, then y, then z.
 /// This order is part of the protocol: a commit lists one previous version per touched chunk in it.
 /// `edge`: 16, 32, 64 or 128.
 std::vector<ChunkCoord> touched_chunks(const EditDescriptor& edit, std::int32_t edge);
-/// Writes the same to `out` and reuses its memory.
+/// Writes the same chunks to `out` and reuses its memory.
 void touched_chunks(const EditDescriptor& edit, std::int32_t edge, std::vector<ChunkCoord>& out);
 
-/// Returns an upper bound for the number of touched_chunks(): the chunks of the bounding box; for a
-/// stroke, of the bounding boxes of its segments added up. It serves limits and bounds the work of
-/// listing the chunks. Cost: O(1); stroke: O(points).
+/// Returns an upper bound for the number of touched_chunks(): the number of chunks that the
+/// bounding box meets; for a stroke, the sum of these numbers over its segments. It serves limits,
+/// and bounds the work of listing the chunks. Cost: O(1); stroke: O(points).
 std::uint64_t touched_chunks_bound(const EditDescriptor& edit, std::int32_t edge);
 
-/// Half-open stretch of a flattened chunk.
+/// A half-open stretch of a flattened chunk.
 struct IndexSpan {
   VoxelIndex first = 0, last = 0;
   friend bool operator==(const IndexSpan&, const IndexSpan&) = default;

@@ -69,7 +69,7 @@ Result<EditRecord> decode_record(ByteView in) {
     return static_cast<std::int32_t>(
         r.svarint_in(-kWorldLimit, kWorldLimit - 1, "box outside the world"));
   };
-  // The kind bounds the length of a side. The box is compared with the descriptor's below.
+  // This bound only prevents an overflow. The box is compared with that of the descriptor below.
   const auto side = [&r] {
     return static_cast<std::int32_t>(
         r.varint_max(2 * std::uint64_t{kWorldLimit}, "box larger than the world"));

@@ -25,8 +25,8 @@ struct EditRecord {
 };
 
 inline constexpr std::uint8_t kEditRecordVersion = 1;
-/// Bounds the descriptor in a record, with room for future kinds. decode_descriptor() checks the
-/// bound of each kind.
+/// The maximum size of the descriptor in a record, with room for future kinds. decode_descriptor()
+/// checks the maximum of each kind.
 inline constexpr std::size_t kRecordDescriptorBytesMax = std::size_t{1} << 20;
 
 /// Fails if sequence, client sequence or subject is outside its range.

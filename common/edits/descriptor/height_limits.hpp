@@ -1,6 +1,7 @@
 // HeightLimits: the range of heights in which a world may be edited. Server and client use the same
 // check, so a client rejects the predictions that the server would reject. An edit is applied
-// completely or not at all, and is never clipped: the log holds what the player shaped.
+// completely or not at all, and is never clipped, so that the log holds exactly the shape that the
+// player chose.
 #pragma once
 #include <cstdint>
 
@@ -9,7 +10,7 @@
 
 namespace runstone {
 
-/// Voxels with y_min <= y < y_max. The default is the whole world.
+/// Edits may cover voxels with y_min <= y < y_max. The default is the whole world.
 struct HeightLimits {
   std::int32_t y_min = -kWorldLimit, y_max = kWorldLimit;
   friend bool operator==(const HeightLimits&, const HeightLimits&) = default;

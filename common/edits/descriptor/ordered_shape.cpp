@@ -34,7 +34,7 @@ bool may_meet(const Axes3& start, const Axes3& along, std::int32_t r, const Axes
   return true;
 }
 
-// Most edits are single voxels. This does without the boxes of the general case.
+// Most edits are single voxels. They do not need the boxes of the general case.
 std::optional<OrderedShape> voxel_of(VoxelPos at, VoxelPos origin, Extent extent, AxisOrder order) {
   const std::array<std::uint32_t, 3> place = {static_cast<std::uint32_t>(at.x - origin.x),
                                               static_cast<std::uint32_t>(at.y - origin.y),

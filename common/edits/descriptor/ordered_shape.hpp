@@ -1,7 +1,7 @@
 // OrderedShape: the geometry of an edit in the order of one chunk (fastest, middle, slowest axis),
 // clipped to the chunk. Boxes, spheres and the segments of a stroke are convex, so each line of the
-// chunk meets them in at most one row of voxels. Users of the geometry ask for these rows. Integers
-// only. Internal to edits.
+// chunk meets them in at most one row of voxels. All users of the geometry work on these rows. It
+// uses integers only. Internal to edits.
 //   - A stroke has one shape per segment. Applying a mask and a material twice to a voxel equals
 //     applying them once: the second application keeps or repeats what the first one wrote.
 //   - A paste has one box per box of its runs in the chunk. These boxes do not overlap.
@@ -61,8 +61,8 @@ std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Ex
 std::optional<OrderedShape> clip_segment(const FillStroke& stroke, std::size_t i,
                                          const VoxelBox& box, AxisOrder order);
 
-/// Returns true if the capsule has a voxel inside its clipped box. Exact. Cost: O(lines it meets
-/// until one is found).
+/// Returns true if the capsule has a voxel inside its clipped box. The answer is exact. Cost:
+/// O(lines it meets until one is found).
 bool has_voxel(const OrderedShape& capsule);
 
 /// Calls part(box, material) for the boxes of the paste's runs in the chunk, in index order.
@@ -112,7 +112,7 @@ void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, A
   }
 }
 
-/// Calls append_spans() of edit_geometry.hpp for a shape that is clipped already.
+/// Does the same as append_spans() of edit_geometry.hpp for a shape that is clipped already.
 void append_spans(const OrderedShape& shape, OrderedExtent e, std::vector<IndexSpan>& out);
 
 /// Merges the spans from `start` on, which several shapes appended, into one ascending list of

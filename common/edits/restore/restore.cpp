@@ -41,13 +41,13 @@ void ChunkRestore::add(const EditDescriptor& edit, bool is_selected, ApplyScratc
   // second might revert what the first wrote over a selected edit, and the sweep would report no
   // writer at all.
   const bool may_join = pending_.empty() || pending_is_selected_ == is_selected;
-  if (!may_join || pending_.size() == kFollowedEditsMax) settle(scratch);
+  if (!may_join || pending_.size() == kReplayStackMax) flush(scratch);
   if (is_split_ && !is_selected) return apply({&edit, 1}, false, scratch);
   pending_.push_back(edit);
   pending_is_selected_ = is_selected;
 }
 
-void ChunkRestore::settle(ApplyScratch& scratch) {
+void ChunkRestore::flush(ApplyScratch& scratch) {
   if (pending_.empty()) return;
   apply(pending_, pending_is_selected_, scratch);
   pending_.clear();

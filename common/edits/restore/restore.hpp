@@ -1,7 +1,7 @@
 // Restore: one chunk without the effect of selected edits. A *writer* of a voxel is an edit that
 // gave it another material. An edit that changed nothing is no writer, even if its geometry covers
-// the voxel. Of each voxel, the unbroken tail of selected writers is removed. So what others built
-// later stays, and what others built before comes back.
+// the voxel. Of each voxel, the unbroken tail of selected writers is removed. So later work of
+// other authors stays, and earlier work of other authors returns.
 //
 // Method: two chunks in one axis order, equal at the start. Each edit, in log order, is applied to
 // `now`. The changes that it made there are written into `restored` too, stretch by stretch, unless
@@ -45,9 +45,9 @@ class ChunkRestore {
   /// changed something here. Cost: that of apply_stack(), amortised.
   void add(const EditDescriptor& edit, bool is_selected, ApplyScratch& scratch);
   /// Applies the edits that add() has deferred. Call it before reading the chunks.
-  void settle(ApplyScratch& scratch);
+  void flush(ApplyScratch& scratch);
 
-  /// Returns the chunk with all edits, or without the tails. Requires settle().
+  /// Return the chunk with all edits, and the chunk without the tails. Requires flush().
   const RunChunk& now() const { return now_; }
   const RunChunk& restored() const { return is_split_ ? restored_ : now_; }
   /// Returns true if the two chunks differ.

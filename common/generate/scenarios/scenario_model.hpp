@@ -2,8 +2,8 @@
 // each, as formulas over columns. Scenario 5 is not among them: its noise is not known, and its
 // voxels are data (columns_world.hpp). The thesis has z up: its z is y here, and its y is z here.
 // Its flattened order y, z, x is zyx here. A model only says which voxels are solid. All formulas
-// except ComplexShape use integers. Its sums of three sines differ from zero by far more than two
-// maths libraries differ; a test pins the distance.
+// except Waves (the thesis' ComplexShape) use integers. The sums of three sines of Waves differ
+// from zero by far more than the results of two maths libraries differ; a test pins the distance.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -60,18 +60,19 @@ ColumnBits ScenarioWorld::column(std::int32_t x, std::int32_t z) const {
 }
 
 RunChunk ScenarioWorld::generate(VoxelPos origin, Extent extent) const {
-  const VoxelBox asked = {origin, {origin.x + extent.x, origin.y + extent.y, origin.z + extent.z}};
-  const VoxelBox solid = intersect(asked, bounds());
+  const VoxelBox requested = {origin,
+                              {origin.x + extent.x, origin.y + extent.y, origin.z + extent.z}};
+  const VoxelBox solid = intersect(requested, bounds());
   if (solid.empty()) return uniform_chunk(extent, kEmpty);
   RunBuilder out(extent, AxisOrder::yzx);
-  for (std::int32_t x = asked.min.x; x < asked.max.x; ++x) {
-    for (std::int32_t z = asked.min.z; z < asked.max.z; ++z) {
+  for (std::int32_t x = requested.min.x; x < requested.max.x; ++x) {
+    for (std::int32_t z = requested.min.z; z < requested.max.z; ++z) {
       if (x < solid.min.x || x >= solid.max.x || z < solid.min.z || z >= solid.max.z) {
         out.append(extent.y, kEmpty);
         continue;
       }
       const ColumnBits bits = column(x, z);
-      out.append(static_cast<std::uint32_t>(solid.min.y - asked.min.y), kEmpty);
+      out.append(static_cast<std::uint32_t>(solid.min.y - requested.min.y), kEmpty);
       for (std::int32_t y = solid.min.y; y < solid.max.y;) {  // one model above another
         const std::int32_t foot = floor_div(y, edge()) * edge();
         const std::int32_t end = std::min(foot + edge(), solid.max.y);
@@ -79,7 +80,7 @@ RunChunk ScenarioWorld::generate(VoxelPos origin, Extent extent) const {
                out);
         y = end;
       }
-      out.append(static_cast<std::uint32_t>(asked.max.y - solid.max.y), kEmpty);
+      out.append(static_cast<std::uint32_t>(requested.max.y - solid.max.y), kEmpty);
     }
   }
   return out.finish();

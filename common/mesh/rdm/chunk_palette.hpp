@@ -24,7 +24,7 @@ template <class Index>
 constexpr Index index_as(PaletteIndex index) {
   return static_cast<Index>(sizeof(Index) == 1 ? index | index >> 24 : index);
 }
-/// Returns the argument that index_as() was given.
+/// Returns the index from which index_as() made its result.
 constexpr PaletteIndex full_index(PaletteIndex index) { return index; }
 constexpr PaletteIndex full_index(BytePaletteIndex index) {
   return (index & 0x7fu) | PaletteIndex{index} >> 7 << 31;
@@ -34,7 +34,7 @@ class ChunkPalette {
  public:
   ChunkPalette() : of_(kMaterialCountMax, kUnseen) {}
 
-  /// Forgets all indices. Cost: O(materials seen).
+  /// Removes all indices. Cost: O(materials seen).
   void clear() {
     for (const Material material : seen_) of_[material] = kUnseen;
     seen_.clear();

@@ -1,5 +1,5 @@
 // ChunkSides: collects the six outermost layers of the chunk itself during a sweep, for
-// ChunkBorders. Included once per instruction set, inside no namespace.
+// ChunkBorders. Highway includes this file once per instruction set, outside of any namespace.
 #if defined(RUNSTONE_MESH_RDM_CHUNK_SIDES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_CHUNK_SIDES_INL
 #undef RUNSTONE_MESH_RDM_CHUNK_SIDES_INL
@@ -62,7 +62,7 @@ class ChunkSides {
     for (const Side side : kLayerSides) sides[at(side)][s] = sides[at(side)][s - 1];
     if (s + 1 != e_.s) return;
     std::copy_n(st_.hiding[slot].data(), e_.m, sides[at(Side::slow_pos)].data());
-    // The layer has one material: if any voxel is transparent, the first line is.
+    // The layer has one material: if any voxel is transparent, those of the first line are.
     st_.sides_transparent[at(Side::slow_pos)] = mixed_ && st_.transparent.data()[0] != 0;
   }
 

@@ -1,5 +1,5 @@
 // Palette indices as vectors: fills a run with an index, and compares rows of indices into bits.
-// Included once per instruction set, inside no namespace.
+// Highway includes this file once per instruction set, outside of any namespace.
 #if defined(RUNSTONE_MESH_RDM_INDEX_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_INDEX_LANES_INL
 #undef RUNSTONE_MESH_RDM_INDEX_LANES_INL
@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One index at a time: the plain path.
+/// The plain path: one index at a time.
 struct PlainIndices {
   /// Number of indices that fill() may write behind `stop`.
   template <class Index>
@@ -38,7 +38,7 @@ struct PlainIndices {
     for (; row != 0; row &= row - 1) to[lowest_bit(row)] = value;
   }
 
-  /// As many indices as a row has bits.
+  /// A line of as many indices as a row has bits.
   template <class Row, class Index>
   class Line {
    public:

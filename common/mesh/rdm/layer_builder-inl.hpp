@@ -1,7 +1,7 @@
 // LayerBuilder: writes the palette indices of one layer after another from the runs, and from the
 // indices the rows of bits: the voxels with faces, the voxels that hide faces (inside the chunk and
-// beyond its borders), and the places where the material changes. Included once per instruction
-// set, inside no namespace.
+// beyond its borders), and the places where the material changes. Highway includes this file once
+// per instruction set, outside of any namespace.
 #if defined(RUNSTONE_MESH_RDM_LAYER_BUILDER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_LAYER_BUILDER_INL
 #undef RUNSTONE_MESH_RDM_LAYER_BUILDER_INL

@@ -62,7 +62,7 @@ class Sweep {
   }
 
  private:
-  /// By Side: rows in which strips may end or begin.
+  /// The rows in which strips may end or begin, by Side.
   using SideRows = std::array<RowSet, 6>;
 
   /// Prepares the state as if a layer without faces preceded the first one.
@@ -158,7 +158,8 @@ class Sweep {
       add(rows[at(Side::fast_neg)], differ(f_fast_neg, Lanes::load(fast_neg_then + m), between), m);
       add(rows[at(Side::fast_pos)], differ(f_fast_pos, Lanes::load(fast_pos_then + m), between), m);
     }
-    // Rows behind the last row of the layer have no faces. The first of them would close open strips.
+    // Rows behind the last row of the layer have no faces. The first of them would close open
+    // strips.
     const Row valid = bits_below<Row>(count);
     for (RowSet& set : rows) set &= valid;
     return rows;

@@ -1,6 +1,6 @@
 // QuadEmitter: turns the strips of one side into quads. A quad is packed when its strip opens and
-// put into the bucket of its layer when the strip closes. Included once per instruction set, inside
-// no namespace.
+// put into the bucket of its layer when the strip closes. Highway includes this file once per
+// instruction set, outside of any namespace.
 #if defined(RUNSTONE_MESH_RDM_QUAD_EMITTER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_QUAD_EMITTER_INL
 #undef RUNSTONE_MESH_RDM_QUAD_EMITTER_INL
@@ -71,7 +71,7 @@ class QuadEmitter {
     Quad quad = shape_.close(open, row);
     QuadBuckets::Bucket& bucket = pass_of(quad)[layer];
     if (bucket.count == bucket.room) QuadBuckets::grow(bucket);
-    // It works without a branch, because the choice is unpredictable.
+    // The code has no branch here, because the choice is unpredictable.
     bucket.count -= joins ? 1 : 0;
     Quad* const to = bucket.quads.get() + bucket.count++;
     *to = joins ? shape_.with_row_more(*to) : quad;

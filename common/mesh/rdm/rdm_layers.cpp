@@ -32,7 +32,7 @@ void for_each(const LayerSet& set, F&& visit) {
 }
 
 /// Returns the layers of one direction whose faces an edit may touch: the layers with changed
-/// voxels, and the layers whose faces look at them.
+/// voxels, and the layers whose faces point at them.
 LayerSet faces_touched(const LayerSet& changed, bool positive, bool beyond, unsigned side) {
   LayerSet out = changed | (positive ? changed >> 1 : changed << 1);
   if (beyond) out.set(positive ? side - 1 : 0);
@@ -183,7 +183,7 @@ class Remesher {
       const auto before = passes_[pass]->layer(direction, layer);
       const std::vector<Quad>& now = scratch_.layer[pass];
       if (now.empty() && before.empty()) continue;
-      // The order in which a sweep closes them: by row, or along the strips.
+      // The order is that in which a sweep closes the quads: by row, or along the strips.
       if (rank_of(a.layer, chunk_.order) == 0) {
         quads[pass].sort([&shape](Quad q) { return shape.last(q) << 8 | shape.row(q); });
       } else {
@@ -217,7 +217,7 @@ class Remesher {
       const Material material = inside.stretch[i].material;
       const std::uint32_t end = inside.stretch[i].end;
       const std::size_t pass = visibility_[material] == Visibility::transparent ? 1 : 0;
-      // The part of the stretch whose faces show is cut where the voxels beyond hide them.
+      // The visible part of the stretch's faces is cut where the voxels beyond hide faces.
       for (std::uint32_t at = begin; at < end;) {
         while (beyond->stretch[j].end <= at) ++j;
         const std::uint32_t first = at;
@@ -314,8 +314,8 @@ bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
                      ChunkMesh& mesh) {
   Remesher remesher(chunk, neighbours, visibility, dirty, beyond, scratch.state(), mesh);
-  // A single row costs several times its share of a sweep, which has a row per line in each
-  // direction.
+  // Meshing a single row costs several times as much as a row of a sweep. A sweep has one row per
+  // line in each direction.
   constexpr std::size_t kSweepRows = 8;
   const OrderedExtent e = ordered(chunk.extent, chunk.order);
   if (remesher.row_count() * kSweepRows > std::size_t{kDirectionCount} * e.m * e.s) {

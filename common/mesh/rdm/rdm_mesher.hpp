@@ -15,15 +15,15 @@
 namespace runstone {
 
 /// The six chunks around a chunk, by Direction, in any axis order, with equal sides where they
-/// touch. Null is a missing chunk: its voxels count as empty, so the faces at the edge of the view
+/// touch. A missing chunk is null. Its voxels count as empty, so the faces at the edge of the view
 /// are drawn.
 using MeshNeighbours = std::array<const RunChunk*, kDirectionCount>;
 
-/// The kept borders of those chunks, by Direction. Null where none are kept.
+/// The kept borders of those chunks, by Direction. A border that is not kept is null.
 using MeshBorders = std::array<const ChunkBorders*, kDirectionCount>;
 
-/// Buffers reused between calls; a steady state allocates nothing. Belongs to one thread. Opaque to
-/// callers.
+/// The buffers that calls reuse, so that a steady state allocates nothing. A scratch belongs to one
+/// thread, and callers do not use its contents.
 class RdmScratch {
  public:
   RdmScratch();
@@ -32,8 +32,8 @@ class RdmScratch {
   RdmScratch& operator=(RdmScratch&&) noexcept;
   struct State;
   State& state() { return *state_; }
-  /// Meshes one row at a time, without vector instructions, with the same quads. For tests and
-  /// measurements.
+  /// Makes later calls mesh one row at a time, without vector instructions. The quads are the same.
+  /// It is for tests and measurements.
   void use_plain_path(bool plain);
 
  private:

@@ -1,5 +1,5 @@
-// Rows of bits as vectors: as many rows a step as the machine takes. Included once per instruction
-// set, inside no namespace.
+// Rows of bits as vectors. A step takes as many rows as a vector of the machine holds. Highway
+// includes this file once per instruction set, outside of any namespace.
 #if defined(RUNSTONE_MESH_RDM_ROW_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_ROW_LANES_INL
 #undef RUNSTONE_MESH_RDM_ROW_LANES_INL
@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One row a step: for the plain path, and for rows wider than a vector's lane.
+/// One row a step. It serves the plain path, and rows that are wider than a vector's lane.
 template <class R>
 struct OneRow {
   using Row = R;
@@ -42,7 +42,7 @@ struct OneRow {
 };
 
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
-/// As many rows a step as a vector holds.
+/// A step takes as many rows as a vector holds.
 struct VectorRows {
   using Row = Row64;
   using D = hn::CappedTag<Row64, 8>;
@@ -72,8 +72,8 @@ struct VectorRows {
 using VectorRows = OneRow<Row64>;
 #endif
 
-/// Calls step(first row) for every step of whole vectors over `count` rows. The last step may go
-/// beyond them.
+/// Calls step(first row) for every step of whole vectors over `count` rows. The last step may
+/// extend beyond them.
 template <class Lanes, class F>
 HWY_INLINE void for_rows(std::uint32_t count, F&& step) {
   for (std::uint32_t m = 0; m < count; m += Lanes::kLanes) step(m);

@@ -1,5 +1,5 @@
-// Strip lanes: row_strips.hpp for as many rows a step as the machine takes. Included once per
-// instruction set, inside no namespace.
+// Strip lanes: the functions of row_strips.hpp on vectors of rows. Highway includes this file once
+// per instruction set, outside of any namespace.
 #if defined(RUNSTONE_MESH_RDM_STRIP_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_STRIP_LANES_INL
 #undef RUNSTONE_MESH_RDM_STRIP_LANES_INL
@@ -21,7 +21,7 @@ struct StripLanes {
   using V = typename Lanes::V;
   V face, start, end;
 
-  /// strips_along(): `face` and `cut` point to the first of the rows.
+  /// Does the same as strips_along(). `face` and `cut` point to the first of the rows.
   static HWY_INLINE StripLanes along(const Row* face, [[maybe_unused]] const Row* cut) {
     const V f = Lanes::load(face);
     V before = Lanes::up(f);
@@ -33,7 +33,7 @@ struct StripLanes {
     }
     return {f, Lanes::without(f, before), Lanes::without(f, behind)};
   }
-  /// changed(): `cut` points to the first of the rows.
+  /// Does the same as changed(). `cut` points to the first of the rows.
   static HWY_INLINE V changed(const StripLanes& now, const StripLanes& before,
                               [[maybe_unused]] const Row* cut) {
     V x = Lanes::either(Lanes::differing(now.face, before.face),
@@ -44,7 +44,7 @@ struct StripLanes {
     }
     return x;
   }
-  /// ends_with().
+  /// Does the same as ends_with() of row_strips.hpp.
   HWY_INLINE V ends_with(V x) const {
     x = Lanes::both(x, face);
     const V inner = Lanes::without(face, end);

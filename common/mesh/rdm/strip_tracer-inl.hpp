@@ -1,6 +1,6 @@
 // StripTracer: traces the strips of one side of a layer in the rows that differ from their previous
 // row. It closes the strips that end there and opens those that begin. All other strips continue.
-// Included once per instruction set, inside no namespace.
+// Highway includes this file once per instruction set, outside of any namespace.
 #if defined(RUNSTONE_MESH_RDM_STRIP_TRACER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_STRIP_TRACER_INL
 #undef RUNSTONE_MESH_RDM_STRIP_TRACER_INL
@@ -200,8 +200,9 @@ class StripTracer {
     });
   }
 
-  /// The places of bits are written to a list first and visited afterwards. So the loop over them
-  /// is not per row, and its end is predictable. Values written behind the last place are ignored.
+  /// The places of bits are written to a list first and visited afterwards. Then one loop visits
+  /// the places of all rows, and its end is predictable. Values written behind the last place are
+  /// ignored.
   using Place = std::uint16_t;
   static HWY_INLINE Place* write_places(Row bits, std::uint32_t row, Place* to) {
     const std::uint32_t base = row * kRowBits<Row>;

@@ -46,7 +46,8 @@ struct Borders {
   /// Voxels that hide any face of the chunk. For a chunk of one transparent material, voxels of
   /// that material count too.
   std::array<Rows, 6> hiding;
-  /// Voxels of a transparent material that the chunk has too. Not set where `meets` is false.
+  /// Voxels of a transparent material that the chunk has too. The rows of a side are set only if
+  /// its `meets` is true.
   std::array<Rows, 6> transparent;
   /// True if a side has such voxels. Always false for a chunk of one material.
   std::array<bool, 6> meets{};

@@ -31,8 +31,8 @@ constexpr std::array<Subcommand, 7> kSubcommands = {{{Command::mesh, add_mesh_co
 ParsedProgramOptions parse_program_options(int argc, const char* const* argv, std::ostream& out,
                                            std::ostream& err) {
   CLI::App app(
-      "Measures meshing, storage, edits, the log, the network and frames, and prints tables of "
-      "Markdown, or makes a page of them all.",
+      "Measures meshing, storage, edits, the log, the network and frames, "
+      "and prints tables of Markdown, or makes a page of them all.",
       "runstone-bench");
   app.require_subcommand(1);
   ProgramOptions options;

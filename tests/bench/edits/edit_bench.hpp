@@ -1,4 +1,4 @@
-// `runstone-bench edits`: the costs of edits. Each case is timed on one core, many times. The
+// `runstone-bench edits`: the costs of edits. Each case is timed many times on one core, and the
 // medians are compared with the targets.
 #pragma once
 #include <cstddef>

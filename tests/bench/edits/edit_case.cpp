@@ -108,7 +108,7 @@ class EditedChunk {
   Neighbour& neighbour_at(Direction d) { return *neighbours_[static_cast<std::size_t>(d)]; }
   const RunChunk& neighbour_chunk(Direction d) { return neighbour_at(d).volume.scene.chunk; }
 
-  /// Returns the neighbours that see a voxel, after it has made them ready to mesh.
+  /// Returns the neighbours that touch a voxel. Makes them ready to mesh first.
   std::vector<Direction> touched_by(VoxelPos at) {
     const auto side = static_cast<std::int32_t>(volume_.edge);
     std::vector<Direction> out;
@@ -165,10 +165,9 @@ EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& vol
     EditedChunk edited(world, volume);
     if (edited.mesh().empty()) continue;
     const VoxelBox inside = box_of({}, static_cast<std::int32_t>(volume.edge));
-    Samples
-        // Not counted: the first edit of a chunk, and the edits that take one back, whose branches
-        // the processor has learned.
-        left_out;
+    // The times that do not count: the first edit of a chunk, and the edits that take one back,
+    // whose branches the processor has learned.
+    Samples left_out;
     for (unsigned i = 0; i <= per_volume; ++i) {
       const VisibleVoxel visible = pick(edited.mesh(), rng);
       const auto local = [&](VoxelPos at) {

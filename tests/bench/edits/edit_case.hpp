@@ -2,7 +2,7 @@
 // measured:
 // - the splice of the chunk's runs (apply_stack);
 // - the remesh of its dirty layers;
-// - the remesh of each neighbour whose border the voxel lies at.
+// - the remesh of each neighbour whose border the voxel touches.
 // Each remeshed chunk is compared with a full mesh of it. The times are those of the monotonic
 // clock, because each is too short for the clock of the thread's processor time.
 #pragma once
@@ -25,10 +25,10 @@ struct EditTiming {
   double border_all_ns = 0;            // as all_ns, over the edits at borders; 0 if there are none
 };
 
-/// Edits each volume that shows anything `per_volume` times. Takes every edit back and does not
-/// count that, since a processor that has just executed the same branches is faster than one that
-/// follows a builder. The volumes are of `world`, from which the neighbours' neighbours are cut.
-/// Seeded.
+/// Makes `per_volume` edits in each volume whose mesh is not empty. Every edit is taken back.
+/// Taking back is not in the time, because a processor that has just executed the same branches is
+/// faster than one that follows a builder. The volumes are parts of `world`, from which the chunks
+/// around the neighbours are cut. The edits are drawn from a fixed seed.
 EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& volumes,
                          unsigned per_volume, std::uint64_t seed);
 

@@ -127,11 +127,11 @@ Result<std::vector<LogQuestion>, std::string> ask(Store& store,
     for (const EditRecord& record : sampled) {
       found.clear();
       const auto start = Clock::now();
-      const auto asked = store.query_log(query_at(record), [&](const EditRecord& answer) {
+      const auto queried = store.query_log(query_at(record), [&](const EditRecord& answer) {
         found.push_back(answer);
         return true;
       });
-      if (!asked) return failure(asked.error());
+      if (!queried) return failure(queried.error());
       times.push_back(ms_since(start));
       all += found.size();
     }
@@ -288,8 +288,8 @@ Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::os
 
 void write_table(const LogBench& bench, std::ostream& out) {
   fmt::print(out,
-             "{} edits, {:.1f} bytes each, appended in {:.2f} us each; keyframes add {:.1f} bytes "
-             "an edit ({} chunks, made in {:.1f} s)\n\n",
+             "{} edits, {:.1f} bytes each, appended in {:.2f} us each; "
+             "keyframes add {:.1f} bytes an edit ({} chunks, made in {:.1f} s)\n\n",
              bench.edits, bench.bytes, bench.append_us, bench.keyframe_bytes, bench.keyframe_chunks,
              bench.keyframes_seconds);
   fmt::print(out, "| question | edits found, mean | median ms | slowest ms |\n|---|---|---|---|\n");
@@ -298,9 +298,9 @@ void write_table(const LogBench& bench, std::ostream& out) {
                q.slowest_ms);
   }
   fmt::print(out,
-             "\n| keyframes | moments | edits read, mean | chunks edited, mean | opened, median ms "
-             "| slowest | view | slowest | all edited chunks | slowest "
-             "|\n|---|---|---|---|---|---|---|---|---|---|\n");
+             "\n| keyframes | moments | edits read, mean | chunks edited, mean | "
+             "opened, median ms | slowest | view | slowest | all edited chunks | slowest |\n"
+             "|---|---|---|---|---|---|---|---|---|---|\n");
   for (const LogMoments& m : bench.moments) {
     fmt::print(
         out,
@@ -310,8 +310,8 @@ void write_table(const LogBench& bench, std::ostream& out) {
   }
   const LogPreview& p = bench.preview;
   fmt::print(out,
-             "\nPreview of one author's last hour: {} edits in {} chunks, {} voxels; selected in "
-             "{:.1f} ms (slowest {:.1f}), planned in {:.1f} ms (slowest {:.1f})\n",
+             "\nPreview of one author's last hour: {} edits in {} chunks, {} voxels; "
+             "selected in {:.1f} ms (slowest {:.1f}), planned in {:.1f} ms (slowest {:.1f})\n",
              p.edits, p.chunks, p.voxels, p.select_ms, p.select_slowest_ms, p.plan_ms,
              p.plan_slowest_ms);
 }

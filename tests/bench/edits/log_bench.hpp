@@ -1,4 +1,4 @@
-// The costs of a long log: questions to it, keyframes, opening the world at moments of the past,
+// The costs of a long log: queries, keyframes, opening the world at moments of the past, and
 // previews of a rollback.
 #pragma once
 #include <cstdint>
@@ -24,10 +24,10 @@ struct LogMoments {
   // Means of a moment: edits read since its keyframe; chunks edited up to it.
   double edits_read = 0, chunks = 0;
   double open_ms = 0, open_slowest_ms = 0;
-  double view_ms = 0,
-         // Opening, and the chunks around the last edit, radius 8.
-      view_slowest_ms = 0;
-  double all_ms = 0, all_slowest_ms = 0;  // opening, and all edited chunks
+  // The time to open the moment and make the chunks around the last edit (radius 8).
+  double view_ms = 0, view_slowest_ms = 0;
+  // The time to open the moment and make all edited chunks.
+  double all_ms = 0, all_slowest_ms = 0;
 };
 
 /// The times of the preview of a rollback: one author's last hour, planned with the present
@@ -52,9 +52,9 @@ struct LogBench {
 };
 
 /// Makes a world of options.edits synthetic edits of eight builders over terrain
-/// (tests/support/builder_session.hpp), in a folder that it removes afterwards. Asks
-/// options.repetitions questions of each sort, spread over the log. Opens as many random moments
-/// and makes as many previews, which are alike.
+/// (tests/support/builder_session.hpp), in a folder that it removes afterwards. Makes
+/// options.repetitions queries of each sort, spread over the log. Opens as many random moments, and
+/// makes as many previews of equal size.
 Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::ostream& progress);
 
 void write_table(const LogBench& bench, std::ostream& out);

@@ -11,14 +11,15 @@ namespace runstone::bench {
 
 struct ReplayTiming {
   std::size_t edits = 0, chunks = 0;
-  // Edits a second; one sample a repetition.
-  std::vector<double>
-      // All that runstone-replay does: read, verify, apply, and compare digests at the end.
-      from_log;
-  std::vector<double> apply;  // one edit after another, from memory, without generating chunks
-  // the same, with the dirty layers of each edit meshed, neighbours included
+  // The samples are edits a second, one for each repetition.
+  // from_log: all that runstone-replay does: read, verify, apply, and compare digests at the end.
+  std::vector<double> from_log;
+  // apply: one edit after another, from memory, without generating chunks.
+  std::vector<double> apply;
+  // remesh: as apply, with the dirty layers of each edit meshed, neighbours included.
   std::vector<double> remesh;
 };
+
 /// Measures the replay. Writes a world for from_log below `folder`.
 Result<ReplayTiming, std::string> time_replay(std::size_t edits, unsigned repetitions,
                                               const std::string& folder);

@@ -14,9 +14,9 @@ struct DrawnPicture {
 
 struct PictureDifference {
   std::size_t seam_pixels = 0;  // of another colour
-  /// The seam pixels inside a plane of the other picture: all eight pixels around have its colour
-  /// there. The others lie where planes meet, and may be a different rounding of the line between
-  /// them.
+  /// The seam pixels inside a plane of the other picture: there, all eight pixels around have the
+  /// same colour. The other seam pixels lie where planes meet, and may come from a different
+  /// rounding of the line between them.
   std::size_t pinhole_pixels = 0;
 };
 

@@ -1,5 +1,5 @@
-// `runstone-bench frames`: the cost of drawing each mesher's polygons, and whether they give the
-// same picture (thesis 8.5, 4.2.1, 4.2.2).
+// `runstone-bench frames`: the cost of drawing each mesher's polygons, and the differences of their
+// pictures (thesis 8.5, 4.2.1, 4.2.2).
 #pragma once
 #include <iosfwd>
 #include <string>

@@ -12,15 +12,13 @@ namespace runstone::bench {
 
 struct FramesOptions {
   std::vector<std::string> worlds;  // of frames_world_names(); empty: all
-  std::vector<std::string>
-      // Names of mesher cases; empty: one for each different mesh, quads and product.
-      meshers;
+  // Names of mesher cases; empty: one for each different mesh, quads and product.
+  std::vector<std::string> meshers;
   std::string luanti;     // folder of a Luanti world
   unsigned frames = 60;   // of each mesher in each world
   unsigned pictures = 3;  // frames of the orbit in which pixels and fragments are counted
-  std::size_t vertices_max =
-      // Larger meshes are named and not drawn, except those of culled faces.
-      100'000'000;
+  // Larger meshes are named and not drawn, except those of culled faces.
+  std::size_t vertices_max = 100'000'000;
   int width = 1280, height = 720;  // pixels
   std::string csv, json;           // files to write; empty: none
 };

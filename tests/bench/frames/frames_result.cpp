@@ -79,8 +79,8 @@ class Means {
     const auto mean = [&](double sum) { return sum / static_cast<double>(rows_); };
     fmt::print(
         out,
-        "| {} | {:.0f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.0f} | {} | {} | {} | {} | {} | {} "
-        "| {} | {} | {} |\n",
+        "| {} | {:.0f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.0f} | {} | {} | {} | {} | {} | "
+        "{} | {} | {} | {} |\n",
         name, mean(vertices_), mean(triangles_), mean(bytes_) / 1024, mean(ms_), mean(p99_),
         1000 / mean(ms_),
         against_culled_.empty() ? "–" : fmt::format("{:.2f}", geometric_mean(against_culled_)),
@@ -119,9 +119,10 @@ void write_means(const FramesResult& result, const std::vector<Column>& columns,
   if (common.empty()) return;
   fmt::print(
       out,
-      "| mesher | vertices | triangles | KiB | p50 ms | p99 ms | fps | x culled | overdraw | depth "
-      "complexity | lanes | % above 1:16 | % above 1:100 | T-junctions | seam pixels | pinholes "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| mesher | vertices | triangles | KiB | p50 ms | p99 ms | fps | x culled | overdraw | "
+      "depth complexity | lanes | % above 1:16 | % above 1:100 | T-junctions | seam pixels | "
+      "pinholes |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Column& column : columns) {
     Means means;
     for (const std::string& world : common) {
@@ -158,9 +159,9 @@ std::optional<FramesFit> FramesResult::fit() const {
 
 void write_csv(const FramesResult& result, std::ostream& out) {
   fmt::print(out,
-             "world,mesher,path,vertices,triangles,upload_bytes,frames,p50_ms,p90_ms,p99_ms,fps,t_"
-             "junctions,thin_16,thin_100,covered_pixels,overdraw,depth_complexity,lanes,seam_"
-             "pixels,pinhole_pixels\n");
+             "world,mesher,path,vertices,triangles,upload_bytes,frames,p50_ms,p90_ms,p99_ms,fps,"
+             "t_junctions,thin_16,thin_100,covered_pixels,overdraw,depth_complexity,lanes,"
+             "seam_pixels,pinhole_pixels\n");
   for (const FramesRow& row : result.rows) {
     fmt::print(out, "{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.2f},{},{},{},{},{},{},{},{},{}\n",
                row.world, row.mesher, row.path, row.vertices, row.triangles, row.upload_bytes,

@@ -20,18 +20,17 @@ struct FramesRow {
   /// - "product": the client's renderer. Its sky, fog and light cost more a pixel, and its picture
   ///   cannot be compared.
   std::string path;
-  std::size_t vertices =
-      // 4 a quad, as the thesis counts. Vertices that a triangle mesh shares count once.
-      0;
+  // A quad has 4, as the thesis counts. Vertices that a triangle mesh shares count once.
+  std::size_t vertices = 0;
   std::size_t triangles = 0;
   std::size_t upload_bytes = 0;
   unsigned frames = 0;  // timed frames
   double p50_ms = 0, p90_ms = 0, p99_ms = 0;
-  /// Of the plain and quads rows with something to draw: sums over the chunks, each counted alone;
-  /// shares of the triangles.
+  /// Figures of the plain and quads rows with something to draw: sums over the chunks, each counted
+  /// alone, and shares of the triangles.
   std::optional<std::size_t> t_junctions;   // places (tests/reference/t_junctions.hpp)
   std::optional<double> thin_16, thin_100;  // longer than 1:16, 1:100 (thin_triangles.hpp)
-  /// Of the same rows: means over the pictures.
+  /// Figures of the same rows: means over the pictures.
   std::optional<double> covered_pixels;    // with something drawn in them
   std::optional<double> overdraw;          // fragments that pass the depth test, per covered pixel
   std::optional<double> depth_complexity;  // fragments without a depth test, per covered pixel

@@ -1,4 +1,4 @@
-// Order statistics and means. Requires samples that are not empty.
+// Order statistics and means. All functions require samples that are not empty.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace runstone::bench {
 
-/// Returns the sample below which `share` (0 .. 1) of the samples lie. 0.5 is the median; of an
-/// even number of samples the upper one.
+/// Returns the sample below which `share` (0 .. 1) of the samples lie. A share of 0.5 gives the
+/// median; of an even number of samples, the upper of the two middle ones.
 inline double quantile(std::vector<double> samples, double share) {
   const auto at = std::min(static_cast<std::size_t>(share * static_cast<double>(samples.size())),
                            samples.size() - 1);

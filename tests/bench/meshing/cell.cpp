@@ -78,7 +78,7 @@ std::vector<std::optional<Timing>> measure_cell(std::span<MesherCase> mesher_cas
     PhaseTimes unused{};
     mesher_case.mesh(unused);
     Timing timing;
-    // the faster of two calls, since another program may have the core during one
+    // It is the faster of two calls, since another program may use the core during one of them.
     double call_ns = 1e18;
     for (int call = 0; call < 2; ++call) {
       const std::uint64_t start = now_ns();

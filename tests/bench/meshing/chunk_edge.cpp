@@ -129,9 +129,9 @@ Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions
 
 void write_table(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
   fmt::print(out,
-             "\n| world | edge | chunks (uniform) | runs | runs B/voxel | memory B/voxel | packed "
-             "B/voxel | quads | mesh ns/voxel | of a chunk that is not uniform: runs B | full mesh "
-             "µs | edit µs |\n"
+             "\n| world | edge | chunks (uniform) | runs | runs B/voxel | memory B/voxel | "
+             "packed B/voxel | quads | mesh ns/voxel | of a chunk that is not uniform: runs B | "
+             "full mesh µs | edit µs |\n"
              "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const ChunkEdgeRow& row : rows) {
     const auto voxels = static_cast<double>(row.voxels);
@@ -149,8 +149,8 @@ void write_table(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
 
 void write_csv(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
   fmt::print(out,
-             "world,edge,chunks,uniform,runs,voxels,run_bytes,mixed_bytes,memory_bytes,packed_"
-             "bytes,quads,mesh_ns,edit_ns,edit_full_mesh_ns\n");
+             "world,edge,chunks,uniform,runs,voxels,run_bytes,mixed_bytes,memory_bytes,"
+             "packed_bytes,quads,mesh_ns,edit_ns,edit_full_mesh_ns\n");
   for (const ChunkEdgeRow& row : rows) {
     fmt::print(out, "{},{},{},{},{},{},{},{},{},{},{},{:.0f},{:.0f},{:.0f}\n", row.world, row.edge,
                row.chunks, row.uniform, row.runs, row.voxels, row.run_bytes, row.mixed_bytes,

@@ -1,12 +1,9 @@
 #include "tests/bench/meshing/mesh_bench.hpp"
 
-#include <fmt/ostream.h>
-
 #include <algorithm>
 
 #include "common/runs/reorder.hpp"
 #include "tests/bench/edits/edit_case.hpp"
-#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/meshing/mesh_targets.hpp"
 #include "tests/bench/meshing/order_name.hpp"
 #include "tests/bench/worlds/measured_worlds.hpp"
@@ -21,7 +18,7 @@ struct RankedOrder {
 
 /// Returns the wanted orders, each once.
 std::vector<RankedOrder> orders_of(const RunChunk& chunk, const std::vector<std::string>& wanted) {
-  const auto asked = [&](const char* what) {
+  const auto is_wanted = [&](const char* what) {
     return std::find(wanted.begin(), wanted.end(), what) != wanted.end();
   };
   const auto runs = runs_per_order(chunk);
@@ -31,7 +28,7 @@ std::vector<RankedOrder> orders_of(const RunChunk& chunk, const std::vector<std:
   for (const AxisOrder order : kAxisOrders) {
     const auto i = static_cast<std::ptrdiff_t>(order);
     const char* rank = i == fewest ? "best" : i == most ? "worst" : "between";
-    if (asked("all") || asked(rank)) out.push_back({order, rank});
+    if (is_wanted("all") || is_wanted(rank)) out.push_back({order, rank});
   }
   return out;
 }
@@ -100,39 +97,30 @@ Result<MeshResult, std::string> run_mesh_bench(const BenchOptions& options,
   result.machine = this_machine();
   result.repetitions = options.repetitions;
   EditTiming edits;
-  for (std::size_t w = 0; w < worlds->size(); ++w) {
-    for (const unsigned edge : options.edges) {
-      const std::uint64_t start = now_ns();
-      const MeasuredWorld world = worlds->at_edge(w, edge);
-      if (!world.missing.empty()) {
-        result.skipped.push_back(fmt::format("{} edge {}: {}", world.name, edge, world.missing));
+  const auto measure = [&](std::size_t number, const MeasuredWorld& world, unsigned edge) {
+    for (std::size_t v = 0; v < world.volumes.size(); ++v) {
+      if (!options.parts.empty() && std::find(options.parts.begin(), options.parts.end(),
+                                              world.parts[v]) == options.parts.end()) {
+        continue;
       }
-      for (std::size_t v = 0; v < world.volumes.size(); ++v) {
-        if (!options.parts.empty() && std::find(options.parts.begin(), options.parts.end(),
-                                                world.parts[v]) == options.parts.end()) {
-          continue;
-        }
-        for (const RankedOrder& order : orders_of(world.volumes[v].scene.chunk, options.orders)) {
-          Volume volume = world.volumes[v];
-          volume.scene.chunk = reorder(volume.scene.chunk, order.order);
-          MeshRow shared;
-          shared.world = world.name;
-          shared.part = world.parts[v];
-          shared.edge = edge;
-          shared.order = name_of(order.order);
-          shared.rank = order.rank;
-          shared.runs = volume.scene.chunk.runs.size();
-          measure_volume(options, volume, *world.visibility, shared, result);
-        }
+      for (const RankedOrder& order : orders_of(world.volumes[v].scene.chunk, options.orders)) {
+        Volume volume = world.volumes[v];
+        volume.scene.chunk = reorder(volume.scene.chunk, order.order);
+        MeshRow shared;
+        shared.world = world.name;
+        shared.part = world.parts[v];
+        shared.edge = edge;
+        shared.order = name_of(order.order);
+        shared.rank = order.rank;
+        shared.runs = volume.scene.chunk.runs.size();
+        measure_volume(options, volume, *world.visibility, shared, result);
       }
-      if (world.name == "luanti" && edge == 32) {
-        edits = measure_edits(*worlds->voxels(w), world.volumes, options.repetitions, 1);
-      }
-      fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge,
-                 world.volumes.size(), static_cast<double>(now_ns() - start) * 1e-9);
-      progress.flush();
     }
-  }
+    if (world.name == "luanti" && edge == 32) {
+      edits = measure_edits(*worlds->voxels(number), world.volumes, options.repetitions, 1);
+    }
+  };
+  worlds->measure_each(options.edges, measure, result.skipped, progress);
   result.targets = mesh_targets(result.rows, edits);
   return result;
 }

@@ -183,14 +183,14 @@ Target uniform(const std::vector<MeshRow>& rows) {
 
 Target edit(const EditTiming& edits) {
   const std::string what =
-      "single-voxel edit, luanti edge 32: splice and remesh, neighbours included; share of a full "
-      "mesh";
+      "single-voxel edit, luanti edge 32: splice and remesh, neighbours included; "
+      "share of a full mesh";
   if (edits.edits == 0) return unknown(what, "5 µs; a fifth");
   const double share = edits.all_ns / edits.full_mesh_ns;
   return judged(fmt::format("{} ({} edits, {} at a border)", what, edits.edits, edits.at_borders),
                 "5 µs; a fifth",
-                fmt::format("{:.2f} µs ({:.2f} its own chunk: {:.2f} splice, {:.2f} remesh; {:.2f} "
-                            "at a border); {:.2f} of {:.2f} µs",
+                fmt::format("{:.2f} µs ({:.2f} its own chunk: {:.2f} splice, {:.2f} remesh; "
+                            "{:.2f} at a border); {:.2f} of {:.2f} µs",
                             edits.all_ns / 1000, edits.chunk_ns / 1000, edits.apply_ns / 1000,
                             edits.remesh_ns / 1000, edits.border_all_ns / 1000, share,
                             edits.full_mesh_ns / 1000),

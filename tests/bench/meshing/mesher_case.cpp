@@ -40,7 +40,7 @@ constexpr std::array<std::string_view, 17> kNames = {"rdm",
                                                      "rle_rdm"};
 
 /// Adds the time since `start` to a phase. Returns the present time.
-std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {
+std::uint64_t add_time(PhaseTimes& phases, Phase phase, std::uint64_t start) {
   const std::uint64_t now = now_ns();
   phases[static_cast<std::size_t>(phase)] += now - start;
   return now;
@@ -101,7 +101,7 @@ MesherCase binary(std::string_view name, const Volume& volume, const VisibilityT
     out.mesh = [state, &visibility](PhaseTimes& phases) {
       const std::uint64_t start = now_ns();
       occupancy_of(state->grid, visibility, state->mask);
-      book(phases, Phase::mask, start);
+      add_time(phases, Phase::mask, start);
       mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
     };
   } else {
@@ -109,9 +109,9 @@ MesherCase binary(std::string_view name, const Volume& volume, const VisibilityT
     out.mesh = [state, &chunk, &visibility](PhaseTimes& phases) {
       std::uint64_t time = now_ns();
       decode(chunk, state->neighbours, state->layer, state->grid);
-      time = book(phases, Phase::decode, time);
+      time = add_time(phases, Phase::decode, time);
       occupancy_of_decoded(chunk, state->neighbours, state->grid, visibility, state->mask);
-      book(phases, Phase::mask, time);
+      add_time(phases, Phase::mask, time);
       mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
     };
   }

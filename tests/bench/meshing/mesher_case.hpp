@@ -1,5 +1,5 @@
-// MesherCase: a mesher in front of one volume. Its input is ready and its buffers are warm, so that
-// a call times exactly what the name says.
+// MesherCase: one mesher with one volume as its input. The input is ready and the buffers are warm,
+// so that a call times exactly the steps that the name states.
 //   rdm               the product, from runs; borders are read from the neighbours' runs
 //   rdm_kept          the same with the borders of all neighbours kept (ChunkBorders); those of the
 //                     chunk itself are made inside the time

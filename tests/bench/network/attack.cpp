@@ -115,7 +115,7 @@ void claim_falsely(AttackThread& thread) {
   std::size_t next = 0;
   const auto begin = [&](AttackClient& client) {
     next = 0;
-    // the server never sends any of these chunks
+    // The server never sends any of these chunks.
     if (fits) client.queue(view_at({0, kFarChunk, 0}, 1, 1));
   };
   const auto claim = [&](AttackClient& client) {
@@ -163,9 +163,8 @@ void edit_too_often(AttackThread& thread) {
 }
 
 void edit_too_much(AttackThread& thread) {
-  constexpr std::uint16_t kRadius =
-      // 905,000 voxels, just below what one edit may have by default.
-      60;
+  // 905,000 voxels, just below what one edit may have by default.
+  constexpr std::uint16_t kRadius = 60;
   flood_edits(thread, [](const VoxelPos& at) { return EditShape{FillSphere{at, kRadius}}; });
 }
 
@@ -202,7 +201,7 @@ Bytes framed_hello() {
 }
 
 void open_halfway(AttackThread& thread) {
-  // Of each thread: far fewer than the limit of a process.
+  // The number of connections of each thread, far fewer than the limit of a process.
   constexpr std::size_t kOpenMax = 500;
   constexpr std::uint32_t kAddresses = 250;
   constexpr int kPerStep = 4;
@@ -221,8 +220,7 @@ void open_halfway(AttackThread& thread) {
   };
   for (std::uint32_t turn = 0; !thread.is_over(); ++turn) {
     for (int i = 0; i < kPerStep && open.size() < kOpenMax; ++i) {
-      // Every second thread uses many addresses. The others use the one address that honest clients
-      // have, too.
+      // Every second thread uses many addresses. The others use the address of the honest clients.
       const std::uint32_t other =
           thread.index() % 2 == 0 ? 0 : 1 + thread.random().below(kAddresses);
       auto client = thread.connect(AttackThread::kLoopback + other);
@@ -286,8 +284,8 @@ void send_garbage(AttackThread& thread) {
   }
 }
 
-/// No attack: copies bytes between two sockets of its own. It shows what a busy machine does to the
-/// bots.
+/// This is no attack: it copies bytes between two sockets of its own. It shows how the load of the
+/// machine affects the bots.
 void keep_the_machine_busy(AttackThread& thread) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return;

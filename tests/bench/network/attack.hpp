@@ -24,7 +24,7 @@ std::span<const Attack> all_attacks();
 /// numbers that were sent.
 std::string alike(const std::string& reason);
 
-/// The outcome of an attack's connections.
+/// The outcomes of an attack's connections.
 struct AttackOutcome {
   std::map<std::string, std::uint64_t> endings;  // what the server said or did, and how often
   std::uint64_t connections = 0;
@@ -35,11 +35,11 @@ struct AttackOutcome {
 };
 
 /// A running attack by several clients, each on a thread of its own. The threads have the lowest
-/// priority. So the bots feel what the server does, and not that an attacker on the same machine
-/// takes a core which it would have elsewhere.
+/// priority. So the latency of the bots shows the load of the server, and not the cores that
+/// attackers on the same machine use.
 class RunningAttack {
  public:
-  /// Starts `clients` threads with a connection each, or many where the attack needs many.
+  /// Starts `clients` threads. Each has one connection, or many if the attack needs many.
   RunningAttack(const Attack& attack, std::uint16_t port, unsigned clients, double seconds,
                 std::uint64_t seed);
   /// Waits for the end of the attack.

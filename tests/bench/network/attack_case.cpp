@@ -26,10 +26,9 @@ struct AttackResult {
   std::array<FleetReport, 3> seen;  // by phase
   JoinProbe::Joins joins;
   AttackOutcome outcome;
-  std::map<std::string, std::uint64_t>
-      // The reasons in the server's log, as far as the log does not drop lines.
-      logged;
-  // At the end of the phase; during the attack: the peak.
+  // The reasons in the server's log. The log may drop lines.
+  std::map<std::string, std::uint64_t> logged;
+  // The memory at the end of the phase; for the attack itself, the peak.
   std::array<double, 3> resident_mb{};
   std::array<double, 3> server_cores{};
   double attacker_cores = 0;
@@ -178,8 +177,8 @@ void write_rows(const AttackResult& result, std::string& latencies, std::string&
     violations += phase.violations;
   }
   fmt::format_to(std::back_inserter(latencies),
-                 "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | {:.0f}, "
-                 "{:.0f}, {:.0f} | {:.2f}, {:.2f} | {:.2f} |\n",
+                 "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | "
+                 "{:.0f}, {:.0f}, {:.0f} | {:.2f}, {:.2f} | {:.2f} |\n",
                  result.name, times(seen[before]), times(seen[during]), times(seen[after]), samples,
                  never, disconnects, violations, result.joins.open, result.joins.tried,
                  number_text(result.joins.slowest_ms), result.resident_mb[before],
@@ -199,8 +198,8 @@ Done measure_attacks(Testbed& testbed, NetFindings& findings) {
   if (!link) return Unexpected<std::string>{link.error()};
   std::string latencies, answers;
   for (const Attack& attack : all_attacks()) {
-    const auto& asked = testbed.options().attacks;
-    if (!asked.empty() && std::find(asked.begin(), asked.end(), attack.name) == asked.end())
+    const auto& wanted = testbed.options().attacks;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), attack.name) == wanted.end())
       continue;
     const auto result = AttackRun(testbed, **link, attack).run();
     if (!result)
@@ -211,15 +210,20 @@ Done measure_attacks(Testbed& testbed, NetFindings& findings) {
     testbed.progress().flush();
   }
   findings.tables += fmt::format(
-      "\n### Attacks\n\nLoopback: {} bots in one place with {} edits a second each, {} s before, "
-      "during and after an attack of {} clients; a server for each attack. Latency from when an "
-      "edit was due until each bot that sees it had received and verified it.\n\n"
-      "| attack | before p50, p99, max ms | during | after | samples, never | bots disconnected, "
-      "rules broken | newcomers accepted, slowest ms | server MB before, peak, after | server "
-      "cores "
-      "before, during | attackers' cores |\n|---|---|---|---|---|---|---|---|---|---|\n{}\n| "
-      "attack | connections | MB sent, received | answers to the attackers | reasons in "
-      "the server's log |\n|---|---|---|---|---|\n{}",
+      "\n### Attacks\n\n"
+      "Loopback: {} bots in one place with {} edits a second each, {} s before, "
+      "during and after an attack of {} clients; a server for each attack. "
+      "Latency from when an edit was due until each bot that sees it had received and verified "
+      "it.\n\n"
+      "| attack | before p50, p99, max ms | during | after | samples, never | "
+      "bots disconnected, rules broken | newcomers accepted, slowest ms | "
+      "server MB before, peak, after | server cores before, during | attackers' cores |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n"
+      "{}\n"
+      "| attack | connections | MB sent, received | answers to the attackers | "
+      "reasons in the server's log |\n"
+      "|---|---|---|---|---|\n"
+      "{}",
       testbed.options().attack_bots, kFleetEditsPerSecond, testbed.options().attack_seconds,
       testbed.options().attackers, latencies, answers);
   findings.tables += "\n";

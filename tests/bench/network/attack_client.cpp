@@ -33,7 +33,7 @@ bool would_block(int error) {
 }
 
 void set_option(int socket, int level, int name, int value) {
-  // The attack works without the option, too.
+  // The attack also works without this option.
   (void)::setsockopt(socket, level, name, &value, sizeof value);
 }
 
@@ -50,18 +50,16 @@ AttackClient::AttackClient(std::uint16_t port, std::uint32_t from, int receive_b
     : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   if (!socket_) return;
   if (receive_bytes > 0) set_option(socket_.get(), SOL_SOCKET, SO_RCVBUF, receive_bytes);
-  // The port then counts only together with the server's address and is free again at once: there
-  // are thousands of sockets.
+  // With this option a port is in use only together with the server's address, and it is free again
+  // at once. An attack has thousands of sockets.
   set_option(socket_.get(), IPPROTO_IP, IP_BIND_ADDRESS_NO_PORT, 1);
   const linger no_wait{1, 0};
   (void)::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &no_wait, sizeof no_wait);
   const sockaddr_in here = endpoint(from, 0), there = endpoint(INADDR_LOOPBACK, port);
-  // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): the sockets interface asks for it
   if (::bind(socket_.get(), reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) return;
   is_open_ =
       ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0 ||
       would_block(errno);
-  // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
 }
 
 bool AttackClient::open_session(std::uint64_t identity, int wait_ms) {

@@ -21,8 +21,8 @@ class AttackClient {
   AttackClient(std::uint16_t port, std::uint32_t from, int receive_bytes = 0);
 
   /// Performs the handshake with a key drawn from `identity`. It offers commands. It does not offer
-  /// to report what it read, so that nothing paces what it is sent. Returns false if the server
-  /// ended the connection, or after `wait_ms`.
+  /// receive acknowledgements, so that the server does not pace what it sends. Returns false if the
+  /// server ended the connection, or after `wait_ms`.
   bool open_session(std::uint64_t identity, int wait_ms);
 
   /// Queues a message; flush() sends. Bytes are sent unchanged, outside of any frame.
@@ -38,7 +38,7 @@ class AttackClient {
   void flush();
   /// Reads what is there now, at most `bytes_max`.
   void read(std::size_t bytes_max = 256 * 1024);
-  /// Waits, at most `wait_ms`, until it can send what is queued, or, if `reads`, until there is
+  /// Waits at most `wait_ms` until it can send queued bytes or, if `reads` is true, until there is
   /// something to read.
   void wait(int wait_ms, bool reads);
 

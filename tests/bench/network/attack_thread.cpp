@@ -67,7 +67,7 @@ void AttackThread::flood(const Step& begin, const Step& add, double per_second, 
       if (reads) client->read();
       if (per_second != kNoLimit || client->queued() > 0) client->wait(1, false);
     }
-    // The goodbye, also for clients that never read.
+    // Clients that never read also get the goodbye here.
     client->read();
     end(*client);
     if (!is_over()) pause_ms(kAgainMs);

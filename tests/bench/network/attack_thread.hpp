@@ -38,8 +38,8 @@ class AttackThread {
   void end(AttackClient& client);
 
   /// Joins, and joins again whenever the server ends the session, until the attack is over. Calls
-  /// `begin` once for each session. Then calls `add`, which queues messages, at a rate a second, or
-  /// as often as the socket takes them. Reads everything that arrives, or nothing.
+  /// `begin` once for each session. Then calls `add`, which queues messages, at a rate per second,
+  /// or as often as the socket takes them. Reads everything that arrives, or nothing.
   using Step = std::function<void(AttackClient&)>;
   void flood(const Step& begin, const Step& add, double per_second, bool reads = true);
 

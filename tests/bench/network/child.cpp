@@ -31,13 +31,13 @@ void on_signal(int signal) {
   ::signal(signal, SIG_DFL);
 }
 
-/// Runs in the new process after fork(): system calls only.
+/// Runs in the new process after fork(), where only system calls are allowed.
 [[noreturn]] void become(char* const* words, const char* log) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  // Of the terminal: the testbed ends its programs itself.
+  // The signals of the terminal are ignored, because the testbed ends its programs itself.
   ::signal(SIGINT, SIG_IGN);
   const int in = ::open("/dev/null", O_RDONLY);
   const int out = ::open(log, O_WRONLY | O_CREAT | O_APPEND, 0644);

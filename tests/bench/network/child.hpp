@@ -49,8 +49,8 @@ bool interrupted();
 /// Makes SIGINT and SIGTERM interrupt the testbed. The next such signal ends the process.
 void take_interrupts();
 
-/// Waits until `holds` returns true. It looks every few milliseconds, at most `seconds` or until
-/// the testbed is interrupted. Returns whether it holds.
+/// Waits until `holds` returns true, at most `seconds` or until the testbed is interrupted. It
+/// calls `holds` every few milliseconds. Returns the last result.
 template <class F>
 bool wait_until(double seconds, F&& holds);
 /// Sleeps. Returns false if the testbed was interrupted.

@@ -113,7 +113,7 @@ struct EchoProbe::Parts {
   asio::io_context io{1};
   tcp::socket socket{io};
   asio::steady_timer timer{io};
-  // Belongs to the thread until the thread ends.
+  // The thread uses these members until it ends.
   Clock::time_point began;
   std::uint64_t sent = 0;
   std::deque<Clock::time_point> under_way;

@@ -1,7 +1,7 @@
 // EchoProbe: the round trip of a message that a plain Asio server sends back, as a lower bound
 // beside a measurement. It sends at a fixed rate that does not depend on answers, on a connection
-// of its own through the link. So the same busy machine and the same link are in both. An edit from
-// one client over the server to another takes at least one such round trip.
+// of its own through the link. So the load of the machine and the link affect both measurements. An
+// edit from one client over the server to another takes at least one such round trip.
 #pragma once
 #include <cstddef>
 #include <memory>

@@ -15,17 +15,14 @@ inline constexpr double kFleetEditsPerSecond = 2;  // of each bot
 
 /// The bots' measurements. No sample is dropped.
 struct FleetReport {
-  double p50_ms = 0, p90_ms = 0, p99_ms = 0,
-         // From due to received and verified, over all subscribers.
-      max_ms = 0;
+  // The times from due to received and verified, over all subscribers.
+  double p50_ms = 0, p90_ms = 0, p99_ms = 0, max_ms = 0;
   double samples = 0, never = 0;
   std::vector<SampleRow> rows;  // all samples except those that never arrived
   bool local_only = false;      // the report contains only the bots' own edits
   double disconnects = 0, rejected = 0;
-  double drifted = 0,
-         violations =
-             // Chunks whose voxels differ from the server's; broken rules of the protocol.
-         0;
+  // Chunks whose voxels differ from the server's; broken rules of the protocol.
+  double drifted = 0, violations = 0;
   double bytes_received = 0;  // by all bots, from start to end
 };
 

@@ -123,8 +123,8 @@ Done measure_fleets(Testbed& testbed, NetFindings& findings) {
     write_row(*result, rows);
     if (clients == kBigFleet) {
       findings.targets.push_back(
-          {"1,000 clients in one place, 2 edits/s each: due to received and verified, all "
-           "subscribers: p99; disconnects",
+          {"1,000 clients in one place, 2 edits/s each: due to received and verified, "
+           "all subscribers: p99; disconnects",
            fmt::format("under {} ms; 0", kBigFleetMsMax),
            fmt::format("{} ms; {:.0f}", number_text(result->seen.p99_ms), result->seen.disconnects),
            result->seen.p99_ms < kBigFleetMsMax && result->seen.disconnects == 0
@@ -140,11 +140,12 @@ Done measure_fleets(Testbed& testbed, NetFindings& findings) {
     testbed.progress().flush();
   }
   findings.tables += fmt::format(
-      "\n### Crowds\n\nLoopback, {} edits a second each for {} s. Latency from when an edit was "
-      "due until {}.\n\n"
+      "\n### Crowds\n\n"
+      "Loopback, {} edits a second each for {} s. Latency from when an edit was due until {}.\n\n"
       "| clients | joined in s | p50, p90, p99, max ms | samples, never | received KB/s each | "
-      "server cores | bots' cores | server MB | edits a commit | send µs a commit | enqueue µs a "
-      "receiver | disconnects |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "server cores | bots' cores | server MB | edits a commit | send µs a commit | "
+      "enqueue µs a receiver | disconnects |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       kFleetEditsPerSecond, testbed.options().fleet_seconds,
       local_only ? "its own bot had it confirmed"
                  : "each bot that sees it had received and verified it");

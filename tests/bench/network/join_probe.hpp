@@ -1,5 +1,6 @@
 // JoinProbe: an honest client that joins and leaves again and again during another measurement. It
-// measures whether, and how soon, a server accepts it. It has an address and a thread of its own.
+// counts how often a server accepts it, and measures the time until then. It has an address and a
+// thread of its own.
 #pragma once
 #include <atomic>
 #include <cstdint>

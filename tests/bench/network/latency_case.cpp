@@ -273,8 +273,8 @@ void write_overview(const std::vector<CaseResult>& results, std::string& out) {
   fmt::format_to(
       into,
       "| link | load | terrain KB/s each | echo p50, p99 | local edit meshed p50, p99 | "
-      "remote edit meshed p50, p99, max | never | clocks off by | forwarder late p99, max "
-      "µs |\n|---|---|---|---|---|---|---|---|---|\n");
+      "remote edit meshed p50, p99, max | never | clocks off by | forwarder late p99, max µs |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
   for (const CaseResult& result : results) {
     const Ranks* remote = find(result, "remote edit: meshed");
     const Ranks* own = find(result, "local edit, predicted: meshed");

@@ -144,12 +144,14 @@ Done measure_memory(Testbed& testbed, NetFindings& findings) {
   const double all_kb = (real->bytes / kKb - (real->chunks - cells) * uniform_kb) / cells;
   const double mixed_kb = (real->bytes / kKb - (real->chunks - mixed) * uniform_kb) / mixed;
   fmt::format_to(std::back_inserter(findings.tables),
-                 "\n### Memory of the server\n\nResident set, before and after a client loaded the "
-                 "real world, laid side by side, and as large a view of an empty world.\n\n| cells "
-                 "of the real world | of several materials | chunks loaded | grew by MB | empty: "
-                 "chunks loaded | grew by MB | KB an empty chunk | KB a cell | KB a chunk of "
-                 "several materials |\n|---|---|---|---|---|---|---|---|---|\n| {} | {} | {:.0f} | "
-                 "{} | {:.0f} | {} | {} | {} | {} |\n",
+                 "\n### Memory of the server\n\n"
+                 "Resident set, before and after a client loaded the real world, "
+                 "laid side by side, and as large a view of an empty world.\n\n"
+                 "| cells of the real world | of several materials | chunks loaded | grew by MB | "
+                 "empty: chunks loaded | grew by MB | KB an empty chunk | KB a cell | "
+                 "KB a chunk of several materials |\n"
+                 "|---|---|---|---|---|---|---|---|---|\n"
+                 "| {} | {} | {:.0f} | {} | {:.0f} | {} | {} | {} | {} |\n",
                  copies->cells, copies->mixed, real->chunks, number_text(real->bytes / 1e6),
                  empty->chunks, number_text(empty->bytes / 1e6), number_text(uniform_kb),
                  number_text(all_kb), number_text(mixed_kb));

@@ -43,8 +43,8 @@ Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ost
   const std::string why = why_no_namespaces();
   if (options.link == "namespaces" && !why.empty()) return Unexpected<std::string>{why};
   const bool real = options.link != "shaper" && why.empty();
-  out.link = real ? "real packets between two network namespaces, joined by a forwarder of ours "
-                    "over TUN devices"
+  out.link = real ? "real packets between two network namespaces, "
+                    "joined by a forwarder of ours over TUN devices"
                   : "a TCP proxy on loopback, in which loss is a segment that comes a round trip "
                     "later and slows nobody down";
   if (!real && !why.empty()) out.link += " (" + why + ")";
@@ -52,8 +52,8 @@ Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ost
   take_interrupts();
   Testbed testbed(options, real ? LinkKind::namespaces : LinkKind::shaper, progress);
   for (const Experiment& experiment : kExperiments) {
-    const auto& asked = options.experiments;
-    if (std::find(asked.begin(), asked.end(), experiment.name) == asked.end()) continue;
+    const auto& wanted = options.experiments;
+    if (std::find(wanted.begin(), wanted.end(), experiment.name) == wanted.end()) continue;
     if (const auto done = experiment.measure(testbed, out.findings); !done)
       return Unexpected<std::string>{done.error()};
   }
@@ -64,8 +64,8 @@ void write_tables(const NetResult& result, std::ostream& out) {
   write_machine(result.machine, out);
   fmt::print(out, "\nLinks: {}. Each TCP connection has a link of its own.\n", result.link);
   fmt::print(out,
-             "\n| link | round trip, ms | jitter each way, ms | Mbit/s | loss | queue, KiB "
-             "|\n|---|---|---|---|---|---|\n");
+             "\n| link | round trip, ms | jitter each way, ms | Mbit/s | loss | queue, KiB |\n"
+             "|---|---|---|---|---|---|\n");
   for (const test::LinkProfile& profile : test::link_profiles()) {
     if (profile.passes_all()) continue;
     fmt::print(out, "| {} | {} | {} | {} | {} % | {} |\n", profile.name,

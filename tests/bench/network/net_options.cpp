@@ -23,8 +23,8 @@ void apply_quick(const CLI::App& command, NetOptions& options) {
 
 CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   CLI::App* net = app.add_subcommand("net",
-                                     "edits, joins, transfers and fleets over "
-                                     "links with delay, jitter, rate and loss, and memory");
+                                     "edits, joins, transfers and fleets over links with delay, "
+                                     "jitter, rate and loss, and memory");
   std::set<std::string> profiles;
   for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
   net->add_option("--experiments", options.experiments, "which; all by default")

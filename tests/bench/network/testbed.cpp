@@ -34,8 +34,8 @@ std::string program_file(const std::string& name) {
 std::vector<test::LinkProfile> Testbed::profiles() const {
   std::vector<test::LinkProfile> out;
   for (const test::LinkProfile& profile : test::link_profiles()) {
-    const auto& asked = options_.profiles;
-    if (asked.empty() || std::find(asked.begin(), asked.end(), profile.name) != asked.end())
+    const auto& wanted = options_.profiles;
+    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), profile.name) != wanted.end())
       out.push_back(profile);
   }
   return out;
@@ -115,7 +115,7 @@ Result<nlohmann::json, std::string> read_report(const std::string& file) {
 
 double number_in(const nlohmann::json& value) {
   if (value.is_number()) return value.get<double>();
-  // The client's word, and the bots'.
+  // The client and the bots use different words.
   return value == "inf" || value == "infinite" ? std::numeric_limits<double>::infinity() : 0;
 }
 

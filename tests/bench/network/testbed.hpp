@@ -1,5 +1,5 @@
-// Testbed: what every network experiment needs: links, programs, worlds, and a folder that is
-// removed with it.
+// Testbed: the common means of all network experiments: links, programs, worlds, and a folder that
+// is removed with the testbed.
 #pragma once
 #include <iosfwd>
 #include <memory>

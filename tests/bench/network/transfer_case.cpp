@@ -102,19 +102,17 @@ void serve_once(tcp::acceptor& acceptor, const Bytes& bytes) {
   tcp::socket socket = acceptor.accept(error);
   if (error) return;
   socket.set_option(tcp::no_delay(true), error);
-  std::uint8_t asked = 0;
-  socket.read_some(asio::buffer(&asked, 1), error);
+  std::uint8_t request = 0;
+  socket.read_some(asio::buffer(&request, 1), error);
   if (!error) asio::write(socket, asio::buffer(bytes), error);
   if (!error)
-    socket.read_some(asio::buffer(&asked, 1),
-                     // Until the receiver has all bytes and closes.
-                     error);
+    // This read waits until the receiver has all bytes and closes.
+    socket.read_some(asio::buffer(&request, 1), error);
 }
 
 struct Received {
-  double transfer_ms = 0,
-         // Last byte read, and last chunk meshed, since the request.
-      complete_ms = 0;
+  // The times from the request until the last byte was read, and until the last chunk was meshed.
+  double transfer_ms = 0, complete_ms = 0;
   TransferTimes times;
 };
 
@@ -234,7 +232,8 @@ void write_rows(const std::vector<Four>& all, std::string& out) {
   fmt::format_to(
       into,
       "| link | scene | form | KB | transfer ms | unpack ms | mesh ms | picture complete ms | "
-      "packed + RDM is faster by |\n|---|---|---|---|---|---|---|---|---|\n");
+      "packed + RDM is faster by |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < all.size();) {
     std::vector<Four> rows = {all[i++]};
     while (is_scenario(rows[0]) && i < all.size() && is_scenario(all[i]) &&
@@ -262,9 +261,11 @@ void write_rows(const std::vector<Four>& all, std::string& out) {
 void write_answer(const std::vector<Four>& all, std::string& out) {
   const auto into = std::back_inserter(out);
   fmt::format_to(into,
-                 "\nTime to the complete picture against packed runs and RDM, all scenes alike "
-                 "(geometric mean; lowest, highest; how often packed is first, draws within 2 % "
-                 "apart):\n\n| link | dense | dense_zstd | raw |\n|---|---|---|---|\n");
+                 "\nTime to the complete picture against packed runs and RDM, "
+                 "all scenes alike (geometric mean; lowest, highest; "
+                 "how often packed is first, draws within 2 % apart):\n\n"
+                 "| link | dense | dense_zstd | raw |\n"
+                 "|---|---|---|---|\n");
   for (std::size_t i = 0; i < all.size();) {
     const std::string& profile = all[i][0]->profile;
     std::vector<Four> rows;
@@ -329,8 +330,9 @@ Done measure_transfers(Testbed& testbed, NetFindings& findings) {
   std::vector<Four> all;
   for (const auto& row : cells) all.push_back({&row[0], &row[1], &row[2], &row[3]});
   findings.tables += fmt::format(
-      "\n### Transfers\n\nMedians of up to {} repetitions. Dense forms are meshed by binary greedy "
-      "meshing, runs by RDM.\n\n",
+      "\n### Transfers\n\n"
+      "Medians of up to {} repetitions. Dense forms are meshed by binary greedy meshing, "
+      "runs by RDM.\n\n",
       testbed.options().repetitions);
   write_rows(all, findings.tables);
   write_answer(all, findings.tables);

@@ -36,9 +36,9 @@ using test::TimeNs;
 constexpr const char* kDevice = "rs0";
 constexpr int kBatch = 64;  // packets read from one side before the other side is read
 constexpr std::size_t kLatesMax = 1'000'000;
-constexpr int kKernelPackets =
-    // Packets that wait for the forwarder: all waiting is to be the model's.
-    20'000;
+// The number of packets that may wait for the forwarder. It is large, so that no packet is lost
+// outside of the model.
+constexpr int kKernelPackets = 20'000;
 
 TimeNs now() { return static_cast<TimeNs>(now_ns()); }
 
@@ -66,29 +66,29 @@ Descriptor open_tun(const char* address, std::string& why) {
     std::memcpy(&out, &in, sizeof in);
     return out;
   };
-  const auto tell = [&](int descriptor, unsigned long what, ifreq& it, const char* name) {
+  const auto control = [&](int descriptor, unsigned long what, ifreq& it, const char* name) {
     if (why.empty() && ::ioctl(descriptor, what, &it) != 0) why = failed(name);
   };
   ifreq it = request();
   it.ifr_flags = IFF_TUN | IFF_NO_PI;
-  tell(tun.get(), TUNSETIFF, it, "cannot make a TUN device");
+  control(tun.get(), TUNSETIFF, it, "cannot make a TUN device");
   it = request();
   it.ifr_addr = inet(address);
-  tell(socket.get(), SIOCSIFADDR, it, "cannot set the address of a TUN device");
+  control(socket.get(), SIOCSIFADDR, it, "cannot set the address of a TUN device");
   it = request();
   it.ifr_netmask = inet("255.255.255.0");
-  tell(socket.get(), SIOCSIFNETMASK, it, "cannot set the netmask of a TUN device");
+  control(socket.get(), SIOCSIFNETMASK, it, "cannot set the netmask of a TUN device");
   it = request();
   it.ifr_mtu = TunLink::kMtu;
-  tell(socket.get(), SIOCSIFMTU, it, "cannot set the MTU of a TUN device");
+  control(socket.get(), SIOCSIFMTU, it, "cannot set the MTU of a TUN device");
   it = request();
   it.ifr_qlen = kKernelPackets;
-  tell(socket.get(), SIOCSIFTXQLEN, it, "cannot set the queue of a TUN device");
+  control(socket.get(), SIOCSIFTXQLEN, it, "cannot set the queue of a TUN device");
   it = request();
   it.ifr_flags = IFF_UP | IFF_RUNNING;
-  tell(socket.get(), SIOCSIFFLAGS, it, "cannot bring a TUN device up");
+  control(socket.get(), SIOCSIFFLAGS, it, "cannot bring a TUN device up");
   if (!why.empty()) return {};
-  // A connection does not inherit what earlier ones learned about the path.
+  // A connection must not use the kernel's cached metrics of earlier connections.
   const Descriptor metrics(::open("/proc/sys/net/ipv4/tcp_no_metrics_save", O_WRONLY | O_CLOEXEC));
   if (!metrics || ::write(metrics.get(), "1", 1) != 1) {
     why = failed("cannot set tcp_no_metrics_save");
@@ -148,7 +148,7 @@ struct TunLink::Forwarder {
     counts.busy = static_cast<double>(core_ns()) / static_cast<double>(now_ns() - began_ns);
   }
 
-  /// Returns true when the link ends.
+  /// Returns true if the link is to end.
   bool read_and_send() {
     for (const Side from : {kServer, kClient}) {
       for (int i = 0; i < kBatch && read(from); ++i) {

@@ -1,9 +1,8 @@
 // TunLink: two network namespaces joined by a simulated link. A packet that leaves one namespace
 // through its TUN device passes a LinkModel and enters the other when it is due. Every TCP
 // connection has an access link of its own in both directions, like clients in different homes:
-// connections share no queue. Loss and drops hit real packets, and real TCP answers them. The link
-// has no name, and nothing of it outlives the process (Place). Requires CAP_NET_ADMIN and
-// /dev/net/tun.
+// connections share no queue. Real packets are lost and dropped, and real TCP reacts. The link has
+// no name, and nothing of it outlives the process (Place). Requires CAP_NET_ADMIN and /dev/net/tun.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -71,8 +71,8 @@ ReportFigure orders(const Evidence& evidence) {
   std::vector<double> fewer, faster;
   for (const std::string& world : runs.categories) {
     const Rows in = rows.where("world", world);
-    // If all orders of a volume cost the same, none is the worst. The best then counts as the
-    // worst, too, so that both means are over the same volumes.
+    // If all orders of a volume cost the same, none is the worst. The best then also counts as the
+    // worst, so that both means are over the same volumes.
     const auto mean = [&](const char* rank, const char* mesher, const char* column) {
       std::vector<double> values;
       for (const std::string& part : in.kinds("part")) {
@@ -101,8 +101,8 @@ ReportFigure orders(const Evidence& evidence) {
   out.title = "Axis orders: compression rotation (9.2)";
   out.sentence = fmt::format(
       "The cheapest of the six orders has {} times fewer runs than the dearest (geometric mean "
-      "over these worlds) and meshes {} times faster; which one it is differs by chunk, so each "
-      "holder picks it when a chunk is made.",
+      "over these worlds) and meshes {} times faster; which one it is differs by chunk, "
+      "so each holder picks it when a chunk is made.",
       format_value(geometric_mean_of(fewer)), format_value(geometric_mean_of(faster)));
   out.steps = {"orders"};
   out.picture = chart::frame_of(runs) + chart::frame_of(time);
@@ -165,8 +165,8 @@ ReportFigure stacks(const Evidence& evidence) {
   out.id = "stacks";
   out.title = "Stacked edits (9.2): one sweep instead of many";
   out.sentence = fmt::format(
-      "A thousand edits of one chunk by hand take {} µs as one stack and {} µs one by one; by "
-      "brush {} and {}.",
+      "A thousand edits of one chunk by hand take {} µs as one stack and {} µs one by one; "
+      "by brush {} and {}.",
       format_value(at("mixed edits by hand as a stack", 1000)),
       format_value(at("mixed edits by hand one by one", 1000)),
       format_value(at("mixed edits by brush as a stack", 1000)),

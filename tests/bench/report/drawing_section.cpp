@@ -107,9 +107,9 @@ ReportFigure frame_times(const Evidence& evidence, const Frames& frames) {
   out.id = "frames";
   out.title = "Frame time by mesher (8.5)";
   out.sentence = fmt::format(
-      "The same chunks, shader and vertex format: only the polygons differ. A frame takes {} ms "
-      "(geometric mean of {} worlds) with our mesh, {} with culled faces, {} with the thesis' RLE "
-      "RDM.",
+      "The same chunks, shader and vertex format: only the polygons differ. "
+      "A frame takes {} ms (geometric mean of {} worlds) with our mesh, {} with culled faces, "
+      "{} with the thesis' RLE RDM.",
       format_value(ms("rdm")), frames.worlds().size(), format_value(ms("culled")),
       format_value(ms("rle_rdm")));
   out.steps = {"frames"};
@@ -162,9 +162,9 @@ ReportFigure thesis_frames(const Evidence& evidence, const Frames& frames) {
   out.id = "fps";
   out.title = "Frames a second in the thesis' four scenarios (figure 8.14)";
   out.sentence = fmt::format(
-      "Scenario 23 shows what merging and culling buy: {} frames a second with our mesh, {} with "
-      "the rebuilt Grid RDM, {} with culled faces; the thesis has {} with Grid RDM and {} with its "
-      "RLE RDM.",
+      "Scenario 23 shows what merging and culling buy: {} frames a second with our mesh, "
+      "{} with the rebuilt Grid RDM, {} with culled faces; "
+      "the thesis has {} with Grid RDM and {} with its RLE RDM.",
       format_value(fps(23, "rdm")), format_value(fps(23, "grid_rdm")),
       format_value(fps(23, "culled")), format_value(evidence.thesis.value(23, "Grid", "fps_mean")),
       format_value(evidence.thesis.value(23, "RLE", "fps_mean")));
@@ -190,9 +190,10 @@ ReportFigure seams(const Evidence& evidence, const Frames& frames) {
   out.id = "seams";
   out.title = "What T-junctions and thin triangles do on screen (4.2.1, 4.2.2)";
   out.sentence = fmt::format(
-      "Pixels inside a plane that differ from the picture of culled faces: {} a picture with our "
-      "mesh, {} with Poly2Tri. A GPU shades in blocks of 2 x 2, so it shades more lanes than "
-      "fragments along every edge: {} lanes a fragment with our mesh, {} with culled faces.",
+      "Pixels inside a plane that differ from the picture of culled faces: "
+      "{} a picture with our mesh, {} with Poly2Tri. A GPU shades in blocks of 2 x 2, "
+      "so it shades more lanes than fragments along every edge: {} lanes a fragment with our mesh, "
+      "{} with culled faces.",
       format_value(mean("rdm", "pinhole_pixels")), format_value(mean("poly2tri", "pinhole_pixels")),
       format_value(mean("rdm", "lanes")), format_value(mean("culled", "lanes")));
   out.steps = {"frames"};
@@ -251,8 +252,8 @@ ReportFigure storage(const Evidence& evidence) {
   out.steps = {"storage"};
   out.picture = chart::frame_of(chart);
   out.marks = {
-      "Runs are ours, in their cheapest order. A brush is a sphere of radius 5; times are of a "
-      "whole edit."};
+      "Runs are ours, in their cheapest order. A brush is a sphere of radius 5; "
+      "times are of a whole edit."};
   return out;
 }
 

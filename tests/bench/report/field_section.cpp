@@ -48,8 +48,8 @@ class FieldFigures {
                               {"µs of a chunk of 32³, geometric mean of 37 scenarios", true}, "us");
     out.sentence = fmt::format(
         "From compressed runs ours takes {}. The fastest dense mesher takes {} from the same runs, "
-        "and {} where somebody has already made it a dense grid. By the sum of all scenarios, in "
-        "which the slowest weigh most, it is {} against {}.",
+        "and {} where somebody has already made it a dense grid. "
+        "By the sum of all scenarios, in which the slowest weigh most, it is {} against {}.",
         time_text(ours), time_text(total_of(totals_, "decode_binary").mean_ns),
         time_text(total_of(totals_, "grid_binary").mean_ns),
         time_text(total_of(totals_, "rdm").sum_ns),
@@ -110,8 +110,9 @@ class FieldFigures {
         "triangles; ours uses {} times that.",
         count_text(optimum), ratio_text(total_of(totals_, "rdm").triangles / optimum));
     out.marks = {
-        "Monotone and Poly2Tri draw polygons, not rectangles, and run strips over hidden faces "
-        "draw more than is exposed: the optimum does not bind them."};
+        "Monotone and Poly2Tri draw polygons, not rectangles, "
+        "and run strips over hidden faces draw more than is exposed: "
+        "the optimum does not bind them."};
     return out;
   }
 
@@ -124,9 +125,9 @@ class FieldFigures {
       return count_text(total_of(totals_, mesher).t_junctions);
     };
     out.sentence = fmt::format(
-        "A vertex inside another polygon's edge can flicker as a seam. Merging makes them: ours "
-        "{}, the culled mesher {}; monotone ({}) and Poly2Tri ({}) lessen them within a plane and "
-        "keep them between planes.",
+        "A vertex inside another polygon's edge can flicker as a seam. "
+        "Merging makes them: ours {}, the culled mesher {}; "
+        "monotone ({}) and Poly2Tri ({}) lessen them within a plane and keep them between planes.",
         of("rdm"), of("culled"), of("monotone"), of("poly2tri"));
     return out;
   }
@@ -161,9 +162,8 @@ ReportSection field_section(const Evidence& evidence) {
   ReportSection out;
   out.title = "The whole field";
   out.introduction =
-      "Every algorithm of the thesis' chapter 4.2, rebuilt and checked with the same oracle, on "
-      "the "
-      "same chunks.";
+      "Every algorithm of the thesis' chapter 4.2, rebuilt and checked with the same oracle, "
+      "on the same chunks.";
   out.figures = {figures.time(), figures.map(), figures.triangles(), figures.t_junctions()};
   return out;
 }

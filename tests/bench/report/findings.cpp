@@ -81,8 +81,8 @@ std::vector<std::string> Findings::doubts(const std::vector<std::string>& steps)
     } else if (!is_comparable(*finding, *common_)) {
       const Machine& m = finding->machine;
       out.push_back(
-          fmt::format("{} was measured on something else than the rest: {}, {} cores; {}; commit "
-                      "{}; world {}; {}.",
+          fmt::format("{} was measured on something else than the rest: {}, {} cores; {}; "
+                      "commit {}; world {}; {}.",
                       step, m.cpu, m.cores, m.compiler, m.commit, finding->luanti,
                       finding->is_quick ? "a quick run" : "a full run"));
     }

@@ -4,7 +4,7 @@
 
 namespace runstone::bench {
 
-/// Returns text for HTML, valid in attributes, too.
+/// Returns text for HTML. It is also valid in attributes.
 inline std::string html_text(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -119,8 +119,8 @@ ReportFigure transfers(const Evidence& evidence) {
   out.title = "Send, unpack, mesh: under each link (9.2)";
   out.sentence = fmt::format(
       "Until everything is meshed, dense voxels under zstd take this many times as long as packed "
-      "runs (geometric mean of five worlds): {}. On slow links bytes decide, on fast ones the "
-      "meshing.",
+      "runs (geometric mean of five worlds): {}. On slow links bytes decide, "
+      "on fast ones the meshing.",
       ratios.empty() ? "not measured" : ratios);
   out.steps = steps;
   out.data = table_of(evidence.findings.figures(steps));
@@ -230,8 +230,8 @@ ReportSection network_section(const Evidence& evidence) {
   ReportSection out;
   out.title = "Under networked conditions";
   out.introduction =
-      "Real programs, simulated links: delay, jitter, rate and loss. Nothing here was asked "
-      "of the thesis' prototype.";
+      "Real programs, simulated links: delay, jitter, rate and loss. "
+      "Nothing here was asked of the thesis' prototype.";
   out.figures = {bytes(evidence), transfers(evidence), latency(evidence), fleets(evidence)};
   return out;
 }

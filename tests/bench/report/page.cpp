@@ -70,9 +70,8 @@ std::string html_of(const Verdicts& verdicts, const Findings& findings) {
                     paragraphs("doubt", findings.doubts(verdicts.steps));
   if (verdicts.rows.empty()) return out;
   out +=
-      "<table "
-      "class=\"verdicts\"><thead><tr><th>Question</th><th>Wins</th><th>Loses</th></tr></"
-      "thead><tbody>\n";
+      "<table class=\"verdicts\"><thead>"
+      "<tr><th>Question</th><th>Wins</th><th>Loses</th></tr></thead><tbody>\n";
   for (const ReportVerdict& row : verdicts.rows) {
     out += fmt::format(
         "<tr><td><a href=\"#{}\">{}</a></td><td data-head=\"wins\">{}</td><td "
@@ -87,8 +86,8 @@ std::string provenance(const Findings& findings) {
   if (common == nullptr) return "<p class=\"doubt\">Nothing was measured yet.</p>\n";
   const Machine& m = common->machine;
   return fmt::format(
-      "<p class=\"quiet\">{}, {} cores; {}; vectors {}; commit {}; real world {}; {}. Medians; the "
-      "machine may be shared.</p>\n",
+      "<p class=\"quiet\">{}, {} cores; {}; vectors {}; commit {}; real world {}; {}. Medians; "
+      "the machine may be shared.</p>\n",
       html_text(m.cpu), m.cores, html_text(m.compiler), html_text(m.simd), html_text(m.commit),
       html_text(common->luanti),
       common->is_quick ? "a quick run: few repetitions, wide errors" : "a full run");
@@ -96,8 +95,8 @@ std::string provenance(const Findings& findings) {
 
 std::string steps_table(const std::vector<Step>& steps, const Findings& findings) {
   std::string out =
-      "<h2 id=\"steps\">What was "
-      "run</h2>\n<table><thead><tr><th>Step</th><th>Took</th><th>Alone</th></tr></thead><tbody>\n";
+      "<h2 id=\"steps\">What was run</h2>\n"
+      "<table><thead><tr><th>Step</th><th>Took</th><th>Alone</th></tr></thead><tbody>\n";
   double sum = 0;
   for (const Step& step : steps) {
     const Finding* finding = findings.find(step.name);
@@ -152,12 +151,21 @@ Result<WrittenPage, std::string> write_page(const ReportOptions& options,
           ? ""
           : paragraphs("doubt", {"The thesis' figures are missing: " + thesis.doubt()});
   const std::string page = fmt::format(
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<meta "
-      "name=\"color-scheme\" content=\"light dark\">\n"
-      "<title>Runstone: the evaluation</title>\n<style>\n{}\n{}</style>\n</head>\n<body>\n"
-      "<h1>Meshing voxels from compressed runs: the "
-      "evaluation</h1>\n{}{}{}{}{}{}</body>\n</html>\n",
+      "<!doctype html>\n"
+      "<html lang=\"en\">\n"
+      "<head>\n"
+      "<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n"
+      "<title>Runstone: the evaluation</title>\n"
+      "<style>\n"
+      "{}\n"
+      "{}</style>\n"
+      "</head>\n"
+      "<body>\n"
+      "<h1>Meshing voxels from compressed runs: the evaluation</h1>\n"
+      "{}{}{}{}{}{}</body>\n"
+      "</html>\n",
       chart::chart_css(), kPageStyle, provenance(findings), thesis_doubt,
       html_of(verdicts_of(evidence), findings), nav, body, steps_table(steps, findings));
   if (const auto done = write_text_file(out.file, page); !done)

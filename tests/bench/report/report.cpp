@@ -82,8 +82,8 @@ std::string objection(const ReportOptions& options) {
     const auto found = read_finding(options.out, step.name);
     if (found && !found->is_quick) {
       return options.out +
-             " has figures of a full run, which a quick one would replace: take another folder, or "
-             "say --again";
+             " has figures of a full run, which a quick one would replace: take another folder, "
+             "or say --again";
     }
   }
   return "";

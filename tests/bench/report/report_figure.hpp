@@ -1,5 +1,4 @@
-// ReportFigure: one figure of the report, with its numbers and the sentence that says what it
-// shows.
+// ReportFigure: one figure of the report, with its numbers and a sentence about its content.
 #pragma once
 #include <string>
 #include <vector>
@@ -31,15 +30,15 @@ struct Evidence {
   const ThesisData& thesis;
 };
 
-/// The thesis' figures, with our numbers beside the thesis'.
+/// Returns the thesis' figures, with our numbers beside the thesis'.
 ReportSection thesis_section(const Evidence& evidence);
-/// All meshers compared.
+/// Returns the comparison of all meshers.
 ReportSection field_section(const Evidence& evidence);
-/// The cost of drawing the meshes, and other ways to store voxels.
+/// Returns the cost of drawing the meshes, and other ways to store voxels.
 ReportSection drawing_section(const Evidence& evidence);
-/// The thesis' future work: real worlds, axis orders, dirty layers, edits.
+/// Returns the thesis' future work: real worlds, axis orders, dirty layers, edits.
 ReportSection beyond_section(const Evidence& evidence);
-/// The same voxels over links: bytes, transfers, latency, fleets.
+/// Returns the figures of the same voxels over links: bytes, transfers, latency, fleets.
 ReportSection network_section(const Evidence& evidence);
 
 }  // namespace runstone::bench

@@ -9,14 +9,14 @@
 
 namespace runstone::bench {
 
-/// Refers to the JSON from which it was made, which must outlive it.
+/// An object refers to the JSON from which it was made, which must outlive it.
 class Rows {
  public:
   Rows() = default;
-  /// Takes the objects of an array; no rows of anything else.
+  /// Takes the objects of an array as rows. Anything else gives no rows.
   explicit Rows(const nlohmann::json& array);
 
-  /// Returns one row for an object; no row for anything else.
+  /// Returns one row for an object, and no row for anything else.
   static Rows of(const nlohmann::json& object);
 
   Rows where(std::string_view column, std::string_view text) const;

@@ -1,5 +1,5 @@
-// ThesisFigures: the thesis' figures, drawn again from its results and from what this machine
-// measured.
+// ThesisFigures: the thesis' figures, drawn again from its results and from the measurements of
+// this machine.
 #pragma once
 #include <array>
 #include <string>
@@ -20,9 +20,9 @@ class ThesisFigures {
   ReportFigure vertices(unsigned group) const;
   ReportFigure phases(unsigned group) const;
   ReportFigure timing(unsigned group) const;
-  /// The time of a chunk by its edge. Requires scenario 1, 5 or 17.
+  /// Returns the figure of a chunk's time by its edge. Requires scenario 1, 5 or 17.
   ReportFigure chunk_sizes(unsigned scenario) const;
-  /// Time against vertices, over all scenarios.
+  /// Returns the figure of time against vertices, over all scenarios.
   ReportFigure efficiency() const;
 
  private:
@@ -33,7 +33,8 @@ class ThesisFigures {
   /// Returns the thesis' mean over the 27 chunks. Voxel Plugin logs no line for a chunk without
   /// faces.
   double thesis_vertices(unsigned scenario, std::string_view mesher) const;
-  /// Says in how many scenarios each rebuilt mesher has the thesis' mean of vertices.
+  /// Returns a sentence with the number of scenarios in which each rebuilt mesher has the thesis'
+  /// mean of vertices.
   std::string agreement(const std::vector<unsigned>& scenarios) const;
 
   const ThesisData& thesis_;

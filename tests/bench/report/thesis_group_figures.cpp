@@ -117,8 +117,8 @@ ReportFigure ThesisFigures::vertices(unsigned group) const {
   out.title =
       fmt::format("Vertices of group {}, {} (figures 8.11 to 8.13)", group, kGroupNames[group - 1]);
   out.sentence = fmt::format(
-      "Ours needs {} vertices a chunk on average, the thesis' Grid RDM {}, its RLE RDM {} and "
-      "Voxel Plugin {}. {}",
+      "Ours needs {} vertices a chunk on average, the thesis' Grid RDM {}, "
+      "its RLE RDM {} and Voxel Plugin {}. {}",
       format_value(mean_of(chart.series[3].values)), format_value(mean_of(chart.series[0].values)),
       format_value(mean_of(chart.series[1].values)), format_value(mean_of(chart.series[2].values)),
       agreement(scenarios));
@@ -174,10 +174,11 @@ ReportFigure ThesisFigures::phases(unsigned group) const {
     return mean([&](unsigned s) { return time(s, mesher, "mean_ns") / 1000; });
   };
   out.sentence = fmt::format(
-      "Ours meshes a chunk in {} µs, with no phase before it and none after: quads are what the "
-      "GPU reads. On the same machine the rebuilt Grid RDM takes {} µs, RLE RDM {}, and decoding "
-      "first and meshing with the fastest dense mesher {}. Compare the thesis' milliseconds by "
-      "their shares only: another machine, and an engine around them.",
+      "Ours meshes a chunk in {} µs, with no phase before it and none after: "
+      "quads are what the GPU reads. On the same machine the rebuilt Grid RDM takes {} µs, "
+      "RLE RDM {}, and decoding first and meshing with the fastest dense mesher {}. "
+      "Compare the thesis' milliseconds by their shares only: another machine, "
+      "and an engine around them.",
       format_value(total("rdm")), format_value(total("grid_rdm")), format_value(total("rle_rdm")),
       format_value(total("decode_binary")));
   out.steps = {"thesis"};
@@ -204,7 +205,7 @@ ReportFigure ThesisFigures::timing(unsigned group) const {
   chart.title = "time of a chunk";
   ReportFigure out;
   out.data.columns = {"scenario", "mesher", "least us", "median us", "mean us", "greatest us"};
-  double ours_sum = 0, theirs_sum = 0;
+  double ours_sum = 0, thesis_sum = 0;
   for (const unsigned s : scenarios) {
     const auto thesis_us = [&](const char* metric) {
       return 1000 * thesis_.value(s, "RLE", metric);
@@ -222,16 +223,17 @@ ReportFigure ThesisFigures::timing(unsigned group) const {
     add("thesis", Role::thesis, thesis_us("total_min"), thesis_us("total_median"),
         thesis_us("total_mean"), thesis_us("total_max"));
     ours_sum += our_us("mean_ns");
-    theirs_sum += thesis_us("total_mean");
+    thesis_sum += thesis_us("total_mean");
   }
   out.id = fmt::format("timing-group-{}", group);
   out.title = fmt::format(
       "Meshing from runs in group {}, {}: least, median, greatest (figures 8.20 and 8.21)", group,
       kGroupNames[group - 1]);
   out.sentence = fmt::format(
-      "The thesis' RLE RDM took {} times as long as ours over the group, on another machine and "
-      "with Unreal's buffers: look at how both rise and fall with the model.",
-      format_value(theirs_sum / ours_sum));
+      "The thesis' RLE RDM took {} times as long as ours over the group, "
+      "on another machine and with Unreal's buffers: look at how both rise and fall with the "
+      "model.",
+      format_value(thesis_sum / ours_sum));
   out.steps = {"thesis"};
   out.picture = chart::frame_of(chart);
   out.marks = marks_of(scenarios);

@@ -74,8 +74,8 @@ ReportFigure ThesisFigures::chunk_sizes(unsigned scenario) const {
   out.title = fmt::format("Side of the chunk, scenario {} (figures 8.23 to 8.25)", scenario);
   out.sentence = fmt::format(
       "A chunk of 128³ takes ours {}; the thesis called that side unsuitable for real time ({} "
-      "with Grid RDM, {} with RLE RDM). From 32 to 128 the voxels grow 64 times, our time {} "
-      "times.",
+      "with Grid RDM, {} with RLE RDM). From 32 to 128 the voxels grow 64 times, "
+      "our time {} times.",
       time_text(at(128)), time_text(kNsPerMs * thesis_.chunk_size_ms(scenario, 128, "Grid")),
       time_text(kNsPerMs * thesis_.chunk_size_ms(scenario, 128, "RLE")),
       format_value(at(128) / at(32)));
@@ -83,8 +83,8 @@ ReportFigure ThesisFigures::chunk_sizes(unsigned scenario) const {
                                : "Ours: the chunk in the middle; the thesis: the mean of 27.");
   if (is_noise) {
     out.marks.push_back(
-        "Scenario 5 is data of side 32 whose generator is not public; ours is measured on our own "
-        "noise terrain instead.");
+        "Scenario 5 is data of side 32 whose generator is not public; "
+        "ours is measured on our own noise terrain instead.");
   }
   if (scenario == 1)
     out.marks.push_back(

@@ -90,13 +90,11 @@ std::string answer_of(const Evidence& evidence) {
   const std::string sums =
       format_value(total_of(totals, "decode_binary").sum_ns / total_of(totals, "rdm").sum_ns);
   std::string out = fmt::format(
-      "The fastest mesher that starts from the stored runs is {}. Over the thesis' 37 scenarios "
-      "(the "
-      "chunk in the middle), decoding and meshing with the fastest dense mesher, binary greedy, "
-      "takes "
-      "{} times as long as meshing from runs by the geometric mean and {} times by the sum. Runs "
-      "are "
-      "faster in {} of the {} scenarios{}{}. ",
+      "The fastest mesher that starts from the stored runs is {}. "
+      "Over the thesis' 37 scenarios (the chunk in the middle), "
+      "decoding and meshing with the fastest dense mesher, binary greedy, "
+      "takes {} times as long as meshing from runs by the geometric mean and {} times by the sum. "
+      "Runs are faster in {} of the {} scenarios{}{}. ",
       pays ? "Run Directional Meshing" : "binary greedy", format_value(scenarios.gain), sums,
       scenarios.wins, scenarios.parts, scenarios.lost.empty() ? "" : "; the exceptions are ",
       scenarios.lost);

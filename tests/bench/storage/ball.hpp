@@ -74,7 +74,7 @@ class Ball {
   LocalPos centre_;
   std::int32_t radius_;
   std::int32_t reach_;  // the largest squared distance inside
-  // By the squared distance of a row from the centre: the reach of the row to either side.
+  // The reach of a row to either side, by the squared distance of the row from the centre.
   std::array<std::uint8_t, kRadiusMax*(kRadiusMax + 1) + 1> half_{};
 };
 

@@ -35,8 +35,8 @@ struct MortonByPdep {
   }
 
  private:
-  // Not the intrinsic: a function for BMI2 is never inlined into a function for any x86-64, and the
-  // call would cost more than the instruction.
+  // The intrinsic is not used: a function for BMI2 is never inlined into a function for any x86-64,
+  // and the call would cost more than the instruction.
   static std::uint32_t deposit(std::uint32_t bits, std::uint32_t mask) {
     std::uint32_t out = 0;
     __asm__("pdep %2, %1, %0" : "=r"(out) : "r"(bits), "r"(mask));

@@ -16,7 +16,7 @@
 
 namespace runstone::bench::storage {
 
-/// Record must be plain bytes without padding, a multiple of eight.
+/// Record must be plain bytes without padding. Its size must be a multiple of eight.
 template <class Record>
 class SharedPool {
  public:

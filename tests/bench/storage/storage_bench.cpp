@@ -1,10 +1,9 @@
 #include "tests/bench/storage/storage_bench.hpp"
 
-#include <fmt/ostream.h>
+#include <fmt/format.h>
 
 #include <bit>
 
-#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/shuffled.hpp"
 #include "tests/bench/harness/statistics.hpp"
 #include "tests/bench/storage/stores.hpp"
@@ -14,9 +13,9 @@ namespace runstone::bench {
 namespace {
 
 /// Measures all stores on one volume.
-void measure_volume(const storage::StoreCase& asked, unsigned repetitions, const StorageRow& shared,
+void measure_volume(const storage::StoreCase& input, unsigned repetitions, const StorageRow& shared,
                     std::vector<StorageRow>& rows) {
-  const auto stores = storage::make_stores(asked);
+  const auto stores = storage::make_stores(input);
   std::vector<ShuffledCase> cases;
   for (const auto& store : stores) cases.push_back({std::string(store.name), store.repetition});
   const auto samples = run_shuffled(cases, repetitions);
@@ -52,29 +51,20 @@ Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options
   result.machine = this_machine();
   result.repetitions = options.repetitions;
   result.morton_code = storage::morton_code_maker();
-  for (std::size_t w = 0; w < worlds->size(); ++w) {
-    for (const unsigned edge : options.edges) {
-      const std::uint64_t start = now_ns();
-      const MeasuredWorld world = worlds->at_edge(w, edge);
-      if (!world.missing.empty()) {
-        result.skipped.push_back(fmt::format("{} edge {}: {}", world.name, edge, world.missing));
-      }
-      for (std::size_t v = 0; v < world.volumes.size(); ++v) {
-        const RunChunk& chunk = world.volumes[v].scene.chunk;
-        const storage::StoreCase asked = storage::make_store_case(chunk, v);
-        StorageRow shared;
-        shared.world = world.name;
-        shared.part = world.parts[v];
-        shared.edge = edge;
-        shared.runs = chunk.runs.size();
-        shared.brush_voxels = asked.brush_voxels;
-        measure_volume(asked, options.repetitions, shared, result.rows);
-      }
-      fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge,
-                 world.volumes.size(), static_cast<double>(now_ns() - start) * 1e-9);
-      progress.flush();
+  const auto measure = [&](std::size_t, const MeasuredWorld& world, unsigned edge) {
+    for (std::size_t v = 0; v < world.volumes.size(); ++v) {
+      const RunChunk& chunk = world.volumes[v].scene.chunk;
+      const storage::StoreCase input = storage::make_store_case(chunk, v);
+      StorageRow shared;
+      shared.world = world.name;
+      shared.part = world.parts[v];
+      shared.edge = edge;
+      shared.runs = chunk.runs.size();
+      shared.brush_voxels = input.brush_voxels;
+      measure_volume(input, options.repetitions, shared, result.rows);
     }
-  }
+  };
+  worlds->measure_each(options.edges, measure, result.skipped, progress);
   return result;
 }
 

@@ -95,8 +95,10 @@ void write_tables(const StorageResult& result, std::ostream& out) {
     const std::size_t volumes = group.stores.front().bytes.size();
     fmt::print(
         out,
-        "\n**{}**, edge {}, {} volume{}\n\n| store | bytes | B/voxel | build µs | read ns | walk "
-        "ns/voxel | edit ns | brush µs | brush ns/voxel |\n|---|---|---|---|---|---|---|---|---|\n",
+        "\n**{}**, edge {}, {} volume{}\n\n"
+        "| store | bytes | B/voxel | build µs | read ns | walk ns/voxel | edit ns | brush µs | "
+        "brush ns/voxel |\n"
+        "|---|---|---|---|---|---|---|---|---|\n",
         group.name, group.edge, volumes, volumes == 1 ? "" : "s");
     for (const Samples& s : group.stores) {
       fmt::print(out,

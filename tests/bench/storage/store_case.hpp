@@ -28,8 +28,8 @@ struct StoreCase {
   double brush_voxels = 0;  // of a brush, inside the chunk: mean
 };
 
-/// Places are uniform in the chunk. Materials are drawn from those of the chunk, the empty one, and
-/// one that the chunk does not have.
+/// Returns the case of a chunk. Places are uniform in the chunk. Materials are drawn from those of
+/// the chunk, the empty one, and one that the chunk does not have.
 StoreCase make_store_case(const RunChunk& chunk, std::uint64_t seed);
 
 }  // namespace runstone::bench::storage

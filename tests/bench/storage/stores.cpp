@@ -60,21 +60,21 @@ double block_ns(Work&& work) {
 }
 
 template <VoxelStore Store>
-double read_ns(const Store& store, const StoreCase& asked) {
+double read_ns(const Store& store, const StoreCase& input) {
   return block_ns([&] {
-           for (const LocalPos at : asked.reads) {
+           for (const LocalPos at : input.reads) {
              const Material material = store.at(at);
-             benchmark::DoNotOptimize(
-                 // One by one: in a store of one material all reads are the same.
-                 material);
+             // Each material is used alone, because in a store of one material all reads have the
+             // same result.
+             benchmark::DoNotOptimize(material);
            }
            benchmark::ClobberMemory();
          }) /
-         static_cast<double>(asked.reads.size());
+         static_cast<double>(input.reads.size());
 }
 
 template <VoxelStore Store>
-double walk_ns(const Store& store, const StoreCase& asked) {
+double walk_ns(const Store& store, const StoreCase& input) {
   return block_ns([&] {
            std::uint64_t sum = 0;
            store.walk([&](std::uint32_t count, Material material) {
@@ -83,23 +83,23 @@ double walk_ns(const Store& store, const StoreCase& asked) {
            benchmark::DoNotOptimize(sum);
            benchmark::ClobberMemory();
          }) /
-         asked.chunk.volume();
+         input.chunk.volume();
 }
 
 /// Works on a copy, so that the store keeps nothing from an edit, such as a grown palette.
 template <VoxelStore Store>
-double edit_ns(const Store& store, const StoreCase& asked) {
+double edit_ns(const Store& store, const StoreCase& input) {
   Store edited = store;
   return block_ns([&] {
-           for (const PointEdit& edit : asked.edits) {
+           for (const PointEdit& edit : input.edits) {
              edited.set(edit.at, edit.now);
-             // otherwise an array would be written only the second time
+             // Otherwise an array would be written only the second time.
              benchmark::ClobberMemory();
              edited.set(edit.at, edit.before);
              benchmark::ClobberMemory();
            }
          }) /
-         static_cast<double>(2 * asked.edits.size());
+         static_cast<double>(2 * input.edits.size());
 }
 
 /// Returns the size of a batch. Batches keep the calls of the clock few.
@@ -109,45 +109,45 @@ std::size_t batch_of(const Store& store) {
 }
 
 template <VoxelStore Store>
-double build_ns(const Store& store, const StoreCase& asked) {
+double build_ns(const Store& store, const StoreCase& input) {
   const std::size_t batch = batch_of(store);
   std::vector<Store> built;
   built.reserve(batch);
-  built.emplace_back(asked.chunk);  // to warm up
+  built.emplace_back(input.chunk);  // to warm up
   built.clear();
   return core_ns_of([&] {
-           for (std::size_t i = 0; i < batch; ++i) built.emplace_back(asked.chunk);
+           for (std::size_t i = 0; i < batch; ++i) built.emplace_back(input.chunk);
          }) /
          static_cast<double>(batch);
 }
 
 /// Paints each brush on the original voxels.
 template <VoxelStore Store>
-double brush_ns(const Store& store, const StoreCase& asked) {
+double brush_ns(const Store& store, const StoreCase& input) {
   const std::size_t batch = batch_of(store);
   double sum = 0;
-  for (const Brush& brush : asked.brushes) {
+  for (const Brush& brush : input.brushes) {
     std::vector<Store> painted(batch, store);
     sum += core_ns_of([&] {
       for (Store& each : painted) each.paint(brush.ball, brush.material);
     });
   }
-  return sum / static_cast<double>(batch * asked.brushes.size());
+  return sum / static_cast<double>(batch * input.brushes.size());
 }
 
 template <VoxelStore Store>
-MeasuredStore measured_store(std::string_view name, const StoreCase& asked) {
-  const auto store = std::make_shared<const Store>(asked.chunk);
-  return {name, store->byte_size(), [store, &asked] {
+MeasuredStore measured_store(std::string_view name, const StoreCase& input) {
+  const auto store = std::make_shared<const Store>(input.chunk);
+  return {name, store->byte_size(), [store, &input] {
             std::vector<double> out(kStoreFigureCount);
             const auto figure = [&](StoreFigure which) -> double& {
               return out[static_cast<std::size_t>(which)];
             };
-            figure(StoreFigure::build) = build_ns(*store, asked);
-            figure(StoreFigure::read) = read_ns(*store, asked);
-            figure(StoreFigure::walk) = walk_ns(*store, asked);
-            figure(StoreFigure::edit) = edit_ns(*store, asked);
-            figure(StoreFigure::brush) = brush_ns(*store, asked);
+            figure(StoreFigure::build) = build_ns(*store, input);
+            figure(StoreFigure::read) = read_ns(*store, input);
+            figure(StoreFigure::walk) = walk_ns(*store, input);
+            figure(StoreFigure::edit) = edit_ns(*store, input);
+            figure(StoreFigure::brush) = brush_ns(*store, input);
             return out;
           }};
 }
@@ -156,16 +156,16 @@ MeasuredStore measured_store(std::string_view name, const StoreCase& asked) {
 
 std::span<const std::string_view> store_names() { return kNames; }
 
-std::vector<MeasuredStore> make_stores(const StoreCase& asked) {
+std::vector<MeasuredStore> make_stores(const StoreCase& input) {
   std::vector<MeasuredStore> out;
-  out.push_back(measured_store<FlatArray>(kNames[0], asked));
-  out.push_back(morton_by_pdep() ? measured_store<MortonArray<MortonByPdep>>(kNames[1], asked)
-                                 : measured_store<MortonArray<MortonByTable>>(kNames[1], asked));
-  out.push_back(measured_store<PaletteStore>(kNames[2], asked));
-  out.push_back(measured_store<RunStore>(kNames[3], asked));
-  out.push_back(measured_store<IntervalMap>(kNames[4], asked));
-  out.push_back(measured_store<SparseOctree>(kNames[5], asked));
-  out.push_back(measured_store<VoxelDag>(kNames[6], asked));
+  out.push_back(measured_store<FlatArray>(kNames[0], input));
+  out.push_back(morton_by_pdep() ? measured_store<MortonArray<MortonByPdep>>(kNames[1], input)
+                                 : measured_store<MortonArray<MortonByTable>>(kNames[1], input));
+  out.push_back(measured_store<PaletteStore>(kNames[2], input));
+  out.push_back(measured_store<RunStore>(kNames[3], input));
+  out.push_back(measured_store<IntervalMap>(kNames[4], input));
+  out.push_back(measured_store<SparseOctree>(kNames[5], input));
+  out.push_back(measured_store<VoxelDag>(kNames[6], input));
   return out;
 }
 

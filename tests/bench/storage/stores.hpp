@@ -1,4 +1,4 @@
-// The stores as cases to measure, each in front of one volume.
+// The stores as cases to measure, each with one volume.
 //   flat           one material a voxel, in the axis order of the runs (flat_array.hpp)
 //   morton         the same by Morton code (morton_array.hpp)
 //   palette        sections of 16³ with a palette, as in Minecraft (palette_store.hpp)
@@ -31,9 +31,9 @@ struct MeasuredStore {
 /// Returns all names, in the order above.
 std::span<const std::string_view> store_names();
 
-/// Returns all stores on one volume, in that order. Requires a storable() chunk; `asked` must
+/// Returns all stores on one volume, in that order. Requires a storable() chunk; `input` must
 /// outlive them.
-std::vector<MeasuredStore> make_stores(const StoreCase& asked);
+std::vector<MeasuredStore> make_stores(const StoreCase& input);
 
 /// Returns "pdep" or "table": how Morton codes are made on this machine.
 std::string_view morton_code_maker();

@@ -161,8 +161,9 @@ Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options,
 
 void write_table(const BytesBench& bench, std::ostream& out) {
   fmt::print(out,
-             "\n| world | chunks | form | bytes | x Luanti with light | geometric mean | x "
-             "Minecraft | encode µs | decode µs |\n|---|---|---|---|---|---|---|---|---|\n");
+             "\n| world | chunks | form | bytes | x Luanti with light | geometric mean | "
+             "x Minecraft | encode µs | decode µs |\n"
+             "|---|---|---|---|---|---|---|---|---|\n");
   for (const BytesRow& row : bench.rows) {
     fmt::print(out, "| {} | {} {} | {} | {:.0f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} |\n",
                row.world, row.chunks, row.mixed ? "not uniform" : "all", row.form, row.bytes,

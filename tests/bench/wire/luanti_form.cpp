@@ -23,7 +23,7 @@ struct Scratch {
   std::unique_ptr<ZSTD_CStream, Free> compressor{ZSTD_createCStream()};
   std::unique_ptr<ZSTD_DStream, Free> decompressor{ZSTD_createDStream()};
   Bytes plain;  // of the block to send
-  // never cleared: only the bytes that were read into it are used
+  // The buffer is never cleared, because only the bytes that were read into it are used.
   Bytes received = Bytes(kPlainBytesMax);
 };
 
@@ -87,8 +87,8 @@ void encode_luanti_block(const LuantiNodes& nodes, Bytes& out) {
   ZSTD_initCStream(s.compressor.get(), kLevel);
   ZSTD_inBuffer source{s.plain.data(), s.plain.size(), 0};
   ZSTD_outBuffer target{out.data() + at, out.size() - at, 0};
-  // Two calls, as Luanti makes them: with all input in the end call, zstd would write the content
-  // size.
+  // There are two calls, as in Luanti. If the call that ends the frame had all input, zstd would
+  // write the content size.
   ZSTD_compressStream2(s.compressor.get(), &target, &source, ZSTD_e_continue);
   const std::size_t left = ZSTD_compressStream2(s.compressor.get(), &target, &source, ZSTD_e_end);
   RUNSTONE_ASSERT(left == 0);

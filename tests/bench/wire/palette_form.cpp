@@ -18,7 +18,7 @@ struct Scratch {
   std::vector<Material> names;    // of the last decoded section
   PackedLongs numbers;            // of the present section: palette indices, or ids
   Bytes received;
-  // By id; 0xffff: absent.
+  // The place of each id in the palette; 0xffff: absent.
   std::vector<std::uint16_t> index_of = std::vector<std::uint16_t>(65536, 0xffff);
 };
 

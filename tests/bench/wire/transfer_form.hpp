@@ -1,5 +1,5 @@
-// TransferForm: one way to send a chunk. Its input is ready in the form in which its owner keeps
-// it, and its buffers are warm, so that a call times coding alone.
+// TransferForm: one way to send a chunk. The chunk is ready in the form in which its owner keeps
+// it, and the buffers are warm, so that a call times coding alone.
 //   dense             a u16 for each voxel
 //   dense_zstd        the same under zstd 3
 //   luanti_light      eight of Luanti's blocks with the light of the chunk; param2 is 0

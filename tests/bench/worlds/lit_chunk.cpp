@@ -19,9 +19,8 @@ namespace {
 
 constexpr auto kSide = static_cast<std::int32_t>(kByteEdge);
 constexpr std::uint8_t kSun = 15;
-constexpr std::int32_t kSkyAbove =
-    static_cast<std::int32_t>(kSideMax) -
-    kSide;  // how far above a chunk a voxel may shade it: columns end there
+// The height above a chunk up to which a voxel may shade it, because columns end there.
+constexpr std::int32_t kSkyAbove = static_cast<std::int32_t>(kSideMax) - kSide;
 constexpr VoxelBox kTerrainBox = {{-160, -64, -160}, {160, 96, 160}};
 constexpr VoxelBox kSeededBox = {{0, -64, 0}, {128, 64, 128}};
 
@@ -87,7 +86,7 @@ std::vector<LitChunk> seeded(const VoxelWorld& world) {
   });
 }
 
-/// A scenario's model stands alone under the sky.
+/// A scenario's model has only sky around it.
 std::vector<LitChunk> scenarios(const MeasuredWorlds& worlds) {
   std::vector<LitChunk> out;
   for (const Volume& volume : worlds.at_edge(0, kByteEdge).volumes) {

@@ -15,7 +15,7 @@ inline constexpr unsigned kByteEdge = 32;  // edge of the chunks: eight blocks o
 struct LitChunk {
   RunChunk runs;                 // in the cheapest axis order, as a holder keeps it
   std::vector<Material> voxels;  // x fastest, then y, then z
-  // At the same index, as Luanti keeps it: low nibble by day, high nibble at night.
+  // The light at the same index, as Luanti keeps it: low nibble by day, high nibble at night.
   std::vector<std::uint8_t> light;
 };
 

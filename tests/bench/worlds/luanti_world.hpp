@@ -8,7 +8,8 @@
 
 namespace runstone::bench {
 
-/// Says whether plants, torches and the like are voxels, or empty as in an import by default.
+/// yes: plants, torches and similar nodes are voxels. no: they are empty, as in an import by
+/// default.
 enum class PlantsKept : bool { no, yes };
 
 /// Reads `folder`/map.sqlite. The world's name is "luanti". Fails with the importer's message, or

@@ -1,10 +1,13 @@
 #include "tests/bench/worlds/measured_worlds.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ostream.h>
 
 #include <algorithm>
+#include <ostream>
 
 #include "common/generate/scenarios/scenario_model.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/worlds/luanti_world.hpp"
 #include "tests/bench/worlds/seeded_worlds.hpp"
 #include "tests/support/scenario_scene.hpp"
@@ -78,6 +81,23 @@ MeasuredWorld MeasuredWorlds::at_edge(std::size_t world, unsigned edge) const {
     out.parts.push_back(fmt::format("{} {} {}", volume.origin.x, volume.origin.y, volume.origin.z));
   }
   return out;
+}
+
+void MeasuredWorlds::measure_each(std::span<const unsigned> edges, const Measure& measure,
+                                  std::vector<std::string>& skipped, std::ostream& progress) const {
+  for (std::size_t w = 0; w < size(); ++w) {
+    for (const unsigned edge : edges) {
+      const std::uint64_t start = now_ns();
+      const MeasuredWorld world = at_edge(w, edge);
+      if (!world.missing.empty()) {
+        skipped.push_back(fmt::format("{} edge {}: {}", world.name, edge, world.missing));
+      }
+      measure(w, world, edge);
+      fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge,
+                 world.volumes.size(), static_cast<double>(now_ns() - start) * 1e-9);
+      progress.flush();
+    }
+  }
 }
 
 }  // namespace runstone::bench

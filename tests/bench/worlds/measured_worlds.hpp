@@ -1,7 +1,11 @@
 // The worlds to measure on, by name: the seeded worlds, a Luanti world, and the thesis' 37
 // scenarios.
 #pragma once
+#include <functional>
+#include <iosfwd>
+#include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +39,14 @@ class MeasuredWorlds {
   /// Returns null for the scenarios.
   const VoxelWorld* voxels(std::size_t world) const;
   MeasuredWorld at_edge(std::size_t world, unsigned edge) const;
+
+  /// Measures a world, given by its number and its volumes at one edge.
+  using Measure =
+      std::function<void(std::size_t number, const MeasuredWorld& world, unsigned edge)>;
+  /// Calls `measure` for each world at each edge, and prints a line of progress after each call.
+  /// Appends a line to `skipped` for each world and edge with missing volumes.
+  void measure_each(std::span<const unsigned> edges, const Measure& measure,
+                    std::vector<std::string>& skipped, std::ostream& progress) const;
 
  private:
   std::vector<std::string> names_;

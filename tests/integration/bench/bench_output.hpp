@@ -1,4 +1,4 @@
-// Runs runstone-bench as a program and keeps its output.
+// BenchOutput: the output of a run of runstone-bench as a program.
 #pragma once
 #include <sstream>
 #include <string>

@@ -64,9 +64,8 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
   std::map<std::string, std::set<std::string>> meshers;  // by world and part
   std::map<std::string, std::set<std::string>> parts;    // by world
   std::map<std::string, std::map<std::string, std::size_t>> quads;
-  std::map<std::string, std::set<std::string>>
-      // Of meshers of polygons: all have the same number.
-      triangles;
+  // The number of triangles of the polygon meshers. All have the same number.
+  std::map<std::string, std::set<std::string>> triangles;
   std::size_t t_junctions = 0;
   for (const CsvRow& row : rows) {
     const std::string cell = row.at("world") + " " + row.at("part");

@@ -1,5 +1,5 @@
-// No partition into rectangles has fewer: compared with all partitions of every small region, and
-// with the formula for planes of any size.
+// No partition into rectangles has fewer. The tests compare it with all partitions of every small
+// region, and with the formula for planes of any size.
 #include <catch2/catch.hpp>
 
 #include "common/core/hash.hpp"

@@ -1,6 +1,6 @@
 // The reference meshers, compared with the oracle that also checks the product: exposed unit faces
-// with material and direction, each covered once. Meshers that cull less are compared with what
-// they do show, face by face.
+// with material and direction, each covered once. Meshers that cull less are compared with the
+// faces that they are to show.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>

@@ -1,5 +1,5 @@
-// Checks that the includes of the tree follow the arrows between modules. An arrow is a DEPS entry
-// of runstone_module() in a CMakeLists.txt: a module may include its own headers and those of its
+// The includes of the tree must follow the arrows between modules. An arrow is a DEPS entry of
+// runstone_module() in a CMakeLists.txt: a module may include its own headers and those of its
 // DEPS. In addition:
 // - The pure folders (common/ without os and sqlite, and protocol/) include no header for sockets,
 //   files, clocks, threads, logs or graphics.
@@ -145,8 +145,8 @@ std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
           [&](std::string_view root) { return include.path.starts_with(std::string(root) + "/"); });
       if (ours != include.quoted) {
         complain(
-            "headers of this repository are quoted, from its root; all others stand in angle "
-            "brackets");
+            "headers of this repository are quoted, from its root; "
+            "all others stand in angle brackets");
         if (!ours) continue;
       }
       if (!ours || home == arrows().end()) continue;

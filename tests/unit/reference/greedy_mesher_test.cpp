@@ -22,7 +22,8 @@ TEST_CASE("greedy: a quad grows as wide as it can, then as high", "[mesh][refere
                 "111",  //
                 "11."}) == Rectangles{{0, 0, 3, 2, 1}, {0, 2, 2, 1, 1}});
   CHECK(greedy({"11.",  //
-                // As high as whole rows of its width, which may be parts of longer ones.
+                // The quad is as high as there are whole rows of its width, which may be parts of
+                // longer ones.
                 "111", "111"}) == Rectangles{{0, 0, 2, 3, 1}, {2, 1, 1, 2, 1}});
 }
 

@@ -43,7 +43,7 @@ TEST_CASE("a vertex inside an edge is a T-junction, vertices that meet are none"
       pack({2, 0, 0, 2, 2, Direction::pos_z, kDirt}));  // its edge contains the same point
   CHECK(count_t_junctions(surface).places == 1);
   CHECK(count_t_junctions(surface).edges == 2);
-  // No vertex counts on the diagonal of a quad; on the edge of a triangle it does.
+  // A vertex on the diagonal of a quad does not count; a vertex on the edge of a triangle does.
   surface.clear();
   surface.quads = {pack({0, 0, 0, 3, 3, Direction::pos_z, kStone}),
                    pack({1, 1, 1, 1, 1, Direction::neg_z, kWater})};

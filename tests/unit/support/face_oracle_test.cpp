@@ -187,7 +187,7 @@ TEST_CASE("the oracle of runs that hidden faces do not end, by hand", "[mesh]") 
   CHECK(std::includes(shown.begin(), shown.end(), exposed.begin(), exposed.end()));
 }
 
-TEST_CASE("a mesher that forgets a neighbour, a material rule or a border is caught", "[mesh]") {
+TEST_CASE("a mesher that ignores a neighbour, a material rule or a border is caught", "[mesh]") {
   // The mesher meshes another scene than the oracle, as a mesher with that mistake would.
   SplitMix64 rng(17);
   int scenes = 0;

@@ -1,5 +1,5 @@
-// Compares the model of a link with what a link of that rate, delay and queue must do, in virtual
-// time.
+// The model of a link must behave like a link of that rate, delay and queue. The tests run in
+// virtual time.
 #include "tests/support/link_model.hpp"
 
 #include <algorithm>

@@ -293,11 +293,11 @@ Result<FramesResult, std::string> run_frames_bench(const FramesOptions& options,
                                                    std::ostream& progress) {
   std::vector<std::string> names;
   for (const std::string& name : frames_world_names()) {
-    const auto asked = [&](const std::string& world) {
+    const auto is_wanted = [&](const std::string& world) {
       return world == name || (world == "scenarios" && name != "luanti");
     };
     if (options.worlds.empty() ||
-        std::any_of(options.worlds.begin(), options.worlds.end(), asked)) {
+        std::any_of(options.worlds.begin(), options.worlds.end(), is_wanted)) {
       names.push_back(name);
     }
   }

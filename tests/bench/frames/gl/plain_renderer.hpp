@@ -1,6 +1,6 @@
-// PlainRenderer: a minimal renderer: indexed triangles of one vertex format, or packed quads, with
-// one small shader, back faces culled, near chunks first. The picture does not depend on the
-// mesher. Thread: the one whose context is current.
+// PlainRenderer: a minimal renderer. It draws indexed triangles of one vertex format, or packed
+// quads, with one small shader. It culls back faces and draws near chunks first. The picture does
+// not depend on the mesher. Thread: the one whose context is current.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>

@@ -12,9 +12,8 @@ namespace runstone::bench::chart {
 struct Series {
   std::string name = {};
   Role role = Role::other;
-  std::vector<double> values =
-      // One a category (or a name, in a StackChart); NaN or missing: not measured.
-      {};
+  // One value for each category (in a StackChart: for each name). NaN or missing: not measured.
+  std::vector<double> values = {};
 };
 
 struct BarChart {

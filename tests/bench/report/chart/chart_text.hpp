@@ -5,7 +5,7 @@
 
 namespace runstone::bench::chart {
 
-// In units of the chart; chart_css() has the same size.
+// The size of text in units of the chart. chart_css() has the same size.
 constexpr double kTextSize = 12;
 constexpr double kTickSize = 11;
 constexpr double kStrong = 1.14;  // how much wider bold text is

@@ -15,8 +15,8 @@ std::vector<double> spread(const std::vector<double>& positions, double pitch, d
   std::sort(order.begin(), order.end(), [&](auto a, auto b) {
     return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
   });
-  // Without the pitch, positions must only not decrease. Those that do are pooled at their mean
-  // (isotonic regression).
+  // With the pitch subtracted, the positions must not decrease. Positions that decrease are
+  // replaced by their mean (isotonic regression).
   struct Pool {
     double sum;
     std::size_t count;

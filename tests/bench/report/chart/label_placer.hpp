@@ -1,4 +1,4 @@
-// Places names so that they do not overlap.
+// The placement of names in a chart, so that they do not overlap.
 #pragma once
 #include <optional>
 #include <vector>

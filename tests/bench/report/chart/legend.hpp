@@ -18,7 +18,7 @@ struct LegendEntry {
 /// Returns the colours of series: all different as long as the palette has colours.
 std::vector<std::string> colours_of(const std::vector<Role>& roles);
 
-/// Draws from `top` down. Returns where the next element may begin.
+/// Draws a legend from `top` down. Returns the position at which the next element may begin.
 double draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left, double right,
                    double top);
 

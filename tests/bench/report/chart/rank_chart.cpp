@@ -32,7 +32,7 @@ std::string svg_of(const RankChart& chart, Width width) {
 
   double tail = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    // the mark of a missing value begins where bars begin
+    // The mark of a missing value begins where bars begin.
     if (!scale.can_show(values[i])) continue;
     const std::string note = is_narrow ? "" : at_or(chart.notes, i, std::string());
     const double room = width_of(format_value(values[i]), kTextSize) * kStrong + kGap +

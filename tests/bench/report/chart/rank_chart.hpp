@@ -13,9 +13,8 @@ struct RankChart {
   std::vector<Role> roles = {};     // one a name; none: other
   std::vector<double> values = {};  // one a name; NaN: not measured
   Axis x = {};
-  std::vector<std::string> notes =
-      // One a name, in a quiet colour behind the value ("2.1 x ours"); may be empty.
-      {};
+  // One note for each name ("2.1 x ours"), in a quiet colour behind the value. May be empty.
+  std::vector<std::string> notes = {};
   std::string title = {};
 };
 

@@ -142,7 +142,8 @@ std::string svg_of(const ScatterChart& chart, Width width) {
     placer.block_point(points.back().x, points.back().y, kRadius + 1);
   }
   points = with_labels(std::move(points), placer);
-  // Names first: points lie over their leads, and the product's over all.
+  // Names are drawn first, so that points lie over their leads, and the product's points over all
+  // others.
   for (const PlacedPoint& at : points) {
     if (at.label) draw_label(svg, *at.point, at.x, at.y, *at.label);
   }

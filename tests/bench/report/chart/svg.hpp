@@ -25,17 +25,17 @@ std::string number(double value);
 
 enum class Anchor { start, middle, end };
 
-/// Classes are names of this library and are written unchanged. All other text is escaped.
+/// CSS classes are names of this library, so they are written unchanged. All other text is escaped.
 class Svg {
  public:
-  /// Everything up to end_mark() is one mark with this tooltip.
+  /// Begins a mark with this tooltip. Everything up to end_mark() belongs to it.
   void begin_mark(std::string_view tooltip);
   void end_mark();
   void rect(const Box& box, std::string_view classes);
   void line(double x1, double y1, double x2, double y2, std::string_view classes);
   void path(std::string_view data, std::string_view classes);
   void circle(double x, double y, double radius, std::string_view classes);
-  /// Draws text. `y` is the baseline. Turns it about (x, y) by `degrees` clockwise.
+  /// Draws text on the baseline `y`, turned about (x, y) by `degrees` clockwise.
   void text(double x, double y, Anchor anchor, std::string_view text, std::string_view classes,
             double degrees = 0);
   /// Returns the whole <svg>. `label` is its aria-label.

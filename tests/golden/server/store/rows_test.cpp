@@ -67,58 +67,47 @@ TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
   const std::string file = make_world(folder);
   CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
   CHECK(columns(file, "base") ==
-        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 "
-        "INTEGER0, "
-        "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
-  CHECK(
-      columns(file, "edit_log") ==
-      "log INTEGER1, seq INTEGER2, epoch INTEGER0, author INTEGER0, instance INTEGER0, client_seq "
-      "INTEGER0, time_us INTEGER0, cause INTEGER0, subject INTEGER0, min_x INTEGER0, min_y "
-      "INTEGER0, min_z "
-      "INTEGER0, max_x "
-      "INTEGER0, max_y INTEGER0, max_z INTEGER0, descriptor BLOB0, checksum INTEGER0");
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, "
+        "digest0 INTEGER0, digest1 INTEGER0, checksum INTEGER0, data BLOB0");
+  CHECK(columns(file, "edit_log") ==
+        "log INTEGER1, seq INTEGER2, epoch INTEGER0, author INTEGER0, instance INTEGER0, "
+        "client_seq INTEGER0, time_us INTEGER0, cause INTEGER0, subject INTEGER0, min_x INTEGER0, "
+        "min_y INTEGER0, min_z INTEGER0, max_x INTEGER0, max_y INTEGER0, max_z INTEGER0, "
+        "descriptor BLOB0, checksum INTEGER0");
   CHECK(columns(file, "snapshot") ==
-        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 "
-        "INTEGER0, "
-        "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, "
+        "digest0 INTEGER0, digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "keyframe") ==
         "seq INTEGER1, epoch INTEGER0, time_us INTEGER0, chunks INTEGER0, digest0 INTEGER0, "
-        "digest1 INTEGER0, "
-        "checksum INTEGER0");
+        "digest1 INTEGER0, checksum INTEGER0");
   CHECK(columns(file, "keyframe_chunk") ==
-        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, seq INTEGER5, epoch INTEGER0, digest0 "
-        "INTEGER0, "
-        "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, seq INTEGER5, epoch INTEGER0, "
+        "digest0 INTEGER0, digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "player") == "author INTEGER1, key BLOB0, name TEXT0, checksum INTEGER0");
   CHECK(
       columns(file, "player_instance") ==
       "author INTEGER1, instance INTEGER2, decided INTEGER0, last_us INTEGER0, checksum INTEGER0");
   CHECK(raw_sql(file,
-                "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master WHERE type = "
-                "'table' "
-                "ORDER BY name)") ==
+                "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master "
+                "WHERE type = 'table' ORDER BY name)") ==
         "base edit_log keyframe keyframe_chunk log_box log_box_node log_box_parent log_box_rowid "
-        "meta player "
-        "player_instance snapshot");
+        "meta player player_instance snapshot");
   CHECK(
       raw_sql(
           file,
           "SELECT group_concat(name || ' ' || sql, '; ') FROM (SELECT name, sql FROM sqlite_master "
           "WHERE type = 'index' AND sql IS NOT NULL ORDER BY name)") ==
-      "edit_log_author CREATE INDEX edit_log_author ON edit_log(author, seq); edit_log_cause "
-      "CREATE INDEX "
-      "edit_log_cause ON edit_log(cause, seq) WHERE cause <> 0; keyframe_chunk_digest CREATE INDEX "
-      "keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1)");
+      "edit_log_author CREATE INDEX edit_log_author ON edit_log(author, seq); "
+      "edit_log_cause CREATE INDEX edit_log_cause ON edit_log(cause, seq) WHERE cause <> 0; "
+      "keyframe_chunk_digest CREATE INDEX keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, "
+      "z, epoch, digest0, digest1)");
   CHECK(raw_sql(file,
                 "SELECT first_seq || ' ' || last_seq || ' ' || author || ' ' || min_x || ' ' || "
-                "min_y || ' ' || "
-                "min_z || ' ' || max_x || ' ' || max_y || ' ' || max_z FROM log_box") ==
-        "1 2 1 -4 5 6 7 8 9");
+                "min_y || ' ' || min_z || ' ' || max_x || ' ' || max_y || ' ' || max_z "
+                "FROM log_box") == "1 2 1 -4 5 6 7 8 9");
   CHECK(raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
         "base_fold checkpoint chunk_edge epoch generator generator_parameters generator_version "
-        "log_head "
-        "materials "
-        "seed server_key_seed snapshot_fold spawn world_id");
+        "log_head materials seed server_key_seed snapshot_fold spawn world_id");
 }
 
 TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
@@ -133,11 +122,8 @@ TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
   CHECK(
       value(
           "seq || ' ' || epoch || ' ' || author || ' ' || instance || ' ' || client_seq || ' ' || "
-          "time_us || ' ' || "
-          "cause || ' ' || subject || ' ' || min_x || ' ' || min_y || ' ' || min_z || ' ' || max_x "
-          "|| ' "
-          "' || max_y || ' ' "
-          "|| max_z",
+          "time_us || ' ' || cause || ' ' || subject || ' ' || min_x || ' ' || min_y || ' ' || "
+          "min_z || ' ' || max_x || ' ' || max_y || ' ' || max_z",
           undo) == "2 1 1 -9223372036854775806 4 1700000000000001 3 1 -4 5 6 7 8 9");
   CHECK(value("hex(data)", "base") == "02010110101001010100");
   CHECK(value("digest0 || ' ' || digest1", "base") == "31824059738278227 938747246342400335");

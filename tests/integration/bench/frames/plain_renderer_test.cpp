@@ -1,4 +1,4 @@
-// Draws off screen. If there is no OpenGL context, the cases say so with WARN and pass.
+// The cases draw off screen. If there is no OpenGL context, they say so with WARN and pass.
 #include "tests/bench/frames/gl/plain_renderer.hpp"
 
 #include <algorithm>

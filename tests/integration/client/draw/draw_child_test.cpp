@@ -1,5 +1,5 @@
-// The draw child as servers use it, with the real client program, off screen. Where no OpenGL
-// exists the cases WARN and pass. Shell scripts act as faulty programs.
+// The draw child as servers use it, with the real client program, off screen. If there is no
+// OpenGL, the cases say so with WARN and pass. Shell scripts act as faulty programs.
 #include "server/draw/draw_child.hpp"
 
 #include <signal.h>
@@ -199,7 +199,7 @@ TEST_CASE("a child that ends, stays silent or answers nonsense is an error with 
       {script(folder, "echo ready 1 X; echo 'drawn quads=1 chunks=1 us=1 b.png'; cat >/dev/null")});
   REQUIRE(child.has_value());
   CHECK(contains(child->draw(above(), kSize, "a.png").error(), "sent an answer to another order"));
-  // A child that does not read is given up when the sockets are full.
+  // A child that does not read is killed when the sockets are full.
   child = DrawChild::start({script(folder, "echo ready 1 X; exec sleep 60"), 300ms});
   REQUIRE(child.has_value());
   RunChunk speckled = uniform_chunk(Extent::cube(kEdge), 1);

@@ -1,4 +1,4 @@
-// runstone-replay --timelapse, with the real client's program drawing. Where no OpenGL exists the
+// runstone-replay timelapse, with the real client program for drawing. If there is no OpenGL, the
 // cases that draw say so with WARN and pass.
 #include <stdlib.h>
 
@@ -49,7 +49,8 @@ class RedCarpet {
       record.edit.material = *meta.materials.find("wool_red");
     }
     REQUIRE(store->append_history({}, records).has_value());
-    // From above the middle, so that +x is on the right and the 80 voxels fill the picture.
+    // The camera looks down from above the middle, so that +x is on the right and the 80 voxels
+    // fill the picture.
     std::ofstream(camera()) << "0% 40 " << ground_ + 45 << " 4 180 -90\n";
   }
   std::string world() const { return folder_ / "world"; }

@@ -1,4 +1,4 @@
-// Draws off screen. Where no OpenGL context exists the cases WARN and pass.
+// The cases draw off screen. If there is no OpenGL context, they say so with WARN and pass.
 #include "client/render/renderer.hpp"
 
 #include <array>
@@ -137,8 +137,8 @@ TEST_CASE("every direction faces outward: a cube looks closed from all six sides
     }
     const Image image = draw_with(*context, camera, cube);
     CHECK(reddish(pixel(image, 0.5, 0.5)));
-    ChunkMesh lacking =
-        cube;  // the oracle is broken on purpose: without this face the centre shows through
+    // The oracle is broken on purpose: without this face the centre shows through.
+    ChunkMesh lacking = cube;
     lacking.opaque.quads.erase(lacking.opaque.quads.begin() + d);
     CHECK_FALSE(reddish(pixel(draw_with(*context, camera, lacking), 0.5, 0.5)));
   }

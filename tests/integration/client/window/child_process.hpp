@@ -31,7 +31,7 @@ inline std::optional<std::string> find_program(const std::string& program) {
   return std::nullopt;
 }
 
-/// Calls `ready` until it returns true or the time is over. Returns its last result.
+/// Calls `ready` until it returns true or the time is over. Returns the last result.
 template <class Ready>
 bool wait_for(std::chrono::milliseconds longest, const Ready& ready) {
   const auto end = std::chrono::steady_clock::now() + longest;

@@ -83,7 +83,7 @@ class VirtualDisplay {
     return process.wait(std::chrono::seconds(20)) == 0;
   }
 
-  /// Ends the X server, also if programs have windows on it.
+  /// Ends the X server, even if programs have windows on it.
   void end() { server_.reset(); }
 
   /// Returns the pixels [x, x + width) x [y, y + height). During a draw they may be partly old and

@@ -26,8 +26,9 @@ using test::VirtualDisplay;
 using test::wait_for;
 
 constexpr int kWidth = 480, kHeight = 360;
-constexpr double kChanged =
-    0.5;  // of the middle; a picked voxel's outline and the cross hair are less
+// The share of the middle's pixels that a changed scene changes. The outline of the picked voxel
+// and the cross hair change less.
+constexpr double kChanged = 0.5;
 constexpr std::chrono::seconds kLong{60};  // for a step on a machine that has much else to do
 
 /// Returns the required programs that this machine lacks.
@@ -46,7 +47,7 @@ Grab centre(const VirtualDisplay& display, int width, int height) {
 }
 
 /// Returns the middle once it has stopped changing.
-Grab settled_centre(const VirtualDisplay& display, int width = kWidth, int height = kHeight) {
+Grab steady_centre(const VirtualDisplay& display, int width = kWidth, int height = kHeight) {
   Grab last = centre(display, width, height);
   int same = 0;
   REQUIRE(wait_for(kLong, [&] {
@@ -159,7 +160,7 @@ TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work",
   for (int step = 0; step < 4; ++step)
     REQUIRE(display.hand({"mousemove_relative", "--", "0", "80"}));
   REQUIRE(wait_for(kLong, [&] { return shows_ground(centre(display, kWidth, kHeight)); }));
-  const Grab before = settled_centre(display);
+  const Grab before = steady_centre(display);
 
   REQUIRE(display.hand({"click", "1"}));
   const EditDescriptor dug = next_edit(watcher);
@@ -167,7 +168,7 @@ TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work",
   REQUIRE(std::holds_alternative<SetVoxel>(dug.shape));
   REQUIRE(wait_for(
       kLong, [&] { return changed_share(before, centre(display, kWidth, kHeight)) > kChanged; }));
-  const Grab hole = settled_centre(display);
+  const Grab hole = steady_centre(display);
   CHECK(changed_share(before, hole) > kChanged);
 
   REQUIRE(display.hand({"click", "3"}));
@@ -181,7 +182,7 @@ TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work",
   // A smaller window shows a smaller frame, filled to its edge, and F2 writes one of that size.
   REQUIRE(display.hand(with_window({"windowsize", "320", "240"})));
   REQUIRE(wait_for(kLong, [&] { return shows_ground(display.grab(290, 210, 20, 20)); }));
-  static_cast<void>(settled_centre(display, 320, 240));
+  static_cast<void>(steady_centre(display, 320, 240));
   REQUIRE(display.hand({"key", "F2"}));
   REQUIRE(wait_for(kLong, [&] {
     const auto pictures = pictures_in(folder / ".");

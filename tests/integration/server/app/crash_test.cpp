@@ -1,5 +1,5 @@
-// kill -9: edits that were acknowledged as durable are kept, others are offered again, and none is
-// applied twice.
+// The server is killed with kill -9. Edits that were acknowledged as durable are kept, others are
+// offered again, and none is applied twice.
 #include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -53,12 +53,12 @@ class ServerProcess {
     }
     ::close(ends[1]);  // so that the wait for the port ends if the child ends
     pollfd port_is_known{ends[0], POLLIN, 0};
-    const bool is_told =
+    const bool has_port =
         ::poll(&port_is_known, 1, kStartMs) > 0 &&
         ::read(ends[0], &port_, sizeof port_) == static_cast<ssize_t>(sizeof port_);
     ::close(ends[0]);
-    if (!is_told || port_ == 0) kill();
-    REQUIRE(is_told);
+    if (!has_port || port_ == 0) kill();
+    REQUIRE(has_port);
     REQUIRE(port_ != 0);
   }
   ~ServerProcess() { kill(); }

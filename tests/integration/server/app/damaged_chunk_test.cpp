@@ -61,8 +61,8 @@ void make_damaged_world(const std::string& folder) {
     REQUIRE(server->stop().is_clean);
   }
   const std::string damage =
-      "UPDATE snapshot SET data = zeroblob(length(data)) WHERE x=0 AND y=0 AND z=0; SELECT "
-      "changes()";
+      "UPDATE snapshot SET data = zeroblob(length(data)) "
+      "WHERE x=0 AND y=0 AND z=0; SELECT changes()";
   REQUIRE(raw_sql(folder + "/world.sqlite", damage) == "1");
 }
 

@@ -35,7 +35,7 @@ Answer control(const std::string& world, const std::vector<std::string>& words) 
   return {*done, out.str()};
 }
 
-/// Gives a client's command and waits until it is done.
+/// Sends a client's command and waits until it is done.
 Answer command(RawClient& client, const std::string& text) {
   static std::uint32_t id = 0;
   client.send(CommandRequest{++id, text});

@@ -186,7 +186,7 @@ TEST_CASE("verify compares every chunk of every keyframe", "[store][replay]") {
         raw_sql(file, "SELECT count(*) FROM keyframe_chunk WHERE seq <= 60"));
   CHECK(run_replay({"verify", "--quick", "--world", folder.path(), "--json", json}).code == 0);
   CHECK(read_json(json).at("report").at("keyframes_compared") == 0);
-  // A keyframe is sound in itself, but differs from what the log makes.
+  // The keyframe is valid in itself, but differs from the world that the log gives.
   {
     SplitMix64 rng(3);
     auto store = *open_world(folder.path(), StoreAccess::read_write);

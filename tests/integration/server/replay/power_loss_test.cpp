@@ -202,8 +202,8 @@ TEST_CASE("a commit whose sync fails is reported and ends all writing", "[store]
   const auto failed = store->append({}, sample_records(rng, 1, 4, 3));
   REQUIRE_FALSE(failed.has_value());
   CHECK(failed.error().kind == StoreError::Kind::io);
-  // The kernel may have dropped the pages that failed: trying again and succeeding would prove
-  // nothing.
+  // The kernel may have dropped the pages that failed, so a second attempt that succeeds would
+  // prove nothing.
   const auto after = store->append({}, sample_records(rng, 1, 4, 3));
   REQUIRE_FALSE(after.has_value());
   CHECK(after.error().what == "an earlier commit failed; open the world again");

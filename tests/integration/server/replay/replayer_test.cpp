@@ -271,7 +271,7 @@ TEST_CASE("replay notices one changed edit in the log", "[store][replay]") {
   world.edit(rng, 40);
   auto records = world.log;
   records[19].edit = {SetVoxel{{3, 3, 3}}, {}, 4};
-  // The world equals the first one except for one record, which is sound by itself.
+  // The world equals the first one except for one record, which is valid in itself.
   REQUIRE(forged.store->append({}, records).has_value());
   const DigestList honest = world.list_at(40);
   const ReplayReport report = forged.replay(kAll, &honest);

@@ -66,10 +66,10 @@ TEST_CASE("verify answers with an exit code, a table and a list", "[store][repla
 
   wrong.world_id[0] ^= 1;
   REQUIRE(write_digests_json(other, wrong).has_value());
-  const ReplayOutcome stranger =
+  const ReplayOutcome foreign =
       run_replay({"verify", "--quick", "--world", world, "--against", other});
-  CHECK(stranger.code == 2);
-  CHECK(stranger.err == "runstone-replay: " + other + ": is about another world\n");
+  CHECK(foreign.code == 2);
+  CHECK(foreign.err == "runstone-replay: " + other + ": is about another world\n");
   CHECK(run_replay({"verify", "--quick", "--world", world, "--against", folder / "missing.json"})
             .code == 2);
   CHECK(
@@ -164,8 +164,8 @@ TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is ov
   REQUIRE(run_replay({"verify", "--world", world, "--json", json}).code == 0);
   // The checkpoint moves the write-ahead log into the file, so that its bytes can be compared.
   REQUIRE(raw_sql(file,
-                  "UPDATE edit_log SET descriptor = zeroblob(9) WHERE seq = 2; "
-                  "PRAGMA wal_checkpoint(TRUNCATE)") == "0");
+                  "UPDATE edit_log SET descriptor = zeroblob(9) "
+                  "WHERE seq = 2; PRAGMA wal_checkpoint(TRUNCATE)") == "0");
   const std::string damaged = bytes_of(file), report = bytes_of(json);
   REQUIRE(damaged.size() > 4096);
   // The full check finds the row, and so does the replay itself.

@@ -1,5 +1,5 @@
-// Compares every store of the benchmark with plain voxels: when it is made, after sets and balls at
-// random places, and what it keeps.
+// Every store of the benchmark is compared with plain voxels: when it is made, after sets and balls
+// at random places, and by its size.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>

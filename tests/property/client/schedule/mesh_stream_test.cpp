@@ -80,7 +80,7 @@ class MeshStream {
 
   void run(int steps) {
     for (int i = 0; i < steps; ++i) step();
-    settle();
+    deliver_all();
   }
 
   /// Returns an empty string if the mesh of every shown chunk is right.
@@ -142,7 +142,7 @@ class MeshStream {
     if (dice == 0) return crash();
     if (dice == 1) return connect();
     if (dice < 4) return move();
-    if (dice == 4) return glance();
+    if (dice == 4) return move_view_twice();
     if (dice < 8) return make_unavailable();
     if (dice > 8) {
       durable_ = world_.head();
@@ -264,7 +264,7 @@ class MeshStream {
   }
 
   /// Disconnects and connects again, while others edit.
-  void glance() {
+  void move_view_twice() {
     const View here = *replica_.view();
     replica_.set_view(random_view());
     planner_.view_changed();
@@ -342,7 +342,7 @@ class MeshStream {
   }
 
   /// Delivers all messages and meshes everything.
-  void settle() {
+  void deliver_all() {
     for (int round = 0; round < 8; ++round) {
       while (!offered_.empty()) order(pop(offered_));
       while (!commits_.empty()) pop(commits_)();

@@ -86,7 +86,7 @@ TEST_CASE("restoring equals going back through the history of each voxel",
   SplitMix64 rng{41 + Catch::rngSeed()};
   ApplyScratch scratch;
   std::size_t with_differences = 0;
-  std::size_t told_apart = 0;
+  std::size_t detected = 0;
   for (int round = 0; round < 220; ++round) {
     const RunChunk start = random_chunk(rng, 16, 6);
     const VoxelPos origin = {rng.between(-40, 40), rng.between(-40, 40), rng.between(-40, 40)};
@@ -101,11 +101,11 @@ TEST_CASE("restoring equals going back through the history of each voxel",
       restore.add(edit, is_selected, scratch);
       oracle.add(edit, is_selected);
       if (rng.below(6) != 0) continue;
-      restore.settle(scratch);
+      restore.flush(scratch);
       REQUIRE(DenseChunk::of(restore.now()) == oracle.now());
       REQUIRE(DenseChunk::of(restore.restored()) == oracle.restored());
     }
-    restore.settle(scratch);
+    restore.flush(scratch);
     REQUIRE(validate(restore.now()).has_value());
     REQUIRE(validate(restore.restored()).has_value());
     const DenseChunk restored = oracle.restored();
@@ -116,10 +116,10 @@ TEST_CASE("restoring equals going back through the history of each voxel",
     REQUIRE(tells_the_differences(differences, oracle.now(), restored, start.order));
     REQUIRE(restore.has_differences() == !differences.empty());
     with_differences += differences.empty() ? 0 : 1;
-    told_apart += oracle.restored(true) == restored ? 0 : 1;
+    detected += oracle.restored(true) == restored ? 0 : 1;
   }
   CHECK(with_differences > 100);
-  CHECK(told_apart > 100);  // a wrong treatment of later edits by others is detected
+  CHECK(detected > 100);  // a wrong treatment of later edits by others is detected
 }
 
 TEST_CASE("changes written into another chunk change exactly those stretches",

@@ -1,4 +1,5 @@
-// Compares remeshing of dirty layers with a full mesh: equal quads in the same order.
+// Remeshing of dirty layers is compared with a full mesh: the quads must be equal and in the same
+// order.
 #include <catch2/catch.hpp>
 
 #include "tests/support/mesh_scene.hpp"

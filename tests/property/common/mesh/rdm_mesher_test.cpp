@@ -1,4 +1,4 @@
-// Compares RDM with the face oracle on random scenes. Most extents are small, so that a test run
+// RDM is compared with the face oracle on random scenes. Most extents are small, so that a test run
 // covers many scenes.
 #include "common/mesh/rdm/rdm_mesher.hpp"
 

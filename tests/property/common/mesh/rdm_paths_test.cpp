@@ -1,5 +1,5 @@
-// Compares the vector paths of the layer sweep with the plain path. Every instruction set of this
-// machine must give the same quads in the same order.
+// The vector paths of the layer sweep are compared with the plain path. Every instruction set of
+// this machine must give the same quads in the same order.
 #include <hwy/targets.h>
 
 #include <algorithm>

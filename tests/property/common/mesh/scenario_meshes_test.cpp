@@ -29,7 +29,7 @@ TEST_CASE("scenarios alone mesh to the faces required of each mesher",
 
 TEST_CASE("scenarios in their world of 27 chunks mesh to the faces required of each mesher",
           "[mesh][property][scenarios]") {
-  // One chunk of each kind of place: in the middle, on a side, on an edge, in a corner.
+  // The chunks are one of each kind of place: in the middle, on a side, on an edge, in a corner.
   MesherChecks checks;
   for (unsigned number = 1; number <= 37; ++number) {
     const auto world = scenario_generator(number, 32);

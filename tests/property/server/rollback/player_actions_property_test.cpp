@@ -74,7 +74,7 @@ class ChunkLog {
       const bool is_selected = std::binary_search(selected.begin(), selected.end(), i + 1);
       for (const EditDescriptor& edit : log_[i].edits) chunk.add(edit, is_selected, scratch);
     }
-    chunk.settle(scratch);
+    chunk.flush(scratch);
     std::vector<Difference> differences;
     append_differences(chunk.now(), chunk.restored(), differences);
     if (differences.empty()) return false;
@@ -183,7 +183,7 @@ TEST_CASE("undo and redo leave alone what others wrote last", "[rollback][proper
       if (!has_undone) continue;
       ++undone;
       if (rng.below(2) == 0) continue;
-      // No other edit came in between, so redo restores exactly what undo took.
+      // No other edit came in between, so redo restores exactly the voxels that undo took back.
       REQUIRE(log.redo().has_value());
       REQUIRE(log.now() == before);
       ++came_back;

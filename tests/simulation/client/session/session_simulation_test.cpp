@@ -203,7 +203,7 @@ class Simulation {
     server_.log_full = false;
     if (!server_.running() || server_.world().durable() != server_.world().head()) return false;
     return std::all_of(clients_.begin(), clients_.end(),
-                       [](const auto& c) { return c->settled(); });
+                       [](const auto& c) { return c->is_idle(); });
   }
 
   /// Checks that edits durable before a crash are in the log, at the same sequence.
@@ -223,11 +223,12 @@ class Simulation {
       for (const auto& [seq, edit] : client->submitted()) {
         const auto found = times.find({client->session().author(), client->instance(), seq});
         const auto reject = client->rejected().find(seq);
-        const bool told = reject != client->rejected().end() || client->unseen().contains(seq);
+        const bool is_rejected =
+            reject != client->rejected().end() || client->unseen().contains(seq);
         r.unknown += client->unseen().contains(seq) && found == times.end() ? 1 : 0;
-        r.rejected += told ? 1 : 0;
-        r.expect(found != times.end() || told,
-                 "an edit was lost without a word, client seq " + std::to_string(seq));
+        r.rejected += is_rejected ? 1 : 0;
+        r.expect(found != times.end() || is_rejected,
+                 "an edit was lost without an answer, client seq " + std::to_string(seq));
         r.expect(found == times.end() || reject == client->rejected().end(),
                  "an edit was rejected and applied, client seq " + std::to_string(seq));
         r.expect(found != times.end() || !client->durable().contains(seq),
@@ -398,8 +399,8 @@ TEST_CASE("commits that vanish between server and replica are noticed and repair
 }
 
 TEST_CASE(
-    "without synchronous writes the same simulation loses durable edits, and the final check finds "
-    "it",
+    "without synchronous writes the same simulation loses durable edits, "
+    "and the final check finds it",
     "[simulation]") {
   bool caught = false;
   for (std::uint64_t seed = 1; seed <= 5 && !caught; ++seed) {

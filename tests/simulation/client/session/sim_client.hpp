@@ -69,7 +69,7 @@ class SimClient {
   std::uint64_t refused() const { return refused_; }
   const std::set<ClientSequence>& durable() const { return durable_; }
   const std::set<ClientSequence>& unseen() const { return unseen_; }
-  bool settled() {
+  bool is_idle() {
     return session_.is_open() && session_.loaded() && replica().local_edits().all().empty() &&
            replica().awaiting_count() == 0;
   }

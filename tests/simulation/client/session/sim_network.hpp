@@ -11,7 +11,7 @@
 
 namespace runstone::test {
 
-/// How one end handles what it receives.
+/// The functions with which one end handles what it receives.
 struct SimEnd {
   std::function<Result<void>(MessageKind, ByteView)> on_message;
   std::function<void(const Error&)> on_bad_stream;
@@ -55,7 +55,7 @@ class SimConnection {
     time_.after(1000, [end = client_.on_closed] { end(); });
     time_.after(1500, [end = server_.on_closed] { end(); });
   }
-  /// The server is gone: only the client is notified.
+  /// Ends the connection of a server that crashed: only the client is notified.
   void server_died() {
     if (!open_) return;
     open_ = false;

@@ -39,7 +39,7 @@ TEST_CASE("a finding is read as it was written, and nothing unfinished stays bes
   CHECK(files == 1);
 }
 
-TEST_CASE("a finding that cannot be used says why, and names its file") {
+TEST_CASE("the error of an unusable finding has the reason and the file") {
   const test::TempFolder folder;
   const std::string out = folder / "out";
   REQUIRE(write_finding(out, finding_of("meshers", "abc")).has_value());
@@ -61,7 +61,7 @@ TEST_CASE("a finding that cannot be used says why, and names its file") {
   CHECK(error_of("[]").find("cannot be used") != std::string::npos);
 }
 
-TEST_CASE("findings tell what is missing, what failed and what is of another commit") {
+TEST_CASE("findings name missing steps, failed steps and those of another commit") {
   const test::TempFolder folder;
   const std::string out = folder / "out";
   for (const char* step : {"a", "b"})

@@ -115,8 +115,8 @@ TEST_CASE("a result of another form counts as not measured") {
 }
 
 TEST_CASE(
-    "frames are compared over the worlds that most meshers drew; a mesher that drew fewer is "
-    "named") {
+    "frames are compared over the worlds that most meshers drew; "
+    "a mesher that drew fewer is named") {
   const test::TempFolder folder;
   Finding frames = edits_finding();
   frames.step = "frames";
@@ -163,7 +163,7 @@ TEST_CASE("results of another commit are named at their figures") {
   CHECK(holds(text_of(made->file), "edits was measured on something else than the rest"));
 }
 
-TEST_CASE("a page that cannot be written says which file") {
+TEST_CASE("the error of a page that cannot be written names the file") {
   const test::TempFolder folder;
   std::ofstream(folder / "out") << "a file where the folder should be";
   const auto made = write_page(options_of(folder / "out"), {});

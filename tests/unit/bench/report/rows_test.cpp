@@ -37,7 +37,7 @@ TEST_CASE("means leave out missing values") {
   CHECK(std::isnan(geometric_mean_of({})));
 }
 
-TEST_CASE("a table is CSV that quotes what needs it") {
+TEST_CASE("a table is CSV with quotes where they are needed") {
   DataTable table{{"name", "value"}, {}};
   table.add({"plain", 1'195'306.5});
   table.add({"a \"b\", c", std::nan("")});

@@ -38,12 +38,12 @@ Finding meshers_of(double ours_ns, double dense_ns) {
           {{"rows", rows}}};
 }
 
-struct Told {
+struct ReportTexts {
   Verdicts verdicts;
   std::string summary;
 };
 
-Told told(const Finding& finding) {
+ReportTexts texts_of(const Finding& finding) {
   const test::TempFolder folder;
   REQUIRE(write_finding(folder / "out", finding).has_value());
   const auto findings = Findings::read(folder / "out", {"meshers", "facts"}, {});
@@ -56,7 +56,7 @@ bool holds(const std::string& text, const std::string& part) {
 }
 
 TEST_CASE("where runs are faster, the answer says so, by both means, and where they are not") {
-  const auto [verdicts, summary] = told(meshers_of(100, 200));
+  const auto [verdicts, summary] = texts_of(meshers_of(100, 200));
   INFO(verdicts.answer << summary);
   CHECK(holds(verdicts.answer, "starts from the stored runs is Run Directional Meshing."));
   CHECK(holds(verdicts.answer, "takes 1.91 times as long"));  // (2^36 * 0.4)^(1/37)
@@ -69,14 +69,14 @@ TEST_CASE("where runs are faster, the answer says so, by both means, and where t
 }
 
 TEST_CASE("where runs are slower, the answer says so") {
-  const auto [verdicts, summary] = told(meshers_of(400, 200));
+  const auto [verdicts, summary] = texts_of(meshers_of(400, 200));
   INFO(verdicts.answer);
   CHECK(holds(verdicts.answer, "starts from the stored runs is binary greedy."));
   CHECK(holds(verdicts.answer, "faster in 0 of the 37 scenarios"));
 }
 
 TEST_CASE("equals share a place, and a mesher that was not measured everywhere has none") {
-  const auto [verdicts, summary] = told(meshers_of(100, 200));
+  const auto [verdicts, summary] = texts_of(meshers_of(100, 200));
   REQUIRE(verdicts.rows.size() == 3);
   CHECK(verdicts.rows[0].winner == "ours: RDM from runs: 104 ns");  // 100 * 5^(1/37)
   CHECK(verdicts.rows[1].winner == "decode + binary greedy: 370");
@@ -85,7 +85,7 @@ TEST_CASE("equals share a place, and a mesher that was not measured everywhere h
   CHECK_FALSE(holds(summary, "simple"));
 }
 
-TEST_CASE("numbers are said in full, by three decimals, or in the unit that fits") {
+TEST_CASE("numbers are written in full, with three decimals, or in the unit that fits") {
   CHECK(count_text(1'195'306) == "1,195,306");
   CHECK(count_text(999) == "999");
   CHECK(count_text(1000) == "1,000");

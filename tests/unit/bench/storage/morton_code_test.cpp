@@ -9,7 +9,7 @@ using namespace runstone::bench::storage;
 
 namespace {
 
-/// Interleaves bit by bit.
+/// Interleaves the coordinates bit by bit, as the oracle.
 std::uint32_t interleaved(LocalPos at) {
   std::uint32_t out = 0;
   for (unsigned bit = 0; bit < 7; ++bit) {

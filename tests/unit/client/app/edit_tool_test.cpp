@@ -10,7 +10,7 @@ using runstone::test::keys;
 namespace {
 
 constexpr TimeUs kNow = 1'000'000;
-constexpr EditPath kPaths[] = {EditPath::own_predicted, EditPath::own_confirmed};
+constexpr EditPath kPaths[] = {EditPath::local_predicted, EditPath::local_confirmed};
 
 SessionConfig config() {
   SessionConfig out;
@@ -70,7 +70,7 @@ TEST_CASE_METHOD(Fixture, "an edit in the live world is submitted and counted un
   CHECK(tool.refused() == 0);
   CHECK(session.replica().local_edits().all().size() == 1);
   recorder.take(session.replica().drain_changes(), session.clock(), kNow);
-  CHECK(infinite(EditPath::own_confirmed) == 1);
+  CHECK(infinite(EditPath::local_confirmed) == 1);
 }
 
 TEST_CASE_METHOD(Fixture, "an edit in the past is refused with a reason and is in no percentile",

@@ -73,8 +73,8 @@ TEST_CASE("the chunk of the eye is found by floor division", "[client_app]") {
 }
 
 TEST_CASE(
-    "a player enters a world at its spawn, stays in place when it is back, and begins anew in "
-    "another",
+    "a player enters a world at its spawn, stays in place when it is back, "
+    "and begins anew in another",
     "[client_app]") {
   Player player;
   const WorldId first{1}, second{2};

@@ -92,20 +92,19 @@ TEST_CASE("after a restart of the server only common history is found", "[cache]
   cache->keep(world_at(1, 100, 110), chunks_at(0, 1, {}));
   cache->keep(world_at(1, 100, 110), chunks_at(1, 1, {1, 100}));
   cache->keep(world_at(1, 100, 110), chunks_at(2, 1, {1, 105}));  // not known to be durable
-  SECTION(
-      "a crash: what was not known to be durable is gone, though the log has grown past it again") {
+  SECTION("a crash: chunks not known to be durable are dropped, even if the log is longer again") {
     CHECK(cache->find(world_at(2, 500, 500), keys_of(0, 3)).size() == 2);
     CHECK(cache->counters().not_common == 1);
     // It is not found later either, when the durable sequence is beyond it.
     CHECK(cache->find(world_at(3, 900, 900), keys_of(0, 3)).size() == 2);
   }
-  SECTION("a crash that lost more than was thought durable") {
+  SECTION("a crash that lost edits reported as durable") {
     CHECK(cache->find(world_at(2, 99, 99), keys_of(0, 3)).size() == 1);
   }
-  SECTION("the same epoch goes on: all is common") {
+  SECTION("the same epoch: all history is common") {
     CHECK(cache->find(world_at(1, 104, 130), keys_of(0, 3)).size() == 3);
   }
-  SECTION("a restored backup: nothing that was edited is common") {
+  SECTION("a restored backup: no edited chunk is common") {
     CHECK(cache->find(world_at(1, 80, 80), keys_of(0, 3)).size() == 1);
   }
   SECTION("a world made anew with other chunks") {

@@ -48,7 +48,7 @@ class Bench {
       REQUIRE(answer);
       outcome.answers.push_back(*answer);
     }
-    outcome.screen = book.lines();
+    outcome.screen = screen_log.lines();
     return outcome;
   }
   void order_picture(const std::string& name) {
@@ -56,8 +56,8 @@ class Bench {
   }
 
   test::TempFolder folder;
-  test::FakeScreenBook book;
-  std::function<std::unique_ptr<Screen>()> make_screen = test::fake_screen_on(book);
+  test::FakeScreenLog screen_log;
+  std::function<std::unique_ptr<Screen>()> make_screen = test::fake_screen_on(screen_log);
   Bytes orders;
 };
 
@@ -142,7 +142,7 @@ TEST_CASE("a missing OpenGL or a failing driver ends the draw program with the d
     CHECK(failure_in(outcome.answers[0]) == "no headless context");
   }
   SECTION("no more") {
-    bench.book.fail_next();
+    bench.screen_log.fail_next();
     const Outcome outcome = bench.run();
     CHECK(outcome.code == kExitNoStart);
     REQUIRE(outcome.answers.size() == 2);

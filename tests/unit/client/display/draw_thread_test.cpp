@@ -9,7 +9,7 @@
 
 using namespace runstone;
 using test::fake_screen_on;
-using test::FakeScreenBook;
+using test::FakeScreenLog;
 
 namespace {
 
@@ -37,14 +37,14 @@ FrameOrder small_frame() {
 /// A draw thread with a fake screen, and the list of what it did.
 struct Bench {
   Bench() = default;
-  ~Bench() { book.release(); }  // also after a failed check, so that the thread can end
+  ~Bench() { screen_log.release(); }  // also after a failed check, so that the thread can end
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
-  FakeScreenBook book;
+  FakeScreenLog screen_log;
   WakeUp wake;
   std::vector<DrawDone> done;
-  DrawThread thread{fake_screen_on(book), DrawPriority::normal, [this] { wake.notify(); }};
+  DrawThread thread{fake_screen_on(screen_log), DrawPriority::normal, [this] { wake.notify(); }};
 
   /// Waits until this many frames are done.
   void take_frames(std::size_t count) {
@@ -67,9 +67,9 @@ TEST_CASE(
     "[client_app]") {
   Bench bench;
   CHECK(bench.thread.screen_name() == "fake");
-  bench.book.hold();
+  bench.screen_log.hold();
   bench.thread.draw(small_frame());
-  bench.book.wait_until_drawing();
+  bench.screen_log.wait_until_drawing();
   bench.thread.upload(chunk(1), mesh_of(10, 1));
   bench.thread.upload(chunk(2), mesh_of(11, 2));
   bench.thread.upload(chunk(1), mesh_of(12, 3));
@@ -77,27 +77,25 @@ TEST_CASE(
   bench.thread.remove(chunk(3));
   bench.thread.upload(chunk(3), mesh_of(13, 4));
   CHECK(bench.thread.waiting() == 3);
-  CHECK(bench.book.lines() == Lines{"draw"});
-  bench.book.release();
+  CHECK(bench.screen_log.lines() == Lines{"draw"});
+  bench.screen_log.release();
   bench.take_frames(1);
   bench.thread.draw(small_frame());
   bench.take_frames(2);
   CHECK(bench.thread.waiting() == 0);
-  CHECK(bench.book.lines() ==
+  CHECK(bench.screen_log.lines() ==
         Lines{"draw", "upload 1 quads 3", "remove 2", "upload 3 quads 4", "draw"});
 }
 
-TEST_CASE(
-    "results come in the order of the draw thread: uploads, then the frame that shows "
-    "them",
-    "[client_app]") {
+TEST_CASE("results come in the order of the draw thread: uploads, then the frame that shows them",
+          "[client_app]") {
   Bench bench;
-  bench.book.hold();
+  bench.screen_log.hold();
   bench.thread.upload(chunk(1), mesh_of(10, 1));
   bench.thread.draw(small_frame());
-  bench.book.wait_until_drawing();
+  bench.screen_log.wait_until_drawing();
   bench.thread.upload(chunk(1), mesh_of(11, 1));
-  bench.book.release();
+  bench.screen_log.release();
   bench.take_frames(1);
   bench.thread.draw(small_frame());
   bench.take_frames(2);
@@ -119,7 +117,8 @@ TEST_CASE("materials reach the screen before the frame that needs them", "[clien
   bench.thread.set_materials(MaterialTable{});
   bench.thread.draw(small_frame());
   bench.take_frames(1);
-  CHECK(bench.book.lines() == Lines{"materials " + std::to_string(MaterialTable{}.size()), "draw"});
+  CHECK(bench.screen_log.lines() ==
+        Lines{"materials " + std::to_string(MaterialTable{}.size()), "draw"});
 }
 
 TEST_CASE("a screenshot shows its frame, and a file that cannot be written is named",
@@ -144,7 +143,7 @@ TEST_CASE("a screen that cannot be made fails the start with the same text", "[c
 
 TEST_CASE("after a frame failed, every take_done() on the main thread throws", "[client_app]") {
   Bench bench;
-  bench.book.fail_next();
+  bench.screen_log.fail_next();
   bench.thread.draw(small_frame());
   const auto take_until_failed = [&bench] { bench.take_frames(1); };
   CHECK_THROWS_WITH(take_until_failed(), "the cable is out");
@@ -156,18 +155,18 @@ TEST_CASE(
     "the destructor finishes the current frame, drops queued work and destroys the screen on its "
     "thread",
     "[client_app]") {
-  FakeScreenBook book;
+  FakeScreenLog screen_log;
   {
-    DrawThread thread(fake_screen_on(book), DrawPriority::background, nullptr);
-    book.hold();
+    DrawThread thread(fake_screen_on(screen_log), DrawPriority::background, nullptr);
+    screen_log.hold();
     thread.draw(small_frame());
-    book.wait_until_drawing();
+    screen_log.wait_until_drawing();
     thread.upload(chunk(1), mesh_of(1, 1));
-    const std::jthread later([&book] { book.release(); });
+    const std::jthread later([&screen_log] { screen_log.release(); });
   }
   // The frame may be released before the end is requested. In that case the upload may have been
   // done.
-  Lines lines = book.lines();
+  Lines lines = screen_log.lines();
   std::erase(lines, "upload 1 quads 1");
   CHECK(lines == Lines{"draw", "gone"});
 }

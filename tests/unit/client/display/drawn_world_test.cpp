@@ -29,12 +29,12 @@ RunChunk holed(unsigned x) {
 class Drawn {
  public:
   explicit Drawn(unsigned workers = 0)
-      : screen_(book_), world(screen_, kEdge, default_material_table(), workers) {}
+      : screen_(log_), world(screen_, kEdge, default_material_table(), workers) {}
   /// Draws, and returns the sorted calls of the screen without the frame itself.
   Lines draw() {
-    const std::size_t before = book_.lines().size();
+    const std::size_t before = log_.lines().size();
     world.draw(Camera{}, 64, 48);
-    Lines lines = book_.lines();
+    Lines lines = log_.lines();
     lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(before));
     REQUIRE(!lines.empty());
     CHECK(lines.back() == "draw");
@@ -44,7 +44,7 @@ class Drawn {
   }
 
  private:
-  test::FakeScreenBook book_;
+  test::FakeScreenLog log_;
   test::FakeScreen screen_;
 
  public:
@@ -54,8 +54,8 @@ class Drawn {
 }  // namespace
 
 TEST_CASE(
-    "a picture meshes the chunks that changed since the last one, and the neighbours that touch a "
-    "change",
+    "a picture meshes the chunks that changed since the last one, "
+    "and the neighbours that touch a change",
     "[client_app]") {
   Drawn drawn;
   CHECK(drawn.draw().empty());

@@ -15,7 +15,7 @@
 namespace runstone::test {
 
 /// The state that a test and its screen share. Thread: any.
-class FakeScreenBook {
+class FakeScreenLog {
  public:
   void write(std::string line) {
     const std::lock_guard lock(mutex_);
@@ -66,23 +66,23 @@ class FakeScreenBook {
 
 class FakeScreen final : public Screen {
  public:
-  explicit FakeScreen(FakeScreenBook& book) : book_(book) {}
-  ~FakeScreen() override { book_.write("gone"); }
+  explicit FakeScreen(FakeScreenLog& screen_log) : log_(screen_log) {}
+  ~FakeScreen() override { log_.write("gone"); }
 
   const char* name() const override { return "fake"; }
   void set_materials(const MaterialTable& materials) override {
-    book_.write("materials " + std::to_string(materials.size()));
+    log_.write("materials " + std::to_string(materials.size()));
   }
   void upload(const ChunkKey& key, std::int32_t /*edge*/, const ChunkMesh& mesh) override {
-    book_.write("upload " + std::to_string(key.at.x) + " quads " +
-                std::to_string(mesh.quad_count()));
+    log_.write("upload " + std::to_string(key.at.x) + " quads " +
+               std::to_string(mesh.quad_count()));
   }
-  void remove(const ChunkKey& key) override { book_.write("remove " + std::to_string(key.at.x)); }
+  void remove(const ChunkKey& key) override { log_.write("remove " + std::to_string(key.at.x)); }
   RenderStats draw(const Camera& /*camera*/, int width, int height,
                    std::span<const Marker> /*markers*/) override {
     width_ = width;
     height_ = height;
-    book_.draw();
+    log_.draw();
     return {};
   }
   Image read_image() override {
@@ -92,12 +92,12 @@ class FakeScreen final : public Screen {
   }
 
  private:
-  FakeScreenBook& book_;
+  FakeScreenLog& log_;
   int width_ = 0, height_ = 0;
 };
 
-inline std::function<std::unique_ptr<Screen>()> fake_screen_on(FakeScreenBook& book) {
-  return [&book] { return std::make_unique<FakeScreen>(book); };
+inline std::function<std::unique_ptr<Screen>()> fake_screen_on(FakeScreenLog& screen_log) {
+  return [&screen_log] { return std::make_unique<FakeScreen>(screen_log); };
 }
 
 }  // namespace runstone::test

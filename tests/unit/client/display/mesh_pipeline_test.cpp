@@ -12,7 +12,7 @@
 
 using namespace runstone;
 using test::AuthorityModel;
-using test::FakeScreenBook;
+using test::FakeScreenLog;
 
 namespace {
 
@@ -31,7 +31,7 @@ struct Fixture {
     order();
     take_frames(1);
   }
-  ~Fixture() { book.release(); }
+  ~Fixture() { screen_log.release(); }
   Fixture(const Fixture&) = delete;
   Fixture& operator=(const Fixture&) = delete;
 
@@ -59,17 +59,17 @@ struct Fixture {
     return report[EditPath::remote].step[static_cast<std::size_t>(LatencyStage::presented)].count();
   }
   std::size_t draws() const {
-    const auto lines = book.lines();
+    const auto lines = screen_log.lines();
     return static_cast<std::size_t>(std::count(lines.begin(), lines.end(), "draw"));
   }
 
   AuthorityModel world{kEdge, 1};
   Replica replica;
-  FakeScreenBook book;
+  FakeScreenLog screen_log;
   WakeUp wake;
   MeshPipeline pipeline{
       replica,
-      std::make_unique<DrawThread>(test::fake_screen_on(book), DrawPriority::normal,
+      std::make_unique<DrawThread>(test::fake_screen_on(screen_log), DrawPriority::normal,
                                    [this] { wake.notify(); }),
       false, 0, [this] { wake.notify(); }};
   ClientSequence edits = 0;
@@ -81,14 +81,14 @@ TEST_CASE_METHOD(
     Fixture,
     "an edit meshed while a frame is under way is presented by the next frame, not by that one",
     "[client_app]") {
-  book.hold();
+  screen_log.hold();
   edit({1, 1, 1});
   order();
-  book.wait_until_drawing();
+  screen_log.wait_until_drawing();
   edit({5, 5, 5});
   order();  // a frame is in progress, so no frame is ordered
   CHECK_FALSE(pipeline.is_up_to_date());
-  book.release();
+  screen_log.release();
   take_frames(2);
   CHECK(edits_presented() == 1);
   CHECK(pipeline.recorder().open_edits() == 1);
@@ -129,12 +129,12 @@ TEST_CASE_METHOD(Fixture,
     turn();  // one job each; the first of five chunks may be meshed twice
   CHECK(pipeline.recorder().open_edits() == 0);
   CHECK_FALSE(pipeline.is_up_to_date());  // queued for upload
-  book.hold();
+  screen_log.hold();
   pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
                 [] { return std::vector<Marker>{}; });
-  book.wait_until_drawing();
+  screen_log.wait_until_drawing();
   CHECK_FALSE(pipeline.is_up_to_date());  // being drawn
-  book.release();
+  screen_log.release();
   take_frames(2);
   CHECK(pipeline.is_up_to_date());
 }
@@ -142,12 +142,12 @@ TEST_CASE_METHOD(Fixture,
 TEST_CASE_METHOD(Fixture, "a screenshot is done when its file is written", "[client_app]") {
   const test::TempFolder folder;
   pipeline.request_screenshot(folder / "a.png", steady_now_us());
-  book.hold();
+  screen_log.hold();
   order();
-  book.wait_until_drawing();
+  screen_log.wait_until_drawing();
   pipeline.take_drawn();
   CHECK_FALSE(pipeline.screenshots_done());
-  book.release();
+  screen_log.release();
   take_frames(2);
   CHECK(pipeline.screenshots_done());
   CHECK(pipeline.screenshots_written());
@@ -171,11 +171,11 @@ TEST_CASE_METHOD(
     "[client_app]") {
   edit({5, 5, 5});
   CHECK_FALSE(pipeline.has_caught_up());
-  book.hold();
+  screen_log.hold();
   order();
-  book.wait_until_drawing();
+  screen_log.wait_until_drawing();
   edit({6, 5, 5});
-  book.release();
+  screen_log.release();
   take_frames(2);
   CHECK(pipeline.recorder().open_edits() == 1);
   CHECK(pipeline.has_caught_up());
@@ -203,7 +203,7 @@ TEST_CASE_METHOD(Fixture, "when materials change their look, all chunks are mesh
   const auto quads_uploaded = [this] {
     order();
     take_frames(pipeline.frames_presented() + 1);
-    const auto lines = book.lines();
+    const auto lines = screen_log.lines();
     const auto upload = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {
       return line.starts_with("upload");
     });
@@ -218,5 +218,5 @@ TEST_CASE_METHOD(Fixture, "when materials change their look, all chunks are mesh
   pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
                 [] { return std::vector<Marker>{}; });
   take_frames(pipeline.frames_presented() + 1);
-  CHECK(book.lines()[book.lines().size() - 2] == "upload 0 quads 0");
+  CHECK(screen_log.lines()[screen_log.lines().size() - 2] == "upload 0 quads 0");
 }

@@ -131,11 +131,11 @@ TEST_CASE("a local edit counts from its scheduled time, as predicted and as conf
   durable.durable = {1};
   recorder.take(durable, clock_ahead(), 4000);
   const LatencyReport report = recorder.report();
-  CHECK(only(since(report, EditPath::own_predicted, LatencyStage::applied)) == 500);
-  CHECK(only(since(report, EditPath::own_predicted, LatencyStage::presented)) == 700);
-  CHECK(since(report, EditPath::own_predicted, LatencyStage::received).count() == 0);
-  CHECK(only(since(report, EditPath::own_confirmed, LatencyStage::applied)) == 2000);
-  CHECK(since(report, EditPath::own_confirmed, LatencyStage::meshed).count() == 0);
+  CHECK(only(since(report, EditPath::local_predicted, LatencyStage::applied)) == 500);
+  CHECK(only(since(report, EditPath::local_predicted, LatencyStage::presented)) == 700);
+  CHECK(since(report, EditPath::local_predicted, LatencyStage::received).count() == 0);
+  CHECK(only(since(report, EditPath::local_confirmed, LatencyStage::applied)) == 2000);
+  CHECK(since(report, EditPath::local_confirmed, LatencyStage::meshed).count() == 0);
   CHECK(only(report.durable) == 3000);
   CHECK(report[EditPath::remote].edits == 0);
 }
@@ -147,13 +147,13 @@ TEST_CASE("an edit that was never seen is infinite in the stages that it did not
   recorder.take(changes({chunk(kA, 1)}, {local(true, {kA}, 1100)}), clock_ahead(), 1100);
   recorder.not_submitted();
   const LatencyReport report = recorder.report();
-  const auto& applied = since(report, EditPath::own_predicted, LatencyStage::applied);
+  const auto& applied = since(report, EditPath::local_predicted, LatencyStage::applied);
   CHECK(applied.count() == 2);
   CHECK(applied.infinite() == 1);
-  CHECK(since(report, EditPath::own_predicted, LatencyStage::presented).infinite() == 2);
-  CHECK(since(report, EditPath::own_confirmed, LatencyStage::applied).infinite() == 2);
+  CHECK(since(report, EditPath::local_predicted, LatencyStage::presented).infinite() == 2);
+  CHECK(since(report, EditPath::local_confirmed, LatencyStage::applied).infinite() == 2);
   CHECK(report.durable.infinite() == 1);
-  CHECK(report[EditPath::own_predicted].edits == 2);
+  CHECK(report[EditPath::local_predicted].edits == 2);
 }
 
 TEST_CASE("a rejected edit counts as rejected and in its prediction only", "[schedule]") {
@@ -167,7 +167,7 @@ TEST_CASE("a rejected edit counts as rejected and in its prediction only", "[sch
   recorder.presented(1300);
   const LatencyReport report = recorder.report();
   CHECK(report.rejected == 1);
-  CHECK(report[EditPath::own_confirmed].edits == 0);
+  CHECK(report[EditPath::local_confirmed].edits == 0);
   CHECK(report.durable.count() == 0);
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("a local edit whose commit was missed is counted as unseen, not as lat
   recorder.take(all, clock_ahead(), 1100);
   const LatencyReport report = recorder.report();
   CHECK(report.unseen == 1);
-  CHECK(report[EditPath::own_confirmed].edits == 0);
+  CHECK(report[EditPath::local_confirmed].edits == 0);
   CHECK(report.durable.count() == 0);
 }
 

@@ -1,4 +1,4 @@
-// What a planner plans to mesh again: the layers that changed, or the whole chunk.
+// A planner plans to mesh again either the layers that changed or the whole chunk.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -61,10 +61,10 @@ TEST_CASE_METHOD(PlannerBench,
   const bool meshed = GENERATE(false, true);
   const auto seq = replica.submit({SetVoxel{{15, 6, 7}}, {}, 2}, 0, 0);
   REQUIRE(seq);
-  tell();
+  pass_changes();
   if (meshed) drain();
   replica.receive(Reject{*seq, RejectReason::rate_limited, "", 0}, 0);
-  tell();
+  pass_changes();
   REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
   CHECK(last.before != nullptr);
   CHECK(last.changed.beyond[kFromLeft] == layers_of({{15, 6, 7}}));
@@ -91,7 +91,7 @@ TEST_CASE_METHOD(PlannerBench, "a chunk in another axis order is meshed as a who
   const bool was_zyx = turned.chunk.voxels.order == AxisOrder::zyx;
   turned.chunk.voxels = reorder(turned.chunk.voxels, was_zyx ? AxisOrder::xyz : AxisOrder::zyx);
   replica.receive(std::move(turned), {});
-  tell();
+  pass_changes();
   CHECK(planner.dirty_count() ==
         (material == kEmpty ? 0 : 5));  // the layers that differ are unknown
   commit({1, 1, 1}, 2);
@@ -107,27 +107,27 @@ TEST_CASE_METHOD(PlannerBench,
                  "[schedule]") {
   load_all();
   drain();
-  SECTION("went: the server cannot send it any more") {
+  SECTION("unavailable: the server cannot send it") {
     static_cast<void>(replica.open({kBenchEdge, 5, 77, 1, 0, 0, 0}));
     replica.receive(ChunkUnavailable{{kRight}, UnavailableReason::damaged});
-    tell();
+    pass_changes();
     CHECK(only().before == nullptr);
     CHECK(last.key == kHere);
     load(kRight.at);  // arrived
     REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
     CHECK(last.before == nullptr);
   }
-  SECTION("came back, with other voxels at the border") {
-    const bool told_between = GENERATE(false, true);
+  SECTION("returned, with other voxels at the border") {
+    const bool drains_between = GENERATE(false, true);
     replica.set_view({{-1, 0, 0}, 1, 0});
-    if (told_between) tell();
+    if (drains_between) pass_changes();
     CHECK(planner.next() == std::nullopt);
     static_cast<void>(world.commit({9, 1, ++edits}, {SetVoxel{{16, 5, 6}}, {}, 2}));
     replica.set_view({{0, 0, 0}, 1, 0});
     for (const ChunkCoord at : {kRight.at, ChunkCoord{0, 0, 1}, {0, 0, -1}}) {
       replica.receive(world.snapshot(at), {});
     }
-    tell();
+    pass_changes();
     const auto order = drain();
     CHECK(std::set<ChunkCoord>(order.begin(), order.end()) ==
           std::set<ChunkCoord>{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, -1}});
@@ -144,7 +144,7 @@ TEST_CASE_METHOD(PlannerBench,
   REQUIRE(
       replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{{6, 6, 6}}, {}, 2}), {}).has_value());
   CHECK(only().before == nullptr);
-  tell();
+  pass_changes();
   CHECK(only().before != nullptr);
 }
 

@@ -56,7 +56,7 @@ TEST_CASE_METHOD(PlannerBench,
   load_all();
   drain();
   replica.set_view({{1, 0, 0}, 1, 0});  // three neighbours of the middle leave
-  tell();
+  pass_changes();
   planner.view_changed();
   commit({5, 5, 5}, 2);
   CHECK_FALSE(planner.next(JobSize::layers));
@@ -106,7 +106,7 @@ TEST_CASE_METHOD(PlannerBench, "a chunk does not wait for a neighbour that the s
   load({0, 0, -1});
   CHECK(drain().size() == 3);
   replica.receive(ChunkUnavailable{{{0, {1, 0, 0}}}, UnavailableReason::damaged});
-  tell();
+  pass_changes();
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
   CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
   CHECK(planner.dirty_count() == 0);
@@ -187,7 +187,7 @@ TEST_CASE_METHOD(PlannerBench,
   std::map<ChunkCoord, MeshJob> jobs;
   while (auto job = planner.next()) jobs[job->key.at] = *job;
   replica.set_view({{3, 0, 0}, 2, 0});
-  tell();
+  pass_changes();
   CHECK_FALSE(finish(jobs[{0, 0, 0}]));
   CHECK(finish(jobs[{1, 0, 0}]));
   replica.set_view({{0, 0, 0}, 1, 0});
@@ -202,7 +202,7 @@ TEST_CASE_METHOD(
   load_all();
   drain();
   replica.set_view({{1, 0, 0}, 1, 0});
-  tell();
+  pass_changes();
   planner.view_changed();
   CHECK(planner.dirty_count() == 0);
   load({1, 0, 1});
@@ -222,7 +222,7 @@ TEST_CASE_METHOD(PlannerBench,
   drain();
   CHECK(planner.dirty_count() == 1);
   replica.set_view({{0, 0, 0}, 0, 0});
-  tell();
+  pass_changes();
   planner.view_changed();
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
 }

@@ -22,7 +22,7 @@ struct PlannerBench {
   }
   void load(ChunkCoord at) {
     replica.receive(world.snapshot(at), {});
-    tell();
+    pass_changes();
   }
   void load_all() {
     for (const ChunkCoord at : {ChunkCoord{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}})
@@ -31,9 +31,9 @@ struct PlannerBench {
   void commit(VoxelPos at, Material material) {
     REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{at}, {}, material}), {})
                 .has_value());
-    tell();
+    pass_changes();
   }
-  void tell() { planner.take(replica.drain_changes().chunks); }
+  void pass_changes() { planner.take(replica.drain_changes().chunks); }
   /// Performs all jobs, each with its own mesh.
   std::vector<ChunkCoord> drain() {
     std::vector<ChunkCoord> out;

@@ -25,7 +25,7 @@ struct Follower {
 
 }  // namespace
 
-TEST_CASE("a view follows the first step at once and rests while its player rests", "[schedule]") {
+TEST_CASE("a view follows the first step at once and stays while its player stays", "[schedule]") {
   Follower follower;
   CHECK_FALSE(follower.turn(0, 0));
   CHECK(follower.turn(1, 1));
@@ -35,8 +35,8 @@ TEST_CASE("a view follows the first step at once and rests while its player rest
 }
 
 TEST_CASE(
-    "a player who crosses a chunk every millisecond moves the view ten times a second, and to "
-    "the end",
+    "a player who crosses a chunk every millisecond moves the view ten times a second, "
+    "and to the end",
     "[schedule]") {
   Follower follower;
   int moves = 0;

@@ -316,9 +316,17 @@ TEST_CASE_METHOD(Fixture, "an edit that the client refuses is a failure with its
 
 TEST_CASE_METHOD(Fixture, "a repeat runs its body N times, also when it is nested or empty",
                  "[bots]") {
-  run("repeat 3\nset 1 1 1 sand\nrepeat 2\nset 2 2 2 stone\nend\nend\nrepeat 0\nset 9 9 9 "
-      "sand\nend\nrepeat "
-      "5\nend");
+  run("repeat 3\n"
+      "set 1 1 1 sand\n"
+      "repeat 2\n"
+      "set 2 2 2 stone\n"
+      "end\n"
+      "end\n"
+      "repeat 0\n"
+      "set 9 9 9 sand\n"
+      "end\n"
+      "repeat 5\n"
+      "end");
   CHECK(host.edits.size() == 9);
   CHECK(std::count_if(host.edits.begin(), host.edits.end(),
                       [](const auto& e) { return e.edit.material == 5; }) == 6);

@@ -62,15 +62,24 @@ TEST_CASE("parameters have one canonical text that reads back", "[generate]") {
 
   const FlatParameters flat{12, -3, 7, "sand", "", "a \"b\\c"};
   CHECK(to_toml(flat) ==
-        "height = 12\ny_min = -3\nfilling_depth = 7\nsurface = \"sand\"\nfilling = \"\"\nground = "
-        "\"a "
-        "\\\"b\\\\c\"\n");
+        "height = 12\n"
+        "y_min = -3\n"
+        "filling_depth = 7\n"
+        "surface = \"sand\"\n"
+        "filling = \"\"\n"
+        "ground = \"a \\\"b\\\\c\"\n");
   CHECK(*parse_flat_parameters(to_toml(flat)) == flat);
   const TerrainParameters terrain{1, -2, "", "clay", -5, "slate", 9, "gold", 10};
   CHECK(to_toml(terrain) ==
-        "sea_level = 1\ny_min = -2\nwater = \"\"\nbeach = \"clay\"\nbeach_height = -5\nrock = "
-        "\"slate\"\n"
-        "rock_level = 9\npeak = \"gold\"\npeak_level = 10\n");
+        "sea_level = 1\n"
+        "y_min = -2\n"
+        "water = \"\"\n"
+        "beach = \"clay\"\n"
+        "beach_height = -5\n"
+        "rock = \"slate\"\n"
+        "rock_level = 9\n"
+        "peak = \"gold\"\n"
+        "peak_level = 10\n");
   CHECK(*parse_terrain_parameters(to_toml(terrain)) == terrain);
 }
 

@@ -1,4 +1,4 @@
-// Compares the terrain with its definition, voxel by voxel: one condition per rule, evaluated at
+// The terrain is compared with its definition, voxel by voxel: one condition per rule, evaluated at
 // single places.
 #include "common/generate/terrain_generator.hpp"
 
@@ -95,7 +95,7 @@ TEST_CASE("terrain follows its rules, voxel by voxel", "[generate]") {
   CHECK(differences(**made, {table, parameters}, random, 12) == 0);
 }
 
-TEST_CASE("terrain follows steep and hollow rules", "[generate]") {
+TEST_CASE("terrain follows rules with steep and with reversed surfaces", "[generate]") {
   // Overhangs: a slab between two surfaces, with air and another material below.
   MaterialTable table;
   REQUIRE(table.add({"low",

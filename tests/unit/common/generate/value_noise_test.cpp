@@ -33,7 +33,7 @@ TEST_CASE("noise stays within -1 and 1, uses much of it, and has no bias", "[gen
   CHECK(std::fabs(sum / count) < 0.03);
 }
 
-TEST_CASE("a column's noise does not depend on the rectangle it is asked in", "[generate]") {
+TEST_CASE("a column's noise does not depend on the rectangle that contains it", "[generate]") {
   SplitMix64 random(Catch::rngSeed());
   for (int round = 0; round < 40; ++round) {
     const double frequency = round % 4 == 0 ? 1.0 : random.between(1, 1000) / 1000.0;

@@ -127,9 +127,11 @@ TEST_CASE("every mistake in a row is reported at its key", "[materials]") {
        "material[1].generate.surface.seed"},
       {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { seed = 4294967296 }\n",
        8, "material[1].generate.surface.seed"},
-      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = {}\nreversed = { "
-       "elevation = "
-       "\"1\" }\n",
+      {"name = \"r\"\n"
+       "colour = \"#102030\"\n"
+       "[material.generate]\n"
+       "surface = {}\n"
+       "reversed = { elevation = \"1\" }\n",
        9, "material[1].generate.reversed.elevation"},
       {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = {}\nupper = {}\n", 9,
        "material[1].generate.upper"},
@@ -157,7 +159,10 @@ TEST_CASE("the first material is air", "[materials]") {
   CHECK(parse_material_table(kAir, "m").has_value());
   CHECK(error_of("[[material]]\nname = \"stone\"\ncolour = \"#101010\"\n").key == "material[0]");
   CHECK(error_of("[[material]]\nname = \"air\"\ncolour = \"#101010\"\n").key == "material[0]");
-  CHECK(error_of("[[material]]\nname = \"air\"\nvisibility = "
-                 "\"empty\"\n[material.generate]\nsurface = {}\n")
+  CHECK(error_of("[[material]]\n"
+                 "name = \"air\"\n"
+                 "visibility = \"empty\"\n"
+                 "[material.generate]\n"
+                 "surface = {}\n")
             .key == "material[0]");
 }

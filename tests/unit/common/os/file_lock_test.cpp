@@ -30,7 +30,7 @@ TEST_CASE("a lock refuses a second lock on its file until it is released", "[os]
   CHECK(FileLock::take(file).has_value());
 }
 
-TEST_CASE("a lock on a file that cannot be opened says why", "[os]") {
+TEST_CASE("the error of a lock on a file that cannot be opened has the reason", "[os]") {
   const TempFolder folder;
   const auto lock = FileLock::take(folder / "none/a.lock");
   REQUIRE_FALSE(lock.has_value());

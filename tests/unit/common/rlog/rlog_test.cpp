@@ -1,5 +1,5 @@
-// Reads .rlog files that were written, truncated at every byte, flipped in every bit, reordered by
-// block, or made wrong with correct checksums.
+// The tests read .rlog files: intact ones, truncated at every byte, with every bit flipped, with
+// reordered blocks, and with wrong content under correct checksums.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
@@ -139,9 +139,9 @@ TEST_CASE("every flipped bit of an .rlog is detected, and all edits before it ar
     const RlogContents read = read_rlog(flipped);
     CAPTURE(bit);
     REQUIRE(read.error.has_value());
-    const auto block =
-        static_cast<std::size_t>(std::upper_bound(begins.begin(), begins.end(), bit / 8) -
-                                 begins.begin());  // 1: the first block
+    // 0: the file's mark; 1: the first block.
+    const auto block = static_cast<std::size_t>(
+        std::upper_bound(begins.begin(), begins.end(), bit / 8) - begins.begin());
     REQUIRE(read.records.size() == (block < 4 ? 0 : std::min<std::size_t>((block - 3) * 16, 40)));
     REQUIRE(is_start_of(read.records, records));
     REQUIRE(read.error->position == (block == 0 ? 0 : begins[block - 1]));

@@ -41,9 +41,7 @@ TEST_CASE("commands without arguments are parsed", "[admin][command]") {
 TEST_CASE("a filter selects by author, time, place and cause", "[admin][command]") {
   const auto preview = parsed<RollbackPreviewCommand>(
       "rollback preview author #3 author \"the mole\" since 1h until 2001-09-09T01:46:40Z box 5 60 "
-      "-3 -4 70 "
-      "8 "
-      "cause player");
+      "-3 -4 70 8 cause player");
   CHECK_FALSE(preview.picture);
   CHECK(parsed<RollbackPreviewCommand>("rollback preview author #3 picture since 1h").picture);
   const CommandFilter& f = preview.filter;
@@ -84,9 +82,8 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("rollback preview by ana") ==
         "rollback preview \"by\": author, since, until, box, cause or picture");
   CHECK(mistake("log since yesterday") ==
-        "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, 1w) or when "
-        "(2026-11-21T23:57:42Z, in "
-        "UTC)");
+        "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, "
+        "1w) or when (2026-11-21T23:57:42Z, in UTC)");
   CHECK(mistake("log author #x") == "log author \"#x\": a number after #, or a name");
   CHECK(mistake("log author") == "log author: a name, or # and a number, is missing");
   CHECK(

@@ -79,16 +79,12 @@ TEST_CASE(
                             ": snapshot chunk=" + (key == kFar ? "5,0,0" : "0,0,0") + ": " + error);
   const DigestCheckEntry entry{key, live.version, digest_of(live.voxels)};
   CHECK(std::count(report.digests.chunks.begin(), report.digests.chunks.end(), entry) == 1);
-  // A stop that was cut short leaves chunks that are newer than their snapshots: nothing to
-  // complain of.
+  // A stop that was cut short leaves chunks that are newer than their snapshots, which is no error.
   CHECK(world.with(key, live, false).error.empty());
 }
 
-TEST_CASE(
-    "a stop that was not clean lists what is stored, and neither line nor file passes for a digest "
-    "of its "
-    "seq",
-    "[server]") {
+TEST_CASE("a stop that was not clean lists the stored chunks, and marks line and file as unclean",
+          "[server]") {
   const StoppedWorld world;
   Chunk live = *world.here;
   live.version = {1, 9};  // never on disk

@@ -20,8 +20,8 @@ Vec unit(const Vec& a) {
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 
-/// Where the picture has a point: -1 .. 1 each way, and its depth. As the renderer looks: forward
-/// from yaw and pitch, y up.
+/// The place of a point in the picture, -1 .. 1 each way, and its depth. The camera is that of the
+/// renderer: forward from yaw and pitch, y up.
 Vec seen_at(const DrawCamera& c, PictureSize size, const Vec& point) {
   const Vec forward{std::sin(c.yaw) * std::cos(c.pitch), std::sin(c.pitch),
                     std::cos(c.yaw) * std::cos(c.pitch)};

@@ -180,8 +180,8 @@ TEST_CASE("a compacted log has the moments from its head on", "[history]") {
     compare(history, world, seq);
   }
   CHECK(refusal(WorldAt::open(*history.store, *history.generator, kHead - 1)) ==
-        "begins at seq=51: the world at seq=49 was compacted away; the earliest left is that at "
-        "seq=50");
+        "begins at seq=51: the world at seq=49 was compacted away; "
+        "the earliest left is that at seq=50");
 }
 
 TEST_CASE("a compaction beyond the moment is an error", "[history]") {

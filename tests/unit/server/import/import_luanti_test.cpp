@@ -143,7 +143,7 @@ TEST_CASE("every voxel of an imported world is its node", "[server][import]") {
         world.chunks.size() * static_cast<std::uint64_t>(edge * edge * edge) - solid);
 }
 
-TEST_CASE("plants are imported when asked for", "[server][import]") {
+TEST_CASE("plants are imported on request", "[server][import]") {
   const Imported world = import(kWorld, 32, true);
   CHECK(wrong_voxels(world, kWorld, true) == 0);
   const auto tulip = world.report.materials.find("flowers:tulip");
@@ -208,9 +208,8 @@ TEST_CASE("a map with columns x, y and z imports like one with pos", "[server][i
   const TempFolder folder;
   copy_world(folder);
   REQUIRE(raw_sql(folder / "map.sqlite",
-                  "ALTER TABLE blocks RENAME TO old; CREATE TABLE blocks(x INT, y INT, z INT, data "
-                  "BLOB NOT NULL, "
-                  "PRIMARY KEY(x, z, y))") == "");
+                  "ALTER TABLE blocks RENAME TO old; CREATE TABLE blocks(x INT, y INT, z INT, "
+                  "data BLOB NOT NULL, PRIMARY KEY(x, z, y))") == "");
   sqlite3* db = nullptr;
   REQUIRE(sqlite3_open((folder / "map.sqlite").c_str(), &db) == SQLITE_OK);
   sqlite3_exec(db, "BEGIN", nullptr, nullptr, nullptr);
@@ -233,9 +232,9 @@ TEST_CASE("a file that is no map is refused, and the error names it", "[server][
   const TempFolder folder;
   const LuantiImportSink sink{
       [](const MaterialTable&) {}, [](const ChunkKey&, RunChunk&&) { return true; }, {}};
-  const auto gone = import_luanti(folder / "nowhere", {}, sink);
-  REQUIRE_FALSE(gone.has_value());
-  CHECK(gone.error().message().find("nowhere/map.sqlite: ") != std::string::npos);
+  const auto missing = import_luanti(folder / "nowhere", {}, sink);
+  REQUIRE_FALSE(missing.has_value());
+  CHECK(missing.error().message().find("nowhere/map.sqlite: ") != std::string::npos);
 
   sqlite3* db = nullptr;
   REQUIRE(sqlite3_open((folder / "map.sqlite").c_str(), &db) == SQLITE_OK);

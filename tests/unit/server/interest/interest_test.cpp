@@ -81,9 +81,8 @@ TEST_CASE("wanted chunks come nearest first, with ties by key", "[interest]") {
   }));
 }
 
-TEST_CASE(
-    "what surrounds the viewer comes first, then what lies in the cone of sight, then the rest",
-    "[interest]") {
+TEST_CASE("chunks around the viewer come first, then those in the cone of sight, then the rest",
+          "[interest]") {
   Interest interest(kLimit);
   interest.open(1);
   View view{{0, 0, 0}, 6, 2};

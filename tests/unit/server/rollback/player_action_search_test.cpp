@@ -44,7 +44,8 @@ TEST_CASE("an undo reads the log once for all edits that it considers", "[rollba
   REQUIRE(found.has_value());
   REQUIRE(found->change.has_value());
   CHECK(found->change->action == 1);
-  // 16 records of hers, 31 of the chunk, and one call for each of 16 plans.
+  // should_continue is called for 16 records of the player, for 31 of the chunk, and once for each
+  // of 16 plans.
   CHECK(calls == 16 + 31 + 16);
 }
 
@@ -64,7 +65,7 @@ TEST_CASE("a cancelled undo ends at once", "[rollback][undo]") {
 TEST_CASE("a stop ends the reading of undos and jobs", "[rollback][undo]") {
   BuiltOver bench(2);
   bench.service.undo(bench.ana, bench.bench.now(), bench.reply());
-  SECTION("while it looks for what is next") {
+  SECTION("while it searches for the next action") {
     bench.service.stop();
     REQUIRE(bench.work());
     CHECK(bench.answer().text == "undo: not now: the server stops");

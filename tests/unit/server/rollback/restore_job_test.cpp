@@ -143,7 +143,7 @@ TEST_CASE("a job with a payer writes as fast as the rate of the payer allows", "
   REQUIRE(b.bench.environment.messages<Reject>(kBuilder, kEdge).size() == 1);
   CHECK(b.bench.environment.messages<Reject>(kBuilder, kEdge)[0].reason ==
         RejectReason::rate_limited);
-  SECTION("time gives it back") {
+  SECTION("the budget grows with time") {
     b.bench.tick(200'000);
     b.job.step(b.bench.server, b.bench.now());
     CHECK(b.job.progress().edits == 6);
@@ -153,14 +153,14 @@ TEST_CASE("a job with a payer writes as fast as the rate of the payer allows", "
     b.job.step(b.bench.server, b.bench.now());
     CHECK(b.job.progress().edits == 8);
   }
-  SECTION("who has gone has nothing to pay with, and finds it done") {
+  SECTION("an author without a session pays nothing, and the job ends") {
     b.bench.server.disconnected(kBuilder);
     b.step();
     CHECK(b.job.state() == RestoreJob::State::done);
   }
 }
 
-TEST_CASE("an edit dearer than the bucket is paid with a full one", "[rollback]") {
+TEST_CASE("an edit that costs more than the bucket costs a full bucket", "[rollback]") {
   WorldConfig slow = config();
   slow.edits_per_second = 10;
   slow.edit_burst = 1;

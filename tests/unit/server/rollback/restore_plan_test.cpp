@@ -78,7 +78,7 @@ struct World {
     for (const EditRecord& record : records) {
       for (const ChunkCoord at : touched_chunks(record.edit, kSampleEdge)) keys.insert({0, at});
     }
-    FollowScratch scratch;
+    ReplayScratch scratch;
     const Sequence at = 1 + rng.below(static_cast<std::uint32_t>(records.size()));
     std::vector<std::pair<ChunkKey, ChunkPtr>> chunks;
     for (const ChunkKey& key : keys) {
@@ -243,7 +243,7 @@ TEST_CASE("careful pastes leave alone what was changed since the plan", "[rollba
 
 TEST_CASE("differences that are too large for one clipboard are pasted in parts", "[rollback]") {
   SplitMix64 rng(6);
-  // Noise of many materials: more than a clipboard may hold.
+  // The voxels are noise of many materials, more than a clipboard may hold.
   const RunChunk now = random_chunk(rng, Extent::cube(64), AxisOrder::zxy, 40'000, Shape::noise);
   const RunChunk restored = random_chunk(rng, now.extent, now.order, 40'000, Shape::noise);
   std::vector<Difference> differences;

@@ -1,5 +1,5 @@
-// RollbackBench: a world strand over a world on disk, and a rollback service. The test decides when
-// the log is written, when a worker runs and when a tick comes.
+// RollbackBench: the world strand of a world on disk, with a rollback service. The test decides
+// when the log is written, when a worker runs and when a tick comes.
 #pragma once
 #include <catch2/catch.hpp>
 #include <deque>

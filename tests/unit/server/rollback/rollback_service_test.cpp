@@ -211,8 +211,7 @@ TEST_CASE("a rollback waits while the log is full, and fails if it cannot be wri
 }
 
 TEST_CASE(
-    "a disk that fails while a worker still plans ends the rollback, and the worker's answer is no "
-    "harm",
+    "a disk that fails while a worker plans ends the rollback, and the worker's answer is dropped",
     "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
@@ -232,7 +231,7 @@ TEST_CASE(
 TEST_CASE("a rollback that is cancelled midway can be undone", "[rollback]") {
   Night night;
   const auto griefed = night.digests();
-  // More chunks than a slice has.
+  // The rollback touches more chunks than a slice has.
   night.fill(kGriefer, {{-60, 0, -60}, {60, 1, 60}}, 1);
   night.write_log();
   const std::string id = night.preview_id();
@@ -431,7 +430,7 @@ TEST_CASE("the undos of one run share one client instance for each author, and a
   CHECK_FALSE(bench.answer().is_ok);
   CHECK(bench.answer().text.find("no rollback begins there") != std::string::npos);
 
-  // A client of hers with the same instance only raises the sequence numbers.
+  // A client of the same player with the same instance only raises the sequence numbers.
   bench.bench.join(9, static_cast<std::uint8_t>(kBuilder), first.op.instance);
   bench.bench.edit(9, 1000, SetVoxel{{9, 9, 9}});
   bench.service.undo(ana, bench.bench.now(), bench.reply());

@@ -14,8 +14,8 @@
 namespace runstone::test {
 namespace {
 
-/// A log over a new world. Its events are kept as text; run() runs the tasks that are posted by
-/// now.
+/// The log of a new world. Its events are kept as text. run() runs the tasks that were posted
+/// before.
 struct LogBench {
   LogBench() {
     start_logging(LogLevel::error);

@@ -27,7 +27,7 @@ std::vector<EditRecord> make_world(const std::string& folder) {
   return records;
 }
 
-TEST_CASE("a start knows what the store remembers and replays its log", "[server]") {
+TEST_CASE("a start reads the state of the store and replays its log", "[server]") {
   const TempFolder folder;
   const auto records = make_world(folder / "world");
   auto store = open_world(folder / "world", StoreAccess::read_write);

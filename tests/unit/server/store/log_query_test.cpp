@@ -80,11 +80,11 @@ LogQuery random_query(SplitMix64& rng, const std::vector<EditRecord>& records) {
 
 std::vector<EditRecord> ask(Store& store, const LogQuery& query) {
   std::vector<EditRecord> found;
-  const auto asked = store.query_log(query, [&](const EditRecord& record) {
+  const auto queried = store.query_log(query, [&](const EditRecord& record) {
     found.push_back(record);
     return true;
   });
-  if (!asked) FAIL(asked.error().message());
+  if (!queried) FAIL(queried.error().message());
   return found;
 }
 
@@ -140,8 +140,8 @@ TEST_CASE("a segment that misses an edit is damage that the check names", "[stor
   const std::string file = folder / "world.sqlite";
   const std::string change = GENERATE(
       std::string("DELETE FROM log_box WHERE first_seq = (SELECT max(first_seq) FROM log_box)"),
-      std::string("UPDATE log_box SET max_x = min_x WHERE first_seq = (SELECT max(first_seq) FROM "
-                  "log_box)"),
+      std::string("UPDATE log_box SET max_x = min_x WHERE first_seq = (SELECT max(first_seq) "
+                  "FROM log_box)"),
       std::string(
           "UPDATE log_box SET author = 77 WHERE first_seq = (SELECT max(first_seq) FROM log_box)"));
   REQUIRE(raw_sql(file, change).find("ERROR") == std::string::npos);

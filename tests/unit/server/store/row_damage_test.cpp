@@ -214,8 +214,7 @@ TEST_CASE("a changed, missing or retyped row of meta is named and the world does
     CHECK(damage(folder, "UPDATE meta SET checksum = checksum + 1" + where) == place);
     CHECK(damage(folder,
                  "UPDATE meta SET value = CASE typeof(value) WHEN 'integer' THEN value + 16 WHEN "
-                 "'text' THEN "
-                 "value || ' ' ELSE CAST(value || x'00' AS BLOB) END" +
+                 "'text' THEN value || ' ' ELSE CAST(value || x'00' AS BLOB) END" +
                      where) == place);
     CHECK(
         damage(

@@ -357,8 +357,8 @@ TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") 
             SetVoxel{{rng.between(-2000, 2000), rng.between(0, 120), rng.between(-2000, 2000)}},
             {},
             1};
-        record.op.instance =
-            mix64(rng.below(8));  // random numbers of full width, few client processes
+        // Instances are random numbers of full width, of few client processes.
+        record.op.instance = mix64(rng.below(8));
       }
       REQUIRE(store->append({}, records).has_value());
     }

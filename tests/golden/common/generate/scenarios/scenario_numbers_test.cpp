@@ -1,6 +1,6 @@
-// Compares the reference meshers with every number in the thesis' data about its 37 scenarios. The
-// tables in tests/data/thesis hold the expected numbers. scenario_defects.csv names the cells that
-// cannot be reproduced, with the reason, and the tests check that these differ.
+// The reference meshers are compared with every number in the thesis' data about its 37 scenarios.
+// The tables in tests/data/thesis hold the expected numbers. scenario_defects.csv names the cells
+// that cannot be reproduced, with the reason, and the tests check that these differ.
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <iostream>
@@ -19,10 +19,10 @@ namespace {
 constexpr unsigned kEdge = 32;
 
 /// Counts its checks, so that the summary gives the number of reproduced values.
-class Ledger {
+class CheckCounter {
  public:
-  explicit Ledger(const char* name) : name_(name) {}
-  ~Ledger() {
+  explicit CheckCounter(const char* name) : name_(name) {}
+  ~CheckCounter() {
     std::cout << name_ << ": " << met_ << " of " << checked_ << " numbers of the thesis met\n";
   }
   void check(const ThesisRow& row, const std::string& column, const std::string& found) {
@@ -61,9 +61,8 @@ unsigned number_of(const ThesisRow& row) {
 
 /// Means over the 27 chunks of a world.
 struct WorldMeans {
-  double vp = 0, grid = 0,
-         // Vertices. The first two are means over chunks that have any, as the thesis logged them.
-      rle = 0;
+  // Vertices. The first two are means over chunks that have any, as the thesis logged them.
+  double vp = 0, grid = 0, rle = 0;
   double opaque = 0, runs = 0, bytes_logged = 0, culled_alone = 0, grid_alone = 0;
 };
 
@@ -114,18 +113,18 @@ std::map<std::pair<unsigned, std::string>, ThesisRow> defects() {
 }
 
 /// Checks the storage numbers that both tables have for a chunk.
-void check_storage(Ledger& ledger, const ThesisRow& row, const MeshScene& scene,
+void check_storage(CheckCounter& checks, const ThesisRow& row, const MeshScene& scene,
                    const ScenarioNumbers& numbers) {
-  ledger.check(row, "opaque_voxels", numbers.opaque_voxels);
-  ledger.check(row, "empty_voxels", kEdge * kEdge * kEdge - numbers.opaque_voxels);
-  ledger.check(row, "runs", numbers.runs);
-  ledger.check(row, "rle_bytes", 12 * std::size_t{numbers.runs});
-  ledger.check(row, "rle_bytes_logged", rle_bytes_logged(scene));
+  checks.check(row, "opaque_voxels", numbers.opaque_voxels);
+  checks.check(row, "empty_voxels", kEdge * kEdge * kEdge - numbers.opaque_voxels);
+  checks.check(row, "runs", numbers.runs);
+  checks.check(row, "rle_bytes", 12 * std::size_t{numbers.runs});
+  checks.check(row, "rle_bytes_logged", rle_bytes_logged(scene));
 }
 
 TEST_CASE("every scenario alone has the thesis' voxels, runs, bytes and vertices",
           "[scenarios][golden]") {
-  Ledger ledger("scenarios alone");
+  CheckCounter checks("scenarios alone");
   int rows = 0;
   for (const ThesisRow& row : thesis_table("scenarios.csv")) {
     ++rows;
@@ -135,18 +134,18 @@ TEST_CASE("every scenario alone has the thesis' voxels, runs, bytes and vertices
     const auto world = scenario_generator(number, kEdge);
     const MeshScene scene = scenario_scene(*world, {0, 0, 0}, kEdge, true);
     const ScenarioNumbers numbers = numbers_of(scene);
-    check_storage(ledger, row, scene, numbers);
-    ledger.check(row, "vertices_culled_isolated", numbers.vertices_culled);
-    ledger.check(row, "vertices_merged_isolated", numbers.vertices_grid);
-    ledger.check(row, "vertices_rle_mesher", numbers.vertices_rle);
+    check_storage(checks, row, scene, numbers);
+    checks.check(row, "vertices_culled_isolated", numbers.vertices_culled);
+    checks.check(row, "vertices_merged_isolated", numbers.vertices_grid);
+    checks.check(row, "vertices_rle_mesher", numbers.vertices_rle);
   }
   CHECK(rows == kScenarioCount);
-  CHECK(ledger.checked() == 36 * 8);
+  CHECK(checks.checked() == 36 * 8);
 }
 
 TEST_CASE("every scenario as the thesis' world of 27 chunks has its logged vertices",
           "[scenarios][golden]") {
-  Ledger ledger("scenarios as worlds");
+  CheckCounter checks("scenarios as worlds");
   const auto known_defects = defects();
   std::map<unsigned, WorldMeans> means;
   for (unsigned number = 1; number <= kScenarioCount; ++number) means[number] = means_of(number);
@@ -165,35 +164,35 @@ TEST_CASE("every scenario as the thesis' world of 27 chunks has its logged verti
          {"vertices_vp_logged_mean", "vertices_grid_logged_mean", "vertices_rle_logged_mean"}) {
       const auto defect = known_defects.find({number, column});
       if (defect == known_defects.end()) {
-        ledger.check(row, column, cell(number, column));
+        checks.check(row, column, cell(number, column));
         continue;
       }
       CAPTURE(column, defect->second.at("reason"));
       CHECK(cell(number, column) != row.at(column));
       if (const std::string& other = defect->second.at("model_of"); !other.empty()) {
-        ledger.check(row, column, cell(static_cast<unsigned>(std::stoul(other)), column));
+        checks.check(row, column, cell(static_cast<unsigned>(std::stoul(other)), column));
       }
       ++defective;
     }
   }
   CHECK(defective == 16);
-  CHECK(ledger.checked() == 37 * 3 - 15);
+  CHECK(checks.checked() == 37 * 3 - 15);
 
   // Scenario 5 has means where the other scenarios have one chunk.
   const ThesisRow row = thesis_table("scenarios.csv").at(4);
   const WorldMeans& noise = means.at(5);
-  ledger.check(row, "opaque_voxels", mean_text(noise.opaque));
-  ledger.check(row, "empty_voxels", mean_text(kEdge * kEdge * kEdge - noise.opaque));
-  ledger.check(row, "runs", mean_text(noise.runs));
-  ledger.check(row, "rle_bytes", mean_text(12 * noise.runs));
-  ledger.check(row, "rle_bytes_logged", mean_text(noise.bytes_logged));
-  ledger.check(row, "vertices_culled_isolated", mean_text(noise.culled_alone));
-  ledger.check(row, "vertices_merged_isolated", two_decimals(noise.grid_alone));
-  ledger.check(row, "vertices_rle_mesher", mean_text(noise.rle));
+  checks.check(row, "opaque_voxels", mean_text(noise.opaque));
+  checks.check(row, "empty_voxels", mean_text(kEdge * kEdge * kEdge - noise.opaque));
+  checks.check(row, "runs", mean_text(noise.runs));
+  checks.check(row, "rle_bytes", mean_text(12 * noise.runs));
+  checks.check(row, "rle_bytes_logged", mean_text(noise.bytes_logged));
+  checks.check(row, "vertices_culled_isolated", mean_text(noise.culled_alone));
+  checks.check(row, "vertices_merged_isolated", two_decimals(noise.grid_alone));
+  checks.check(row, "vertices_rle_mesher", mean_text(noise.rle));
 }
 
 TEST_CASE("scenario 5 has the thesis' numbers chunk by chunk", "[scenarios][golden]") {
-  Ledger ledger("scenario 5 by chunks");
+  CheckCounter checks("scenario 5 by chunks");
   const auto world = scenario_generator(5, kEdge);
   const reference::MaterialOctree octree = scenario_octree(*world, kEdge);
   for (const ThesisRow& row : thesis_table("scenario5_chunks.csv")) {
@@ -203,12 +202,12 @@ TEST_CASE("scenario 5 has the thesis' numbers chunk by chunk", "[scenarios][gold
     CAPTURE(at.x, at.y, at.z);
     const MeshScene scene = scenario_scene(*world, at, kEdge, false);
     const ScenarioNumbers numbers = numbers_of(scene);
-    check_storage(ledger, row, scene, numbers);
-    ledger.check(row, "vertices_vp", vertices_from_octree(octree, at, kEdge));
-    ledger.check(row, "vertices_grid", numbers.vertices_grid);
-    ledger.check(row, "vertices_rle", numbers.vertices_rle);
+    check_storage(checks, row, scene, numbers);
+    checks.check(row, "vertices_vp", vertices_from_octree(octree, at, kEdge));
+    checks.check(row, "vertices_grid", numbers.vertices_grid);
+    checks.check(row, "vertices_rle", numbers.vertices_rle);
   }
-  CHECK(ledger.checked() == 27 * 8);
+  CHECK(checks.checked() == 27 * 8);
 }
 
 TEST_CASE("scenario 12 was measured with another scenario's model than it shipped with",

@@ -21,7 +21,7 @@ TEST_CASE("values have three digits and groups of thousands", "[chart]") {
   CHECK(format_value(0.5) == "0.5");
 }
 
-TEST_CASE("a value that rounds up takes the form of what it becomes", "[chart]") {
+TEST_CASE("a value that rounds up has the form of the rounded value", "[chart]") {
   CHECK(format_value(999.6) == "1,000");
   CHECK(format_value(9.999) == "10");
   CHECK(format_value(0.00009996) == "0.0001");

@@ -95,7 +95,8 @@ TEST_CASE("the thesis has dashed lines and hollow points", "[chart]") {
   CHECK(points.with_class("hollow")[0].has_class("c-thesis"));
 }
 
-TEST_CASE("names of points do not overlap, and ours is always there", "[chart][property]") {
+TEST_CASE("names of points do not overlap, and the product's name is always shown",
+          "[chart][property]") {
   std::mt19937 random(Catch::rngSeed());
   for (int round = 0; round < 30; ++round) {
     ScatterChart chart{{"us", true}, {"quads", true}, {}, true, ""};

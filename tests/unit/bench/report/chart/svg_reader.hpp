@@ -1,4 +1,4 @@
-// Reads the XML that charts write, strictly, so that tests can check what is drawn. It knows no
+// A strict reader of the XML that charts write, so that tests can check what is drawn. It knows no
 // comments, CDATA or declarations, which charts do not write.
 #pragma once
 #include <algorithm>

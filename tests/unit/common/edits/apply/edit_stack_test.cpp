@@ -248,7 +248,7 @@ TEST_CASE("a stroke meets the mask once, also where its segments overlap", "[edi
   const Applied swapped = apply(start, {{there_and_back, {MaskKind::only_material, A}, B}});
   CHECK(swapped.runs == Runs{{8, B}, {512, _}});
   CHECK(swapped.result.voxels_changed == 8);
-  // Only empty voxels: the two lines and the layer next to the first one.
+  // The edit fills the empty voxels: the two lines and the layer next to the first one.
   const Applied filled = apply(start, {{there_and_back, {MaskKind::only_empty, _}, C}});
   CHECK(filled.runs == Runs{{8, A}, {16, C}, {64, _}, {80, C}, {512, _}});
 }

@@ -12,26 +12,27 @@ TEST_CASE("a replayed chunk equals the chunk to which the edits were applied one
   SplitMix64 rng(20261122);
   const VoxelPos origin{-32, 0, 32};
   const Extent extent = Extent::cube(32);
-  FollowScratch scratch;
+  ReplayScratch scratch;
   ApplyScratch apply;
   for (int world = 0; world < 6; ++world) {
     Chunk start;
     start.voxels = uniform_chunk(extent, kEmpty);
     start.digest = digest_of(start.voxels);
     Chunk expected = start;
-    ReplayedChunk followed(start, origin);
-    // No multiple of the stack's maximum, so that some edits are pending when the log ends.
-    const std::uint32_t edits = 2 * kFollowedEditsMax + 1 + rng.below(40);
+    ReplayedChunk replayed(start, origin);
+    // The number of edits is no multiple of the stack's maximum, so that some edits are pending
+    // when the log ends.
+    const std::uint32_t edits = 2 * kReplayStackMax + 1 + rng.below(40);
     for (std::uint32_t seq = 1; seq <= edits; ++seq) {
       const EditDescriptor edit = random_edit_near(rng, origin, extent);
       apply_stack(expected.voxels, expected.digest, origin, {&edit, 1}, apply);
-      followed.add(edit, {3, seq}, scratch);
-      CHECK(followed.chunk().version == Version{3, seq});
+      replayed.add(edit, {3, seq}, scratch);
+      CHECK(replayed.chunk().version == Version{3, seq});
     }
     CHECK(scratch.depths.count(6) == 2U * static_cast<unsigned>(world + 1));  // stacks of 33 to 64
-    followed.settle(scratch);
-    CHECK(in_cheapest_order(followed.chunk().voxels) == in_cheapest_order(expected.voxels));
-    CHECK(followed.chunk().digest == expected.digest);
+    replayed.flush(scratch);
+    CHECK(in_cheapest_order(replayed.chunk().voxels) == in_cheapest_order(expected.voxels));
+    CHECK(replayed.chunk().digest == expected.digest);
   }
 }
 
@@ -39,17 +40,17 @@ TEST_CASE("a replayed chunk reports once that its voxels changed", "[edits]") {
   Chunk start;
   start.voxels = uniform_chunk(Extent::cube(16), kEmpty);
   start.digest = digest_of(start.voxels);
-  FollowScratch scratch;
-  ReplayedChunk followed(start, {});
-  followed.add({SetVoxel{{1, 2, 3}}, {}, kEmpty}, {1, 1}, scratch);
-  followed.settle(scratch);
-  CHECK_FALSE(followed.take_changed());
+  ReplayScratch scratch;
+  ReplayedChunk replayed(start, {});
+  replayed.add({SetVoxel{{1, 2, 3}}, {}, kEmpty}, {1, 1}, scratch);
+  replayed.flush(scratch);
+  CHECK_FALSE(replayed.take_changed());
   CHECK(scratch.voxels_changed == 0);
-  followed.add({SetVoxel{{1, 2, 3}}, {}, 5}, {1, 2}, scratch);
-  followed.settle(scratch);
-  followed.settle(scratch);
-  CHECK(followed.take_changed());
-  CHECK_FALSE(followed.take_changed());
+  replayed.add({SetVoxel{{1, 2, 3}}, {}, 5}, {1, 2}, scratch);
+  replayed.flush(scratch);
+  replayed.flush(scratch);
+  CHECK(replayed.take_changed());
+  CHECK_FALSE(replayed.take_changed());
   CHECK(scratch.voxels_changed == 1);
   CHECK(scratch.depths.text() == "1:2");
 }

@@ -86,8 +86,8 @@ TEST_CASE("a stroke has points, steps and a radius within its limits, and no poi
 }
 
 TEST_CASE(
-    "a paste has a clipboard, an orientation and no material, and its touched cells lie in the "
-    "world",
+    "a paste has a clipboard, an orientation and no material, "
+    "and its touched cells lie in the world",
     "[edits]") {
   ClipboardBuilder cells({4, 1, 1});
   cells.append(3, std::nullopt);
@@ -335,8 +335,8 @@ TEST_CASE("a record's numbers stay within 63 bits and its subject before itself"
   record.version.seq = 0;
   CHECK(broken(record, "sequence 0 is the base, not an edit"));
 
-  // In bytes: the version byte, then log, epoch, sequence, author, instance, client sequence, time,
-  // cause, subject.
+  // The bytes are the version byte, then log, epoch, sequence, author, instance, client sequence,
+  // time, cause, subject.
   const auto decoded = [](std::uint64_t seq, std::uint64_t client_seq, std::uint64_t subject) {
     Bytes bytes;
     ByteWriter w(bytes);

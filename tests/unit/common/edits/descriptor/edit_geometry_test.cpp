@@ -35,8 +35,8 @@ TEST_CASE("small geometries have the voxel counts that were counted by hand", "[
   CHECK(counted_voxels(box({0, 0, 0}, {2, 3, 4})) == 24);
   CHECK(counted_voxels(box({0, 0, 0}, {4096, 4096, 4096})) == 1ULL << 36);
   CHECK(counted_voxels(sphere({0, 0, 0}, 0)) == 1);
-  CHECK(counted_voxels(sphere({0, 0, 0}, 1)) ==
-        19);  // centre, 6 faces, 12 edges; the 8 corners are at 3 > 1 + 1
+  // The centre, 6 faces and 12 edges. The 8 corners lie at 3 > 1 + 1.
+  CHECK(counted_voxels(sphere({0, 0, 0}, 1)) == 19);
 }
 
 TEST_CASE("a stroke is the spheres along its line", "[edits]") {

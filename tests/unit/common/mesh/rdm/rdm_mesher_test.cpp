@@ -150,8 +150,8 @@ TEST_CASE("two opaque materials hide each other and never share a quad", "[mesh]
   for (const AxisOrder order : kAxisOrders) {
     const ChunkMesh mesh = checked_mesh(scene_of(
         chunk_where(kSmall, order, [](int, int y, int) { return y < 4 ? kStone : kDirt; })));
-    CHECK(mesh.opaque.quads.size() ==
-          10);  // top, bottom, and each of the four sides in two materials
+    // The quads are the top, the bottom, and two materials on each of the four sides.
+    CHECK(mesh.opaque.quads.size() == 10);
     CHECK(faces_of(mesh, kStone) == 64 + 4 * 32);
     CHECK(faces_of(mesh, kDirt) == 64 + 4 * 32);
   }
