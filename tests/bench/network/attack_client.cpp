@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "protocol/codec/handshake.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone::bench {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "protocol/codec/message_table.hpp"
 #include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"

@@ -110,8 +110,7 @@ class RawClient {
     return !is_open_;
   }
 
-  /// Returns the snapshot of a Chunks message, or null. The client cuts such messages into single
-  /// chunks.
+  /// Returns the snapshot of a Chunks message that was cut, or null.
   static ChunkSnapshot* snapshot_in(Message& message) {
     auto* chunks = std::get_if<Chunks>(&message);
     return chunks == nullptr ? nullptr : std::get_if<ChunkSnapshot>(&chunks->chunks.front());
@@ -142,6 +141,7 @@ class RawClient {
 
   Welcome welcome;
   std::uint64_t features = 0;  // offered in hello
+  bool cuts_chunks = true;     // tests get each chunk of a message as a snapshot of its own
   std::string name;            // of the player; empty: "player" and the number
 
  private:
@@ -162,15 +162,16 @@ class RawClient {
       if (!message) return Unexpected<Error>{message.error()};
       // The chunk edge is known from welcome on, also for messages of the same read.
       if (const auto* w = std::get_if<Welcome>(&*message)) chunk_edge_ = w->chunk_edge;
-      if (const auto* uniform = std::get_if<UniformChunks>(&*message)) {
-        for (const UniformChunk& each : uniform->chunks) {  // tests get them as snapshots
+      const auto* uniform = cuts_chunks ? std::get_if<UniformChunks>(&*message) : nullptr;
+      if (uniform != nullptr) {
+        for (const UniformChunk& each : uniform->chunks) {
           Chunk chunk{uniform_chunk(Extent::cube(chunk_edge_), each.material), each.version, {}};
           chunk.digest = digest_of(chunk.voxels);
           arrived_.emplace_back(Chunks{uniform->view, {ChunkSnapshot{each.key, std::move(chunk)}}});
         }
         return {};
       }
-      if (auto* chunks = std::get_if<Chunks>(&*message)) {
+      if (auto* chunks = cuts_chunks ? std::get_if<Chunks>(&*message) : nullptr) {
         for (ChunkAnswer& each : chunks->chunks)
           arrived_.emplace_back(Chunks{chunks->view, {std::move(each)}});
         return {};
