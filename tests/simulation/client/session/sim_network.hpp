@@ -13,7 +13,7 @@ namespace runstone::test {
 
 /// How one end handles what it receives.
 struct SimEnd {
-  std::function<Result<void>(FrameClass, ByteView)> on_message;
+  std::function<Result<void>(MessageKind, ByteView)> on_message;
   std::function<void(const Error&)> on_bad_stream;
   std::function<void()> on_closed;
   std::function<void()> on_drained;

@@ -8,6 +8,7 @@
 
 #include "common/core/hash.hpp"
 #include "protocol/codec/frame.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "tests/simulation/client/session/sim_pipe.hpp"
 #include "tests/simulation/client/session/virtual_time.hpp"
 
@@ -25,7 +26,7 @@ class SimSender {
         alive_(std::make_shared<int>(0)) {}
 
   bool send(const EncodedMessage& message) {
-    Queue& queue = queues_[static_cast<std::size_t>(message.frame_class)];
+    Queue& queue = queues_[static_cast<std::size_t>(class_of(message))];
     if (queue.bytes != 0 && queue.bytes + message.bytes->size() > class_bytes_max_) {
       was_full_ = true;
       return false;
@@ -78,7 +79,7 @@ class SimSender {
     const EncodedMessage& message = queue.messages.front();
     const std::size_t left = message.bytes->size() - queue.sent;
     const std::size_t take = std::min<std::size_t>(left, 1 + rng_.below(kFragmentBytesMax));
-    const FrameHeader header = writer_.next(message.frame_class, take, take < left);
+    const FrameHeader header = writer_.next(message.kind, take, take < left);
     Bytes out(header.begin(), header.end());
     const auto begin = message.bytes->begin() + static_cast<std::ptrdiff_t>(queue.sent);
     out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(take));
