@@ -39,7 +39,8 @@ SessionConfig session_config(const ClientOptions& options, bool has_cache) {
   config.name = options.name;
   config.instance = random_instance();
   config.encodings = options.encodings;
-  config.view = {{}, options.view_radius, options.view_radius_v};
+  config.view.radius_h = options.view_radius;
+  config.view.radius_v = options.view_radius_v;
   return config;
 }
 
@@ -84,16 +85,24 @@ void NetworkSession::on_connected(const NetConnected& event) {
 
 void NetworkSession::on_received(NetReceived& event) {
   if (event.connection != connection_) return;
-  if (const auto* snapshot = std::get_if<ChunkSnapshot>(&event.message)) {
-    ++snapshots_.count;
-    snapshots_.wire_bytes += event.bytes;
-    snapshots_.raw_bytes += raw_bytes(snapshot->chunk.voxels);
-    snapshots_.runs.add(static_cast<std::int64_t>(snapshot->chunk.voxels.runs.size()));
-    snapshots_.unpack_ns.add(event.unpack_ns);
-  }
+  if (const auto* chunks = std::get_if<Chunks>(&event.message)) count_snapshots(*chunks, event);
   session_.receive(std::move(event.message),
                    {event.received_us, event.unpacked_us, steady_now_us()});
   if (session_.connect_count() != connects_handled_) on_world_opened();
+}
+
+void NetworkSession::count_snapshots(const Chunks& chunks, const NetReceived& event) {
+  const auto entries = static_cast<std::int64_t>(chunks.chunks.size());
+  const std::uint64_t count_before = snapshots_.count;
+  for (const ChunkAnswer& answer : chunks.chunks) {
+    const auto* snapshot = std::get_if<ChunkSnapshot>(&answer);
+    if (snapshot == nullptr) continue;
+    ++snapshots_.count;
+    snapshots_.raw_bytes += raw_bytes(snapshot->chunk.voxels);
+    snapshots_.runs.add(static_cast<std::int64_t>(snapshot->chunk.voxels.runs.size()));
+    snapshots_.unpack_ns.add(event.unpack_ns / entries);
+  }
+  if (snapshots_.count != count_before) snapshots_.wire_bytes += event.bytes;
 }
 
 void NetworkSession::on_disconnected(const NetDisconnected& event) {

@@ -66,6 +66,7 @@ class NetworkSession {
  private:
   void on_connected(const NetConnected& event);
   void on_received(NetReceived& event);
+  void count_snapshots(const Chunks& chunks, const NetReceived& event);
   void on_disconnected(const NetDisconnected& event);
   void on_world_opened();
   void keep_chunks(std::size_t count_max);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client/replica/view_size.hpp"
+#include "protocol/codec/message_table.hpp"
 
 namespace runstone {
 
@@ -15,14 +16,14 @@ HeadlessSession::HeadlessSession(SessionConfig config, FleetStatistics& fleet, T
 
 // Connection.
 
-Result<bool> HeadlessSession::receive_bytes(FrameClass frame_class, ByteView body,
+Result<bool> HeadlessSession::receive_bytes(MessageKind kind, ByteView body,
                                             std::uint16_t chunk_edge, TimeUs received_us) {
-  if (frame_class != FrameClass::edits || !is_open() || wants_close()) return false;
+  if (kind != kKindOf<Commit> || !is_open() || wants_close()) return false;
   walked_us_ = received_us;
   walked_due_us_.clear();
   walked_local_due_us_.clear();
   const auto walked = walk_.read(body, chunk_edge, on_walked_);
-  if (!walked || !*walked) return walked;
+  if (!walked) return Unexpected<Error>{walked.error()};
   connection_.note_message(received_us);
   ++counts_.commits;
   const TimeUs verified_us = clock_now_();
@@ -55,15 +56,12 @@ void HeadlessSession::receive(Message message, const Arrival& arrival) {
             connection_.fail_with(GoodbyeReason::unexpected_message, "message before ready");
         } else if (!is_open()) {
           connection_.fail_with(GoodbyeReason::unexpected_message, "message before ready");
-        } else if constexpr (std::is_same_v<T, ChunkSnapshot>) {
-          fleet_.ground.add(m.key.at, m.chunk.voxels);
-          versions_.receive(m, arrival.now_us);
+        } else if constexpr (std::is_same_v<T, Chunks>) {
+          on_chunks(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, UniformChunks>) {
-          const Extent extent = Extent::cube(welcome()->chunk_edge);
-          for (const UniformChunk& chunk : m.chunks) {
-            fleet_.ground.add(chunk.key.at, uniform_chunk(extent, chunk.material));
-          }
-          versions_.receive(m, arrival.now_us);
+          on_uniform_chunks(m, arrival.now_us);
+        } else if constexpr (std::is_same_v<T, ViewState>) {
+          on_view_state(m);
         } else if constexpr (std::is_same_v<T, ChunkUnavailable>) {
           versions_.receive(m);
         } else if constexpr (std::is_same_v<T, DigestCheck>) {
@@ -73,11 +71,38 @@ void HeadlessSession::receive(Message message, const Arrival& arrival) {
         } else if constexpr (std::is_same_v<T, Durable>) {
           on_durable(m);
         } else {
-          connection_.fail_with(GoodbyeReason::unexpected_message,
-                                "message that was not requested");
+          fail_unrequested();
         }
       },
       message);
+}
+
+void HeadlessSession::fail_unrequested() {
+  connection_.fail_with(GoodbyeReason::unexpected_message, "message that was not requested");
+}
+
+void HeadlessSession::on_chunks(const Chunks& chunks, TimeUs now_us) {
+  for (const ChunkAnswer& answer : chunks.chunks) {
+    if (const auto* snapshot = std::get_if<ChunkSnapshot>(&answer))
+      fleet_.ground.add(snapshot->key.at, snapshot->chunk.voxels);
+  }
+  versions_.receive(chunks, now_us);
+}
+
+void HeadlessSession::on_uniform_chunks(const UniformChunks& uniform, TimeUs now_us) {
+  const Extent extent = Extent::cube(welcome()->chunk_edge);
+  for (const UniformChunk& chunk : uniform.chunks) {
+    fleet_.ground.add(chunk.key.at, uniform_chunk(extent, chunk.material));
+  }
+  versions_.receive(uniform, now_us);
+}
+
+void HeadlessSession::on_view_state(const ViewState& state) {
+  // This session sends no history requests.
+  if (state.phase != ViewPhase::complete || state.request != 0 || state.past) {
+    return fail_unrequested();
+  }
+  versions_.complete(state.view);
 }
 
 void HeadlessSession::on_session_accepted(const SessionAccepted& accepted, TimeUs now_us) {

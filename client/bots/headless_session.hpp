@@ -56,10 +56,10 @@ class HeadlessSession {
   /// Returns true if every chunk of the view arrived or is unavailable, and none lacks edits.
   bool loaded() const;
 
-  /// Reads a frame without decoding it into a message, see LinkEvents::on_bytes(). Returns true if
+  /// Reads a commit without decoding it into a message, see LinkEvents::on_bytes(). Returns true if
   /// it was a commit of an open connection and was read. Returns false, and reads nothing, for
-  /// other frames. Fails if the commit is malformed.
-  Result<bool> receive_bytes(FrameClass frame_class, ByteView body, std::uint16_t chunk_edge,
+  /// other messages. Fails if the commit is malformed.
+  Result<bool> receive_bytes(MessageKind kind, ByteView body, std::uint16_t chunk_edge,
                              TimeUs received_us);
   /// Returns when tick() has something to do next.
   TimeUs tick_due_us() const { return connection_.tick_due_us(kPingEveryUs); }
@@ -70,6 +70,11 @@ class HeadlessSession {
 
  private:
   void on_session_accepted(const SessionAccepted& accepted, TimeUs now_us);
+  /// Ends the connection because of a message that answers nothing.
+  void fail_unrequested();
+  void on_chunks(const Chunks& chunks, TimeUs now_us);
+  void on_uniform_chunks(const UniformChunks& uniform, TimeUs now_us);
+  void on_view_state(const ViewState& state);
   void on_reject(const Reject& reject);
   void on_durable(const Durable& durable);
   Result<void> on_edit(const WalkedEdit& edit);

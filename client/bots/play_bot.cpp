@@ -50,9 +50,9 @@ bool PlayBot::waits() const {
 void PlayBot::view_empty_chunk() {
   const Welcome& world = *session_.welcome();
   const auto down = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
-  const View view{
-      chunk_of({down(world.spawn.x), kAloftHeight, down(world.spawn.z)}, world.chunk_edge), 0, 0};
-  if (session_.view() != view) session_.set_view(view);
+  const View view{.centre = chunk_of({down(world.spawn.x), kAloftHeight, down(world.spawn.z)},
+                                     world.chunk_edge)};
+  if (!session_.view().same_chunks(view)) session_.set_view(view);
   session_.set_pose({world.spawn, 0, 0});
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/replica/view_size.hpp"
 #include "common/core/key_text.hpp"
 
 namespace runstone {
@@ -40,13 +41,14 @@ void VersionCounts::merge(const VersionCounts& other) {
 
 void VersionTracker::open(Epoch epoch) {
   epoch_ = epoch;
+  views_.reopen();
   chunks_.clear();
   requests_.clear();
   held_ = unavailable_ = behind_ = 0;
 }
 
 void VersionTracker::set_view(const View& view) {
-  view_ = view;
+  views_.set(view);
   for (auto it = chunks_.begin(); it != chunks_.end();) {
     if (view.contains(it->first)) {
       ++it;
@@ -63,29 +65,51 @@ void VersionTracker::forget(const Known& chunk) {
   if (chunk.behind_us) --behind_;
 }
 
-void VersionTracker::receive(const ChunkSnapshot& snapshot, TimeUs now_us) {
+void VersionTracker::receive(const Chunks& chunks, TimeUs now_us) {
+  for (const ChunkAnswer& answer : chunks.chunks) {
+    if (const auto* snapshot = std::get_if<ChunkSnapshot>(&answer)) {
+      take(*snapshot, chunks.view, now_us);
+    } else {
+      violations_.add("chunk edits", "chunk " + text_of(key_of(answer)));
+    }
+  }
+}
+
+void VersionTracker::take(const ChunkSnapshot& snapshot, std::uint32_t view, TimeUs now_us) {
   if (!digest_matches(snapshot)) {
     violations_.add("snapshot digest", "chunk " + text_of(snapshot.key) + " at seq " +
                                            std::to_string(snapshot.chunk.version.seq));
   }
-  take(snapshot.key, snapshot.chunk.version, now_us);
+  take(snapshot.key, view, snapshot.chunk.version, now_us);
 }
 
 void VersionTracker::receive(const UniformChunks& uniform, TimeUs now_us) {
-  for (const UniformChunk& chunk : uniform.chunks) take(chunk.key, chunk.version, now_us);
+  for (const UniformChunk& chunk : uniform.chunks) {
+    take(chunk.key, uniform.view, chunk.version, now_us);
+  }
+}
+
+/// Returns true if an answer to this view counts for the chunk.
+bool VersionTracker::accepts(const ChunkKey& key, std::uint32_t view) {
+  const std::uint32_t newest = views_.current() ? views_.current()->number : 0;
+  if (view > newest) {
+    violations_.add("view number", "chunk " + text_of(key) + " answers view " +
+                                       std::to_string(view) + ", and the newest one is " +
+                                       std::to_string(newest));
+  }
+  if (views_.accepts(key, view)) return true;
+  ++counts_.outside;
+  return false;
 }
 
 /// Takes a snapshot whose voxels are verified already.
-void VersionTracker::take(const ChunkKey& key, Version version, TimeUs now_us) {
+void VersionTracker::take(const ChunkKey& key, std::uint32_t view, Version version, TimeUs now_us) {
   if (version.epoch > epoch_) {
     violations_.add("epoch",
                     "chunk " + text_of(key) + " is of epoch " + std::to_string(version.epoch));
   }
   ++counts_.snapshots;
-  if (key.lod != 0 || !view_ || !view_->contains(key.at)) {
-    ++counts_.outside;
-    return;
-  }
+  if (!accepts(key, view)) return;
   Known& chunk = chunks_[key.at];
   if (std::exchange(chunk.unavailable, false)) --unavailable_;
   if (chunk.held && version.seq < chunk.at) {
@@ -103,13 +127,23 @@ void VersionTracker::take(const ChunkKey& key, Version version, TimeUs now_us) {
 
 void VersionTracker::receive(const ChunkUnavailable& unavailable) {
   for (const ChunkKey& key : unavailable.keys) {
-    if (key.lod != 0 || !view_ || !view_->contains(key.at)) continue;
+    if (!accepts(key, unavailable.view)) continue;
     Known& chunk = chunks_[key.at];
     forget(chunk);
     chunk = {};
     chunk.unavailable = true;
     ++unavailable_;
   }
+}
+
+void VersionTracker::complete(std::uint32_t view) {
+  // The chunks of an older view may have been forgotten.
+  if (!views_.current() || views_.current()->number != view) return;
+  const std::size_t expected = chunks_in(*views_.current());
+  if (known() == expected) return;
+  violations_.add("incomplete view", "view " + std::to_string(view) + " is complete, and " +
+                                         std::to_string(known()) + " of its " +
+                                         std::to_string(expected) + " chunks were answered");
 }
 
 void VersionTracker::receive(const DigestCheck& audit, TimeUs now_us) {
@@ -124,7 +158,7 @@ void VersionTracker::receive(const DigestCheck& audit, TimeUs now_us) {
 }
 
 void VersionTracker::follow(ChunkCoord at, Sequence previous, Sequence seq, TimeUs now_us) {
-  if (!view_ || !view_->contains(at)) return;
+  if (!views_.contains({0, at})) return;
   Known& chunk = chunks_[at];
   if (chunk.unavailable) return;
   chunk.latest = std::max(chunk.latest, seq);
@@ -182,11 +216,14 @@ void VersionTracker::tick(TimeUs now_us) {
                                ", edit " + std::to_string(chunk.latest) +
                                " touched it, and the edits between did not arrive");
     chunk.is_asked = true;
-    requests_.push_back(key);
+    requests_.insert(key);
   }
 }
 
-std::vector<ChunkKey> VersionTracker::take_requests() { return std::exchange(requests_, {}); }
+std::vector<ChunkKey> VersionTracker::take_requests() {
+  const auto requests = std::exchange(requests_, {});
+  return {requests.begin(), requests.end()};
+}
 
 std::optional<Sequence> VersionTracker::version(ChunkCoord at) const {
   const auto found = chunks_.find(at);

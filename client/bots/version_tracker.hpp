@@ -6,6 +6,9 @@
 //     sends a snapshot within kResendUsMax, without a request.
 //   - A digest check may name a version newer than what arrived for kResendUsMax at most.
 //   - The digest of a snapshot is that of its voxels.
+//   - Edits in place of a snapshot answer claims only, and this client makes none.
+//   - An answer names a view that was sent.
+//   - When the view is complete, every chunk of it was answered.
 // A chunk that is not sent again in time is a violation, and is requested. Pure: times are
 // arguments. One thread.
 #pragma once
@@ -13,9 +16,11 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "client/replica/recent_views.hpp"
 #include "client/schedule/histogram.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
@@ -48,7 +53,7 @@ class Violations {
 struct VersionCounts {
   std::uint64_t snapshots = 0;  // verified, digest included
   std::uint64_t stale = 0;      // older than what is known: allowed, and ignored
-  std::uint64_t outside = 0;    // not in view any more
+  std::uint64_t outside = 0;    // answers for chunks that are not in view, or left it since
   std::uint64_t followed = 0;   // chunk edits that continued the version of their chunk
   std::uint64_t contained = 0;  // chunk edits that a snapshot contained
   std::uint64_t held_back = 0;  // chunk edits that arrived before their snapshot
@@ -62,18 +67,20 @@ class VersionTracker {
  public:
   /// Opens a connection. All chunks are expected again.
   void open(Epoch epoch);
-  /// Forgets the chunks outside of the view.
+  /// Forgets the chunks outside of the view. The view was sent with its number.
   void set_view(const View& view);
 
-  void receive(const ChunkSnapshot& snapshot, TimeUs now_us);
+  void receive(const Chunks& chunks, TimeUs now_us);
   void receive(const UniformChunks& uniform, TimeUs now_us);
   void receive(const ChunkUnavailable& unavailable);
+  /// Every chunk of the view of this number was answered.
+  void complete(std::uint32_t view);
   void receive(const DigestCheck& audit, TimeUs now_us);
   /// An edit of a commit touches this chunk, whose sequence was `previous` before it.
   void follow(ChunkCoord at, Sequence previous, Sequence seq, TimeUs now_us);
   /// Finds chunks that were not sent again in time. Cost: O(1) while none is behind.
   void tick(TimeUs now_us);
-  /// Returns the chunks to request from the server.
+  /// Returns the chunks to request from the server, ascending.
   std::vector<ChunkKey> take_requests();
 
   /// Returns the number of chunks of the view that arrived or are unavailable.
@@ -97,15 +104,17 @@ class VersionTracker {
     bool is_asked = false;            // a request was made
     std::vector<Link> waiting;        // ascending
   };
-  void take(const ChunkKey& key, Version version, TimeUs now_us);
+  void take(const ChunkSnapshot& snapshot, std::uint32_t view, TimeUs now_us);
+  bool accepts(const ChunkKey& key, std::uint32_t view);
+  void take(const ChunkKey& key, std::uint32_t view, Version version, TimeUs now_us);
   void advance(Known& chunk, TimeUs now_us);
   void forget(const Known& chunk);
 
   Epoch epoch_ = 0;
-  std::optional<View> view_;
+  RecentViews views_;
   std::map<ChunkCoord, Known> chunks_;
   std::size_t held_ = 0, unavailable_ = 0, behind_ = 0;
-  std::vector<ChunkKey> requests_;
+  std::set<ChunkKey> requests_;
   VersionCounts counts_;
   Violations violations_;
 };

@@ -36,7 +36,7 @@ Json versions_json(const FleetReport& report) {
           {"chunk_edits_contained", v.contained},
           {"chunk_edits_held_back", v.held_back},
           {"snapshots_stale", v.stale},
-          {"snapshots_outside", v.outside},
+          {"answers_outside", v.outside},
           {"chunks_resent", v.resent},
           {"behind_us", histogram_json(v.behind_us)},
           {"versions_audited", v.audited},

@@ -47,12 +47,12 @@ void LinkedSession<Session>::on_received(NetReceived received) {
 }
 
 template <class Session>
-Result<bool> LinkedSession<Session>::on_bytes(FrameClass frame_class, ByteView body,
+Result<bool> LinkedSession<Session>::on_bytes(MessageKind kind, ByteView body,
                                               std::uint16_t chunk_edge, TimeUs received_us) {
   if constexpr (std::is_same_v<Session, HeadlessSession>) {
-    return session_.receive_bytes(frame_class, body, chunk_edge, received_us);
+    return session_.receive_bytes(kind, body, chunk_edge, received_us);
   } else {
-    return LinkEvents::on_bytes(frame_class, body, chunk_edge, received_us);
+    return LinkEvents::on_bytes(kind, body, chunk_edge, received_us);
   }
 }
 

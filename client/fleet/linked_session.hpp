@@ -39,7 +39,7 @@ class LinkedSession final : private LinkEvents {
  private:
   void on_connected(ConnectionNumber connection) override;
   void on_received(NetReceived received) override;
-  Result<bool> on_bytes(FrameClass frame_class, ByteView body, std::uint16_t chunk_edge,
+  Result<bool> on_bytes(MessageKind kind, ByteView body, std::uint16_t chunk_edge,
                         TimeUs received_us) override;
   void on_disconnected(ConnectionNumber connection, std::string why) override;
 

@@ -13,6 +13,7 @@
 
 #include "client/net/receive_ack_scheduler.hpp"
 #include "common/os/steady_clock.hpp"
+#include "protocol/codec/message_table.hpp"
 
 namespace runstone {
 namespace {
@@ -62,21 +63,22 @@ struct Link::State {
 };
 
 Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, TimeUs received_us) {
-  return reader.feed(bytes, [&](FrameClass frame_class, ByteView body) -> Result<void> {
+  return reader.feed(bytes, [&](MessageKind kind, ByteView body) -> Result<void> {
+    const FrameClass frame_class = info_of(kind).frame_class;
     const std::uint64_t frames = reader.frames(frame_class) -
                                  std::exchange(frames_before[static_cast<std::size_t>(frame_class)],
                                                reader.frames(frame_class));
-    const auto taken = events.on_bytes(frame_class, body, chunk_edge, received_us);
+    const auto taken = events.on_bytes(kind, body, chunk_edge, received_us);
     if (!taken) return Unexpected<Error>{taken.error()};
     if (*taken) {
-      stats.received.add(kind_of(body), body.size(), frames);
+      stats.received.add(kind, body.size(), frames);
       return {};
     }
     const std::int64_t start_ns = steady_now_ns();
-    auto message = decode_message(Sender::server, frame_class, body, chunk_edge);
+    auto message = decode_message(Sender::server, kind, body, chunk_edge);
     if (!message) return Unexpected<Error>{message.error()};
     const std::int64_t end_ns = steady_now_ns();
-    stats.received.add(kind_of(body), body.size(), frames);
+    stats.received.add(kind, body.size(), frames);
     if (const auto* welcome = std::get_if<Welcome>(&*message)) {
       chunk_edge = welcome->chunk_edge;
       features = welcome->features;
@@ -119,7 +121,7 @@ void Link::State::enqueue(ConnectionNumber to, const EncodedMessage& message) {
     close_socket();
     return;
   }
-  (message.frame_class == FrameClass::edits ? edits : others).push_back(message);
+  (class_of(message) == FrameClass::edits ? edits : others).push_back(message);
   work_to_send.cancel();
 }
 
@@ -171,11 +173,12 @@ asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
     out.clear();
     while (out.size() < kWriteBytes && (!state.edits.empty() || !state.others.empty())) {
       auto& queue = state.edits.empty() ? state.others : state.edits;
-      const Bytes& message = *queue.front().bytes;
-      writer.append(queue.front(), out);
-      state.stats.sent.add(kind_of(message), message.size(),
-                           (message.size() + kFragmentBytesMax - 1) / kFragmentBytesMax);
-      state.queued_bytes -= queue.front().bytes->size();
+      const EncodedMessage& message = queue.front();
+      const std::size_t bytes = message.bytes->size();
+      writer.append(message, out);
+      state.stats.sent.add(message.kind, bytes,
+                           (bytes + kFragmentBytesMax - 1) / kFragmentBytesMax);
+      state.queued_bytes -= bytes;
       queue.pop_front();
     }
     if (out.empty()) {

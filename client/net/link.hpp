@@ -58,7 +58,7 @@ class LinkEvents {
   /// Offers a message before it is decoded. `body` is 8-aligned and lives until the call returns.
   /// `chunk_edge` is 0 before Welcome. Returns true if the callee verified and handled the message;
   /// then on_received() is not called for it. An error closes the connection.
-  virtual Result<bool> on_bytes(FrameClass /*frame_class*/, ByteView /*body*/,
+  virtual Result<bool> on_bytes(MessageKind /*kind*/, ByteView /*body*/,
                                 std::uint16_t /*chunk_edge*/, TimeUs /*received_us*/) {
     return false;
   }

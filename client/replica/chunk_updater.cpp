@@ -59,7 +59,7 @@ void ChunkUpdater::take_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs n
   ++counters_.same_taken;
   if (!chunk.is_current()) return;
   if (chunk.confirmed() && chunk.confirmed()->version.seq >= seq) return vouch(chunk, now_us);
-  // The chunk left the view and came back, and the copy that was claimed is gone.
+  // The copy that was claimed is not held any more.
   request(chunk, now_us);
 }
 

@@ -54,10 +54,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           early_.emplace_back(std::move(m), arrival);
         } else if (!is_open()) {
           connection_.fail_with(GoodbyeReason::unexpected_message, "message before ready");
-        } else if constexpr (std::is_same_v<T, ChunkSnapshot>) {
+        } else if constexpr (std::is_same_v<T, Chunks>) {
           replica_->receive(std::move(m), arrival);
-        } else if constexpr (std::is_same_v<T, ChunkEdits>) {
-          replica_->receive(m, arrival);
         } else if constexpr (std::is_same_v<T, ChunksNotModified>) {
           replica_->receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, UniformChunks>) {
@@ -146,6 +144,10 @@ void ClientSession::send_waiting_edits(TimeUs now_us) {
 }
 
 void ClientSession::set_view(const View& view) {
+  // The replica has forgotten the chunks outside of a view that waits. The server must forget them
+  // too, or it would not send those of them again that the new view contains.
+  const bool is_moved = !connection_.config().view.same_chunks(view);
+  if (is_moved && view_waiting_since_us_ && connection_.view_was_sent()) send_view();
   connection_.set_view(view);
   const View allowed = this->view();
   if (!replica_->view() || !replica_->view()->same_chunks(allowed)) replica_->set_view(allowed);

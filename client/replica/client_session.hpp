@@ -67,6 +67,7 @@ class ClientSession {
   /// Shows and sends an edit. `submitted_us`: the click or the scheduled time; latency is measured
   /// from there.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
+  /// Requests a view; its number is ignored.
   void set_view(const View& view);
   /// Requests the view as it was at a moment of the past, read-only, or as it is now.
   /// `request.request` is ignored. The live world and the views of others do not change. Fails
@@ -110,7 +111,8 @@ class ClientSession {
   OperationId operation(ClientSequence seq) const {
     return {author(), connection_.config().instance, seq};
   }
-  /// Returns the view in force: the requested one within the server's limits.
+  /// Returns the view in force: the requested one within the server's limits. See
+  /// ServerConnection::view().
   View view() const { return connection_.view(); }
   /// Returns the number of chunks in view.
   std::size_t view_chunks() const;

@@ -19,9 +19,7 @@ class HistoryRequests {
   }
   /// Takes an answer of the server. Answers to older requests change nothing.
   void receive(const ViewState& state) {
-    if (state.request != newest_) return;
-    // The chunks of the live world are counted as at the start of a session: no "complete" follows.
-    if (state.phase == ViewPhase::begins && state.past) return;
+    if (state.request != newest_ || state.phase == ViewPhase::begins) return;
     answered_ = newest_;
     if (state.phase == ViewPhase::refused) refusal_ = state.text;
   }

@@ -16,6 +16,7 @@ std::vector<ClientSequence> Replica::open(const SessionParameters& parameters) {
   if (parameters_) before = ServerMark{parameters_->epoch, durable_, newest_};
   if (before && before->epoch != parameters.epoch) outbox_.clear();
   past_.reset();
+  views_.reopen();
   claims_.clear();
   updater_.clear_requests();
   parameters_ = parameters;
@@ -62,7 +63,7 @@ void Replica::reset() {
 }
 
 void Replica::set_view(const View& view) {
-  view_ = view;
+  views_.set(view);
   chunks_.erase_if([&](const TrackedChunk& chunk) {
     if (view.contains(chunk.key.at)) return false;
     if (chunk.shown) changes_.removed(chunk.key);
@@ -70,10 +71,6 @@ void Replica::set_view(const View& view) {
     claims_.forget(chunk.key);
     return true;
   });
-}
-
-bool Replica::is_in_view(const ChunkKey& key) const {
-  return key.lod == 0 && view_ && view_->contains(key.at);
 }
 
 TrackedChunk& Replica::track(const ChunkKey& key) {
@@ -192,38 +189,47 @@ void Replica::receive(const Durable& durable) {
 
 // Chunks and commits.
 
-void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
-  if (!parameters_ || !is_in_view(snapshot.key)) {
-    ++counters_.snapshots_outside;
-    return;
+/// Returns true if an answer to this view counts for the chunk.
+bool Replica::accepts(const ChunkKey& key, std::uint32_t view) {
+  if (views_.accepts(key, view)) return true;
+  ++counters_.answers_outside;
+  return false;
+}
+
+void Replica::receive(Chunks chunks, const Arrival& arrival) {
+  if (!parameters_) return;
+  for (ChunkAnswer& answer : chunks.chunks) {
+    if (!accepts(key_of(answer), chunks.view)) continue;
+    if (auto* snapshot = std::get_if<ChunkSnapshot>(&answer)) {
+      take_snapshot(snapshot->key, std::move(snapshot->chunk), arrival.now_us);
+    } else {
+      take_missing_edits(std::get<ChunkEdits>(answer), arrival.now_us);
+    }
   }
-  TrackedChunk& chunk = track(snapshot.key);
-  claims_.answer(snapshot.key);
-  if (past_.is_past()) return updater_.replace(chunk, std::move(snapshot.chunk));
-  const Sequence seq = snapshot.chunk.version.seq;
-  if (updater_.take_snapshot(chunk, std::move(snapshot.chunk), arrival.now_us)) {
-    newest_ = std::max(newest_, seq);
+}
+
+void Replica::take_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us) {
+  TrackedChunk& chunk = track(key);
+  claims_.answer(key);
+  if (past_.is_past()) return updater_.replace(chunk, std::move(snapshot));
+  const Sequence seq = snapshot.version.seq;
+  if (updater_.take_snapshot(chunk, std::move(snapshot), now_us)) newest_ = std::max(newest_, seq);
+}
+
+void Replica::take_missing_edits(const ChunkEdits& edits, TimeUs now_us) {
+  if (past_.is_past()) return;
+  claims_.answer(edits.key);
+  if (updater_.take_missing_edits(track(edits.key), edits, now_us)) {
+    newest_ = std::max(newest_, edits.to.seq);
   }
 }
 
 void Replica::receive(const ChunksNotModified& same, TimeUs now_us) {
   if (!parameters_ || past_.is_past()) return;
   for (const UnmodifiedChunk& entry : same.chunks) {
-    if (!is_in_view(entry.key)) continue;
+    if (!accepts(entry.key, same.view)) continue;
     claims_.answer(entry.key);
     updater_.take_not_modified(track(entry.key), entry.seq, now_us);
-  }
-}
-
-void Replica::receive(const ChunkEdits& edits, const Arrival& arrival) {
-  if (!parameters_ || past_.is_past()) return;
-  if (!is_in_view(edits.key)) {
-    ++counters_.snapshots_outside;
-    return;
-  }
-  claims_.answer(edits.key);
-  if (updater_.take_missing_edits(track(edits.key), edits, arrival.now_us)) {
-    newest_ = std::max(newest_, edits.to.seq);
   }
 }
 
@@ -232,20 +238,21 @@ void Replica::receive(const UniformChunks& uniform, const Arrival& arrival) {
   const Extent extent = Extent::cube(static_cast<unsigned>(parameters_->chunk_edge));
   Chunk chunk;
   for (const UniformChunk& each : uniform.chunks) {
+    if (!accepts(each.key, uniform.view)) continue;
     // Most chunks are of the material of the one before: air or stone.
     if (chunk.voxels.runs.size() == 0 || material_at(chunk.voxels, {0, 0, 0}) != each.material) {
       chunk.voxels = uniform_chunk(extent, each.material);
       chunk.digest = digest_of(chunk.voxels);
     }
     chunk.version = each.version;
-    receive(ChunkSnapshot{each.key, chunk}, arrival);
+    take_snapshot(each.key, chunk, arrival.now_us);
   }
 }
 
 void Replica::receive(const ChunkUnavailable& unavailable) {
   if (!parameters_) return;
   for (const ChunkKey& key : unavailable.keys) {
-    if (!is_in_view(key)) continue;
+    if (!accepts(key, unavailable.view)) continue;
     claims_.answer(key);
     updater_.withhold(track(key), unavailable.reason);
   }
@@ -323,10 +330,10 @@ std::vector<CachedChunk> Replica::take_claims() {
 
 std::vector<ChunkKey> Replica::missing() const {
   std::vector<ChunkKey> keys;
-  if (!parameters_ || past_.is_past() || !view_) return keys;
+  if (!parameters_ || past_.is_past() || !view()) return keys;
   const std::int32_t limit = kWorldLimit / parameters_->chunk_edge;
   const auto is_inside = [limit](std::int32_t c) { return c >= -limit && c < limit; };
-  const View& v = *view_;
+  const View& v = *view();
   const std::int32_t h = v.radius_h, up = v.radius_v;
   for (std::int32_t x = v.centre.x - h; x <= v.centre.x + h; ++x) {
     for (std::int32_t y = v.centre.y - up; y <= v.centre.y + up; ++y) {

@@ -20,6 +20,7 @@
 //   - A chunk with a gap, or with a wrong digest, accepts nothing but a snapshot, which it
 //     requests.
 //   - A snapshot older than the confirmed chunk is ignored.
+// An answer to a view is ignored if the chunk has left the view since (RecentViews).
 // After a restart of the server (new epoch) only versions that it kept for sure are trusted
 // (SharedHistory).
 //
@@ -40,6 +41,7 @@
 #include "client/replica/claims.hpp"
 #include "client/replica/local_edits.hpp"
 #include "client/replica/past_view.hpp"
+#include "client/replica/recent_views.hpp"
 #include "client/replica/replica_changes.hpp"
 #include "client/replica/replica_chunks.hpp"
 #include "common/core/result.hpp"
@@ -76,9 +78,10 @@ class Replica {
   /// Returns 0 before open().
   std::int32_t chunk_edge() const { return parameters_ ? parameters_->chunk_edge : 0; }
 
-  /// Drops the chunks outside of the view. The server is expected to send those inside.
+  /// Drops the chunks outside of the view. The server is expected to send those inside. The view
+  /// has the number with which it is sent; see RecentViews::set().
   void set_view(const View& view);
-  const std::optional<View>& view() const { return view_; }
+  const std::optional<View>& view() const { return views_.current(); }
 
   /// Shows a local edit at once and keeps it until it is durable. `submitted_us`: the click, or the
   /// scheduled time. Fails
@@ -89,11 +92,11 @@ class Replica {
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
   void mark_sent(ClientSequence seq, TimeUs now_us) { local_edits_.mark_sent(seq, now_us); }
 
-  void receive(ChunkSnapshot snapshot, const Arrival& arrival);
+  /// Takes snapshots, and completes claimed chunks by the edits that they lack. Requests a chunk if
+  /// its edits do not fit.
+  void receive(Chunks chunks, const Arrival& arrival);
   /// The claimed chunks are current. Requests those of which the claimed copy is not held any more.
   void receive(const ChunksNotModified& same, TimeUs now_us);
-  /// Completes a claimed chunk. Requests the chunk if the edits do not fit it.
-  void receive(const ChunkEdits& edits, const Arrival& arrival);
   /// Takes snapshots of one material each.
   void receive(const UniformChunks& uniform, const Arrival& arrival);
   /// The server cannot send these chunks: nothing is shown there, and edits there are refused.
@@ -159,8 +162,11 @@ class Replica {
   const ReplicaCounters& counters() const { return counters_; }
 
  private:
-  bool is_in_view(const ChunkKey& key) const;
+  bool is_in_view(const ChunkKey& key) const { return views_.contains(key); }
+  bool accepts(const ChunkKey& key, std::uint32_t view);
   TrackedChunk& track(const ChunkKey& key);
+  void take_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us);
+  void take_missing_edits(const ChunkEdits& edits, TimeUs now_us);
   void expect_all_chunks(const SharedHistory& history);
   void add_pending_to_chunks(ClientSequence seq);
   Result<void> check_edit(const EditDescriptor& edit) const;
@@ -168,7 +174,7 @@ class Replica {
   void retire_durable();
 
   std::optional<SessionParameters> parameters_;
-  std::optional<View> view_;
+  RecentViews views_;
   ReplicaChunks chunks_;
   PastView past_;
   Claims claims_;

@@ -92,9 +92,10 @@ struct ReplicaChanges {
 /// Counts since the replica was made. A `chunk edit` is an edit in one chunk: an edit counts once
 /// per chunk. The counts of local edits are LocalEditCounters.
 struct ReplicaCounters {
-  std::uint64_t snapshots_taken = 0;    // became the confirmed chunk
-  std::uint64_t snapshots_stale = 0;    // older than the confirmed chunk: ignored
-  std::uint64_t snapshots_outside = 0;  // not in view: ignored
+  std::uint64_t snapshots_taken = 0;  // became the confirmed chunk
+  std::uint64_t snapshots_stale = 0;  // older than the confirmed chunk: ignored
+  /// Answers of the server for chunks that are not in view, or left it since: ignored.
+  std::uint64_t answers_outside = 0;
   std::uint64_t commits = 0;
   std::uint64_t chunk_edits_applied = 0;
   std::uint64_t chunk_edits_contained = 0;  // in the snapshot already: dropped

@@ -75,11 +75,14 @@ class ServerConnection {
   void send(Message message) { outgoing_.push_back(std::move(message)); }
   /// Sends an edit, with the time of the click on the server's clock if the clock offset is known.
   void send_edit(ClientSequence seq, const LocalEdit& local);
-  /// Sends chunk requests of at most kChunkRequestKeysMax keys each.
+  /// Sends chunk requests of at most kChunkRequestKeysMax keys each. Requires strictly ascending
+  /// keys.
   void request_chunks(const std::vector<ChunkKey>& keys);
-  /// Sets the requested view. send_view() sends it.
+  /// Sets the requested view; its number is ignored. send_view() sends it.
   void set_view(const View& view) { config_.view = view; }
-  /// Returns the view in force: the requested one within the server's limits.
+  /// Returns the view in force: the requested one within the server's limits. Its number is that
+  /// with which it was sent, or with which send_view() would send it. Views of a connection are
+  /// counted from 1.
   View view() const;
   /// Sends the view in force, unless it was sent last. Returns true if it was sent.
   bool send_view();

@@ -74,7 +74,7 @@ Json replica_json(const Replica& replica) {
               {"durable", replica.durable()},
               {"snapshots_taken", c.snapshots_taken},
               {"snapshots_stale", c.snapshots_stale},
-              {"snapshots_outside", c.snapshots_outside},
+              {"answers_outside", c.answers_outside},
               {"commits", c.commits},
               {"chunk_edits_applied", c.chunk_edits_applied},
               {"chunk_edits_contained", c.chunk_edits_contained},

@@ -14,10 +14,11 @@ namespace runstone {
 /// Chunk snapshots received.
 struct SnapshotStats {
   std::uint64_t count = 0;
-  std::uint64_t wire_bytes = 0;  // messages, frame headers not counted
+  std::uint64_t wire_bytes = 0;  // messages with snapshots, frame headers not counted
   std::uint64_t raw_bytes = 0;   // the same chunks in the raw encoding
   Histogram runs;                // per snapshot
-  Histogram unpack_ns;           // per snapshot: verify, decode, validate
+  /// Per snapshot: verify, decode, validate. A message with several chunks counts in equal shares.
+  Histogram unpack_ns;
 };
 
 /// Meshes made.

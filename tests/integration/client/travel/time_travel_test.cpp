@@ -9,7 +9,7 @@
 namespace runstone::test {
 namespace {
 
-constexpr View kView{{0, 0, 0}, 2, 1};
+constexpr View kView{1, {0, 0, 0}, 2, 1};
 using ChunkStates = std::map<ChunkKey, std::pair<Version, Digest>>;
 
 ChunkStates states_of(const Replica& replica) {
@@ -89,7 +89,7 @@ TEST_CASE("scrubbing sends the changed chunks; a view that moves in the past sho
   auto server = start_server(quiet_config(folder.path()), flat_creation());
   Builder builder(server->port());
   builder.build(20);
-  LiveSession viewer(server->port(), {{40, 0, 0}, 2, 1});
+  LiveSession viewer(server->port(), {1, {40, 0, 0}, 2, 1});
   viewer.catch_up();
   viewer.travel(to_seq(12));
   viewer.session().set_view(kView);

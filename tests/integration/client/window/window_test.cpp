@@ -134,7 +134,7 @@ TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work",
   const auto server = start_server(config, flat_creation());
   RawClient watcher(server->port());
   REQUIRE(watcher.join(1).has_value());
-  watcher.send(View{{0, 0, 0}, 2, 2});
+  watcher.send(View{1, {0, 0, 0}, 2, 2});
   watcher.send(Move{{{0.5, 60.0, -60.0}, 0, 0}});  // out of view
 
   VirtualDisplay display(folder / ".", 800, 600);

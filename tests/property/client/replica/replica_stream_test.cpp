@@ -11,6 +11,7 @@
 #include "client/replica/replica.hpp"
 #include "common/core/hash.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
 #include "tests/support/edit_oracle.hpp"
 
 using namespace runstone;
@@ -87,7 +88,7 @@ class Simulation {
   Simulation(std::uint64_t seed, Rules rules) : rng_(seed), rules_(rules) {
     for (std::size_t i = 0; i < peers_.size(); ++i) {
       peers_[i].author = static_cast<AuthorId>(i + 1);
-      peers_[i].view = {{0, 0, 0}, 2, 2};
+      peers_[i].view = {1, {0, 0, 0}, 2, 2};
       peers_[i].replica.set_view(peers_[i].view);
       connect(peers_[i]);
     }
@@ -143,6 +144,7 @@ class Simulation {
       sum.chunk_edits_contained += c.chunk_edits_contained;
       sum.dropped_by_epoch += c.dropped_by_epoch;
       sum.drifted += c.drifted;
+      sum.answers_outside += c.answers_outside;
     }
     return sum;
   }
@@ -258,8 +260,8 @@ class Simulation {
   }
 
   void send_snapshot(Peer& peer, ChunkCoord at) {
-    const ChunkSnapshot snapshot = world_.snapshot(at);
-    peer.chunks.push_back([this, &peer, snapshot] { peer.replica.receive(snapshot, arrival()); });
+    const Chunks chunks = test::chunks_of(world_.snapshot(at), peer.view.number);
+    peer.chunks.push_back([this, &peer, chunks] { peer.replica.receive(chunks, arrival()); });
   }
 
   void send_stale(Peer& peer) {
@@ -277,7 +279,8 @@ class Simulation {
   }
 
   void move(Peer& peer) {
-    const View view{{rng_.between(-1, 1), rng_.between(-1, 1), rng_.between(-1, 1)}, 2, 2};
+    const std::uint32_t number = peer.replica.view()->number + 1;
+    const View view{number, {rng_.between(-1, 1), rng_.between(-1, 1), rng_.between(-1, 1)}, 2, 2};
     peer.replica.set_view(view);
     peer.upstream.push_back([this, &peer, view] { subscribe(peer, view); });
   }
@@ -388,6 +391,7 @@ TEST_CASE("replicas agree with the authority after any interleaving, cut and cra
     local_sum.rejected += simulation.local_counters().rejected;
     local_sum.offered_again += simulation.local_counters().offered_again;
     sum.dropped_by_epoch += c.dropped_by_epoch;
+    sum.answers_outside += c.answers_outside;
   }
   // The interleavings cover these cases.
   CHECK(sum.gaps > 0);
@@ -397,6 +401,7 @@ TEST_CASE("replicas agree with the authority after any interleaving, cut and cra
   CHECK(local_sum.offered_again > 0);
   CHECK(local_sum.rejected > 0);
   CHECK(sum.dropped_by_epoch > 0);
+  CHECK(sum.answers_outside > 0);
 }
 
 TEST_CASE("a server that hides a dropped commit is caught by the comparison",

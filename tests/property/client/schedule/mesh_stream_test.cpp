@@ -19,6 +19,7 @@
 #include "common/core/hash.hpp"
 #include "common/runs/reorder.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/random_chunk.hpp"
@@ -197,7 +198,7 @@ class MeshStream {
     ChunkSnapshot snapshot = world_.snapshot(at);
     if (rng_.below(4) == 0)
       snapshot.chunk.voxels = reorder(snapshot.chunk.voxels, random_order(rng_));
-    snapshots_.push_back(std::move(snapshot));
+    snapshots_.push_back(test::chunks_of(std::move(snapshot), replica_.view()->number));
   }
 
   void send_view(const std::set<ChunkCoord>& but) {
@@ -229,7 +230,8 @@ class MeshStream {
   void make_unavailable() {
     const auto view = in_view();
     const auto at = *std::next(view.begin(), rng_.below(static_cast<std::uint32_t>(view.size())));
-    replica_.receive(ChunkUnavailable{{{0, at}}, UnavailableReason::damaged});
+    replica_.receive(
+        ChunkUnavailable{replica_.view()->number, {{0, at}}, UnavailableReason::damaged});
     send_snapshot(at);  // repaired
   }
 
@@ -241,7 +243,7 @@ class MeshStream {
   // The client.
 
   View random_view() {
-    return {{rng_.between(-1, 0), rng_.between(-1, 0), rng_.between(-1, 0)}, 1, 1};
+    return {++view_number_, {rng_.between(-1, 0), rng_.between(-1, 0), rng_.between(-1, 0)}, 1, 1};
   }
 
   std::set<ChunkCoord> in_view() const {
@@ -263,14 +265,15 @@ class MeshStream {
     send_view(before);
   }
 
-  /// Disconnects and connects again, while others edit.
+  /// Moves the view away and back, while others edit.
   void move_view_twice() {
-    const View here = *replica_.view();
+    View here = *replica_.view();
     replica_.set_view(random_view());
     planner_.view_changed();
     const auto stayed = in_view();
     for (int i = 0; i < 20; ++i) commit({kOther, 1, ++others_}, random_edit(rng_));
     if (rng_.below(2) == 0) drain_changes();
+    here.number = ++view_number_;
     replica_.set_view(here);
     planner_.view_changed();
     send_view(stayed);
@@ -280,7 +283,7 @@ class MeshStream {
     if (snapshots_.empty()) return;
     const auto one = snapshots_.begin() + rng_.below(std::min<std::uint32_t>(
                                               4, static_cast<std::uint32_t>(snapshots_.size())));
-    ChunkSnapshot snapshot = std::move(*one);
+    Chunks snapshot = std::move(*one);
     snapshots_.erase(one);
     replica_.receive(std::move(snapshot), {now_, now_, now_});
   }
@@ -370,7 +373,8 @@ class MeshStream {
   // Messages in flight. Each queue is in order, except for the snapshots.
   std::deque<ClientSequence> offered_;
   std::deque<std::function<void()>> commits_, control_;
-  std::deque<ChunkSnapshot> snapshots_;
+  std::uint32_t view_number_ = 0;
+  std::deque<Chunks> snapshots_;
 
   Replica replica_;
   MeshPlanner planner_{replica_};

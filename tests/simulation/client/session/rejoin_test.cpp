@@ -8,6 +8,9 @@
 
 #include "client/replica/client_session.hpp"
 #include "common/runs/run_builder.hpp"
+#include "protocol/codec/chunk_entries.hpp"
+#include "protocol/codec/message_table.hpp"
+#include "tests/support/chunks_message.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone::test {
@@ -59,7 +62,7 @@ class Joined {
         goes_on = true;
         const EncodedMessage encoded = encode_message(message);
         if (is_of_chunks(message)) to_server += framed(encoded);
-        auto decoded = decode_message(Sender::client, encoded.frame_class, *encoded.bytes, kEdge);
+        auto decoded = decode_message(Sender::client, encoded.kind, *encoded.bytes, kEdge);
         REQUIRE(decoded.has_value());
         bench.server.received(id_, std::move(*decoded), bench.now());
       }
@@ -73,8 +76,9 @@ class Joined {
       for (const auto& sent : std::exchange(bench.environment.sent, {}))
         goes_on |= deliver(sent.session, sent.message);
       for (const auto& snapshot : std::exchange(bench.environment.snapshots, {})) {
-        goes_on |= deliver(snapshot.session,
-                           encode_snapshot(snapshot.key, *snapshot.chunk, ChunkEncoding::packed));
+        const ChunkEntry entry =
+            encode_snapshot(snapshot.key, *snapshot.chunk, ChunkEncoding::packed);
+        goes_on |= deliver(snapshot.session, join_entries(session_.view().number, {&entry, 1}));
       }
     }
   }
@@ -117,8 +121,8 @@ class Joined {
 
   bool deliver(SessionId session, const EncodedMessage& message) {
     if (session != id_) return false;
-    if (message.frame_class == FrameClass::chunks) to_client += framed(message);
-    auto decoded = decode_message(Sender::server, message.frame_class, *message.bytes,
+    if (class_of(message) == FrameClass::chunks) to_client += framed(message);
+    auto decoded = decode_message(Sender::server, message.kind, *message.bytes,
                                   session_.welcome() ? kEdge : std::uint16_t{0});
     REQUIRE(decoded.has_value());
     session_.receive(*std::move(decoded), {bench.time_us, bench.time_us, bench.time_us});
@@ -147,7 +151,7 @@ TEST_CASE(
     "a reconnection with an unchanged view costs at most 32 bytes a chunk in both directions "
     "together",
     "[simulation]") {
-  Joined joined({{0, 0, 0}, 9, 2});
+  Joined joined({1, {0, 0, 0}, 9, 2});
   joined.connect();
   REQUIRE(joined.session().view_chunks() == 1265);
   require_equal(joined);
@@ -181,7 +185,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a wrong run in a replica is found by the digest check and repaired", "[simulation]") {
-  Joined joined({{0, 0, 0}, 1, 1});
+  Joined joined({1, {0, 0, 0}, 1, 1});
   joined.connect();
   require_equal(joined);
   const ChunkKey key{0, {0, 0, 1}};
@@ -192,7 +196,7 @@ TEST_CASE("a wrong run in a replica is found by the digest check and repaired", 
   REQUIRE(digest_of(bad.voxels) != bad.digest);
   bad.digest.lane[1] ^= 1;
   const std::uint64_t before = joined.replica().counters().repaired;
-  joined.session().receive(ChunkSnapshot{key, bad}, {0, 0, 0});
+  joined.session().receive(chunks_of(ChunkSnapshot{key, bad}), {0, 0, 0});
   REQUIRE(*joined.replica().confirmed(key) == bad);
   const std::uint64_t requested = joined.bench.server.counters().chunks_requested;
   for (int i = 0; i < 5; ++i) joined.second();
@@ -203,13 +207,13 @@ TEST_CASE("a wrong run in a replica is found by the digest check and repaired", 
 }
 
 TEST_CASE("a copy that went wrong while disconnected is refuted by its claim", "[simulation]") {
-  Joined joined({{0, 0, 0}, 1, 1});
+  Joined joined({1, {0, 0, 0}, 1, 1});
   joined.connect();
   const ChunkKey key{0, {0, 0, 1}};
   Chunk bad = *joined.replica().confirmed(key);
   fill(bad.voxels, 0, 1, Material{3});
   bad.digest.lane[1] ^= 1;
-  joined.session().receive(ChunkSnapshot{key, bad}, {0, 0, 0});
+  joined.session().receive(chunks_of(ChunkSnapshot{key, bad}), {0, 0, 0});
   joined.disconnect();
   joined.connect();
   CHECK(joined.bench.server.counters().claims_drifted == 1);
@@ -246,7 +250,7 @@ TEST_CASE("more claims than a session may have end only that session", "[simulat
                 [](const auto& a, const auto& b) { return a.key < b.key; });
       bench.server.received(3, held, bench.now());
     }
-    bench.view(3, {{round, 0, 0}, 1, 0});
+    bench.view(3, {static_cast<std::uint32_t>(round + 1), {round, 0, 0}, 1, 0});
     bench.tick();
   }
   CHECK(bench.environment.closed.size() == 1);

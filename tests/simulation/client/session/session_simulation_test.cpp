@@ -144,7 +144,8 @@ class Simulation {
       if (what == 0) return reader.restart();
       if (what == 1) return reader.cut();
       if (what == 2) {
-        return reader.look({{rng_.between(-2, 2), 0, rng_.between(-2, 2)},
+        return reader.look({1,
+                            {rng_.between(-2, 2), 0, rng_.between(-2, 2)},
                             static_cast<std::uint8_t>(1 + rng_.below(3)),
                             1});
       }
@@ -161,7 +162,8 @@ class Simulation {
         // it remembers.
         for (std::uint64_t looks = rng_.below(3) == 0 ? 2 + rng_.below(14) : 1; looks > 0;
              --looks) {
-          client.look({{rng_.between(-1, 1), rng_.between(-1, 1), rng_.between(-1, 1)},
+          client.look({1,
+                       {rng_.between(-1, 1), rng_.between(-1, 1), rng_.between(-1, 1)},
                        static_cast<std::uint8_t>(1 + rng_.below(3)),
                        static_cast<std::uint8_t>(rng_.below(3))});
         }

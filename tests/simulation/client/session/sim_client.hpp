@@ -84,7 +84,7 @@ class SimClient {
     c.name = "replica " + std::to_string(number);
     instance_ = c.instance = 1000 + number;
     c.encodings = number % 2 == 0 ? 1 : 2;
-    c.view = {{0, 0, 0}, 2, 1};
+    c.view = {1, {0, 0, 0}, 2, 1};
     return c;
   }
 
@@ -124,10 +124,10 @@ class SimClient {
   void connect() {
     ++link_;
     SimEnd end;
-    end.on_message = [this](FrameClass c, ByteView bytes) -> Result<void> {
+    end.on_message = [this](MessageKind kind, ByteView bytes) -> Result<void> {
       const std::uint16_t edge =
           session_.welcome() && session_.state() != SessionState::hello_sent ? kSimEdge : 0;
-      auto message = decode_message(Sender::server, c, bytes, edge);
+      auto message = decode_message(Sender::server, kind, bytes, edge);
       if (!message) throw SimFault(std::string("client cannot decode: ") + message.error().what);
       session_.receive(std::move(*message), {time_.now(), time_.now(), time_.now()});
       return {};

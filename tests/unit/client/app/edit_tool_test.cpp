@@ -16,7 +16,7 @@ SessionConfig config() {
   SessionConfig out;
   out.keys = keys(1);
   out.instance = 42;
-  out.view = {{0, 0, 0}, 1, 1};
+  out.view = {1, {0, 0, 0}, 1, 1};
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "tests/support/chunks_message.hpp"
 
 using namespace runstone;
 
@@ -13,7 +14,7 @@ constexpr std::int32_t kEdge = 32;
 
 /// Loads flat ground, solid for y < 0, for `radius` chunks around a site.
 void load_flat_world(Replica& replica, ChunkCoord centre, std::uint8_t radius) {
-  const View view{centre, radius, radius};
+  const View view{1, centre, radius, radius};
   replica.set_view(view);
   replica.open({.chunk_edge = kEdge, .author = 1, .instance = 1, .epoch = 1});
   for (std::int32_t x = centre.x - radius; x <= centre.x + radius; ++x) {
@@ -24,7 +25,7 @@ void load_flat_world(Replica& replica, ChunkCoord centre, std::uint8_t radius) {
         snapshot.key = {0, {x, y, z}};
         snapshot.chunk.voxels = uniform_chunk(Extent::cube(kEdge), y < 0 ? Material{4} : kEmpty);
         snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
-        replica.receive(std::move(snapshot), {});
+        replica.receive(test::chunks_of(std::move(snapshot)), {});
       }
     }
   }

@@ -2,18 +2,20 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/chunks_message.hpp"
+
 using namespace runstone;
 
 namespace {
 
 /// Loads an empty chunk of edge 32 at the origin.
 void load_empty_chunk(Replica& replica) {
-  replica.set_view({{0, 0, 0}, 0, 0});
+  replica.set_view({1, {0, 0, 0}, 0, 0});
   replica.open({.chunk_edge = 32, .author = 1, .instance = 1, .epoch = 1});
   ChunkSnapshot snapshot;
   snapshot.key = {0, {0, 0, 0}};
   snapshot.chunk.voxels = uniform_chunk(Extent::cube(32), kEmpty);
-  replica.receive(std::move(snapshot), {});
+  replica.receive(test::chunks_of(std::move(snapshot)), {});
 }
 
 EditDescriptor voxel(std::int32_t x, Material material) {

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/chunks_message.hpp"
 #include "tests/support/test_keys.hpp"
 
 using namespace runstone;
@@ -22,12 +23,12 @@ struct Bench {
     config.instance = 11;
     session.emplace(config, fleet, read_clock);
     greet(1, 0);
-    session->set_view({kHere, 0, 0});
+    session->set_view({1, kHere, 0, 0});
     ChunkSnapshot snapshot;
     snapshot.key = {0, kHere};
     snapshot.chunk.voxels = uniform_chunk(Extent::cube(kEdge), 3);
     snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
-    give(snapshot);
+    give(test::chunks_of(snapshot));
     CHECK(session->loaded());
     session->take_outgoing();
   }
@@ -55,7 +56,7 @@ struct Bench {
   /// Passes the message as bytes, like a link.
   Result<bool> give_bytes(const Message& message) {
     const EncodedMessage encoded = encode_message(message);
-    return session->receive_bytes(encoded.frame_class, *encoded.bytes, kEdge, clock_us);
+    return session->receive_bytes(encoded.kind, *encoded.bytes, kEdge, clock_us);
   }
   /// Returns true if the session took the bytes. Fails if they are malformed.
   bool takes(const Message& message) {
@@ -131,7 +132,7 @@ TEST_CASE("hostile commits end the connection", "[bots][headless]") {
     const EncodedMessage encoded = encode_message(Commit{1, 1, {Bench::edit(0)}});
     Bytes bytes = *encoded.bytes;
     bytes.resize(bytes.size() / 2);
-    CHECK_FALSE(bench.session->receive_bytes(FrameClass::edits, bytes, kEdge, 0).has_value());
+    CHECK_FALSE(bench.session->receive_bytes(encoded.kind, bytes, kEdge, 0).has_value());
   }
   SECTION("with a list of previous sequences that does not fit") {
     OrderedEdit edit = Bench::edit(0);
@@ -224,12 +225,28 @@ TEST_CASE("a headless session offers edits again that the server has lost", "[bo
 
 TEST_CASE("chunks of one material become ground", "[bots][headless]") {
   Bench bench;
-  bench.session->set_view({kHere, 0, 1});
+  bench.session->set_view({1, kHere, 0, 1});
   CHECK_FALSE(bench.session->loaded());
-  bench.give(UniformChunks{{{{0, {0, -1, 0}}, 3, {}}, {{0, {0, 1, 0}}, kEmpty, {}}}});
+  bench.give(UniformChunks{2, {{{0, {0, -1, 0}}, 3, {}}, {{0, {0, 1, 0}}, kEmpty, {}}}});
   CHECK(bench.session->loaded());
   CHECK(bench.fleet.ground.chunks() == 3);
   CHECK(bench.fleet.ground.surface(1, 1) == kEdge - 1);
+}
+
+TEST_CASE("a headless session checks that its view is complete", "[bots][headless]") {
+  Bench bench;
+  bench.give(ViewState{0, 1, ViewPhase::complete, false, 0, 0, ""});
+  CHECK(bench.violations().total() == 0);
+  bench.session->set_view({1, kHere, 0, 1});
+  bench.give(ViewState{0, 2, ViewPhase::complete, false, 0, 0, ""});
+  CHECK(bench.violations().all().contains("incomplete view"));
+  CHECK_FALSE(bench.session->wants_close());
+}
+
+TEST_CASE("a headless session is not taken to the past", "[bots][headless]") {
+  Bench bench;
+  bench.give(ViewState{1, 1, ViewPhase::begins, true, 0, 0, ""});
+  CHECK(bench.session->wants_close());
 }
 
 TEST_CASE("a message that was not requested ends the session with its reason", "[bots][headless]") {

@@ -2,7 +2,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/chunks_message.hpp"
+
 using namespace runstone;
+using runstone::test::chunks_of;
 
 namespace {
 
@@ -21,8 +24,8 @@ ChunkSnapshot snapshot_at(ChunkCoord at, Sequence seq, Epoch epoch = 1) {
 VersionTracker book_at(Sequence seq) {
   VersionTracker tracker;
   tracker.open(1);
-  tracker.set_view({kHere, 0, 0});
-  tracker.receive(snapshot_at(kHere, seq), 0);
+  tracker.set_view({1, kHere, 0, 0});
+  tracker.receive(chunks_of(snapshot_at(kHere, seq)), 0);
   return tracker;
 }
 
@@ -44,12 +47,12 @@ TEST_CASE("an edit that overtakes its snapshot is held back, and one in the snap
           "[bots][headless]") {
   VersionTracker tracker;
   tracker.open(1);
-  tracker.set_view({kHere, 0, 0});
+  tracker.set_view({1, kHere, 0, 0});
   tracker.follow(kHere, 2, 3, 10);
   tracker.follow(kHere, 3, 5, 10);
   tracker.follow(kHere, 5, 6, 10);
   CHECK(tracker.known() == 0);
-  tracker.receive(snapshot_at(kHere, 3), 20);
+  tracker.receive(chunks_of(snapshot_at(kHere, 3)), 20);
   CHECK(tracker.version(kHere) == 6);
   CHECK(tracker.counts().contained == 1);
   CHECK(tracker.counts().followed == 2);
@@ -66,7 +69,7 @@ TEST_CASE("a gap is a violation unless the chunk is sent again in time", "[bots]
     CHECK(tracker.version(kHere) == 4);
     CHECK(tracker.behind() == 1);
     if (resends) {
-      tracker.receive(snapshot_at(kHere, 6), 1'100);
+      tracker.receive(chunks_of(snapshot_at(kHere, 6)), 1'100);
       CHECK(tracker.version(kHere) == 6);
       CHECK(tracker.counts().resent == 1);
       CHECK(tracker.counts().behind_us.max() == 1'000);
@@ -83,10 +86,10 @@ TEST_CASE("a gap is a violation unless the chunk is sent again in time", "[bots]
 TEST_CASE("a snapshot that does not close the gap leaves the chunk behind", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
   tracker.follow(kHere, 6, 7, 100);
-  tracker.receive(snapshot_at(kHere, 5), 200);
+  tracker.receive(chunks_of(snapshot_at(kHere, 5)), 200);
   CHECK(tracker.behind() == 1);
   tracker.follow(kHere, 7, 9, 250);
-  tracker.receive(snapshot_at(kHere, 6), 300);
+  tracker.receive(chunks_of(snapshot_at(kHere, 6)), 300);
   CHECK(tracker.behind() == 0);
   CHECK(tracker.version(kHere) == 9);
 }
@@ -111,54 +114,98 @@ TEST_CASE("a snapshot of a wrong digest or epoch is a violation", "[bots][headle
   VersionTracker tracker = book_at(4);
   ChunkSnapshot wrong = snapshot_at(kHere, 5);
   wrong.chunk.digest.lane[0] ^= 1;
-  tracker.receive(wrong, 0);
+  tracker.receive(chunks_of(wrong), 0);
   CHECK(tracker.violations().all().contains("snapshot digest"));
   CHECK_FALSE(tracker.violations().all().contains("epoch"));
-  tracker.receive(snapshot_at(kHere, 6, 2), 0);
+  tracker.receive(chunks_of(snapshot_at(kHere, 6, 2)), 0);
   CHECK(tracker.violations().all().contains("epoch"));
   CHECK(tracker.violations().total() == 2);
 }
 
 TEST_CASE("an older snapshot is ignored, and so is one out of view", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
-  tracker.receive(snapshot_at(kHere, 3), 0);
+  tracker.receive(chunks_of(snapshot_at(kHere, 3)), 0);
   CHECK(tracker.version(kHere) == 4);
   CHECK(tracker.counts().stale == 1);
-  tracker.receive(snapshot_at({5, 0, 0}, 3), 0);
+  tracker.receive(chunks_of(snapshot_at({5, 0, 0}, 3)), 0);
   tracker.follow({5, 0, 0}, 8, 9, 0);
   CHECK(tracker.counts().outside == 1);
   CHECK(tracker.known() == 1);
   tracker.follow(kHere, 5, 6, 0);
-  tracker.set_view({{5, 0, 0}, 0, 0});
+  tracker.set_view({2, {5, 0, 0}, 0, 0});
   CHECK(tracker.known() == 0);
   CHECK(tracker.behind() == 0);
+}
+
+TEST_CASE("a late snapshot of a chunk that left the view and came back is ignored",
+          "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  tracker.set_view({2, {5, 0, 0}, 0, 0});
+  tracker.set_view({3, kHere, 0, 0});
+  tracker.receive(chunks_of(snapshot_at(kHere, 4), 1), 0);
+  tracker.receive(UniformChunks{1, {{{0, kHere}, 3, {}}}}, 0);
+  tracker.receive(ChunkUnavailable{1, {{0, kHere}}, UnavailableReason::damaged});
+  CHECK(tracker.known() == 0);
+  CHECK(tracker.counts().outside == 3);
+  tracker.receive(chunks_of(snapshot_at(kHere, 5), 3), 0);
+  CHECK(tracker.version(kHere) == 5);
+  CHECK(tracker.violations().total() == 0);
+}
+
+TEST_CASE("an answer to a view that was not sent is a violation", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  tracker.receive(chunks_of(snapshot_at(kHere, 5), 2), 0);
+  CHECK(tracker.violations().all().at("view number").count == 1);
+}
+
+TEST_CASE("edits in place of a snapshot are a violation", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  tracker.receive(chunks_of(ChunkEdits{{0, kHere}, 4, {1, 5}, {}, {{5, {}}}}), 0);
+  CHECK(tracker.violations().all().at("chunk edits").count == 1);
+  CHECK(tracker.version(kHere) == 4);
+}
+
+TEST_CASE("a view that is complete without all of its chunks is a violation", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  tracker.complete(1);
+  CHECK(tracker.violations().total() == 0);
+  tracker.set_view({2, kHere, 0, 1});
+  tracker.complete(1);  // it was sent before the server got the new view
+  CHECK(tracker.violations().total() == 0);
+  tracker.receive(UniformChunks{2, {{{0, {0, -1, 0}}, 3, {}}}}, 0);
+  tracker.complete(2);
+  CHECK(tracker.violations().all().at("incomplete view").count == 1);
+  tracker.receive(ChunkUnavailable{2, {{0, {0, 1, 0}}}, UnavailableReason::damaged});
+  tracker.complete(2);
+  CHECK(tracker.violations().total() == 1);
 }
 
 TEST_CASE("chunks of one material count as snapshots", "[bots][headless]") {
   VersionTracker tracker;
   tracker.open(1);
-  tracker.set_view({kHere, 0, 1});
+  tracker.set_view({1, kHere, 0, 1});
   tracker.follow(kHere, 4, 6, 0);
   tracker.receive(
-      UniformChunks{{{{0, {0, -1, 0}}, 3, {}}, {{0, kHere}, 0, {1, 4}}, {{0, {0, 1, 0}}, 0, {}}}},
+      UniformChunks{1,
+                    {{{0, {0, -1, 0}}, 3, {}}, {{0, kHere}, 0, {1, 4}}, {{0, {0, 1, 0}}, 0, {}}}},
       0);
   CHECK(tracker.known() == 3);
   CHECK(tracker.version(kHere) == 6);
   CHECK(tracker.counts().snapshots == 3);
   CHECK(tracker.violations().total() == 0);
-  tracker.receive(UniformChunks{{{{0, kHere}, 0, {2, 9}}}}, 0);
+  tracker.receive(UniformChunks{1, {{{0, kHere}, 0, {2, 9}}}}, 0);
   CHECK(tracker.violations().all().contains("epoch"));
 }
 
 TEST_CASE("an unavailable chunk counts as known and is not followed", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
   tracker.follow(kHere, 5, 6, 0);
-  tracker.receive(ChunkUnavailable{{{0, kHere}}, UnavailableReason::damaged});
+  tracker.receive(ChunkUnavailable{1, {{0, kHere}}, UnavailableReason::damaged});
   CHECK(tracker.known() == 1);
   CHECK(tracker.behind() == 0);
   tracker.follow(kHere, 8, 9, 0);
   CHECK(tracker.behind() == 0);
-  tracker.receive(snapshot_at(kHere, 9), 0);
+  tracker.receive(chunks_of(snapshot_at(kHere, 9)), 0);
   CHECK(tracker.version(kHere) == 9);
   CHECK(tracker.known() == 1);
 }
@@ -167,21 +214,23 @@ TEST_CASE("held back edits are bounded, and the newest sequence is remembered",
           "[bots][headless]") {
   VersionTracker tracker;
   tracker.open(1);
-  tracker.set_view({kHere, 0, 0});
+  tracker.set_view({1, kHere, 0, 0});
   for (Sequence seq = 2; seq < 2 * kWaitingLinksMax; ++seq) tracker.follow(kHere, seq - 1, seq, 0);
-  tracker.receive(snapshot_at(kHere, 1), 0);
+  tracker.receive(chunks_of(snapshot_at(kHere, 1)), 0);
   CHECK(tracker.behind() == 1);
-  tracker.receive(snapshot_at(kHere, 2 * kWaitingLinksMax), 0);
+  tracker.receive(chunks_of(snapshot_at(kHere, 2 * kWaitingLinksMax)), 0);
   CHECK(tracker.behind() == 0);
 }
 
 TEST_CASE("a new connection expects every chunk anew", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
   tracker.follow(kHere, 5, 6, 0);
+  tracker.set_view({2, {5, 0, 0}, 0, 0});
+  tracker.set_view({3, kHere, 0, 0});
   tracker.open(2);
   CHECK(tracker.known() == 0);
   CHECK(tracker.behind() == 0);
-  tracker.receive(snapshot_at(kHere, 2, 2), 0);
+  tracker.receive(chunks_of(snapshot_at(kHere, 2, 2)), 0);
   CHECK(tracker.version(kHere) == 2);
   CHECK(tracker.violations().total() == 0);
 }

@@ -7,11 +7,13 @@
 #include "client/net/wake_up.hpp"
 #include "common/os/steady_clock.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
 #include "tests/support/temp_folder.hpp"
 #include "tests/unit/client/display/fake_screen.hpp"
 
 using namespace runstone;
 using test::AuthorityModel;
+using test::chunks_of;
 using test::FakeScreenLog;
 
 namespace {
@@ -21,12 +23,12 @@ constexpr std::int32_t kEdge = 16;
 /// One chunk in view, meshed on this thread and drawn on a fake screen, as off screen.
 struct Fixture {
   Fixture() {
-    replica.set_view({{0, 0, 0}, 0, 0});
+    replica.set_view({1, {0, 0, 0}, 0, 0});
     static_cast<void>(replica.open({kEdge, 5, 77, 1, 0, 0, 0}));
     MaterialTable materials;
     REQUIRE(materials.add({"red", {220, 30, 30, 255}, Visibility::opaque, {}}).has_value());
     pipeline.set_materials(materials);
-    replica.receive(world.snapshot({0, 0, 0}), {});
+    replica.receive(chunks_of(world.snapshot({0, 0, 0})), {});
     turn();
     order();
     take_frames(1);
@@ -117,13 +119,13 @@ TEST_CASE_METHOD(Fixture,
                  "the pipeline is up to date only after a frame has shown all terrain and edits",
                  "[client_app]") {
   CHECK(pipeline.is_up_to_date());
-  replica.set_view({{0, 0, 0}, 1, 0});
+  replica.set_view({1, {0, 0, 0}, 1, 0});
   pipeline.view_changed();
-  replica.receive(world.snapshot({1, 0, 0}), {});
+  replica.receive(chunks_of(world.snapshot({1, 0, 0})), {});
   pipeline.take(replica.drain_changes(), ClockOffset{}, steady_now_us());
   CHECK_FALSE(pipeline.is_up_to_date());  // not meshed
   for (const ChunkCoord at : {ChunkCoord{-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
-    replica.receive(world.snapshot(at), {});
+    replica.receive(chunks_of(world.snapshot(at)), {});
   }
   for (int job = 0; job < 10; ++job)
     turn();  // one job each; the first of five chunks may be meshed twice

@@ -7,6 +7,8 @@
 #include <thread>
 
 #include "client/net/wake_up.hpp"
+#include "protocol/codec/chunk_entries.hpp"
+#include "protocol/codec/message_table.hpp"
 
 using namespace runstone;
 using asio::ip::tcp;
@@ -36,8 +38,8 @@ struct Peer {
       std::error_code error;
       if (socket.read_some(asio::buffer(&byte, 1), error) == 0) return std::nullopt;
       const auto fed =
-          reader->feed({&byte, 1}, [&](FrameClass frame_class, ByteView body) -> Result<void> {
-            auto message = decode_message(Sender::client, frame_class, body, 0);
+          reader->feed({&byte, 1}, [&](MessageKind kind, ByteView body) -> Result<void> {
+            auto message = decode_message(Sender::client, kind, body, 0);
             REQUIRE(message.has_value());
             got = std::move(*message);
             return {};
@@ -126,11 +128,14 @@ TEST_CASE_METHOD(Fixture, "messages go both ways, whole and in order", "[client_
   Chunk chunk;
   chunk.voxels = uniform_chunk(Extent::cube(16), 3);
   chunk.digest = digest_of(chunk.voxels);
-  peer.writer.append(encode_snapshot({0, {1, 2, 3}}, chunk, ChunkEncoding::packed), out);
+  const ChunkEntry entry = encode_snapshot({0, {1, 2, 3}}, chunk, ChunkEncoding::packed);
+  peer.writer.append(join_entries(1, {&entry, 1}), out);
   asio::write(peer.socket, asio::buffer(out.data(), 5));
   asio::write(peer.socket, asio::buffer(out.data() + 5, out.size() - 5));
   const auto second = next_as<NetReceived>();
-  CHECK(std::get<ChunkSnapshot>(second.message).key == ChunkKey{0, {1, 2, 3}});
+  const auto& chunks = std::get<Chunks>(second.message).chunks;
+  REQUIRE(chunks.size() == 1);
+  CHECK(key_of(chunks[0]) == ChunkKey{0, {1, 2, 3}});
   const Traffic received = client->stats().received.read();
   CHECK(received[first.message.index()] == KindTraffic{1, first.bytes, 1});
   CHECK(received[second.message.index()] == KindTraffic{1, second.bytes, 1});
@@ -173,7 +178,8 @@ TEST_CASE_METHOD(Fixture, "a snapshot of the wrong size ends the connection", "[
   Chunk chunk;
   chunk.voxels = uniform_chunk(Extent::cube(32), 3);
   Bytes out;
-  peer.writer.append(encode_snapshot({0, {}}, chunk, ChunkEncoding::raw), out);
+  const ChunkEntry entry = encode_snapshot({0, {}}, chunk, ChunkEncoding::raw);
+  peer.writer.append(join_entries(1, {&entry, 1}), out);
   asio::write(peer.socket, asio::buffer(out));
   CHECK_THAT(next_as<NetDisconnected>().why, Catch::Contains("bad bytes"));
 }

@@ -26,7 +26,7 @@ TEST_CASE_METHOD(
     "chunks held over a reconnection are claimed before the view, and loaded if not modified",
     "[replica]") {
   static_cast<void>(open());
-  for (const ChunkKey& key : view_keys(session)) receive(server.world.snapshot(key.at));
+  for (const ChunkKey& key : view_keys(session)) receive(chunks_of(server.world.snapshot(key.at)));
   REQUIRE(session.loaded());
   session.disconnected();
   auto out = open();
@@ -42,7 +42,7 @@ TEST_CASE_METHOD(
   receive(same);
   CHECK(session.loaded());
   // Nothing is claimed twice.
-  session.set_view({{0, 0, 0}, 2, 1});
+  session.set_view({1, {0, 0, 0}, 2, 1});
   auto more = sent();
   CHECK(take<CachedChunks>(more).empty());
 }
@@ -50,7 +50,7 @@ TEST_CASE_METHOD(
 TEST_CASE_METHOD(SessionBench, "chunks that a restarted server may have lost are not claimed",
                  "[replica]") {
   static_cast<void>(open());
-  for (const ChunkKey& key : view_keys(session)) receive(server.world.snapshot(key.at));
+  for (const ChunkKey& key : view_keys(session)) receive(chunks_of(server.world.snapshot(key.at)));
   receive(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));  // never durable
   session.disconnected();
   server.world.restart({});
@@ -80,7 +80,8 @@ TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long",
     CHECK(take<CachedChunks>(out)[0].chunks.size() == 1);
     CHECK(take<View>(out).size() == 1);
     // The cache has it already: only other chunks are handed over.
-    for (const ChunkKey& other : view_keys(session)) receive(server.world.snapshot(other.at));
+    for (const ChunkKey& other : view_keys(session))
+      receive(chunks_of(server.world.snapshot(other.at)));
     CHECK(session.replica().take_for_cache(100).size() == 14);
     CHECK(session.replica().take_for_cache(100).empty());
     receive(server.world.commit({9, 1, 1}, set({1, -2, 1}, 2)));
@@ -89,7 +90,7 @@ TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long",
     CHECK(unkept[0].first == key);
     // A chunk that leaves the view is handed over.
     receive(server.world.commit({9, 1, 2}, set({1, -2, 1}, 3)));
-    session.set_view({{50, 0, 0}, 0, 0});
+    session.set_view({1, {50, 0, 0}, 0, 0});
     const auto left = session.replica().take_for_cache(100);
     REQUIRE(left.size() == 1);
     CHECK(left[0].second->version.seq == 2);
@@ -120,11 +121,39 @@ TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long",
   }
 }
 
+TEST_CASE_METHOD(SessionBench,
+                 "a view that waits for the cache is sent before the view moves again",
+                 "[replica]") {
+  SessionConfig caching = config();
+  caching.has_cache = true;
+  session = ClientSession(caching);
+  static_cast<void>(open());
+  session.set_view({1, {5, 0, 0}, 1, 1});
+  CHECK(sent().empty());  // the server knows of no view yet
+  REQUIRE(session.take_cache_lookup().has_value());
+  session.receive_cached({}, now);
+  auto out = sent();
+  CHECK(take<View>(out) == std::vector{View{1, {5, 0, 0}, 1, 1}});
+  const ChunkKey key{0, {5, 0, 0}};
+  receive(chunks_of(server.world.snapshot(key.at), 1));
+  REQUIRE(session.replica().confirmed(key) != nullptr);
+
+  session.set_view({1, {9, 0, 0}, 1, 1});  // the replica forgets the chunk
+  CHECK(sent().empty());
+  session.set_view({1, {5, 0, 0}, 1, 1});
+  out = sent();
+  CHECK(take<View>(out) == std::vector{View{2, {9, 0, 0}, 1, 1}});
+  now += kCacheWaitUsMax;
+  session.tick(now);
+  out = sent();
+  CHECK(take<View>(out) == std::vector{View{3, {5, 0, 0}, 1, 1}});
+}
+
 TEST_CASE_METHOD(SessionBench, "missing edits complete a cached chunk from any sequence",
                  "[replica]") {
   static_cast<void>(open());
   const ChunkKey key{0, {0, 0, 0}};
-  receive(server.world.snapshot(key.at));
+  receive(chunks_of(server.world.snapshot(key.at)));
   session.disconnected();
   ChunkEdits update{key, 0, {}, {}, {}};
   std::vector<Commit> commits;
@@ -141,19 +170,19 @@ TEST_CASE_METHOD(SessionBench, "missing edits complete a cached chunk from any s
     return held->version == update.to && digest_of(held->voxels) == update.digest;
   };
   SECTION("from the version claimed") {
-    receive(update);
+    receive(chunks_of(update));
     CHECK(is_newest());
     CHECK(session.replica().counters().updates_taken == 1);
   }
   SECTION("a commit that overtook them has led part of the way") {
     receive(commits[0]);
-    receive(update);
+    receive(chunks_of(update));
     CHECK(is_newest());
   }
   SECTION("commits that follow came before them") {
     const Commit next = server.world.commit({9, 1, 4}, set({9, 9, 9}, 4));
     receive(next);
-    receive(update);
+    receive(chunks_of(update));
     CHECK(session.replica().confirmed(key)->version.seq == 4);
     CHECK(session.replica().confirmed(key)->digest == server.world.chunk(key.at).digest);
   }
@@ -167,16 +196,16 @@ TEST_CASE_METHOD(SessionBench, "missing edits complete a cached chunk from any s
     } else {
       update.digest.lane[0] ^= 1;
     }
-    receive(update);
+    receive(chunks_of(update));
     CHECK(session.replica().confirmed(key)->version.seq == 0);
     session.tick(now);
     auto out = sent();
     CHECK(take<ChunkRequest>(out).size() == 1);
-    receive(server.world.snapshot(key.at));
+    receive(chunks_of(server.world.snapshot(key.at)));
     CHECK(session.replica().confirmed(key)->version == server.world.chunk(key.at).version);
   }
   SECTION("the same, of a newer version than is held, is not believed") {
-    receive(ChunksNotModified{{{key, 2}}});
+    receive(ChunksNotModified{1, {{key, 2}}});
     session.tick(now);
     auto out = sent();
     CHECK(take<ChunkRequest>(out).size() == 1);

@@ -15,7 +15,7 @@ TEST_CASE_METHOD(SessionBench, "a session opens with the handshake and then send
   CHECK(server.hello.key == keys(1).public_key);
   const auto views = take<View>(out);
   REQUIRE(views.size() == 1);
-  CHECK(views[0] == View{{0, 0, 0}, 1, 1});
+  CHECK(views[0] == View{1, {0, 0, 0}, 1, 1});
   CHECK(take<Ping>(out).size() == 1);
   CHECK(session.author() == 6);
   CHECK(session.pinned().at(server.world_id) == server.keys_of_server.public_key);
@@ -23,7 +23,8 @@ TEST_CASE_METHOD(SessionBench, "a session opens with the handshake and then send
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
-        if (session.view().contains({x, y, z})) receive(server.world.snapshot({x, y, z}));
+        if (session.view().contains({x, y, z}))
+          receive(chunks_of(server.world.snapshot({x, y, z})));
       }
     }
   }
@@ -39,12 +40,13 @@ TEST_CASE_METHOD(SessionBench, "a view is loaded when each chunk arrived or is u
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
         const ChunkCoord at{x, y, z};
-        if (session.view().contains(at) && at != damaged.at) receive(server.world.snapshot(at));
+        if (session.view().contains(at) && at != damaged.at)
+          receive(chunks_of(server.world.snapshot(at)));
       }
     }
   }
   CHECK_FALSE(session.loaded());
-  receive(ChunkUnavailable{{damaged}, UnavailableReason::damaged});
+  receive(ChunkUnavailable{1, {damaged}, UnavailableReason::damaged});
   CHECK(session.loaded());
   CHECK_FALSE(session.wants_close());
   session.disconnected();
@@ -226,7 +228,7 @@ TEST_CASE_METHOD(SessionBench, "a restarted server has another clock", "[replica
 TEST_CASE_METHOD(SessionBench, "another world at the same address starts with an empty replica",
                  "[replica]") {
   static_cast<void>(open());
-  receive(server.world.snapshot({0, 0, 0}));
+  receive(chunks_of(server.world.snapshot({0, 0, 0})));
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
   session.disconnected();
   server.world_id = {9};
@@ -238,7 +240,7 @@ TEST_CASE_METHOD(SessionBench, "another world at the same address starts with an
 
 TEST_CASE_METHOD(SessionBench, "a chunk with a gap is requested with the next tick", "[replica]") {
   static_cast<void>(open());
-  receive(server.world.snapshot({0, 0, 0}));
+  receive(chunks_of(server.world.snapshot({0, 0, 0})));
   static_cast<void>(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));
   receive(server.world.commit({9, 1, 2}, set({2, 1, 1}, 2)));
   session.tick(now);
@@ -296,14 +298,59 @@ TEST_CASE_METHOD(SessionBench,
                  "the requested view is limited by the server and sent when it changes",
                  "[replica]") {
   static_cast<void>(open());
-  session.set_view({{1, 0, 0}, 60, 60});
+  session.set_view({1, {1, 0, 0}, 60, 60});
   auto out = sent();
   auto views = take<View>(out);
   REQUIRE(views.size() == 1);
-  CHECK(views[0] == View{{1, 0, 0}, 8, 8});
-  session.set_view({{1, 0, 0}, 60, 60});
+  CHECK(views[0] == View{2, {1, 0, 0}, 8, 8});
+  session.set_view({1, {1, 0, 0}, 60, 60});
   out = sent();
   CHECK(take<View>(out).empty());
+}
+
+TEST_CASE_METHOD(SessionBench, "an answer to a view before the chunk left and came back is ignored",
+                 "[replica]") {
+  static_cast<void>(open());
+  session.set_view({1, {9, 0, 0}, 1, 1});
+  session.set_view({1, {0, 0, 0}, 1, 1});
+  auto out = sent();
+  const auto views = take<View>(out);
+  REQUIRE(views.size() == 2);
+  CHECK(views[0].number == 2);
+  CHECK(views[1].number == 3);
+  const ChunkKey key{0, {0, 0, 0}};
+  receive(chunks_of(server.world.snapshot(key.at), 1));
+  CHECK(session.replica().confirmed(key) == nullptr);
+  receive(chunks_of(server.world.snapshot(key.at), 3));
+  CHECK(session.replica().confirmed(key) != nullptr);
+}
+
+TEST_CASE_METHOD(SessionBench, "view states show a moment of the past and the live world again",
+                 "[replica]") {
+  static_cast<void>(open());
+  receive(ViewState{0, 1, ViewPhase::complete, false, 0, 0, ""});
+  CHECK_FALSE(session.wants_close());
+  CHECK_FALSE(session.loading_history());
+  const auto state = [&](std::uint32_t request, ViewPhase phase, bool past, Sequence seq) {
+    receive(ViewState{request, 1, phase, past, seq, past ? 77 : 0, ""});
+  };
+  REQUIRE(session.request_history({1, HistoryTarget::sequence, 5, 0}).has_value());
+  state(1, ViewPhase::begins, true, 5);
+  CHECK(session.loading_history());
+  REQUIRE(session.replica().past().has_value());
+  CHECK(session.replica().past()->seq == 5);
+  CHECK(session.replica().past()->utc_us == 77);
+  state(1, ViewPhase::complete, true, 5);
+  CHECK_FALSE(session.loading_history());
+  REQUIRE(session.request_history({}).has_value());
+  state(1, ViewPhase::complete, true, 5);  // of another view, before the request was answered
+  CHECK(session.loading_history());
+  CHECK(session.replica().past().has_value());
+  state(2, ViewPhase::begins, false, 0);
+  CHECK(session.loading_history());
+  CHECK_FALSE(session.replica().past().has_value());
+  state(2, ViewPhase::complete, false, 0);
+  CHECK_FALSE(session.loading_history());
 }
 
 TEST_CASE_METHOD(SessionBench, "poses are sent when they change, at most twenty a second",

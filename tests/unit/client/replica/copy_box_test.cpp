@@ -6,6 +6,7 @@
 #include "common/core/hash.hpp"
 #include "common/runs/reorder.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
 
@@ -17,7 +18,7 @@ const Arrival kNow{1000, 1100, 1200};
 
 struct Fixture {
   Fixture() {
-    replica.set_view({{0, 0, 0}, 3, 3});
+    replica.set_view({1, {0, 0, 0}, 3, 3});
     static_cast<void>(replica.open({kEdge, 5, 77, 3, 0, 0, 0}));
   }
   /// Shows the chunks -2 to 1 around the origin, with random voxels and axis orders.
@@ -30,7 +31,7 @@ struct Fixture {
           snapshot.chunk.voxels =
               random_chunk(rng, Extent::cube(kEdge), random_order(rng), 4, Shape::boxes);
           snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
-          replica.receive(std::move(snapshot), kNow);
+          replica.receive(test::chunks_of(std::move(snapshot)), kNow);
         }
       }
     }
@@ -105,7 +106,7 @@ TEST_CASE_METHOD(Fixture, "a copy that cannot be made returns the reason", "[rep
   ChunkSnapshot air;
   air.key = {0, {0, 2, 0}};
   air.chunk.voxels = uniform_chunk(Extent::cube(kEdge), kEmpty);
-  replica.receive(std::move(air), kNow);
+  replica.receive(test::chunks_of(std::move(air)), kNow);
   CHECK(error_of({{0, 32, 0}, {4, 36, 4}}) == "clipboard has no material");
 }
 

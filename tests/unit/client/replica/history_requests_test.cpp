@@ -7,7 +7,7 @@ using namespace runstone;
 namespace {
 
 ViewState state(std::uint32_t request, ViewPhase phase, bool past, std::string text = "") {
-  return {request, phase, past, 5, 0, std::move(text)};
+  return {request, 1, phase, past, past ? Sequence{5} : 0, 0, std::move(text)};
 }
 
 }  // namespace
@@ -23,10 +23,13 @@ TEST_CASE("a request for the past loads until it is complete", "[replica]") {
   CHECK_FALSE(requests.is_loading());
 }
 
-TEST_CASE("a request for the live world is answered when it begins", "[replica]") {
+TEST_CASE("a request for the live world loads until it is complete", "[replica]") {
   HistoryRequests requests;
   requests.next({});
+  requests.receive(state(0, ViewPhase::complete, false));  // of the view before the request
   requests.receive(state(1, ViewPhase::begins, false));
+  CHECK(requests.is_loading());
+  requests.receive(state(1, ViewPhase::complete, false));
   CHECK_FALSE(requests.is_loading());
 }
 

@@ -6,6 +6,7 @@
 
 #include "common/core/hash.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
 
 using namespace runstone;
 
@@ -22,7 +23,7 @@ void fill_world(Replica& replica, SplitMix64& rng) {
     static_cast<void>(
         world.commit({9, 1, i}, {SetVoxel{pos}, {}, static_cast<Material>(1 + rng.below(4))}));
   }
-  replica.set_view({{0, 0, 0}, 2, 1});
+  replica.set_view({1, {0, 0, 0}, 2, 1});
   static_cast<void>(replica.open({kEdge, 1, 1, 1, 0, 0, 0}));
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
@@ -30,7 +31,7 @@ void fill_world(Replica& replica, SplitMix64& rng) {
         ChunkSnapshot snapshot = world.snapshot({x, y, z});
         // The base of the model is solid below 0. It is replaced by air, so that rays pass.
         if (y < 0) runstone::test::AuthorityModel::hollow(snapshot.chunk, 1);
-        replica.receive(std::move(snapshot), {});
+        replica.receive(test::chunks_of(std::move(snapshot)), {});
       }
     }
   }
@@ -98,9 +99,9 @@ TEST_CASE("a hit names the face through which the ray entered", "[replica]") {
   Replica replica;
   runstone::test::AuthorityModel world(kEdge);
   static_cast<void>(world.commit({9, 1, 1}, {SetVoxel{{5, 5, 5}}, {}, 3}));
-  replica.set_view({{0, 0, 0}, 0, 0});
+  replica.set_view({1, {0, 0, 0}, 0, 0});
   static_cast<void>(replica.open({kEdge, 1, 1, 1, 0, 0, 0}));
-  replica.receive(world.snapshot({0, 0, 0}), {});
+  replica.receive(test::chunks_of(world.snapshot({0, 0, 0})), {});
   const double turn = 2 * std::numbers::pi;
 
   const auto along_z = pick(replica, {5.5, 5.5, 1}, look_direction(0, 0), 10);

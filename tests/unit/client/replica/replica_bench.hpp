@@ -4,6 +4,7 @@
 
 #include "client/replica/replica.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
 
 namespace runstone::test {
 
@@ -23,14 +24,14 @@ struct ReplicaBench {
   }
 
   ReplicaBench() {
-    replica.set_view({{0, 0, 0}, 2, 2});
+    replica.set_view({1, {0, 0, 0}, 2, 2});
     static_cast<void>(replica.open(parameters()));
   }
   SessionParameters parameters(ClientSequence resolved = 0, Sequence durable = 0) const {
     return {kEdge, kMe, kInstance, world.epoch(), durable, world.head(), resolved};
   }
   void load(const ChunkKey& key) {
-    replica.receive(world.snapshot(key.at), kNow);
+    replica.receive(chunks_of(world.snapshot(key.at)), kNow);
     static_cast<void>(replica.drain_changes());
   }
   void take(const Commit& commit) { REQUIRE(replica.receive(commit, kNow).has_value()); }

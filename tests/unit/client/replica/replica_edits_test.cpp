@@ -2,6 +2,7 @@
 #include "tests/unit/client/replica/replica_bench.hpp"
 
 using namespace runstone;
+using runstone::test::chunks_of;
 using runstone::test::ReplicaBench;
 
 TEST_CASE_METHOD(ReplicaBench,
@@ -118,7 +119,7 @@ TEST_CASE_METHOD(ReplicaBench,
   const ClientSequence seq = submit(fill);
   const Commit own = world.commit(mine(seq), fill);
   const Commit dig = world.commit(other(1), set({5, 4, 4}, kEmpty));
-  replica.receive(world.snapshot(kHere.at), kNow);  // contains both
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);  // contains both
   take(own);
   CHECK(replica.shown_at({5, 4, 4}) == kEmpty);
   take(dig);
@@ -148,7 +149,7 @@ TEST_CASE_METHOD(
   CHECK(replica.confirmed(kRight) == nullptr);
   CHECK(replica.counters().dropped_by_epoch == 1);
   CHECK(replica.shown_at({20, 1, 1}) == Material{3});  // shown until the snapshot
-  replica.receive(world.snapshot(kRight.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kRight.at)), kNow);
   CHECK(replica.shown_at({20, 1, 1}) == Material{3});  // predicted again
   CHECK(material_at(replica.confirmed(kRight)->voxels, {4, 1, 1}) == kEmpty);
 
@@ -173,7 +174,7 @@ TEST_CASE_METHOD(ReplicaBench,
   CHECK(replica.local_edits().all().size() == 1);     // and it is kept until durable
   replica.receive(Reject{seq, RejectReason::already_resolved, "", world.head()}, 2000);
   CHECK(replica.drain_changes().rejects.empty());
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   CHECK(replica.shown_at({5, 4, 4}) == kEmpty);
   require_in_step(kHere);
   replica.receive(Durable{world.epoch(), world.head() - 1});
@@ -191,7 +192,7 @@ TEST_CASE_METHOD(ReplicaBench,
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   CHECK(replica.open(parameters(seq)) == std::vector{seq});
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
   replica.receive(Reject{seq, RejectReason::rate_limited, "", 0},
                   2000);  // the late answer
@@ -208,7 +209,7 @@ TEST_CASE_METHOD(ReplicaBench, "an edit that was resolved unseen makes its chunk
   CHECK(replica.take_requests() == std::vector{kHere});
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
   CHECK(replica.drain_changes().rejects.empty());
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   require_in_step(kHere);
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
   CHECK(replica.shown(kHere).get() == &replica.confirmed(kHere)->voxels);
@@ -235,7 +236,7 @@ TEST_CASE_METHOD(
   static_cast<void>(replica.open(parameters(seq)));  // rejected, but the answer was lost
   const ChunkSnapshot overtaken = world.snapshot(kHere.at);
   take(world.commit(other(1), set({1, 1, 1}, 2)));
-  replica.receive(overtaken, kNow);
+  replica.receive(chunks_of(overtaken), kNow);
   CHECK(replica.counters().snapshots_stale == 1);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
 }
@@ -251,7 +252,7 @@ TEST_CASE_METHOD(ReplicaBench,
   CHECK(replica.local_edits().all().empty());
   world.restart({});
   CHECK(replica.open(parameters(0)).empty());
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
 }
 

@@ -3,6 +3,7 @@
 #include "tests/unit/client/replica/replica_bench.hpp"
 
 using namespace runstone;
+using runstone::test::chunks_of;
 using runstone::test::ReplicaBench;
 
 TEST_CASE_METHOD(ReplicaBench,
@@ -54,7 +55,7 @@ TEST_CASE_METHOD(ReplicaBench,
   take(world.commit(other(2), set({2, 2, 3}, 4)));
   CHECK(replica.confirmed(kHere) == nullptr);
   CHECK(replica.counters().chunk_edits_buffered == 2);
-  replica.receive(early, kNow);
+  replica.receive(chunks_of(early), kNow);
   require_in_step(kHere);
   CHECK(replica.counters().chunk_edits_applied == 2);
   CHECK(replica.drain_changes().edits.size() == 2);
@@ -64,7 +65,7 @@ TEST_CASE_METHOD(ReplicaBench,
                  "a snapshot that contains held back commits replaces them and reports them",
                  "[replica]") {
   take(world.commit(other(1), set({1, 2, 3}, 2)));
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   require_in_step(kHere);
   CHECK(replica.counters().chunk_edits_contained == 1);
   const ReplicaChanges changes = replica.drain_changes();
@@ -77,7 +78,7 @@ TEST_CASE_METHOD(ReplicaBench, "chunks of one material are taken like snapshots,
                  "[replica]") {
   const ChunkKey above{0, {kHere.at.x, kHere.at.y + 1, kHere.at.z}};
   const Version old{1, 4}, newer{1, 9};
-  replica.receive(UniformChunks{{{kHere, 3, newer}, {above, 3, {}}}}, kNow);
+  replica.receive(UniformChunks{1, {{kHere, 3, newer}, {above, 3, {}}}}, kNow);
   for (const ChunkKey& key : {kHere, above}) {
     const ChunkPtr chunk = replica.confirmed(key);
     REQUIRE(chunk != nullptr);
@@ -86,9 +87,9 @@ TEST_CASE_METHOD(ReplicaBench, "chunks of one material are taken like snapshots,
     CHECK(chunk->digest == digest_of(chunk->voxels));
   }
   CHECK(replica.confirmed(kHere)->version == newer);
-  replica.receive(UniformChunks{{{kHere, 2, old}}}, kNow);  // stale
+  replica.receive(UniformChunks{1, {{kHere, 2, old}}}, kNow);  // stale
   CHECK(material_at(replica.confirmed(kHere)->voxels, {1, 2, 3}) == 3);
-  replica.receive(UniformChunks{{{{0, {1'000, 0, 0}}, 2, {}}}}, kNow);  // outside of the view
+  replica.receive(UniformChunks{1, {{{0, {1'000, 0, 0}}, 2, {}}}}, kNow);  // outside of the view
   CHECK(replica.confirmed({0, {1'000, 0, 0}}) == nullptr);
 }
 
@@ -96,7 +97,7 @@ TEST_CASE_METHOD(ReplicaBench, "a stale snapshot never erases a newer edit", "[r
   const ChunkSnapshot stale = world.snapshot(kHere.at);
   load(kHere);
   take(world.commit(other(1), set({1, 2, 3}, 2)));
-  replica.receive(stale, kNow);
+  replica.receive(chunks_of(stale), kNow);
   require_in_step(kHere);
   CHECK(replica.counters().snapshots_stale == 1);
   CHECK(replica.shown_at({1, 2, 3}) == Material{2});
@@ -119,7 +120,7 @@ TEST_CASE_METHOD(ReplicaBench, "a chunk with a gap requests a snapshot until it 
   replica.tick(kNow.now_us + kRequestAgainUs);
   CHECK(replica.take_requests() == std::vector{kHere});
 
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   require_in_step(kHere);
   CHECK(replica.awaiting_count() == 0);
 }
@@ -132,12 +133,12 @@ TEST_CASE_METHOD(ReplicaBench, "a snapshot that still leaves a gap is followed b
   static_cast<void>(world.commit(other(2), set({1, 3, 3}, 2)));  // lost
   take(world.commit(other(3), set({2, 2, 3}, 4)));
   static_cast<void>(replica.take_requests());
-  replica.receive(between, kNow);
+  replica.receive(chunks_of(between), kNow);
   CHECK(replica.awaiting_count() == 1);
   CHECK(replica.take_requests().empty());
   replica.tick(kNow.now_us + kRequestAgainUs);
   CHECK(replica.take_requests() == std::vector{kHere});
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   require_in_step(kHere);
 }
 
@@ -179,16 +180,96 @@ TEST_CASE_METHOD(ReplicaBench, "a commit whose previous list does not fit its ed
 TEST_CASE_METHOD(ReplicaBench, "chunks outside the view are dropped and not accepted",
                  "[replica]") {
   load(kHere);
-  replica.set_view({{10, 0, 0}, 1, 1});
+  replica.set_view({2, {10, 0, 0}, 1, 1});
   CHECK(replica.confirmed(kHere) == nullptr);
   const ReplicaChanges changes = replica.drain_changes();
   REQUIRE(changes.chunks.size() == 1);
   CHECK(changes.chunks[0].removed);
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   CHECK(replica.confirmed(kHere) == nullptr);
-  CHECK(replica.counters().snapshots_outside == 1);
+  CHECK(replica.counters().answers_outside == 1);
   take(world.commit(other(1), set({1, 1, 1}, 2)));
   CHECK(replica.confirmed_count() == 0);
+}
+
+TEST_CASE_METHOD(ReplicaBench,
+                 "a late answer for a chunk that left the view and came back is ignored",
+                 "[replica]") {
+  load(kHere);
+  const auto late = chunks_of(world.snapshot(kHere.at), 1);
+  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // not sent: out of view
+  replica.set_view({2, {10, 0, 0}, 1, 1});
+  replica.set_view({3, {0, 0, 0}, 2, 2});
+  static_cast<void>(replica.drain_changes());
+  SECTION("a snapshot") { replica.receive(late, kNow); }
+  SECTION("missing edits") {
+    replica.receive(chunks_of(ChunkEdits{kHere, 0, {3, 1}, {}, {{1, set({1, 1, 1}, 2)}}}, 1), kNow);
+  }
+  SECTION("one material") { replica.receive(UniformChunks{1, {{kHere, kEmpty, {}}}}, kNow); }
+  SECTION("not modified") { replica.receive(ChunksNotModified{1, {{kHere, 0}}}, 2000); }
+  SECTION("unavailable") {
+    replica.receive(ChunkUnavailable{1, {kHere}, UnavailableReason::damaged});
+  }
+  CHECK(replica.counters().answers_outside == 1);
+  CHECK(replica.confirmed(kHere) == nullptr);
+  CHECK_FALSE(replica.unavailable(kHere));
+  CHECK(replica.current_count() == 0);
+  CHECK(replica.take_requests().empty());
+  CHECK(replica.drain_changes().chunks.empty());
+  replica.receive(chunks_of(world.snapshot(kHere.at), 3), kNow);
+  require_in_step(kHere);
+  CHECK(replica.counters().answers_outside == 1);
+}
+
+TEST_CASE_METHOD(ReplicaBench, "a late answer for a chunk that stayed in the view is taken",
+                 "[replica]") {
+  replica.set_view({2, {1, 0, 0}, 2, 2});
+  replica.set_view({3, {0, 0, 0}, 2, 2});
+  replica.receive(chunks_of(world.snapshot(kHere.at), 1), kNow);
+  require_in_step(kHere);
+}
+
+TEST_CASE_METHOD(ReplicaBench, "answers on a new connection count although their numbers are low",
+                 "[replica]") {
+  replica.set_view({2, {10, 0, 0}, 1, 1});
+  replica.set_view({3, {0, 0, 0}, 2, 2});
+  static_cast<void>(replica.open(parameters()));
+  replica.receive(chunks_of(world.snapshot(kHere.at), 1), kNow);
+  require_in_step(kHere);
+}
+
+TEST_CASE_METHOD(ReplicaBench, "a late answer to a claim does not answer the next claim",
+                 "[replica]") {
+  load(kHere);
+  const ChunkPtr held = replica.confirmed(kHere);
+  static_cast<void>(replica.open(parameters()));
+  REQUIRE(replica.take_claims().size() == 1);
+  replica.set_view({2, {10, 0, 0}, 1, 1});
+  replica.set_view({3, {0, 0, 0}, 2, 2});
+  replica.adopt(kHere, held, 2000);
+  REQUIRE(replica.take_claims().size() == 1);
+  replica.receive(ChunksNotModified{1, {{kHere, 0}}}, 2000);
+  CHECK(replica.current_count() == 0);
+  replica.receive(ChunksNotModified{3, {{kHere, 0}}}, 2000);
+  CHECK(replica.current_count() == 1);
+}
+
+TEST_CASE_METHOD(ReplicaBench, "one message brings snapshots and missing edits", "[replica]") {
+  load(kRight);
+  static_cast<void>(world.commit(other(1), set({17, 1, 1}, 2)));
+  static_cast<void>(replica.open(parameters()));
+  const Chunk& right = world.chunk(kRight.at);
+  Chunks chunks{1, {}};
+  chunks.chunks.emplace_back(world.snapshot(kHere.at));
+  chunks.chunks.emplace_back(
+      ChunkEdits{kRight, 0, right.version, right.digest, {{1, set({17, 1, 1}, 2)}}});
+  chunks.chunks.emplace_back(world.snapshot({9, 0, 0}));  // out of view
+  replica.receive(chunks, kNow);
+  require_in_step(kHere);
+  require_in_step(kRight);
+  CHECK(replica.counters().updates_taken == 1);
+  CHECK(replica.confirmed_count() == 2);
+  CHECK(replica.current_count() == 2);
 }
 
 TEST_CASE_METHOD(ReplicaBench,
@@ -196,7 +277,7 @@ TEST_CASE_METHOD(ReplicaBench,
                  "[replica]") {
   ChunkSnapshot damaged = world.snapshot(kHere.at);
   REQUIRE(fill(damaged.chunk.voxels, 100, 3, 9));  // one run too many; the digest does not follow
-  replica.receive(damaged, kNow);
+  replica.receive(chunks_of(damaged), kNow);
   const Chunk& truth = world.chunk(kHere.at);
   replica.receive(DigestCheck{{{kHere, {3, 99}, truth.digest}}},
                   2000);  // no comparison at another version
@@ -210,7 +291,7 @@ TEST_CASE_METHOD(ReplicaBench,
   const ChunkSnapshot repair = world.snapshot(kHere.at);
   take(world.commit(other(1), set({1, 1, 1}, 2)));
   CHECK(replica.confirmed(kHere)->version == repair.chunk.version);
-  replica.receive(repair, kNow);
+  replica.receive(chunks_of(repair), kNow);
   require_in_step(kHere);
   replica.receive(
       DigestCheck{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 3000);
@@ -221,7 +302,7 @@ TEST_CASE_METHOD(ReplicaBench,
 TEST_CASE_METHOD(ReplicaBench,
                  "two digest checks find a chunk whose last commit was lost, one does not",
                  "[replica]") {
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // never arrives
   const auto audit = [&] {
     replica.receive(
@@ -232,7 +313,7 @@ TEST_CASE_METHOD(ReplicaBench,
   audit();
   CHECK(replica.take_requests() == std::vector{kHere});
   CHECK(replica.counters().fell_behind == 1);
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   require_in_step(kHere);
   audit();
   CHECK(replica.counters().fell_behind == 1);
@@ -240,7 +321,7 @@ TEST_CASE_METHOD(ReplicaBench,
 }
 
 TEST_CASE_METHOD(ReplicaBench, "a chunk that keeps up with its edits is not behind", "[replica]") {
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   for (ClientSequence i = 1; i <= 3; ++i) {
     const auto commit = world.commit(other(i), set({1, 1, 1}, static_cast<Material>(1 + i)));
     replica.receive(
@@ -259,9 +340,9 @@ TEST_CASE_METHOD(ReplicaBench, "a full inbox is dropped and replaced by a newer 
         other(i), set({static_cast<std::int32_t>(i % 16), 1, 1}, static_cast<Material>(i % 7))));
   }
   CHECK(replica.counters().buffer_overflows == 1);
-  replica.receive(early, kNow);
+  replica.receive(chunks_of(early), kNow);
   CHECK(replica.take_requests() == std::vector{kHere});
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   require_in_step(kHere);
   CHECK(replica.awaiting_count() == 0);
 }
@@ -276,7 +357,7 @@ TEST_CASE_METHOD(ReplicaBench,
       world.commit(other(2), set({30, 4, 5}, 2)));  // sequence 1 again, elsewhere, and durable
   static_cast<void>(replica.open(parameters(0, 1)));
   CHECK(replica.confirmed(kHere) == nullptr);
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
   require_in_step(kHere);
 }
@@ -292,7 +373,7 @@ TEST_CASE_METHOD(ReplicaBench,
   take(world.commit(other(2), set({2, 1, 1}, 2)));
   CHECK(replica.take_requests().empty());
   CHECK(replica.confirmed(kHere)->version.seq == 0);
-  replica.receive(overtaken, kNow);
+  replica.receive(chunks_of(overtaken), kNow);
   require_in_step(kHere);
   CHECK(replica.current_count() == 1);
   CHECK(replica.counters().gaps == 0);
@@ -307,9 +388,9 @@ TEST_CASE_METHOD(ReplicaBench,
   static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // not sent to this client
   take(world.commit(other(2), set({2, 1, 1}, 2)));
   CHECK(replica.take_requests().empty());
-  replica.receive(equal, kNow);
+  replica.receive(chunks_of(equal), kNow);
   CHECK(replica.take_requests() == std::vector{kHere});
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   require_in_step(kHere);
 }
 
@@ -317,7 +398,7 @@ TEST_CASE_METHOD(ReplicaBench, "an unavailable chunk shows nothing, and edits of
                  "[replica]") {
   load(kRight);
   take(world.commit(other(1), set({1, 1, 1}, 2)));  // held back for a snapshot that does not arrive
-  replica.receive(ChunkUnavailable{{kHere, {0, {9, 0, 0}}}, UnavailableReason::damaged});
+  replica.receive(ChunkUnavailable{1, {kHere, {0, {9, 0, 0}}}, UnavailableReason::damaged});
   CHECK(replica.unavailable(kHere));
   CHECK_FALSE(replica.unavailable(kRight));
   CHECK(replica.unavailable_count() == 1);  // the other one is out of view
@@ -337,7 +418,7 @@ TEST_CASE_METHOD(ReplicaBench, "an unavailable chunk shows nothing, and edits of
   CHECK(replica.counters().chunk_edits_buffered == 1);
   CHECK(replica.take_requests().empty());
 
-  replica.receive(world.snapshot(kHere.at), kNow);  // the server can send it now
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);  // the server can send it now
   CHECK_FALSE(replica.unavailable(kHere));
   CHECK(replica.unavailable_count() == 0);
   require_in_step(kHere);
@@ -349,7 +430,7 @@ TEST_CASE_METHOD(ReplicaBench, "a chunk of an earlier connection that became una
   load(kHere);
   load(kRight);
   CHECK(replica.open(parameters()).empty());
-  replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});
+  replica.receive(ChunkUnavailable{1, {kHere}, UnavailableReason::damaged});
   CHECK(replica.confirmed(kHere) == nullptr);
   CHECK(replica.shown(kHere) == nullptr);
   CHECK(replica.confirmed_count() == 1);
@@ -361,15 +442,15 @@ TEST_CASE_METHOD(ReplicaBench, "a chunk of an earlier connection that became una
   CHECK(changes.chunks[1].layers == beside);
   static_cast<void>(replica.open(parameters()));  // it may have been repaired
   CHECK(replica.unavailable_count() == 0);
-  replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});
-  replica.set_view({{3, 0, 0}, 2, 2});
+  replica.receive(ChunkUnavailable{1, {kHere}, UnavailableReason::damaged});
+  replica.set_view({2, {3, 0, 0}, 2, 2});
   CHECK(replica.unavailable_count() == 0);
 }
 
 TEST_CASE_METHOD(ReplicaBench, "after a restored backup no edited chunk is trusted", "[replica]") {
   load(kRight);
   take(world.commit(other(1), set({3, 4, 5}, 2)));
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   const ClientSequence seq = submit(set({20, 1, 1}, 3));
   take(world.commit(mine(seq), set({20, 1, 1}, 3)));
   replica.receive(Durable{world.epoch(), 2});
@@ -398,16 +479,16 @@ TEST_CASE_METHOD(ReplicaBench,
   load(kHere);
   const ChunkSnapshot before = world.snapshot(kHere.at);
   replica.show_moment(PastMoment{0, 0});
-  replica.receive(before, kNow);
+  replica.receive(chunks_of(before), kNow);
   for (ClientSequence i = 1; i <= kInboxEditsMax + 1; ++i) {
     take(world.commit(other(i), set({1, 2, 3}, static_cast<Material>(1 + i % 2))));
   }
   CHECK(replica.counters().buffer_overflows == 1);
   CHECK(replica.shown_at({1, 2, 3}) == kEmpty);
   replica.show_moment(std::nullopt);
-  replica.receive(before, kNow);  // lacks the commits that were dropped
+  replica.receive(chunks_of(before), kNow);  // lacks the commits that were dropped
   CHECK(replica.take_requests() == std::vector{kHere});
-  replica.receive(world.snapshot(kHere.at), kNow);
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   require_in_step(kHere);
 }
 
@@ -416,7 +497,7 @@ TEST_CASE_METHOD(ReplicaBench, "a claim that is answered with an unavailable chu
   load(kHere);
   static_cast<void>(replica.open(parameters()));
   CHECK(replica.take_claims().size() == 1);
-  replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});
+  replica.receive(ChunkUnavailable{1, {kHere}, UnavailableReason::damaged});
   CHECK(replica.take_claims().empty());
   CHECK(replica.missing().size() == 64);  // of 65 chunks in view
 }

@@ -15,7 +15,7 @@ SessionConfig config() {
   SessionConfig out;
   out.keys = keys(1);
   out.name = "ada";
-  out.view = {{0, 0, 0}, 9, 2};
+  out.view = {1, {0, 0, 0}, 9, 2};
   return out;
 }
 
@@ -280,22 +280,47 @@ TEST_CASE_METHOD(Fixture, "a connection knows when its next tick is due", "[repl
 
 TEST_CASE_METHOD(Fixture, "a view is sent within the server's limits when it changes",
                  "[replica]") {
-  CHECK(connection.view() == View{{0, 0, 0}, 9, 2});
+  CHECK(connection.view() == View{1, {0, 0, 0}, 9, 2});
   open();
-  CHECK(connection.view() == View{{0, 0, 0}, 4, 2});
+  CHECK(connection.view() == View{1, {0, 0, 0}, 4, 2});
   CHECK_FALSE(connection.view_was_sent());
   CHECK(connection.send_view());
   CHECK(connection.view_was_sent());
-  CHECK(take<View>() == std::vector{View{{0, 0, 0}, 4, 2}});
-  connection.set_view({{0, 0, 0}, 8, 2});
+  CHECK(take<View>() == std::vector{View{1, {0, 0, 0}, 4, 2}});
+  connection.set_view({1, {0, 0, 0}, 8, 2});
   CHECK_FALSE(connection.send_view());
-  connection.set_view({{1, 0, 0}, 2, 8});
+  connection.set_view({1, {1, 0, 0}, 2, 8});
   CHECK(connection.send_view());
-  CHECK(take<View>() == std::vector{View{{1, 0, 0}, 2, 4}});
+  CHECK(take<View>() == std::vector{View{2, {1, 0, 0}, 2, 4}});
   connection.disconnected();
   CHECK_FALSE(connection.view_was_sent());
   open();
   CHECK(connection.send_view());
+}
+
+TEST_CASE_METHOD(Fixture, "each view that is sent has the next number of its connection",
+                 "[replica]") {
+  open();
+  CHECK(connection.view().number == 1);  // that of the view to be sent
+  connection.send_view();
+  CHECK(connection.view().number == 1);
+  View view = connection.view();
+  view.yaw = 100;
+  view.number = 77;  // ignored
+  connection.set_view(view);
+  CHECK(connection.view().number == 2);
+  view.centre.x = 9;
+  connection.set_view(view);
+  CHECK(connection.view().number == 2);  // the view before was not sent
+  connection.send_view();
+  connection.send_view();
+  const auto views = take<View>();
+  REQUIRE(views.size() == 2);
+  CHECK(views[0].number == 1);
+  CHECK(views[1].number == 2);
+  connection.disconnected();
+  open();
+  CHECK(connection.view().number == 1);
 }
 
 TEST_CASE_METHOD(Fixture, "chunk requests are split by the limit of keys per message",

@@ -4,9 +4,12 @@
 
 #include "client/replica/client_session.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
 #include "tests/support/test_keys.hpp"
 
 namespace runstone::test::session_bench {
+
+using runstone::test::chunks_of;
 
 inline constexpr std::int32_t kEdge = 16;
 inline constexpr TimeUs kClockLead = 5'000'000;  // server clock minus client clock
@@ -16,7 +19,7 @@ inline SessionConfig config() {
   out.keys = keys(1);
   out.name = "ada";
   out.instance = 42;
-  out.view = {{0, 0, 0}, 1, 1};
+  out.view = {1, {0, 0, 0}, 1, 1};
   return out;
 }
 

@@ -6,7 +6,7 @@ using namespace runstone;
 
 namespace {
 
-constexpr View kView{{10, 0, -10}, 4, 1};  // 49 columns of 3; the near ones are 29 of 3
+constexpr View kView{1, {10, 0, -10}, 4, 1};  // 49 columns of 3; the near ones are 29 of 3
 
 std::vector<ChunkKey> keys_of(const View& view) {
   std::vector<ChunkKey> out;
@@ -54,7 +54,7 @@ TEST_CASE("a join reports when four fifths and all of the first view are meshed"
 TEST_CASE("an unfinished join reports how far it came; a later view changes nothing", "[join]") {
   JoinRecorder join;
   join.begin(kView, 0);
-  join.begin({{0, 0, 0}, 1, 0}, 50);
+  join.begin({1, {0, 0, 0}, 1, 0}, 50);
   join.done({0, kView.centre}, 70);
   join.done({0, {0, 0, 0}}, 80);
   CHECK(join.report().view.done == 1);

@@ -90,7 +90,7 @@ TEST_CASE_METHOD(PlannerBench, "a chunk in another axis order is meshed as a who
   ChunkSnapshot turned = world.snapshot(kHere.at);
   const bool was_zyx = turned.chunk.voxels.order == AxisOrder::zyx;
   turned.chunk.voxels = reorder(turned.chunk.voxels, was_zyx ? AxisOrder::xyz : AxisOrder::zyx);
-  replica.receive(std::move(turned), {});
+  replica.receive(test::chunks_of(std::move(turned)), {});
   pass_changes();
   CHECK(planner.dirty_count() ==
         (material == kEmpty ? 0 : 5));  // the layers that differ are unknown
@@ -109,7 +109,7 @@ TEST_CASE_METHOD(PlannerBench,
   drain();
   SECTION("unavailable: the server cannot send it") {
     static_cast<void>(replica.open({kBenchEdge, 5, 77, 1, 0, 0, 0}));
-    replica.receive(ChunkUnavailable{{kRight}, UnavailableReason::damaged});
+    replica.receive(ChunkUnavailable{1, {kRight}, UnavailableReason::damaged});
     pass_changes();
     CHECK(only().before == nullptr);
     CHECK(last.key == kHere);
@@ -119,13 +119,13 @@ TEST_CASE_METHOD(PlannerBench,
   }
   SECTION("returned, with other voxels at the border") {
     const bool drains_between = GENERATE(false, true);
-    replica.set_view({{-1, 0, 0}, 1, 0});
+    replica.set_view({2, {-1, 0, 0}, 1, 0});
     if (drains_between) pass_changes();
     CHECK(planner.next() == std::nullopt);
     static_cast<void>(world.commit({9, 1, ++edits}, {SetVoxel{{16, 5, 6}}, {}, 2}));
-    replica.set_view({{0, 0, 0}, 1, 0});
+    replica.set_view({3, {0, 0, 0}, 1, 0});
     for (const ChunkCoord at : {kRight.at, ChunkCoord{0, 0, 1}, {0, 0, -1}}) {
-      replica.receive(world.snapshot(at), {});
+      replica.receive(test::chunks_of(world.snapshot(at), 3), {});
     }
     pass_changes();
     const auto order = drain();

@@ -55,7 +55,7 @@ TEST_CASE_METHOD(PlannerBench,
                  "[schedule]") {
   load_all();
   drain();
-  replica.set_view({{1, 0, 0}, 1, 0});  // three neighbours of the middle leave
+  replica.set_view({1, {1, 0, 0}, 1, 0});  // three neighbours of the middle leave
   pass_changes();
   planner.view_changed();
   commit({5, 5, 5}, 2);
@@ -105,7 +105,7 @@ TEST_CASE_METHOD(PlannerBench, "a chunk does not wait for a neighbour that the s
   load({0, 0, 1});
   load({0, 0, -1});
   CHECK(drain().size() == 3);
-  replica.receive(ChunkUnavailable{{{0, {1, 0, 0}}}, UnavailableReason::damaged});
+  replica.receive(ChunkUnavailable{1, {{0, {1, 0, 0}}}, UnavailableReason::damaged});
   pass_changes();
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
   CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
@@ -151,7 +151,7 @@ TEST_CASE_METHOD(PlannerBench, "edited chunks come first, then the nearest", "[s
   CHECK(order[1] == ChunkCoord{0, 0, 0});
   CHECK(order[4] == ChunkCoord{-1, 0, 0});
 
-  replica.receive(world.snapshot({0, 0, 0}), {});
+  replica.receive(test::chunks_of(world.snapshot({0, 0, 0})), {});
   commit({5, 5, 5}, 2);    // at the eye
   commit({-10, 5, 5}, 2);  // far from the eye
   planner.set_eye({-1, 0, 0});
@@ -186,11 +186,11 @@ TEST_CASE_METHOD(PlannerBench,
   load_all();
   std::map<ChunkCoord, MeshJob> jobs;
   while (auto job = planner.next()) jobs[job->key.at] = *job;
-  replica.set_view({{3, 0, 0}, 2, 0});
+  replica.set_view({1, {3, 0, 0}, 2, 0});
   pass_changes();
   CHECK_FALSE(finish(jobs[{0, 0, 0}]));
   CHECK(finish(jobs[{1, 0, 0}]));
-  replica.set_view({{0, 0, 0}, 1, 0});
+  replica.set_view({1, {0, 0, 0}, 1, 0});
   load({0, 0, 0});
   CHECK_FALSE(finish(jobs[{0, 0, 0}]));
 }
@@ -201,7 +201,7 @@ TEST_CASE_METHOD(
     "[schedule]") {
   load_all();
   drain();
-  replica.set_view({{1, 0, 0}, 1, 0});
+  replica.set_view({1, {1, 0, 0}, 1, 0});
   pass_changes();
   planner.view_changed();
   CHECK(planner.dirty_count() == 0);
@@ -221,7 +221,7 @@ TEST_CASE_METHOD(PlannerBench,
   load({1, 0, 0});
   drain();
   CHECK(planner.dirty_count() == 1);
-  replica.set_view({{0, 0, 0}, 0, 0});
+  replica.set_view({1, {0, 0, 0}, 0, 0});
   pass_changes();
   planner.view_changed();
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});

@@ -9,6 +9,7 @@
 
 #include "client/schedule/mesh_planner.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
 
 namespace runstone::test {
 
@@ -17,11 +18,11 @@ inline constexpr std::int32_t kBenchEdge = 16;
 /// Five chunks, all in view, and their planner.
 struct PlannerBench {
   PlannerBench() {
-    replica.set_view({{0, 0, 0}, 1, 0});  // a cross of five chunks
+    replica.set_view({1, {0, 0, 0}, 1, 0});  // a cross of five chunks
     static_cast<void>(replica.open({kBenchEdge, 5, 77, 1, 0, 0, 0}));
   }
   void load(ChunkCoord at) {
-    replica.receive(world.snapshot(at), {});
+    replica.receive(chunks_of(world.snapshot(at)), {});
     pass_changes();
   }
   void load_all() {

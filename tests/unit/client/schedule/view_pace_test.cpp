@@ -20,7 +20,7 @@ struct Follower {
     return true;
   }
   ViewPace pace;
-  View view{{0, 0, 0}, 4, 2, 0, 0, kSightCone};
+  View view{1, {0, 0, 0}, 4, 2, 0, 0, kSightCone};
 };
 
 }  // namespace
