@@ -86,6 +86,8 @@ Result<Message> BodyReader::read(const wire::ViewState& t) const {
   if (t.phase() == 0 || t.phase() > kViewPhaseMax) return bad("view state phase is unknown");
   const bool is_asked = t.past() || t.phase() == static_cast<std::uint8_t>(ViewPhase::refused);
   if (is_asked && t.request() == 0) return bad("view state answers no history request");
+  if (t.phase() == static_cast<std::uint8_t>(ViewPhase::complete) && t.view() == 0)
+    return bad("view state completes view 0");
   if (t.seq() > kSequenceMax || (!t.past() && t.seq() != 0))
     return bad("view state sequence is out of range");
   if (!is_time(t.utc_us()) || (t.seq() == 0 && t.utc_us() != 0))

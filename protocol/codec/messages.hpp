@@ -230,7 +230,7 @@ struct ViewState {
   /// The newest HistoryRequest that was answered. 0: none yet; then the state is the live world, and
   /// the phase is not `refused`.
   std::uint32_t request = 0;
-  std::uint32_t view = 0;  // number of the newest view in force; 0: none yet
+  std::uint32_t view = 0;  // number of the newest view in force; 0: none yet, then not `complete`
   ViewPhase phase = ViewPhase::begins;
   bool past = false;  // false: the live world; seq and utc_us are 0 then
   Sequence seq = 0;   // of a past state: its last edit; 0: before the first one

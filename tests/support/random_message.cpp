@@ -182,8 +182,8 @@ HistoryRequest any_history_request(SplitMix64& rng) {
 
 ViewState any_view_state(SplitMix64& rng) {
   ViewState m;
-  m.view = rng.below(1'000'000);
   m.phase = static_cast<ViewPhase>(1 + rng.below(kViewPhaseMax));
+  m.view = rng.below(1'000'000) + (m.phase == ViewPhase::complete ? 1 : 0);
   m.past = rng.below(2) == 0;
   const bool is_asked = m.past || m.phase == ViewPhase::refused;
   m.request = rng.below(1'000'000) + (is_asked ? 1 : 0);

