@@ -3,13 +3,16 @@
 # DEPS are the other modules whose headers it may include (tests/unit/house/include_arrows_test checks it).
 # EXCLUDE is a regular expression of paths that are left out.
 # A module inside another one's folder is declared first and keeps its sources to itself.
+# With CMAKE_UNITY_BUILD, as in the presets, the sources of a module are compiled together, because their headers cost
+# most of the time. SINGLE keeps them apart: in the libraries for embedders, so that neither what is measured nor the
+# time to compile one changed file depends on the preset.
 function(runstone_target_name folder out)
   string(REPLACE "/" "_" name ${folder})
   set(${out} runstone_${name} PARENT_SCOPE)
 endfunction()
 
 function(runstone_module folder)
-  cmake_parse_arguments(ARG "" "EXCLUDE" "DEPS;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "SINGLE" "EXCLUDE" "DEPS;LIBS" ${ARGN})
   runstone_target_name(${folder} name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.hpp)
@@ -35,6 +38,9 @@ function(runstone_module folder)
   if(sources)
     add_library(${name} STATIC ${sources})
     set(scope PUBLIC)
+    if(ARG_SINGLE)
+      set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+    endif()
   else()
     add_library(${name} INTERFACE)
     set(scope INTERFACE)
@@ -78,6 +84,8 @@ endfunction()
 function(runstone_program name main)
   cmake_parse_arguments(ARG "" "" "DEPS;LIBS" ${ARGN})
   add_executable(${name} ${PROJECT_SOURCE_DIR}/${main})
+  # A program starts once.
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/${main} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   foreach(dep ${ARG_DEPS})
     runstone_target_name(${dep} dep_name)

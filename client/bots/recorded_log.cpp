@@ -11,8 +11,6 @@
 namespace runstone {
 namespace {
 
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
-
 /// Returns the time between two times of a file. They never decrease, but their difference may
 /// overflow.
 TimeUs between(TimeUs first, TimeUs later) {

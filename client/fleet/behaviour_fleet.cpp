@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "client/fleet/fleet_bot.hpp"
+#include "client/fleet/linked_session.hpp"
 #include "client/fleet/step_scheduler.hpp"
 #include "client/net/key_file.hpp"
 #include "common/core/hash.hpp"
@@ -23,7 +24,6 @@ namespace {
 
 constexpr TimeUs kCheckUs = 10'000;      // between two checks whether all bots are done
 constexpr std::size_t kOtherFiles = 64;  // in addition to a socket for each bot
-constexpr std::int64_t kGoodbyeMs = 1'000;
 
 BotConfig config_of(const BotOptions& options, std::size_t index) {
   BotConfig config;

@@ -13,6 +13,9 @@
 
 namespace runstone {
 
+/// How long a program waits for the goodbye of a session before it ends the link.
+inline constexpr std::int64_t kGoodbyeMs = 1'000;
+
 /// Session is ClientSession or HeadlessSession.
 template <class Session>
 class LinkedSession final : private LinkEvents {

@@ -18,7 +18,6 @@ namespace {
 using Player = ConnectedBot<PlayBot>;
 
 constexpr std::chrono::milliseconds kStepEvery{5};  // how long bots go without a step
-constexpr std::int64_t kGoodbyeMs = 1'000;
 
 SessionConfig new_player() {
   SessionConfig config;

@@ -15,21 +15,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json value_json(const std::optional<std::int64_t>& value) {
+Json summary_value(const std::optional<std::int64_t>& value) {
   if (!value) return nullptr;
   if (*value == Histogram::kInfinite) return "inf";
   return *value;
 }
 
-Json histogram_json(const Histogram& histogram) {
+Json histogram_summary(const Histogram& histogram) {
   Json out;
   out["count"] = histogram.count();
   out["infinite"] = histogram.infinite();
   if (histogram.below_zero() != 0) out["below_zero"] = histogram.below_zero();
-  out["p50"] = value_json(histogram.percentile(0.50));
-  out["p90"] = value_json(histogram.percentile(0.90));
-  out["p99"] = value_json(histogram.percentile(0.99));
-  out["max"] = value_json(histogram.max());
+  out["p50"] = summary_value(histogram.percentile(0.50));
+  out["p90"] = summary_value(histogram.percentile(0.90));
+  out["p99"] = summary_value(histogram.percentile(0.99));
+  out["max"] = summary_value(histogram.max());
   const auto mean = histogram.mean();
   out["mean"] = mean ? Json(*mean) : Json(nullptr);
   return out;
@@ -44,8 +44,8 @@ Json path_json(const PathReport& path) {
   Json since = Json::object(), step = Json::object();
   for (std::size_t s = 0; s < kLatencyStageCount; ++s) {
     const char* const name = to_string(static_cast<LatencyStage>(s));
-    if (path.since_submit[s].count() != 0) since[name] = histogram_json(path.since_submit[s]);
-    if (path.step[s].count() != 0) step[name] = histogram_json(path.step[s]);
+    if (path.since_submit[s].count() != 0) since[name] = histogram_summary(path.since_submit[s]);
+    if (path.step[s].count() != 0) step[name] = histogram_summary(path.step[s]);
   }
   out["since_submit"] = std::move(since);
   out["step"] = std::move(step);
@@ -175,7 +175,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
     const auto path = static_cast<EditPath>(w);
     latency[to_string(path)] = path_json(report.latency[path]);
   }
-  latency["own_durable"] = histogram_json(report.latency.durable);
+  latency["own_durable"] = histogram_summary(report.latency.durable);
   latency["own_rejected"] = report.latency.rejected;
   latency["own_unseen"] = report.latency.unseen;
   latency["own_refused"] = report.edits_refused;
@@ -188,18 +188,18 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
                           {"count", snapshots.count},
                           {"wire_bytes", snapshots.wire_bytes},
                           {"raw_bytes", snapshots.raw_bytes},
-                          {"runs", histogram_json(snapshots.runs)},
-                          {"unpack_ns", histogram_json(snapshots.unpack_ns)}};
+                          {"runs", histogram_summary(snapshots.runs)},
+                          {"unpack_ns", histogram_summary(snapshots.unpack_ns)}};
   const MeshStats& meshes = report.meshes;
   out["mesh"] = Json{{"jobs", meshes.jobs},
                      {"chunks", meshes.chunks},
                      {"per_chunk", per_chunk(meshes)},
                      {"kept_bytes", meshes.kept_bytes},
-                     {"whole_ns", histogram_json(meshes.whole_ns)},
-                     {"layers_ns", histogram_json(meshes.layers_ns)}};
+                     {"whole_ns", histogram_summary(meshes.whole_ns)},
+                     {"layers_ns", histogram_summary(meshes.layers_ns)}};
   out["cache"] = cache_json(report.cache);
   out["frames"] = Json{{"presented", report.frames.presented},
-                       {"draw_us", histogram_json(report.frames.draw_us)}};
+                       {"draw_us", histogram_summary(report.frames.draw_us)}};
   out["net"] = Json{{"bytes_received", report.net.bytes_received},
                     {"bytes_sent", report.net.bytes_sent},
                     {"control_bytes", report.net.control_bytes},

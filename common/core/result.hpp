@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -45,6 +46,9 @@ struct Unexpected {
 inline Unexpected<Error> fail(ErrorCode code, const char* what, std::uint64_t offset = 0) {
   return {Error{code, what, offset}};
 }
+
+/// Shortens `return Unexpected<std::string>{...}`: a failure that is reported as a line of text.
+inline Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 
 template <class T, class E = Error>
 class [[nodiscard]] Result {

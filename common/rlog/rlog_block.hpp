@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "common/core/bytes.hpp"
@@ -25,6 +26,8 @@ inline constexpr std::size_t kRlogHeaderBytes = 64;
 /// The maximum sizes of one block. They also bound a reader's memory.
 inline constexpr std::uint32_t kRlogRawBytesMax = std::uint32_t{1} << 22;
 inline constexpr std::uint32_t kRlogCountMax = std::uint32_t{1} << 16;
+/// The greatest value of a field that is a 32-bit number in memory and a varint in the file.
+inline constexpr std::uint64_t kRlogU32Max = std::numeric_limits<std::uint32_t>::max();
 
 /// The kind of a block. The values are stored.
 enum class RlogKind : std::uint32_t { world = 1, players = 2, edits = 3, end = 4 };

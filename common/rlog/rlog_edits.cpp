@@ -1,7 +1,6 @@
 #include "common/rlog/rlog_edits.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
 #include "common/core/assert.hpp"
@@ -9,7 +8,6 @@
 namespace runstone {
 namespace {
 
-constexpr std::uint64_t kU32Max = std::numeric_limits<std::uint32_t>::max();
 enum Column : std::size_t {
   kClient,
   kEpoch,
@@ -99,7 +97,7 @@ Result<RlogEditsReader> RlogEditsReader::open(ByteView payload, const RlogBlock&
   const std::uint64_t clients = r.varint_max(block.count, "more clients than edits");
   std::set<RlogClient> known;
   for (std::uint64_t i = 0; i < clients && r.ok(); ++i) {
-    const auto author = static_cast<AuthorId>(r.varint_max(kU32Max, "author exceeds 32 bits"));
+    const auto author = static_cast<AuthorId>(r.varint_max(kRlogU32Max, "author exceeds 32 bits"));
     const RlogClient client{author, r.u64()};
     if (!known.insert(client).second) r.reject(ErrorCode::not_canonical, "a client is named twice");
     out.clients_.emplace_back(client, 0);
@@ -133,8 +131,8 @@ Result<EditRecord> RlogEditsReader::next() {
   const std::uint64_t epoch_step = at(kEpoch).varint();
   // The first step counts from 0, so that the block does not depend on another.
   const bool is_first = seq_ == block_.first;
-  const std::uint64_t epoch = (is_first ? 0 : epoch_) + std::min(epoch_step, kU32Max);
-  if (at(kEpoch).ok() && (epoch > kU32Max || epoch_step > kU32Max)) {
+  const std::uint64_t epoch = (is_first ? 0 : epoch_) + std::min(epoch_step, kRlogU32Max);
+  if (at(kEpoch).ok() && (epoch > kRlogU32Max || epoch_step > kRlogU32Max)) {
     at(kEpoch).reject(ErrorCode::bad_value, "epoch exceeds 32 bits");
   }
   if (at(kEpoch).ok() && epoch < epoch_) at(kEpoch).reject(ErrorCode::bad_value, "epoch falls");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <string_view>
 
 #include "common/core/coords.hpp"
@@ -10,8 +9,6 @@
 
 namespace runstone {
 namespace {
-
-constexpr std::uint64_t kU32Max = std::numeric_limits<std::uint32_t>::max();
 
 void write_text(ByteWriter& w, std::string_view text) {
   w.varint(text.size());
@@ -60,7 +57,7 @@ Result<RlogWorld> decode_rlog_world(ByteView in) {
   world.chunk_edge = static_cast<std::uint16_t>(edge);
   world.generator.name = read_text(r, kRlogRawBytesMax);
   world.generator.version =
-      static_cast<std::uint32_t>(r.varint_max(kU32Max, "version exceeds 32 bits"));
+      static_cast<std::uint32_t>(r.varint_max(kRlogU32Max, "version exceeds 32 bits"));
   world.generator.seed = r.u64();
   world.generator.parameters = read_text(r, kRlogRawBytesMax);
   for (double& coordinate : world.spawn) {
@@ -73,7 +70,7 @@ Result<RlogWorld> decode_rlog_world(ByteView in) {
   const std::uint8_t has_base = r.u8();
   if (has_base > 1) r.reject(ErrorCode::bad_value, "neither has base chunks nor has none");
   world.has_base = has_base == 1;
-  world.head.epoch = static_cast<Epoch>(r.varint_max(kU32Max, "epoch exceeds 32 bits"));
+  world.head.epoch = static_cast<Epoch>(r.varint_max(kRlogU32Max, "epoch exceeds 32 bits"));
   world.materials = read_text(r, kRlogRawBytesMax);
   if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
   return world;
@@ -92,7 +89,7 @@ Result<void> decode_rlog_players(ByteView in, std::uint32_t count, AuthorId auth
   ByteReader r(in);
   for (std::uint32_t i = 0; i < count; ++i) {
     RlogPlayer player;
-    player.author = static_cast<AuthorId>(r.varint_max(kU32Max, "author exceeds 32 bits"));
+    player.author = static_cast<AuthorId>(r.varint_max(kRlogU32Max, "author exceeds 32 bits"));
     if (r.ok() && player.author <= author_before)
       r.reject(ErrorCode::bad_value, "authors do not ascend");
     player.key = read_array<32>(r);

@@ -256,9 +256,9 @@ class RunCoder {
   std::size_t above_run_ = 0, behind_run_ = 0;
 };
 
-void keep_small(Scratch& s) {
+void keep_scratch_small(Scratch& s) {
   if (s.runs.capacity() > kScratchRunsKept) std::vector<IndexRun>().swap(s.runs);
-  runstone::keep_small(s.bytes);
+  keep_small(s.bytes);
 }
 
 }  // namespace
@@ -266,7 +266,7 @@ void keep_small(Scratch& s) {
 CodedBody code_runs(const RunList& runs, OrderedExtent extent) {
   RUNSTONE_ASSERT(runs.size() > 0);
   Scratch& s = scratch();
-  keep_small(s);
+  keep_scratch_small(s);
   s.bytes.clear();
   runs.visit([&](const auto& list) {
     s.palette.find(list);
@@ -284,7 +284,7 @@ Result<RunList> decode_runs(ByteView body, std::span<const Material> palette,
                             OrderedExtent extent) {
   RUNSTONE_ASSERT(palette.size() >= 2);
   Scratch& s = scratch();
-  keep_small(s);
+  keep_scratch_small(s);
   RunCoder coder(RangeDecoder(body), Unknown{}, s, extent, palette.size());
   if (const auto coded = coder.run(); !coded) return Unexpected<Error>{coded.error()};
   if (const auto done = coder.finish(); !done) return Unexpected<Error>{done.error()};

@@ -49,20 +49,20 @@ struct Line {
   std::uint32_t mask;
 };
 
-struct FreeContext {
+struct FreeCompressor {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
 };
 
-struct Scratch {
+struct PackScratch {
   WirePalette palette;
   std::vector<std::uint32_t> next;  // token of each material, by palette index
   Bytes body, long_lengths;
   Bytes frame;  // a whole zstd frame
-  std::unique_ptr<ZSTD_CCtx, FreeContext> compressor;
+  std::unique_ptr<ZSTD_CCtx, FreeCompressor> compressor;
 };
 
-Scratch& scratch() {
-  thread_local Scratch mine;
+PackScratch& pack_scratch() {
+  thread_local PackScratch mine;
   return mine;
 }
 
@@ -74,7 +74,7 @@ void counts_to_places(std::vector<std::uint32_t>& next) {
 
 /// Writes the first plane and computes the place of the first token of each material.
 template <class Index, class Runs>
-void write_indices(const Runs& runs, Scratch& s) {
+void write_indices(const Runs& runs, PackScratch& s) {
   s.next.assign(s.palette.ids().size(), 0);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto index = static_cast<Index>(s.palette.index_of(runs.material(i)));
@@ -86,7 +86,7 @@ void write_indices(const Runs& runs, Scratch& s) {
 }
 
 template <class Index, class Runs>
-void write_planes(const Runs& runs, Line line, Scratch& s) {
+void write_planes(const Runs& runs, Line line, PackScratch& s) {
   const std::size_t count = runs.size(), tokens_at = count * sizeof(Index);
   s.body.resize(tokens_at + count - 1);
   write_indices<Index>(runs, s);
@@ -111,7 +111,7 @@ void write_planes(const Runs& runs, Line line, Scratch& s) {
 
 /// Returns the body as one zstd frame without its magic number, or an empty view if that is not
 /// smaller.
-ByteView compress(Scratch& s) {
+ByteView compress(PackScratch& s) {
   if (s.body.size() < kZstdBodyBytesMin) return {};
   if (!s.compressor) s.compressor.reset(ZSTD_createCCtx());
   RUNSTONE_ASSERT(s.compressor != nullptr);
@@ -124,7 +124,7 @@ ByteView compress(Scratch& s) {
 }
 
 /// Unpacks exactly one frame. Fails if it does not announce a plausible size or has another one.
-Result<ByteView> decompress(ByteView in, const PackedShape& shape, Scratch& s) {
+Result<ByteView> decompress(ByteView in, const PackedShape& shape, PackScratch& s) {
   keep_small(s.frame);
   s.frame.assign(kZstdMagic.begin(), kZstdMagic.end());
   s.frame.insert(s.frame.end(), in.begin(), in.end());
@@ -229,7 +229,7 @@ bool PackedShape::plausible(std::uint64_t body_bytes) const {
 
 PackedBody pack(const RunList& runs, std::uint32_t side) {
   RUNSTONE_ASSERT(runs.size() > 0);
-  Scratch& s = scratch();
+  PackScratch& s = pack_scratch();
   keep_small(s.body);
   keep_small(s.frame);
   runs.visit([&](const auto& list) {
@@ -248,7 +248,7 @@ Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape,
                        std::span<const Material> palette) {
   RUNSTONE_ASSERT(shape.runs >= 1 && shape.runs <= shape.volume &&
                   shape.materials == palette.size());
-  Scratch& s = scratch();
+  PackScratch& s = pack_scratch();
   if (zstd) {
     const auto unpacked = decompress(body, shape, s);
     if (!unpacked) return Unexpected<Error>{unpacked.error()};

@@ -10,13 +10,13 @@
 namespace runstone {
 namespace {
 
-struct FreeContext {
+struct FreeDecompressor {
   void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
-struct Scratch {
+struct UnpackScratch {
   Bytes body;
-  std::unique_ptr<ZSTD_DCtx, FreeContext> decompressor;
+  std::unique_ptr<ZSTD_DCtx, FreeDecompressor> decompressor;
 };
 
 }  // namespace
@@ -28,7 +28,7 @@ Result<ByteView> unpack_zstd_frame(ByteView frame, std::size_t bytes) {
   if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {
     return fail(ErrorCode::trailing_bytes, "zstd frame is truncated or bytes follow it");
   }
-  thread_local Scratch s;
+  thread_local UnpackScratch s;
   if (!s.decompressor) s.decompressor.reset(ZSTD_createDCtx());
   RUNSTONE_ASSERT(s.decompressor != nullptr);
   keep_small(s.body);

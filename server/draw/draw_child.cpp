@@ -23,8 +23,6 @@ using Milliseconds = std::chrono::milliseconds;
 constexpr std::size_t kOrdersKept = 64 * 1024;  // small orders are sent together
 constexpr Milliseconds kEndLimit{10'000};       // for the exit of a child without orders
 
-Unexpected<std::string> failure(std::string why) { return {std::move(why)}; }
-
 }  // namespace
 
 DrawChild::DrawChild(std::string program, int pid, int socket, Milliseconds answer_limit)

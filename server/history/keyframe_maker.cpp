@@ -9,7 +9,6 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kSliceChunks = 32;  // in one transaction; small, because edits wait for it
-constexpr Sequence kProgressEdits = 1024;
 
 }  // namespace
 
@@ -31,7 +30,7 @@ StoreResult<Sequence> KeyframeMaker::next_due(const Progress& progress) {
     for (const ChunkCoord& chunk : touched_chunks(record.edit, edge)) touched_.insert(chunk);
     if (edits_ >= policy_.edits_min && edits_ / policy_.edits_per_chunk >= touched_.size())
       due = *read_;
-    if (progress && *read_ % kProgressEdits == 0) is_cancelled = !progress(*read_, last);
+    if (progress && *read_ % WorldAt::kProgressEdits == 0) is_cancelled = !progress(*read_, last);
     return due == 0 && !is_cancelled;
   });
   if (!read) return Unexpected<StoreError>{read.error()};

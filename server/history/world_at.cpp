@@ -14,7 +14,6 @@ namespace runstone {
 
 namespace {
 
-constexpr Sequence kProgressEdits = 1024;
 constexpr const char* kCompacted = "was compacted while it was read; open the moment again";
 
 }  // namespace

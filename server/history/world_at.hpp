@@ -24,6 +24,8 @@ class WorldAt {
   /// A function that long calls use from time to time to report the sequence that was read and the
   /// last one to be read. If it returns false, the call fails with Kind::cancelled.
   using Progress = std::function<bool(Sequence, Sequence)>;
+  /// A Progress is called once for this many edits.
+  static constexpr Sequence kProgressEdits = 1024;
 
   /// Opens the world after edit `at`; 0 means before the first edit. Reader and generator must
   /// outlive the object. Fails (bad_request) if `at` was compacted away or lies after the end of

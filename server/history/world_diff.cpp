@@ -14,8 +14,6 @@ namespace runstone {
 
 namespace {
 
-constexpr std::uint64_t kProgressEdits = 1024;
-
 struct Written {
   EditDescriptor edit;
   AuthorId author = 0;
@@ -41,7 +39,7 @@ StoreResult<Between> read_between(WorldReader& reader, Sequence from, Sequence t
     for (const ChunkCoord& at : touched_chunks(record.edit, edge))
       between.chunks[at].push_back(index);
     between.edits.push_back({record.edit, record.op.author});
-    if (progress && record.version.seq % kProgressEdits == 0)
+    if (progress && record.version.seq % WorldAt::kProgressEdits == 0)
       is_cancelled = !progress(record.version.seq, to);
     return !is_cancelled;
   });

@@ -17,8 +17,6 @@ namespace {
 constexpr std::size_t kChunksPerTransaction = 512;
 constexpr std::size_t kDamagedListed = 10;
 
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
-
 /// Collects chunks and writes them to the base, many in one transaction.
 class BaseWriter {
  public:

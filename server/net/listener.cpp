@@ -2,18 +2,16 @@
 
 #include <asio/co_spawn.hpp>
 #include <asio/detached.hpp>
-#include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
-#include <asio/use_awaitable.hpp>
 #include <charconv>
 #include <chrono>
 #include <utility>
 #include <vector>
 
+#include "server/net/await_tuple.hpp"
+
 namespace runstone {
 namespace {
-
-constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 
 struct HostPort {
   std::string host;

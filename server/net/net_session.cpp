@@ -4,20 +4,18 @@
 
 #include <asio/co_spawn.hpp>
 #include <asio/detached.hpp>
-#include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
-#include <asio/use_awaitable.hpp>
 #include <chrono>
 #include <utility>
 
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/message_table.hpp"
+#include "server/net/await_tuple.hpp"
 #include "server/net/net_log.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 // The messages of all sessions wait for the world strand in one queue, so no session may have many
 // there: a read is short, and unhandled_bytes_max limits the bytes. Bytes are counted, not
 // messages, because the cost of a message grows with its bytes.

@@ -2,12 +2,11 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <asio/experimental/as_tuple.hpp>
-#include <asio/use_awaitable.hpp>
 #include <span>
 #include <utility>
 
 #include "common/os/thread_cpu_ns.hpp"
+#include "server/net/await_tuple.hpp"
 #include "server/net/byte_stream.hpp"
 #include "server/net/tcp_room.hpp"
 
@@ -15,7 +14,6 @@ namespace runstone {
 namespace {
 
 constexpr TimeUs kAgainUsMin = 1'000, kAgainUsMax = 20'000;
-constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 
 class TcpStream : public ByteStream {
  public:

@@ -19,8 +19,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
-
 /// Returns the middle value, or the mean of the two middle values. Requires at least one value.
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <utility>
 
 #include "common/core/hex.hpp"
 #include "common/os/progress_line.hpp"
@@ -12,12 +11,6 @@
 #include "server/replay/world_copy.hpp"
 
 namespace runstone {
-namespace {
-
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
-
-}  // namespace
-
 void declare_copy(SubcommandOptions& command_line, CopyOptions& options) {
   command_line.common(options.common, "folder of the world; a server may be running it");
   command_line.text("FOLDER", options.folder, "folder of the new world; empty, or not there");

@@ -3,7 +3,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <utility>
 
 #include "common/core/hex.hpp"
 #include "common/core/key_text.hpp"
@@ -18,8 +17,6 @@ namespace {
 using Names = std::map<AuthorId, std::string>;
 
 constexpr std::size_t kChunksListed = 20;  // in the table; the JSON report lists all
-
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 
 /// Returns the name of an author, or "" if the world has none.
 std::string name_of(const Names& names, AuthorId author) {

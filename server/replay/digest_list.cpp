@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Unexpected<TextError> failure(std::string_view file, std::string key, std::string what) {
+Unexpected<TextError> text_failure(std::string_view file, std::string key, std::string what) {
   return {TextError{std::string(file), 0, std::move(key), std::move(what)}};
 }
 
@@ -114,31 +114,33 @@ std::string to_json(const DigestList& list) {
 
 Result<DigestList, TextError> parse_digests_json(std::string_view text, std::string_view file) {
   const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) return failure(file, "", "is no JSON object");
+  if (!json.is_object()) return text_failure(file, "", "is no JSON object");
   DigestList list;
   const auto world = text_member(json, "world_id");
   if (!world || world->size() != 2 * list.world_id.size())
-    return failure(file, "world_id", "needs 32 hex digits");
+    return text_failure(file, "world_id", "needs 32 hex digits");
   for (std::size_t i = 0; i < list.world_id.size(); ++i) {
     const auto byte = parse_hex(std::string_view(*world).substr(2 * i, 2), 2);
-    if (!byte) return failure(file, "world_id", "needs 32 hex digits");
+    if (!byte) return text_failure(file, "world_id", "needs 32 hex digits");
     list.world_id[i] = static_cast<std::uint8_t>(*byte);
   }
   const auto seq = integer<Sequence>(json, "seq", 0, std::numeric_limits<Sequence>::max());
-  if (!seq) return failure(file, "seq", "needs a sequence number");
+  if (!seq) return text_failure(file, "seq", "needs a sequence number");
   list.seq = *seq;
   if (const auto clean = json.find("clean"); clean != json.end() && *clean != Json(true)) {
-    return failure(file, "clean",
-                   "is not true: the server did not stop cleanly, so this is no digest of its seq");
+    return text_failure(
+        file, "clean",
+        "is not true: the server did not stop cleanly, so this is no digest of its seq");
   }
   const auto chunks = json.find("chunks");
-  if (chunks == json.end() || !chunks->is_array()) return failure(file, "chunks", "needs a list");
+  if (chunks == json.end() || !chunks->is_array())
+    return text_failure(file, "chunks", "needs a list");
   list.chunks.reserve(chunks->size());
   for (const Json& row : *chunks) {
     auto entry = parse_entry(row);
     if (!entry) {
-      return failure(file, "chunks[" + std::to_string(list.chunks.size()) + "]",
-                     "needs lod, x, y, z, epoch, seq in range and a digest of 32 hex digits");
+      return text_failure(file, "chunks[" + std::to_string(list.chunks.size()) + "]",
+                          "needs lod, x, y, z, epoch, seq in range and a digest of 32 hex digits");
     }
     list.chunks.push_back(*entry);
   }
@@ -151,11 +153,11 @@ Result<void, TextError> write_text_file(const std::string& file, std::string_vie
     std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     out.close();
-    if (!out) return failure(file, "", "cannot be written");
+    if (!out) return text_failure(file, "", "cannot be written");
   }
   std::error_code error;
   std::filesystem::rename(fresh, file, error);
-  if (error) return failure(file, "", "cannot be written: " + error.message());
+  if (error) return text_failure(file, "", "cannot be written: " + error.message());
   return {};
 }
 
@@ -166,7 +168,7 @@ Result<void, TextError> write_digests_json(const std::string& file, const Digest
 Result<DigestList, TextError> read_digests_json(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in.good() && text.empty()) return failure(file, "", "cannot be read");
+  if (!in.good() && text.empty()) return text_failure(file, "", "cannot be read");
   return parse_digests_json(text, file);
 }
 

@@ -25,8 +25,6 @@
 namespace runstone {
 namespace {
 
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
-
 constexpr double kSpeedMax = 1'000'000;
 
 /// Checks the speed before the log is exported. runstone-bot has the same rule.

@@ -22,8 +22,6 @@ namespace {
 constexpr std::size_t kEditsPerTransaction = 4096;
 constexpr mode_t kFileMode = 0600;  // the file has names and keys of players
 
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
-
 std::string system_error_text() { return std::generic_category().message(errno); }
 
 /// An open file. The destructor closes it.

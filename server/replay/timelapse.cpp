@@ -23,8 +23,6 @@ namespace {
 constexpr Sequence kFramesWanted = 300;  // ten seconds of video
 constexpr std::size_t kPathBytesMax = 4 << 20;
 
-Unexpected<std::string> failure(std::string why) { return {std::move(why)}; }
-
 /// Returns the moments to draw, ascending, with the first and the last moment of the timelapse.
 Result<std::vector<Sequence>, std::string> moments_of(WorldReader& reader,
                                                       const TimelapseOptions& options,

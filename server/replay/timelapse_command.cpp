@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string_view>
-#include <utility>
 
 #include "common/core/hex.hpp"
 #include "common/os/progress_line.hpp"
@@ -15,8 +14,6 @@
 
 namespace runstone {
 namespace {
-
-Unexpected<std::string> failure(std::string why) { return {std::move(why)}; }
 
 /// Parses one side of a frame. Returns false if the text is no number within the bounds.
 bool parse_side(std::string_view text, std::uint16_t& out) {

@@ -4,7 +4,6 @@
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <utility>
 
 #include "common/core/hex.hpp"
 #include "common/os/progress_line.hpp"
@@ -16,8 +15,6 @@
 
 namespace runstone {
 namespace {
-
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 
 double rate_of(const ReplayReport& report, double seconds) {
   return seconds > 0 ? static_cast<double>(report.edits) / seconds : 0;

@@ -16,8 +16,6 @@ namespace {
 
 constexpr std::size_t kSliceChunks = 256;
 
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
-
 Result<WorldCopy, std::string> fill(WorldReader& source, WorldAt& world, const std::string& folder,
                                     const WorldAt::Progress& progress) {
   WorldMeta meta = source.meta();

@@ -20,7 +20,8 @@ namespace {
 
 std::string file_in(const std::string& folder) { return folder + "/world.sqlite"; }
 
-Unexpected<StoreError> failure(StoreError::Kind kind, const std::string& file, std::string what) {
+Unexpected<StoreError> store_failure(StoreError::Kind kind, const std::string& file,
+                                     std::string what) {
   return {{kind, file, "", std::move(what)}};
 }
 
@@ -31,9 +32,9 @@ StoreResult<FileLock> take_lock(const std::string& folder, const std::string& fi
   auto lock = FileLock::take(path);
   if (lock) return *std::move(lock);
   if (lock.error().is_held)
-    return failure(StoreError::Kind::locked, file,
-                   "another program is writing this world (it holds world.lock)");
-  return failure(StoreError::Kind::io, path, "cannot be written: " + lock.error().what);
+    return store_failure(StoreError::Kind::locked, file,
+                         "another program is writing this world (it holds world.lock)");
+  return store_failure(StoreError::Kind::io, path, "cannot be written: " + lock.error().what);
 }
 
 /// Only the owner may read the file, because it holds the world's secret key. SQLite gives WAL and
@@ -45,8 +46,8 @@ constexpr mode_t kFolderMode = 0700;
 StoreResult<void> make_file(const std::string& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode);
   if (descriptor < 0) {
-    return failure(StoreError::Kind::io, file,
-                   "cannot be made: " + std::generic_category().message(errno));
+    return store_failure(StoreError::Kind::io, file,
+                         "cannot be made: " + std::generic_category().message(errno));
   }
   ::close(descriptor);
   return {};
@@ -64,7 +65,8 @@ StoreResult<void> make_folder(const std::string& folder, const std::string& file
     error = std::error_code(errno, std::generic_category());
   }
   if (error)
-    return failure(StoreError::Kind::io, file, "the folder cannot be made: " + error.message());
+    return store_failure(StoreError::Kind::io, file,
+                         "the folder cannot be made: " + error.message());
   const auto parent = whole / "..";
   const int descriptor = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor >= 0) {
@@ -88,8 +90,8 @@ StoreResult<void> set_pragmas(sql::Database& database, StoreAccess access, bool 
   const auto mode = database.text("PRAGMA journal_mode = WAL");
   if (!mode) return failed(mode.error());
   if (*mode != "wal")
-    return failure(StoreError::Kind::io, database.file(),
-                   "the file system has no shared memory for WAL");
+    return store_failure(StoreError::Kind::io, database.file(),
+                         "the file system has no shared memory for WAL");
   // Freed pages need not be overwritten with zeros, because the rows of the log hold no secret.
   return store_result(database.run(
       "PRAGMA secure_delete = OFF; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;"));
@@ -157,8 +159,8 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   const auto id = database->integer("PRAGMA application_id");
   if (!id) return failed(id.error());
   if (*id != std::int64_t{kApplicationId}) {
-    return failure(StoreError::Kind::not_a_world, file,
-                   "its creation was interrupted; delete it and create the world again");
+    return store_failure(StoreError::Kind::not_a_world, file,
+                         "its creation was interrupted; delete it and create the world again");
   }
   auto tables = Tables::open(*database);
   if (!tables) return failed(tables.error());
@@ -185,15 +187,15 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
                                                         const SqliteOptions& options) {
   const std::string file = file_in(folder);
   if (auto readable = meta_of(rows_of(meta)); !readable) {
-    return failure(StoreError::Kind::bad_request, file,
-                   "a new world cannot have this " + readable.error());
+    return store_failure(StoreError::Kind::bad_request, file,
+                         "a new world cannot have this " + readable.error());
   }
   if (const auto made = make_folder(folder, file); !made) return failed(made.error());
   auto lock = take_lock(folder, file);
   if (!lock) return failed(lock.error());
   const auto there = sql::file_exists(file, options.vfs);
   if (!there) return failed(there.error());
-  if (*there) return failure(StoreError::Kind::exists, file, "is there already");
+  if (*there) return store_failure(StoreError::Kind::exists, file, "is there already");
   if (options.vfs.empty()) {  // the files of another VFS need not be on the disk
     if (const auto made = make_file(file); !made) return failed(made.error());
   }
@@ -214,7 +216,7 @@ StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder,
   const std::string file = file_in(folder);
   const auto there = sql::file_exists(file, options.vfs);
   if (!there) return failed(there.error());
-  if (!*there) return failure(StoreError::Kind::not_a_world, file, "is not there");
+  if (!*there) return store_failure(StoreError::Kind::not_a_world, file, "is not there");
   if (const auto marked = check_marks(file, options.vfs); !marked) return failed(marked.error());
   FileLock lock;
   if (access == StoreAccess::read_write) {

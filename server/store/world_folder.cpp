@@ -12,8 +12,6 @@
 namespace runstone {
 namespace {
 
-Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
-
 Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
   if (creation.edge != 16 && creation.edge != 32 && creation.edge != 64 && creation.edge != 128) {
     return failure("--edge " + std::to_string(creation.edge) +

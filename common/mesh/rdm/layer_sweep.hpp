@@ -4,7 +4,7 @@
 // layer passes through these files in order:
 //   layer_builder-inl.hpp   indices and rows of a layer, from the runs and the borders
 //   chunk_sides-inl.hpp     the chunk's own six sides, for the meshes around it
-//   layer_sweep.cpp         the loop over the layers, the faces of six sides, the rows that differ
+//   layer_sweep-inl.hpp     the loop over the layers, the faces of six sides, the rows that differ
 //   strip_tracer-inl.hpp    strips that end and begin in those rows (row_strips.hpp)
 //   quad_emitter-inl.hpp    strips as quads, in the bucket of their layer
 #pragma once

@@ -1,30 +1,31 @@
-#include "common/mesh/rdm/layer_sweep.hpp"
+// Sweep: the loop over the layers of a chunk (layer_sweep.hpp). Included once per instruction set,
+// inside no namespace.
+#if defined(RUNSTONE_MESH_RDM_LAYER_SWEEP_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef RUNSTONE_MESH_RDM_LAYER_SWEEP_INL
+#undef RUNSTONE_MESH_RDM_LAYER_SWEEP_INL
+#else
+#define RUNSTONE_MESH_RDM_LAYER_SWEEP_INL
+#endif
+
+#include <hwy/highway.h>
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
 #include "common/core/assert.hpp"
-#include "common/mesh/rdm/sweep_traits.hpp"
-
-// The rest of this file is compiled once per instruction set. Highway selects one at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "common/mesh/rdm/layer_sweep.cpp"
-#include <hwy/foreach_target.h>
-// Highway requires these includes after foreach_target.h.
-#include <hwy/highway.h>
-
 #include "common/mesh/rdm/chunk_sides-inl.hpp"
 #include "common/mesh/rdm/index_lanes-inl.hpp"
 #include "common/mesh/rdm/layer_builder-inl.hpp"
 #include "common/mesh/rdm/row_lanes-inl.hpp"
 #include "common/mesh/rdm/strip_tracer-inl.hpp"
+#include "common/mesh/rdm/sweep_traits.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// One call of sweep_layers(). Form: a SweepTraits.
+/// One call of sweep_layers() or sweep_layers_plain(). Form: a SweepTraits.
 template <class Form>
 class Sweep {
   using Lanes = typename Form::Lanes;
@@ -223,9 +224,14 @@ class Sweep {
   Tracer tracer_;
 };
 
+/// Sweeps the input with these lanes. Its chunk decides the rest of the SweepTraits.
 template <class Lanes, class IndexLanes>
 void sweep(const SweepInput& input, const Borders<typename Lanes::Row>& borders,
            SweepState<typename Lanes::Row>& state) {
+  const OrderedExtent& e = input.extent;
+  RUNSTONE_ASSERT(std::max({e.f, e.m, e.s}) <= kRowBits<typename Lanes::Row>);
+  RUNSTONE_ASSERT(!input.runs.empty() && input.runs.back().end == e.layer() * e.s);
+  RUNSTONE_ASSERT(input.palette->solid_count() != 0);
   if (input.palette->solid_count() == 1) {
     Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, false>>(input, borders, state).run();
   } else if (input.palette->fit_bytes()) {
@@ -235,65 +241,8 @@ void sweep(const SweepInput& input, const Borders<typename Lanes::Row>& borders,
   }
 }
 
-void sweep_64(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
-  sweep<VectorRows, VectorIndices>(input, borders, state);
-}
-void sweep_128(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
-  sweep<OneRow<Row128>, VectorIndices>(input, borders, state);
-}
-void sweep_plain_64(const SweepInput& input, const Borders<Row64>& borders,
-                    SweepState<Row64>& state) {
-  sweep<OneRow<Row64>, PlainIndices>(input, borders, state);
-}
-void sweep_plain_128(const SweepInput& input, const Borders<Row128>& borders,
-                     SweepState<Row128>& state) {
-  sweep<OneRow<Row128>, PlainIndices>(input, borders, state);
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace runstone::rdm
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
-namespace runstone::rdm {
-
-HWY_EXPORT(sweep_64);
-HWY_EXPORT(sweep_128);
-HWY_EXPORT(sweep_plain_64);
-HWY_EXPORT(sweep_plain_128);
-
-namespace {
-
-template <class Row>
-void check(const SweepInput& input) {
-  const OrderedExtent& e = input.extent;
-  RUNSTONE_ASSERT(std::max({e.f, e.m, e.s}) <= kRowBits<Row>);
-  RUNSTONE_ASSERT(!input.runs.empty() && input.runs.back().end == e.layer() * e.s);
-  RUNSTONE_ASSERT(input.palette->solid_count() != 0);
-}
-
-}  // namespace
-
-void sweep_layers(const SweepInput& input, const Borders<Row64>& borders,
-                  SweepState<Row64>& state) {
-  check<Row64>(input);
-  HWY_DYNAMIC_DISPATCH(sweep_64)(input, borders, state);
-}
-void sweep_layers(const SweepInput& input, const Borders<Row128>& borders,
-                  SweepState<Row128>& state) {
-  check<Row128>(input);
-  HWY_DYNAMIC_DISPATCH(sweep_128)(input, borders, state);
-}
-void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders,
-                        SweepState<Row64>& state) {
-  check<Row64>(input);
-  HWY_DYNAMIC_DISPATCH(sweep_plain_64)(input, borders, state);
-}
-void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders,
-                        SweepState<Row128>& state) {
-  check<Row128>(input);
-  HWY_DYNAMIC_DISPATCH(sweep_plain_128)(input, borders, state);
-}
-
-}  // namespace runstone::rdm
 #endif
