@@ -138,8 +138,6 @@ TEST_CASE("a list of chunks that ends inside an entry is refused", "[protocol]")
 }
 
 TEST_CASE("a list of chunks that answers no view is refused", "[protocol]") {
-  const Bytes key{0, 0, 0};
-  const std::vector<ListKind> kinds = list_kinds();
   const auto view = [](std::uint32_t number) {
     return std::vector<bool>{
         passes<ChunkUnavailable>([=](auto& b) {

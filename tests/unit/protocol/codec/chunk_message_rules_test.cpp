@@ -118,7 +118,7 @@ TEST_CASE("a snapshot is refused with a bad form, version, digest, bytes or size
 
 TEST_CASE("chunk edits are refused unless they lead from one version to the other", "[protocol]") {
   refuses<Chunks, ChunkEditsFields>(
-      {[](auto& f) { f.head.form = 0; },  // the bytes are edits
+      {[](auto& f) { f.head.form = 2; }, [](auto& f) { f.head.form = 0; },  // the bytes are edits
        [](auto& f) { f.head.version = {0}; }, [](auto& f) { f.back = 0; },
        [](auto& f) { f.back = 2; }, [](auto& f) { f.back = 4; },
        [](auto& f) { f.back = 13; },  // before the log
