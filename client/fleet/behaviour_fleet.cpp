@@ -35,7 +35,8 @@ BotConfig config_of(const BotOptions& options, std::size_t index) {
           : load_or_create_key(
                 (std::filesystem::path(options.key_dir) / (config.session.name + ".key")).string());
   config.session.instance = random_instance();
-  config.session.view = {{}, options.view_radius, options.view_radius_v};
+  config.session.view.radius_h = options.view_radius;
+  config.session.view.radius_v = options.view_radius_v;
   config.role = options.roles[index % options.roles.size()];
   config.site = index % options.sites;
   config.sites = options.sites;

@@ -23,7 +23,6 @@ SessionConfig new_player() {
   SessionConfig config;
   config.keys = random_key();
   config.instance = random_instance();
-  config.view = {{}, 0, 0};
   return config;
 }
 

@@ -65,7 +65,7 @@ TEST_CASE("a view at the border of the world ends there and does not overflow", 
 TEST_CASE("wanted chunks come nearest first, with ties by key", "[interest]") {
   Interest interest(kLimit);
   interest.open(1);
-  const View view{{3, -2, 5}, 5, 3};
+  const View view{1, {3, -2, 5}, 5, 3};
   interest.set_view(1, view);
   std::vector<ChunkKey> order;
   while (const auto key = interest.nearest_wanted(1)) {
@@ -85,7 +85,7 @@ TEST_CASE("chunks around the viewer come first, then those in the cone of sight,
           "[interest]") {
   Interest interest(kLimit);
   interest.open(1);
-  View view{{0, 0, 0}, 6, 2};
+  View view{1, {0, 0, 0}, 6, 2};
   view.yaw = 16'384;  // along +x
   view.cone = 8'192;  // 45 degrees to each side
   interest.set_view(1, view);
@@ -116,7 +116,7 @@ TEST_CASE("chunks around the viewer come first, then those in the cone of sight,
 TEST_CASE("a view that only turns changes the order of wanted chunks, and nothing is sent again",
           "[interest]") {
   SessionInterest interest(kLimit);
-  View view{{0, 0, 0}, 12, 4};
+  View view{1, {0, 0, 0}, 12, 4};
   interest.set_view(view);
   for (int i = 0; i < 500; ++i)
     interest.set_state(*interest.nearest_wanted(), ChunkInterest::subscribed);
@@ -137,29 +137,29 @@ TEST_CASE("a moved view costs the chunks that change and those that are wanted, 
           "[interest]") {
   SessionInterest interest(kLimit);
   constexpr std::uint8_t kRadius = 16;
-  interest.set_view({{0, 0, 0}, kRadius, kRadius});
+  interest.set_view({1, {0, 0, 0}, kRadius, kRadius});
   while (const auto key = interest.nearest_wanted())
     interest.set_state(*key, ChunkInterest::subscribed);
   const std::size_t all = interest.chunks().size();
-  const auto moved = interest.set_view({{1, 0, 0}, kRadius, kRadius});
+  const auto moved = interest.set_view({1, {1, 0, 0}, kRadius, kRadius});
   CHECK(moved.steps == moved.entered + moved.left.size());
   CHECK(moved.steps < all / 10);
   while (const auto key = interest.nearest_wanted())
     interest.set_state(*key, ChunkInterest::subscribed);
-  CHECK(interest.set_view({{1, 0, 0}, kRadius, kRadius}).steps == 0);
+  CHECK(interest.set_view({1, {1, 0, 0}, kRadius, kRadius}).steps == 0);
 }
 
 TEST_CASE("a moved view makes only new chunks wanted and releases the chunks that it left",
           "[interest]") {
   Interest interest(kLimit);
   interest.open(1);
-  interest.set_view(1, {{0, 0, 0}, 8, 2});
+  interest.set_view(1, {1, {0, 0, 0}, 8, 2});
   while (const auto key = interest.nearest_wanted(1))
     interest.set_state(1, *key, ChunkInterest::subscribed);
   const std::size_t all = interest.find(1)->chunks().size();
   CHECK(interest.take_released().empty());
 
-  interest.set_view(1, {{1, 0, 0}, 8, 2});
+  interest.set_view(1, {1, {1, 0, 0}, 8, 2});
   const SessionInterest& mine = *interest.find(1);
   const std::size_t shell = 17 * 5;  // one new chunk per row of the disc and height
   CHECK(mine.count(ChunkInterest::subscribed) == all - shell);
@@ -178,7 +178,7 @@ TEST_CASE("subscribers of a chunk are the sessions that got it, until they leave
   Interest interest(kLimit);
   for (const SessionId session : {7U, 3U, 5U}) {
     interest.open(session);
-    interest.set_view(session, {{0, 0, 0}, 1, 1});
+    interest.set_view(session, {1, {0, 0, 0}, 1, 1});
   }
   const ChunkKey key = key_of(0, 1, 0);
   interest.set_state(7, key, ChunkInterest::subscribed);
@@ -208,7 +208,7 @@ TEST_CASE("digest checks visit all subscribed chunks in turn and no others", "[i
   Interest interest(kLimit);
   interest.open(1);
   CHECK_FALSE(interest.next_for_digest_check(1).has_value());
-  interest.set_view(1, {{0, 0, 0}, 2, 0});
+  interest.set_view(1, {1, {0, 0, 0}, 2, 0});
   std::set<ChunkKey> subscribed;
   for (int i = 0; i < 6; ++i) {
     const ChunkKey key = *interest.nearest_wanted(1);
@@ -227,7 +227,8 @@ TEST_CASE("random views and states keep users and states consistent", "[interest
   for (int step = 0; step < 3000; ++step) {
     const SessionId session = 1 + rng.below(4);
     if (rng.below(20) == 0) {
-      interest.set_view(session, {{rng.between(-3, 3), rng.between(-1, 1), rng.between(-3, 3)},
+      interest.set_view(session, {1,
+                                  {rng.between(-3, 3), rng.between(-1, 1), rng.between(-3, 3)},
                                   static_cast<std::uint8_t>(rng.below(4)),
                                   static_cast<std::uint8_t>(rng.below(2))});
     } else {
