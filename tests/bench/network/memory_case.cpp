@@ -20,8 +20,6 @@ constexpr double kLoadSeconds = 300;
 constexpr double kSettleSeconds = 2;
 constexpr double kKb = 1024;
 
-Unexpected<std::string> failure(const StoreError& error) { return {error.message()}; }
-
 /// The range of cells that contains the base chunks of a world.
 struct Bounds {
   ChunkCoord min, max;  // both inclusive
@@ -50,9 +48,9 @@ struct Copies {
 Result<Copies, std::string> lay_copies(const std::string& from, const std::string& to,
                                        unsigned cells) {
   auto source = open_world(from, StoreAccess::read_only);
-  if (!source) return failure(source.error());
+  if (!source) return failure(source.error().message());
   const auto chunks = (*source)->base_chunks();
-  if (!chunks) return failure(chunks.error());
+  if (!chunks) return failure(chunks.error().message());
   if (chunks->empty()) return failure("the imported world is empty");
   const Bounds bounds = bounds_of(*chunks);
   const auto of_one = static_cast<double>(bounds.x() * bounds.y() * bounds.z());
@@ -66,7 +64,7 @@ Result<Copies, std::string> lay_copies(const std::string& from, const std::strin
   meta.spawn = {(bounds.min.x + width / 2 + 0.5) * edge, (middle + 0.5) * edge,
                 (bounds.min.z + depth / 2 + 0.5) * edge};
   auto target = create_world(to, meta);
-  if (!target) return failure(target.error());
+  if (!target) return failure(target.error().message());
   Copies out;
   out.world = to;
   out.cells = static_cast<std::size_t>(width * bounds.y() * depth);
@@ -78,7 +76,7 @@ Result<Copies, std::string> lay_copies(const std::string& from, const std::strin
       ChunkKey key = (*chunks)[j].key;
       if (i == 0) {
         auto chunk = (*source)->load_base(key);
-        if (!chunk) return failure(chunk.error());
+        if (!chunk) return failure(chunk.error().message());
         copy[j].second = std::make_shared<const Chunk>(**std::move(chunk));
       }
       key.at.x += i % columns * bounds.x();
@@ -86,7 +84,7 @@ Result<Copies, std::string> lay_copies(const std::string& from, const std::strin
       copy[j].first = key;
       if (!copy[j].second->voxels.is_uniform()) ++out.mixed;
     }
-    if (const auto saved = (*target)->save_base(copy); !saved) return failure(saved.error());
+    if (const auto saved = (*target)->save_base(copy); !saved) return failure(saved.error().message());
   }
   return out;
 }

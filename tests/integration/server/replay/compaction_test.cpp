@@ -39,12 +39,12 @@ std::unique_ptr<Generator> generator_of(const Store& store) {
   return *make_generator(store.meta().generator, store.meta().materials);
 }
 
-using Chunks = std::map<ChunkKey, Chunk>;
-Chunks moment_of(Store& store, Sequence at) {
+using ChunkMap = std::map<ChunkKey, Chunk>;
+ChunkMap moment_of(Store& store, Sequence at) {
   const auto generator = generator_of(store);
   auto world = WorldAt::open(store, *generator, at);
   if (!world) FAIL(world.error().message());
-  Chunks moment;
+  ChunkMap moment;
   for (const ChunkKey& key : world->edited()) {
     auto chunk = world->chunk(key);
     if (!chunk) FAIL(chunk.error().message());
@@ -91,7 +91,7 @@ void make_world(const std::string& folder, const SqliteOptions& options = {}) {
 }
 
 /// Checks what must hold for the world before and after the compaction.
-void check_whole(Store& store, const Chunks& at_end) {
+void check_whole(Store& store, const ChunkMap& at_end) {
   const auto checked = store.check();
   if (!checked) FAIL(checked.error().message());
   REQUIRE(*store.last_sequence() == kEdits);
@@ -131,7 +131,7 @@ Outcome compact(const std::string& folder, TimeUs now_us, std::uint64_t keep_day
 TEST_CASE("a compacted world is unchanged from its new beginning on", "[store][compact]") {
   const TempFolder folder;
   make_world(folder.path());
-  std::map<Sequence, Chunks> before;
+  std::map<Sequence, ChunkMap> before;
   std::vector<std::tuple<AuthorId, ClientInstance, ClientSequence, TimeUs>> marks;
   {
     auto store = opened(folder.path());
@@ -213,7 +213,7 @@ TEST_CASE("a compaction that a power failure interrupts loses nothing and can be
     PowerLossVfs vfs;
     const SqliteOptions options{vfs.name(), true};
     make_world(folder.path(), options);
-    const Chunks at_end = moment_of(*opened(folder.path(), options), kEdits);
+    const ChunkMap at_end = moment_of(*opened(folder.path(), options), kEdits);
     vfs.cut_after(cut);
     const auto outcome = compact(folder.path(), kCutTime, 0, options);
     vfs.power_loss(rng);
@@ -243,7 +243,7 @@ TEST_CASE("a compaction that fills the disk reports it and loses nothing",
     PowerLossVfs vfs;
     const SqliteOptions options{vfs.name(), true};
     make_world(folder.path(), options);
-    const Chunks at_end = moment_of(*opened(folder.path(), options), kEdits);
+    const ChunkMap at_end = moment_of(*opened(folder.path(), options), kEdits);
     vfs.full_after(room);
     const auto outcome = compact(folder.path(), kCutTime, 0, options);
     vfs.make_room();

@@ -56,9 +56,9 @@ TEST_CASE("a view difference is exactly the chunks of one view outside of the ot
 TEST_CASE("a view at the border of the world ends there and does not overflow", "[interest]") {
   const CoordLimit limit{kWorldLimit / 16};
   std::vector<ChunkCoord> cells;
-  append_difference({{INT32_MAX, INT32_MIN, INT32_MAX}, 64, 64}, std::nullopt, limit, cells);
+  append_difference({1, {INT32_MAX, INT32_MIN, INT32_MAX}, 64, 64}, std::nullopt, limit, cells);
   CHECK(cells.empty());
-  append_difference({{limit.limit - 1, 0, 0}, 1, 0}, std::nullopt, limit, cells);
+  append_difference({1, {limit.limit - 1, 0, 0}, 1, 0}, std::nullopt, limit, cells);
   CHECK(cells.size() == 4);  // the fifth would lie outside
 }
 
