@@ -101,6 +101,8 @@ struct BodyBuilder {
                                       m.utc_us);
   }
   Offset<wire::ViewState> operator()(const ViewState& m) {
+    RUNSTONE_ASSERT(m.past || m.seq == 0);
+    RUNSTONE_ASSERT(m.seq != 0 || m.utc_us == 0);
     return wire::CreateViewState(b, m.request, m.view, static_cast<std::uint8_t>(m.phase), m.past,
                                  m.seq, m.utc_us, text(m.text));
   }

@@ -215,11 +215,13 @@ TEST_CASE("chunks that wait together are one message, ascending by key", "[net]"
     REQUIRE(place);
     queue.fill(*place, chunk);
   };
-  const auto sent = [&queue] {
-    Wire wire;
+  Wire wire;
+  std::size_t seen = 0;
+  const auto sent = [&] {
     wire.take_all(queue);
+    const auto all = wire.messages();
     std::vector<Bytes> bodies;
-    for (const auto& [frame_class, body] : wire.messages()) bodies.push_back(body);
+    for (; seen < all.size(); ++seen) bodies.push_back(all[seen].second);
     return bodies;
   };
   SECTION("in any order of their places") {

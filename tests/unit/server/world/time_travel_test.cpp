@@ -17,7 +17,8 @@ struct HistoryBench : WorldBench {
   void open_one() {
     const auto [session, request] = environment.history_requests.front();
     environment.history_requests.pop_front();
-    server.history_opened(session, request.request, OpenedHistory{request.seq, 1000}, now());
+    server.history_opened(session, request.request,
+                          OpenedHistory{request.seq, request.seq == 0 ? 0 : 1000}, now());
   }
   /// Answers every requested chunk of the past. Its version is the last multiple of `step` before
   /// the moment.
@@ -126,7 +127,7 @@ TEST_CASE("a chunk that is equal in the next view of the past is not sent again"
   CHECK(bench.environment.snapshots.size() == before + 5);
 }
 
-TEST_CASE("a full queue delays the history state and its chunks, and loses none", "[world]") {
+TEST_CASE("a full queue delays the view state and its chunks, and loses none", "[world]") {
   HistoryBench bench;
   bench.join(1, 1);
   bench.view(1, kSmall);
