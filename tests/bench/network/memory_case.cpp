@@ -20,8 +20,6 @@ constexpr double kLoadSeconds = 300;
 constexpr double kSettleSeconds = 2;
 constexpr double kKb = 1024;
 
-Unexpected<std::string> failure(const StoreError& error) { return {error.message()}; }
-
 /// The range of cells that contains the base chunks of a world.
 struct Bounds {
   ChunkCoord min, max;  // both inclusive
