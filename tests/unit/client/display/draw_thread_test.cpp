@@ -35,11 +35,11 @@ FrameOrder small_frame() {
 }
 
 /// A draw thread with a fake screen, and the list of what it did.
-struct Bench {
-  Bench() = default;
-  ~Bench() { book.release(); }  // also after a failed check, so that the thread can end
-  Bench(const Bench&) = delete;
-  Bench& operator=(const Bench&) = delete;
+struct ThreadBench {
+  ThreadBench() = default;
+  ~ThreadBench() { book.release(); }  // also after a failed check, so that the thread can end
+  ThreadBench(const ThreadBench&) = delete;
+  ThreadBench& operator=(const ThreadBench&) = delete;
 
   FakeScreenBook book;
   WakeUp wake;
@@ -65,7 +65,7 @@ struct Bench {
 TEST_CASE(
     "changes during a frame wait for its end, and only the newest change of each chunk is done",
     "[client_app]") {
-  Bench bench;
+  ThreadBench bench;
   CHECK(bench.thread.screen_name() == "fake");
   bench.book.hold();
   bench.thread.draw(small_frame());
@@ -91,7 +91,7 @@ TEST_CASE(
     "results come in the order of the draw thread: uploads, then the frame that shows "
     "them",
     "[client_app]") {
-  Bench bench;
+  ThreadBench bench;
   bench.book.hold();
   bench.thread.upload(chunk(1), mesh_of(10, 1));
   bench.thread.draw(small_frame());
@@ -115,7 +115,7 @@ TEST_CASE(
 }
 
 TEST_CASE("materials reach the screen before the frame that needs them", "[client_app]") {
-  Bench bench;
+  ThreadBench bench;
   bench.thread.set_materials(MaterialTable{});
   bench.thread.draw(small_frame());
   bench.take_frames(1);
@@ -125,7 +125,7 @@ TEST_CASE("materials reach the screen before the frame that needs them", "[clien
 TEST_CASE("a screenshot shows its frame, and a file that cannot be written is named",
           "[client_app]") {
   const test::TempFolder folder;
-  Bench bench;
+  ThreadBench bench;
   FrameOrder order = small_frame();
   order.screenshots = {folder / "picture.png", folder / "no-such-folder/picture.png"};
   bench.thread.draw(order);
@@ -143,7 +143,7 @@ TEST_CASE("a screen that cannot be made fails the start with the same text", "[c
 }
 
 TEST_CASE("after a frame failed, every take_done() on the main thread throws", "[client_app]") {
-  Bench bench;
+  ThreadBench bench;
   bench.book.fail_next();
   bench.thread.draw(small_frame());
   const auto take_until_failed = [&bench] { bench.take_frames(1); };
