@@ -14,7 +14,7 @@ namespace {
 
 constexpr TimeUs kDayUs = 86'400'000'000;
 
-Unexpected<std::string> failure(const StoreError& error) {
+Unexpected<std::string> compaction_failure(const StoreError& error) {
   if (error.kind != StoreError::Kind::full) return {error.message()};
   return {error.message() +
           ". The disk is full: nothing was lost, and the world stands as before; "
@@ -32,19 +32,19 @@ std::uint64_t bytes_of(const std::string& file) {
 Result<void, std::string> compact_world(const CompactRequest& request, TimeUs now_us,
                                         std::ostream& out, const SqliteOptions& options) {
   auto opened = open_sqlite_world(request.world, StoreAccess::read_write, options);
-  if (!opened) return failure(opened.error());
+  if (!opened) return compaction_failure(opened.error());
   Store& store = **opened;
   const auto generator = generator_of(store);
   if (!generator) return Unexpected<std::string>{generator.error()};
   const auto range = store.log_range();
-  if (!range) return failure(range.error());
+  if (!range) return compaction_failure(range.error());
   const TimeUs cut_us = now_us - static_cast<TimeUs>(request.keep_days) * kDayUs;
   const auto head = store.log_head();
-  if (!head) return failure(head.error());
+  if (!head) return compaction_failure(head.error());
   const bool is_any_older = range->first <= range->last.version.seq && cut_us >= head->time_us;
   const auto found =
       is_any_older ? store.sequence_at(cut_us) : StoreResult<Sequence>(range->first - 1);
-  if (!found) return failure(found.error());
+  if (!found) return compaction_failure(found.error());
   const Sequence at = *found;
   if (at < range->first) {
     out << "nothing to compact: no edit of the log is older than " << request.keep_days
@@ -52,7 +52,7 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
     return {};
   }
   const auto keyframes = store.keyframes();
-  if (!keyframes) return failure(keyframes.error());
+  if (!keyframes) return compaction_failure(keyframes.error());
   const bool is_there =
       std::any_of(keyframes->begin(), keyframes->end(),
                   [&](const Keyframe& keyframe) { return keyframe.at.version.seq == at; });
@@ -68,10 +68,11 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
           line.show(done, last);
           return true;
         });
-    if (!made) return failure(made.error());
+    if (!made) return compaction_failure(made.error());
   }
   const std::uint64_t before = bytes_of(store.file());
-  if (const auto compacted = store.compact(at); !compacted) return failure(compacted.error());
+  if (const auto compacted = store.compact(at); !compacted)
+    return compaction_failure(compacted.error());
   out << "compacted   edits " << range->first << " to " << at << " into the base, "
       << range->last.version.seq - at << " edits stay\n";
   if (!request.shrink) return {};

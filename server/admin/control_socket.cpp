@@ -30,11 +30,9 @@ constexpr std::size_t kConnectionsMax = 16;
 constexpr auto kRetryInterval = std::chrono::milliseconds(200);
 constexpr std::size_t kPathBytesMax = sizeof(sockaddr_un::sun_path) - 1;
 
-}  // namespace
-
 /// One connection. It reads a line, passes it to the handler, writes the answer, and reads the next
 /// line.
-class ControlSocket::Connection : public std::enable_shared_from_this<Connection> {
+class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(Local::socket socket, Strand strand, ControlSocket::Handler handler,
              std::shared_ptr<int> slot)
@@ -107,6 +105,8 @@ class ControlSocket::Connection : public std::enable_shared_from_this<Connection
   bool is_busy_ = false;       // a line is being carried out or answered
   bool is_finishing_ = false;  // the server stops
 };
+
+}  // namespace
 
 struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
   Parts(asio::io_context& io, std::string path_, Handler handler_)

@@ -39,7 +39,6 @@ class ControlSocket {
   void stop();
 
  private:
-  class Connection;
   struct Parts;
   explicit ControlSocket(std::shared_ptr<Parts> parts);
   std::shared_ptr<Parts> parts_;

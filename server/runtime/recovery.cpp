@@ -3,13 +3,7 @@
 #include <utility>
 
 namespace runstone {
-namespace {
-
-Unexpected<std::string> failure(const StoreError& error) {
-  return Unexpected<std::string>{error.message()};
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   WorldStart start;

@@ -7,15 +7,15 @@
 namespace runstone::test {
 namespace {
 
-std::atomic<std::size_t> count{0}, bytes{0};
+std::atomic<std::size_t> allocated_blocks{0}, allocated_bytes{0};
 
 }  // namespace
 
-Allocations allocations() { return {count, bytes}; }
+Allocations allocations() { return {allocated_blocks, allocated_bytes}; }
 
 static void count_allocation(std::size_t size) {
-  ++count;
-  bytes += size;
+  ++allocated_blocks;
+  allocated_bytes += size;
 }
 
 }  // namespace runstone::test

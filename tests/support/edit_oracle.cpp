@@ -81,14 +81,16 @@ bool near_segment(VoxelPos a, VoxelPos b, VoxelPos at, std::int64_t reach) {
     return d > 0 && d * d > reach;
   };
   if (far(a.x, b.x, at.x) || far(a.y, b.y, at.y) || far(a.z, b.z, at.z)) return false;
-  __extension__ using Wide = __int128;
-  const std::array<Wide, 3> d = {b.x - a.x, b.y - a.y, b.z - a.z};
-  const std::array<Wide, 3> p = {Wide{at.x} - a.x, Wide{at.y} - a.y, Wide{at.z} - a.z};
-  const Wide whole = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-  const Wide place = std::clamp<Wide>(p[0] * d[0] + p[1] * d[1] + p[2] * d[2], 0, whole);
-  Wide squared = 0;
+  __extension__ using SignedWide = __int128;
+  const std::array<SignedWide, 3> d = {b.x - a.x, b.y - a.y, b.z - a.z};
+  const std::array<SignedWide, 3> p = {SignedWide{at.x} - a.x, SignedWide{at.y} - a.y,
+                                       SignedWide{at.z} - a.z};
+  const SignedWide whole = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  const SignedWide place =
+      std::clamp<SignedWide>(p[0] * d[0] + p[1] * d[1] + p[2] * d[2], 0, whole);
+  SignedWide squared = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Wide off = p[i] * whole - place * d[i];
+    const SignedWide off = p[i] * whole - place * d[i];
     squared += off * off;
   }
   return squared <= reach * whole * whole;

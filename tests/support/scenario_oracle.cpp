@@ -12,50 +12,50 @@ namespace {
 
 const double kPi = std::acos(-1.0);
 
-enum class Shape { all, half_x, half_y, half_z, ball, strips, waves, checkerboard, draws };
+enum class Formula { all, half_x, half_y, half_z, ball, strips, waves, checkerboard, draws };
 
 struct Model {
   unsigned number;
-  Shape shape;
+  Formula shape;
   std::array<float, 3> values;  // radius; gaps of x, y, z; omega; threshold
 };
 /// scenarios.csv, line by line. Scenario 5 is data, not a formula.
-constexpr std::array<Model, 36> kModels = {{{1, Shape::all, {}},
-                                            {2, Shape::half_x, {}},
-                                            {3, Shape::half_z, {}},
-                                            {4, Shape::half_y, {}},
-                                            {6, Shape::ball, {4}},
-                                            {7, Shape::ball, {8}},
-                                            {8, Shape::ball, {16}},
-                                            {9, Shape::strips, {1, 1, 1}},
-                                            {10, Shape::strips, {2, 2, 2}},
-                                            {11, Shape::strips, {3, 3, 3}},
-                                            {12, Shape::strips, {2, 2, 2}},
-                                            {13, Shape::strips, {15, 15, 15}},
-                                            {14, Shape::waves, {2}},
-                                            {15, Shape::waves, {4}},
-                                            {16, Shape::waves, {10}},
-                                            {17, Shape::checkerboard, {}},
-                                            {18, Shape::draws, {0.99f}},
-                                            {19, Shape::draws, {0.75f}},
-                                            {20, Shape::draws, {0.5f}},
-                                            {21, Shape::draws, {0.25f}},
-                                            {22, Shape::draws, {0.01f}},
-                                            {23, Shape::strips, {0, 15, 0}},
-                                            {24, Shape::strips, {0, 7, 0}},
-                                            {25, Shape::strips, {0, 3, 0}},
-                                            {26, Shape::strips, {0, 2, 0}},
-                                            {27, Shape::strips, {0, 1, 0}},
-                                            {28, Shape::strips, {0, 0, 15}},
-                                            {29, Shape::strips, {0, 0, 7}},
-                                            {30, Shape::strips, {0, 0, 3}},
-                                            {31, Shape::strips, {0, 0, 2}},
-                                            {32, Shape::strips, {0, 0, 1}},
-                                            {33, Shape::strips, {15, 0, 0}},
-                                            {34, Shape::strips, {7, 0, 0}},
-                                            {35, Shape::strips, {3, 0, 0}},
-                                            {36, Shape::strips, {2, 0, 0}},
-                                            {37, Shape::strips, {1, 0, 0}}}};
+constexpr std::array<Model, 36> kModels = {{{1, Formula::all, {}},
+                                            {2, Formula::half_x, {}},
+                                            {3, Formula::half_z, {}},
+                                            {4, Formula::half_y, {}},
+                                            {6, Formula::ball, {4}},
+                                            {7, Formula::ball, {8}},
+                                            {8, Formula::ball, {16}},
+                                            {9, Formula::strips, {1, 1, 1}},
+                                            {10, Formula::strips, {2, 2, 2}},
+                                            {11, Formula::strips, {3, 3, 3}},
+                                            {12, Formula::strips, {2, 2, 2}},
+                                            {13, Formula::strips, {15, 15, 15}},
+                                            {14, Formula::waves, {2}},
+                                            {15, Formula::waves, {4}},
+                                            {16, Formula::waves, {10}},
+                                            {17, Formula::checkerboard, {}},
+                                            {18, Formula::draws, {0.99f}},
+                                            {19, Formula::draws, {0.75f}},
+                                            {20, Formula::draws, {0.5f}},
+                                            {21, Formula::draws, {0.25f}},
+                                            {22, Formula::draws, {0.01f}},
+                                            {23, Formula::strips, {0, 15, 0}},
+                                            {24, Formula::strips, {0, 7, 0}},
+                                            {25, Formula::strips, {0, 3, 0}},
+                                            {26, Formula::strips, {0, 2, 0}},
+                                            {27, Formula::strips, {0, 1, 0}},
+                                            {28, Formula::strips, {0, 0, 15}},
+                                            {29, Formula::strips, {0, 0, 7}},
+                                            {30, Formula::strips, {0, 0, 3}},
+                                            {31, Formula::strips, {0, 0, 2}},
+                                            {32, Formula::strips, {0, 0, 1}},
+                                            {33, Formula::strips, {15, 0, 0}},
+                                            {34, Formula::strips, {7, 0, 0}},
+                                            {35, Formula::strips, {3, 0, 0}},
+                                            {36, Formula::strips, {2, 0, 0}},
+                                            {37, Formula::strips, {1, 0, 0}}}};
 
 const Model& model_of(unsigned number) {
   const auto found = std::find_if(kModels.begin(), kModels.end(),
@@ -88,24 +88,24 @@ std::vector<float> draws(int n) {
 bool is_solid(const Model& model, const std::vector<float>& random, int n, int x, int y, int z) {
   const auto& values = model.values;
   switch (model.shape) {
-    case Shape::all:
+    case Formula::all:
       return true;
-    case Shape::half_x:
+    case Formula::half_x:
       return x < n / 2;
-    case Shape::half_y:
+    case Formula::half_y:
       return y < n / 2;
-    case Shape::half_z:
+    case Formula::half_z:
       return z < n / 2;
-    case Shape::ball:
+    case Formula::ball:
       return std::sqrt(std::pow(x - n / 2, 2) + std::pow(y - n / 2, 2) + std::pow(z - n / 2, 2)) <
              values[0];
-    case Shape::strips:
+    case Formula::strips:
       return in_strip(x, n, values[0]) && in_strip(y, n, values[1]) && in_strip(z, n, values[2]);
-    case Shape::waves:
+    case Formula::waves:
       return wave(values[0], x) + wave(values[0], y) + wave(values[0], z) > 0;
-    case Shape::checkerboard:
+    case Formula::checkerboard:
       return (x + y + z) % 2 == 0;
-    case Shape::draws:
+    case Formula::draws:
       return random[static_cast<std::size_t>((x * n + y) * n + z)] < values[0];
   }
   std::abort();
@@ -116,7 +116,7 @@ bool is_solid(const Model& model, const std::vector<float>& random, int n, int x
 DenseChunk scenario_dense(unsigned number, unsigned edge) {
   const Model& model = model_of(number);
   const int n = static_cast<int>(edge);
-  const std::vector<float> random = model.shape == Shape::draws ? draws(n) : std::vector<float>();
+  const std::vector<float> random = model.shape == Formula::draws ? draws(n) : std::vector<float>();
   DenseChunk out(Extent::cube(edge));
   for (int x = 0; x < n; ++x) {
     for (int y = 0; y < n; ++y) {

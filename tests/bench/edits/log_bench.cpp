@@ -30,8 +30,6 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-Unexpected<std::string> failure(const StoreError& error) { return {error.message()}; }
-
 /// Returns the bytes of the database, with everything that its WAL holds.
 double bytes_of(const std::string& folder) {
   std::error_code ignored;

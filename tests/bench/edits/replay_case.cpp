@@ -21,7 +21,7 @@
 namespace runstone::bench {
 namespace {
 
-constexpr std::uint16_t kEdge = 32;
+constexpr std::uint16_t kReplayEdge = 32;
 constexpr std::uint64_t kSeed = 7;
 constexpr std::size_t kGroup = 64;  // records in a transaction while the log is written
 
@@ -37,7 +37,7 @@ class Land {
 
   /// Makes the chunk of an edit and its neighbours, and meshes the chunk if `meshed`.
   void prepare(VoxelPos at, bool meshed) {
-    const ChunkCoord own = chunk_of(at, kEdge);
+    const ChunkCoord own = chunk_of(at, kReplayEdge);
     chunk(own);
     if (!meshed) return;
     mesh_if_new(own);
@@ -47,15 +47,15 @@ class Land {
     }
   }
   void apply(const EditDescriptor& edit, VoxelPos at) {
-    const ChunkCoord own = chunk_of(at, kEdge);
+    const ChunkCoord own = chunk_of(at, kReplayEdge);
     Held& held = *chunks_.find(own)->second;
-    apply_stack(held.chunk.voxels, held.chunk.digest, origin_of(own, kEdge), std::span(&edit, 1),
-                scratch_, result_);
+    apply_stack(held.chunk.voxels, held.chunk.digest, origin_of(own, kReplayEdge),
+                std::span(&edit, 1), scratch_, result_);
   }
   /// Meshes the layers that the last edit made dirty.
   void remesh(VoxelPos at) {
     if (!result_.changed) return;
-    const ChunkCoord own = chunk_of(at, kEdge);
+    const ChunkCoord own = chunk_of(at, kReplayEdge);
     remesh_layers(*chunks_.find(own)->second, result_.dirty, {});
     for (const Direction d : kDirections) {
       const ChunkCoord beside = neighbour(own, d);
@@ -85,7 +85,7 @@ class Land {
 
   /// Returns true if a voxel lies in the layer that touches the chunk.
   static bool sees(ChunkCoord beside, VoxelPos at) {
-    VoxelBox around = box_of(beside, kEdge);
+    VoxelBox around = box_of(beside, kReplayEdge);
     around.min = {around.min.x - 1, around.min.y - 1, around.min.z - 1};
     around.max = {around.max.x + 1, around.max.y + 1, around.max.z + 1};
     return around.contains(at);
@@ -94,8 +94,8 @@ class Land {
     auto& held = chunks_[at];
     if (held) return *held;
     held = std::make_unique<Held>();
-    held->chunk.voxels =
-        in_cheapest_order(generator_.generate(origin_of(at, kEdge), Extent::cube(kEdge)));
+    held->chunk.voxels = in_cheapest_order(
+        generator_.generate(origin_of(at, kReplayEdge), Extent::cube(kReplayEdge)));
     held->chunk.digest = digest_of(held->chunk.voxels);
     return *held;
   }
@@ -142,7 +142,7 @@ Result<std::unique_ptr<Store>, std::string> write_world(const std::string& folde
 Result<ReplayTiming, std::string> time_replay(std::size_t edits, unsigned repetitions,
                                               const std::string& folder) {
   WorldMeta meta;
-  meta.chunk_edge = kEdge;
+  meta.chunk_edge = kReplayEdge;
   meta.generator = {"terrain", 1, kSeed, ""};
   meta.materials = default_material_table();
   const auto generator = make_generator(meta.generator, meta.materials);

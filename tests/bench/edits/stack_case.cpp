@@ -15,7 +15,7 @@
 namespace runstone::bench {
 namespace {
 
-constexpr std::int32_t kEdge = 32;
+constexpr std::int32_t kStackEdge = 32;
 
 Mask draw_mask(SplitMix64& rng) {
   if (rng.below(10) >= 3) return {};
@@ -30,7 +30,8 @@ Mask draw_mask(SplitMix64& rng) {
 }
 
 VoxelPos draw_place(SplitMix64& rng) {
-  return {rng.between(0, kEdge - 1), rng.between(0, kEdge - 1), rng.between(0, kEdge - 1)};
+  return {rng.between(0, kStackEdge - 1), rng.between(0, kStackEdge - 1),
+          rng.between(0, kStackEdge - 1)};
 }
 
 EditShape draw_box(SplitMix64& rng, std::int32_t side_max) {
@@ -100,7 +101,8 @@ std::vector<EditDescriptor> mixed_edits(EditMix mix, std::uint64_t seed, std::si
 
 Chunk terrain_chunk(ChunkCoord at) {
   Chunk chunk;
-  chunk.voxels = chunk_of_world(terrain(), origin_of(at, kEdge), static_cast<unsigned>(kEdge));
+  chunk.voxels =
+      chunk_of_world(terrain(), origin_of(at, kStackEdge), static_cast<unsigned>(kStackEdge));
   chunk.digest = digest_of(chunk.voxels);
   return chunk;
 }
@@ -131,17 +133,17 @@ StackTiming time_stack(const Chunk& chunk, const std::vector<EditDescriptor>& ed
 SpreadTiming time_spread(const EditDescriptor& edit, unsigned repetitions) {
   SpreadTiming timing;
   std::map<ChunkCoord, Chunk> land;
-  for (const ChunkCoord at : touched_chunks(edit, kEdge)) land.emplace(at, terrain_chunk(at));
+  for (const ChunkCoord at : touched_chunks(edit, kStackEdge)) land.emplace(at, terrain_chunk(at));
   timing.chunks = land.size();
   ApplyScratch scratch;
   ApplyResult result;
   for (unsigned i = 0; i <= repetitions; ++i) {
     auto chunks = land;
     const std::uint64_t start = now_ns();
-    for (const ChunkCoord at : touched_chunks(edit, kEdge)) {
+    for (const ChunkCoord at : touched_chunks(edit, kStackEdge)) {
       Chunk& chunk = chunks.at(at);
-      apply_stack(chunk.voxels, chunk.digest, origin_of(at, kEdge), std::span(&edit, 1), scratch,
-                  result);
+      apply_stack(chunk.voxels, chunk.digest, origin_of(at, kStackEdge), std::span(&edit, 1),
+                  scratch, result);
     }
     if (i != 0) timing.us.push_back(us_since(start));
   }

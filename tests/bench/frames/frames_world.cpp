@@ -14,15 +14,15 @@
 namespace runstone::bench {
 namespace {
 
-constexpr unsigned kEdge = 32;
-constexpr auto kSide = static_cast<std::int32_t>(kEdge);
+constexpr unsigned kFramesEdge = 32;
+constexpr auto kSide = static_cast<std::int32_t>(kFramesEdge);
 constexpr std::array<int, 3> kLuantiSize = {5, 3, 5};
 constexpr std::string_view kScenario = "scenario_";
 
 FramesWorld scenario_block(const std::string& name, unsigned number) {
-  const auto world = test::scenario_generator(number, kEdge);
+  const auto world = test::scenario_generator(number, kFramesEdge);
   FramesWorld out{name,
-                  kEdge,
+                  kFramesEdge,
                   {3, 3, 3},
                   std::make_shared<const VisibilityTable>(test::scenario_visibility()),
                   {}};
@@ -30,9 +30,9 @@ FramesWorld scenario_block(const std::string& name, unsigned number) {
     for (int y = 0; y < 3; ++y) {
       for (int x = 0; x < 3; ++x) {
         const ChunkCoord at = {x - 1, y - 1, z - 1};
-        out.chunks.push_back(
-            {{x, y, z},
-             {origin_of(at, kSide), kEdge, test::scenario_scene(*world, at, kEdge, false)}});
+        out.chunks.push_back({{x, y, z},
+                              {origin_of(at, kSide), kFramesEdge,
+                               test::scenario_scene(*world, at, kFramesEdge, false)}});
       }
     }
   }
@@ -69,7 +69,7 @@ FramesWorld luanti_block(const VoxelWorld& world) {
   const VoxelPos origin = {begin_around(x, size[0] * kSide, b.min.x, b.max.x),
                            begin_around(ground_of(world, x, z), size[1] * kSide, b.min.y, b.max.y),
                            begin_around(z, size[2] * kSide, b.min.z, b.max.z)};
-  return block_of(world, origin, size, kEdge);
+  return block_of(world, origin, size, kFramesEdge);
 }
 
 }  // namespace

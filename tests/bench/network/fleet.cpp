@@ -12,7 +12,7 @@ using nlohmann::json;
 
 // Seconds until all bots have joined, and until all edits are on disk.
 constexpr double kPatience = 300;
-constexpr double kLook = 0.05;
+constexpr double kFleetPollSeconds = 0.05;
 
 double number_at(const json& object, const char* name) {
   const auto found = object.find(name);
@@ -62,7 +62,8 @@ Result<Fleet, std::string> Fleet::join(Testbed& testbed, TestbedLink& link,
   auto bots = testbed.start_client(link, "runstone-bot", std::move(words));
   if (!bots) return Unexpected<std::string>{bots.error()};
   out.bots_ = *std::move(bots);
-  for (; out.joined_s_ < kPatience && !out.bots_->wait(kLook); out.joined_s_ += kLook) {
+  for (; out.joined_s_ < kPatience && !out.bots_->wait(kFleetPollSeconds);
+       out.joined_s_ += kFleetPollSeconds) {
     if (output_has(out.bots_->log(), "see the world")) return out;
     if (interrupted()) return Unexpected<std::string>{"interrupted"};
   }

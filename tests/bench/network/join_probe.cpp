@@ -11,7 +11,7 @@ namespace runstone::bench {
 namespace {
 
 constexpr std::uint32_t kAddress = 0x7F020202;  // 127.2.2.2, which nobody else uses
-constexpr int kJoinMsMax = 5'000;
+constexpr int kNewcomerMsMax = 5'000;
 constexpr double kPauseSeconds = 0.1;
 
 }  // namespace
@@ -34,7 +34,7 @@ void JoinProbe::run(std::uint16_t port) {
     const auto began = std::chrono::steady_clock::now();
     AttackClient newcomer(port, kAddress);
     ++joins_.tried;
-    if (newcomer.open_session(mix64(~who), kJoinMsMax)) {
+    if (newcomer.open_session(mix64(~who), kNewcomerMsMax)) {
       ++joins_.open;
       const std::chrono::duration<double, std::milli> took =
           std::chrono::steady_clock::now() - began;

@@ -20,12 +20,12 @@ namespace {
 using nlohmann::json;
 
 constexpr double kEditsPerSecond = 50;
-constexpr unsigned kViewRadius = 8, kViewRadiusV = 4;  // chunks
-constexpr int kRoamVoxels = 128;                       // well inside the view
-constexpr int kRoamSpeed = 640;                        // voxels a second
-constexpr unsigned kBots = 18;                         // twenty clients together with the two
+constexpr unsigned kLatencyView = 8, kLatencyViewVertical = 4;  // chunks
+constexpr int kRoamVoxels = 128;                                // well inside the view
+constexpr int kRoamSpeed = 640;                                 // voxels a second
+constexpr unsigned kBots = 18;  // twenty clients together with the two
 constexpr double kBotEditsPerSecond = 2;
-constexpr double kWaitSeconds = 180;  // for worlds to load and edits to arrive
+constexpr double kLatencyWaitSeconds = 180;  // for worlds to load and edits to arrive
 
 /// A client gives this command after its last edit, and the answer appears in its output. Then the
 /// bots leave while the client still watches. An edit that is in flight when a client ends would
@@ -118,8 +118,9 @@ std::string script_of(const Testbed& testbed, const Load& load, unsigned client)
   return fmt::format(
       "wait loaded {0}\nmove 0 ^+4 -20\nwait loaded {0}\nwait 5\n{1}burst {2} {3} 8 {4} wool_red\n"
       "move ~ ~ ~\nwait synced\nwait durable\ncommand {5}\nwait {6}\nwait synced\n",
-      kWaitSeconds, load.streams ? fmt::format("roam ~{} ~ ~ {}\n", kRoamVoxels, kRoamSpeed) : "",
-      edits, kEditsPerSecond, testbed.options().seed * 2 + client, kDoneCommand,
+      kLatencyWaitSeconds,
+      load.streams ? fmt::format("roam ~{} ~ ~ {}\n", kRoamVoxels, kRoamSpeed) : "", edits,
+      kEditsPerSecond, testbed.options().seed * 2 + client, kDoneCommand,
       load.bots == 0 ? 2 : kBotsLeaveSeconds);
 }
 
@@ -133,11 +134,11 @@ Result<CaseResult, std::string> run_case(Testbed& testbed, const test::LinkProfi
   if (!server) return failed(server);
   std::unique_ptr<Child> bots;
   if (load.bots != 0) {
-    auto started =
-        testbed.start_client(**link, "runstone-bot",
-                             {"--connect", server->address, "--count", fmt::to_string(load.bots),
-                              "--behaviour", "build", "--rate", fmt::to_string(kBotEditsPerSecond),
-                              "--duration", "3600", "--patience", fmt::to_string(kWaitSeconds)});
+    auto started = testbed.start_client(
+        **link, "runstone-bot",
+        {"--connect", server->address, "--count", fmt::to_string(load.bots), "--behaviour", "build",
+         "--rate", fmt::to_string(kBotEditsPerSecond), "--duration", "3600", "--patience",
+         fmt::to_string(kLatencyWaitSeconds)});
     if (!started) return failed(started);
     bots = *std::move(started);
   }
@@ -154,19 +155,19 @@ Result<CaseResult, std::string> run_case(Testbed& testbed, const test::LinkProfi
     auto client = testbed.start_client(
         **link, "runstone-client",
         {"--connect", server->address, "--name", i == 0 ? "carol" : "dave", "--no-render",
-         "--workers", "1", "--view", fmt::to_string(kViewRadius), "--view-vertical",
-         fmt::to_string(kViewRadiusV), "--script", script, "--report", report});
+         "--workers", "1", "--view", fmt::to_string(kLatencyView), "--view-vertical",
+         fmt::to_string(kLatencyViewVertical), "--script", script, "--report", report});
     if (!client) return failed(client);
     clients.push_back({*std::move(client), report});
   }
   if (bots) {
-    wait_until(testbed.options().edits / kEditsPerSecond + 3 * kWaitSeconds, [&] {
+    wait_until(testbed.options().edits / kEditsPerSecond + 3 * kLatencyWaitSeconds, [&] {
       return std::all_of(clients.begin(), clients.end(), [](const Running& client) {
         return output_has(client.program->log(), kDoneAnswer) || client.program->wait(0);
       });
     });
     bots->terminate();
-    if (const auto ended = testbed.finish(*bots, kWaitSeconds); !ended) return failed(ended);
+    if (const auto ended = testbed.finish(*bots, kLatencyWaitSeconds); !ended) return failed(ended);
   }
   CaseResult out;
   out.profile = profile;
@@ -174,7 +175,8 @@ Result<CaseResult, std::string> run_case(Testbed& testbed, const test::LinkProfi
   out.load = &load;
   const double edit_seconds = testbed.options().edits / kEditsPerSecond;
   for (Running& client : clients) {
-    if (const auto ended = testbed.finish(*client.program, edit_seconds + 3 * kWaitSeconds); !ended)
+    if (const auto ended = testbed.finish(*client.program, edit_seconds + 3 * kLatencyWaitSeconds);
+        !ended)
       return failed(ended);
     const auto report = read_report(client.report);
     if (!report) return failed(report);

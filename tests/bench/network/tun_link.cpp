@@ -40,7 +40,7 @@ constexpr std::size_t kLatesMax = 1'000'000;
 // outside of the model.
 constexpr int kKernelPackets = 20'000;
 
-TimeNs now() { return static_cast<TimeNs>(now_ns()); }
+TimeNs link_now() { return static_cast<TimeNs>(now_ns()); }
 
 std::string failed(const char* what) { return std::string(what) + ": " + std::strerror(errno); }
 
@@ -164,7 +164,8 @@ struct TunLink::Forwarder {
     const ssize_t got = ::read(tuns[from].get(), buffer.data(), buffer.size());
     if (got <= 0) return false;
     const auto bytes = static_cast<std::size_t>(got);
-    const auto passage = link(from, connection_of(buffer.data(), bytes, from)).push(bytes, now());
+    const auto passage =
+        link(from, connection_of(buffer.data(), bytes, from)).push(bytes, link_now());
     if (passage.fate != LinkFate::arrives) return true;
     Packet packet;
     packet.due_ns = passage.due_ns;
@@ -182,7 +183,7 @@ struct TunLink::Forwarder {
 
   void send() {
     while (!under_way.empty()) {
-      const TimeNs late_ns = now() - under_way.front().due_ns;
+      const TimeNs late_ns = link_now() - under_way.front().due_ns;
       if (late_ns < 0) return;
       std::pop_heap(under_way.begin(), under_way.end(), Later{});
       Packet& packet = under_way.back();
@@ -203,7 +204,7 @@ struct TunLink::Forwarder {
       return;
     }
     constexpr TimeNs kSecond = 1'000'000'000;
-    const TimeNs left_ns = std::clamp<TimeNs>(under_way.front().due_ns - now(), 0, kSecond);
+    const TimeNs left_ns = std::clamp<TimeNs>(under_way.front().due_ns - link_now(), 0, kSecond);
     const timespec pause{left_ns / kSecond, left_ns % kSecond};
     ::ppoll(files.data(), files.size(), &pause, nullptr);
   }

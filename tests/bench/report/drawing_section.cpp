@@ -122,12 +122,13 @@ ReportFigure frame_times(const Evidence& evidence, const Frames& frames) {
 
 ReportFigure thesis_frames(const Evidence& evidence, const Frames& frames) {
   const std::array<unsigned, 4> scenarios = {13, 17, 23, 33};
-  struct Pair {
+  struct FramesPair {
     const char *thesis, *ours, *name;
   };
-  constexpr std::array<Pair, 3> kPairs = {{{"Grid", "grid_rdm", "Grid RDM"},
-                                           {"RLE", "rle_rdm", "RLE RDM"},
-                                           {"VoxelPlugin", "culled", "culled (Voxel Plugin)"}}};
+  constexpr std::array<FramesPair, 3> kPairs = {
+      {{"Grid", "grid_rdm", "Grid RDM"},
+       {"RLE", "rle_rdm", "RLE RDM"},
+       {"VoxelPlugin", "culled", "culled (Voxel Plugin)"}}};
   chart::BarChart ours{{}, {}, {"frames a second, here", true}, "frames a second, ours"};
   chart::BarChart theirs{
       {}, {}, {"frames a second, RTX 3050 in Unreal Engine"}, "frames a second, thesis"};
@@ -145,7 +146,7 @@ ReportFigure thesis_frames(const Evidence& evidence, const Frames& frames) {
   }
   ours.series.push_back({"ours: RDM from runs", Role::ours, {}});
   for (const unsigned s : scenarios) ours.series.back().values.push_back(fps(s, "rdm"));
-  for (const Pair& pair : kPairs) {
+  for (const FramesPair& pair : kPairs) {
     ours.series.push_back({fmt::format("rebuilt {}", pair.name), Role::other, {}});
     theirs.series.push_back({fmt::format("thesis: {}", pair.name),
                              theirs.series.empty() ? Role::thesis : Role::other,

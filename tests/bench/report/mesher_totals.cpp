@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/generate/scenarios/scenario_model.hpp"
 
 namespace runstone::bench {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool is_whole(const std::vector<double>& values) {
   return values.size() == kScenarioCount &&
@@ -24,10 +21,10 @@ std::vector<MesherTotal> mesher_totals(const Rows& rows) {
     const Rows of = rows.where("mesher", mesher);
     const auto sum = [&of](const char* column) {
       const auto values = of.numbers(column);
-      return is_whole(values) ? sum_of(values) : kNone;
+      return is_whole(values) ? sum_of(values) : kNoNumber;
     };
     const auto times = of.numbers("median_ns");
-    out.push_back({mesher, is_whole(times) ? geometric_mean_of(times) : kNone, sum("median_ns"),
+    out.push_back({mesher, is_whole(times) ? geometric_mean_of(times) : kNoNumber, sum("median_ns"),
                    sum("triangles"), sum("t_junctions")});
   }
   return out;
@@ -36,8 +33,9 @@ std::vector<MesherTotal> mesher_totals(const Rows& rows) {
 MesherTotal total_of(const std::vector<MesherTotal>& totals, std::string_view mesher) {
   const auto found = std::find_if(totals.begin(), totals.end(),
                                   [&](const MesherTotal& total) { return total.mesher == mesher; });
-  return found == totals.end() ? MesherTotal{std::string(mesher), kNone, kNone, kNone, kNone}
-                               : *found;
+  return found == totals.end()
+             ? MesherTotal{std::string(mesher), kNoNumber, kNoNumber, kNoNumber, kNoNumber}
+             : *found;
 }
 
 }  // namespace runstone::bench

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -13,14 +12,12 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-
 double number_of(const json& row, std::string_view column) {
   const auto found = row.find(column);
-  if (found == row.end()) return kNotMeasured;
+  if (found == row.end()) return kNoNumber;
   if (found->is_number()) return found->get<double>();
   if (found->is_boolean()) return found->get<bool>() ? 1 : 0;
-  return kNotMeasured;
+  return kNoNumber;
 }
 
 std::string text_of(const json& row, std::string_view column) {
@@ -68,7 +65,7 @@ Rows Rows::operator[](std::size_t row) const {
 }
 
 double Rows::number(std::string_view column) const {
-  return rows_.empty() ? kNotMeasured : number_of(*rows_.front(), column);
+  return rows_.empty() ? kNoNumber : number_of(*rows_.front(), column);
 }
 
 std::string Rows::text(std::string_view column) const {
@@ -92,18 +89,18 @@ std::vector<std::string> Rows::kinds(std::string_view column) const {
 
 double sum_of(const std::vector<double>& values) {
   const auto known = measured(values);
-  return known.empty() ? kNotMeasured : std::accumulate(known.begin(), known.end(), 0.0);
+  return known.empty() ? kNoNumber : std::accumulate(known.begin(), known.end(), 0.0);
 }
 
 double mean_of(const std::vector<double>& values) {
   const auto known = measured(values);
-  return known.empty() ? kNotMeasured : sum_of(known) / static_cast<double>(known.size());
+  return known.empty() ? kNoNumber : sum_of(known) / static_cast<double>(known.size());
 }
 
 double geometric_mean_of(const std::vector<double>& values) {
   auto known = measured(values);
   std::erase_if(known, [](double value) { return value <= 0; });
-  return known.empty() ? kNotMeasured : geometric_mean(known);
+  return known.empty() ? kNoNumber : geometric_mean(known);
 }
 
 }  // namespace runstone::bench

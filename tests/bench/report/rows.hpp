@@ -2,12 +2,16 @@
 // values that are no numbers read as "not measured" (NaN), so that a result of another version
 // never breaks the page.
 #pragma once
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace runstone::bench {
+
+/// Stands for a number that was not measured.
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// An object refers to the JSON from which it was made, which must outlive it.
 class Rows {

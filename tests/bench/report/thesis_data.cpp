@@ -2,15 +2,12 @@
 
 #include <charconv>
 #include <fstream>
-#include <limits>
 #include <optional>
 #include <sstream>
 #include <vector>
 
 namespace runstone::bench {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 template <class T>
 std::optional<T> number(const std::string& text) {
@@ -63,12 +60,12 @@ ThesisData ThesisData::read(const std::string& folder) {
 double ThesisData::value(unsigned scenario, std::string_view mesher,
                          std::string_view metric) const {
   const auto found = results_.find(std::tuple(scenario, mesher, metric));
-  return found == results_.end() ? kNone : found->second;
+  return found == results_.end() ? kNoNumber : found->second;
 }
 
 double ThesisData::chunk_size_ms(unsigned scenario, unsigned side, std::string_view mesher) const {
   const auto found = sizes_.find(std::tuple(scenario, side, mesher));
-  return found == sizes_.end() ? kNone : found->second;
+  return found == sizes_.end() ? kNoNumber : found->second;
 }
 
 }  // namespace runstone::bench

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "common/generate/scenarios/scenario_model.hpp"
 #include "tests/bench/report/chart/bar_chart.hpp"
@@ -11,6 +10,7 @@
 #include "tests/bench/report/chart/range_chart.hpp"
 #include "tests/bench/report/chart/stack_chart.hpp"
 #include "tests/bench/report/number_text.hpp"
+#include "tests/bench/report/rows.hpp"
 #include "tests/bench/report/scenario_case.hpp"
 #include "tests/bench/report/thesis_figures.hpp"
 
@@ -20,7 +20,6 @@ namespace {
 using chart::format_value;
 using chart::Role;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Bytes of a flat array of 32³ voxels: the thesis' has 8 bytes a voxel, ours 2.
 constexpr double kThesisGridBytes = 262'144, kGridBytes = 65'536;
 constexpr std::array<const char*, 3> kGroupNames = {"general models", "random voxels", "strips"};
@@ -215,7 +214,7 @@ ReportFigure ThesisFigures::timing(unsigned group) const {
                          double average, double high) {
       chart.names.push_back(fmt::format("{} {}", s, name));
       chart.roles.push_back(role);
-      chart.ranges.push_back({low, middle, high, kNone});
+      chart.ranges.push_back({low, middle, high, kNoNumber});
       out.data.add({std::to_string(s), name, low, middle, average, high});
     };
     add("ours", Role::ours, our_us("min_ns"), our_us("median_ns"), our_us("mean_ns"),

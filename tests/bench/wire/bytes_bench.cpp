@@ -19,7 +19,7 @@ namespace {
 struct Sample {
   double bytes = 0, encode_us = 0, decode_us = 0;
 };
-using Samples = std::map<std::string_view, Sample>;  // by form
+using FormSamples = std::map<std::string_view, Sample>;  // by form
 
 void hold_to(const LitChunk& chunk, const TransferForm& form, std::ostream& progress) {
   const auto light = form.light();
@@ -37,7 +37,7 @@ double us_of(Work&& work) {
 }
 
 /// Measures the forms in alternation, so that noise of the machine affects all of them alike.
-Samples measure(const LitChunk& chunk, unsigned repetitions, std::ostream& progress) {
+FormSamples measure(const LitChunk& chunk, unsigned repetitions, std::ostream& progress) {
   const std::vector<TransferForm> forms = make_transfer_forms(chunk);
   std::vector<std::vector<double>> encode(forms.size()), decode(forms.size());
   for (const TransferForm& form : forms) {
@@ -51,7 +51,7 @@ Samples measure(const LitChunk& chunk, unsigned repetitions, std::ostream& progr
       decode[f].push_back(us_of(forms[f].decode));
     }
   }
-  Samples out;
+  FormSamples out;
   for (std::size_t f = 0; f < forms.size(); ++f) {
     out[forms[f].name] = {static_cast<double>(forms[f].bytes()), median(encode[f]),
                           median(decode[f])};
@@ -60,7 +60,7 @@ Samples measure(const LitChunk& chunk, unsigned repetitions, std::ostream& progr
 }
 
 BytesRow row_of(const std::string& world, std::string_view form, bool mixed,
-                const std::vector<Samples>& chunks) {
+                const std::vector<FormSamples>& chunks) {
   BytesRow row;
   row.world = world;
   row.form = form;
@@ -68,7 +68,7 @@ BytesRow row_of(const std::string& world, std::string_view form, bool mixed,
   row.chunks = chunks.size();
   double luanti = 0, minecraft = 0;
   std::vector<double> ratios;
-  for (const Samples& chunk : chunks) {
+  for (const FormSamples& chunk : chunks) {
     const Sample& sample = chunk.at(form);
     row.bytes += sample.bytes;
     row.encode_us += sample.encode_us;
@@ -89,13 +89,13 @@ BytesRow row_of(const std::string& world, std::string_view form, bool mixed,
 
 void add_rows(const ByteWorld& world, unsigned repetitions, std::vector<BytesRow>& rows,
               std::ostream& progress) {
-  std::vector<Samples> all, mixed;
+  std::vector<FormSamples> all, mixed;
   for (const LitChunk& chunk : world.chunks) {
     all.push_back(measure(chunk, repetitions, progress));
     if (!chunk.runs.is_uniform()) mixed.push_back(all.back());
   }
   for (const bool only_mixed : {false, true}) {
-    const std::vector<Samples>& chunks = only_mixed ? mixed : all;
+    const std::vector<FormSamples>& chunks = only_mixed ? mixed : all;
     if (chunks.empty() || (only_mixed && mixed.size() == all.size())) continue;
     for (const std::string_view form : transfer_form_names()) {
       rows.push_back(row_of(world.name, form, only_mixed, chunks));

@@ -10,7 +10,7 @@ namespace {
 
 double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
-double noise(double x, double y, double z, std::uint32_t seed) {
+double noise_octave(double x, double y, double z, std::uint32_t seed) {
   const std::array<double, 3> low = {std::floor(x), std::floor(y), std::floor(z)};
   const std::array<double, 3> t = {fade(x - low[0]), fade(y - low[1]), fade(z - low[2])};
   const auto at = [&](int i, int j, int k) {
@@ -38,7 +38,7 @@ double lattice_value(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32
 double fractal_noise(double x, double y, double z, std::uint32_t seed, unsigned octaves) {
   double sum = 0, weight = 1, weights = 0;
   for (unsigned o = 0; o < octaves; ++o) {
-    sum += weight * noise(x, y, z, seed + o);
+    sum += weight * noise_octave(x, y, z, seed + o);
     weights += weight;
     weight *= 0.5;
     x *= 2, y *= 2, z *= 2;

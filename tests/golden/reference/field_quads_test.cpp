@@ -19,7 +19,7 @@ namespace {
 
 using namespace reference;
 
-constexpr unsigned kEdge = 32;
+constexpr unsigned kFieldEdge = 32;
 
 struct Counts {
   std::size_t optimal, greedy, binary, naive, rdm, grid_rdm, strips, strips_hidden;
@@ -84,7 +84,7 @@ TEST_CASE("the field over the 37 scenarios makes the quads that the page says",
           "[mesh][scenarios][golden]") {
   Field field;
   for (unsigned number = 1; number <= 37; ++number) {
-    field.add(scenario_scene(*scenario_generator(number, kEdge), {0, 0, 0}, kEdge, true),
+    field.add(scenario_scene(*scenario_generator(number, kFieldEdge), {0, 0, 0}, kFieldEdge, true),
               scenario_visibility());
   }
   INFO(text_of(field.counts()));
@@ -105,7 +105,7 @@ TEST_CASE("the field over seeded worlds makes the quads that the page says", "[m
     ++met;
     Field field;
     for (const bench::Volume& volume :
-         bench::volumes_in(world, {{-32, -32, -32}, {32, 32, 32}}, kEdge)) {
+         bench::volumes_in(world, {{-32, -32, -32}, {32, 32, 32}}, kFieldEdge)) {
       field.add(volume.scene, *world.visibility);
     }
     INFO(world.name << ": " << text_of(field.counts()));

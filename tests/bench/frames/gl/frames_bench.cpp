@@ -27,7 +27,7 @@ namespace runstone::bench {
 namespace {
 
 constexpr const char* kReference = "culled";  // no T-junctions: every face has its own four corners
-constexpr std::uint64_t kSeed = 37;           // of the order in which meshers draw
+constexpr std::uint64_t kOrderSeed = 37;      // of the order in which meshers draw
 /// The time that a mesher may take, in ms for each wanted frame. A slower mesher draws fewer
 /// frames.
 constexpr double kFrameMsMean = 50;
@@ -227,7 +227,7 @@ class FramesBench {
       const unsigned frames = std::max(kFramesMin, static_cast<unsigned>(wanted));
       painter.stride = std::max(1u, options_.frames / frames);
     }
-    SplitMix64 rng(kSeed);
+    SplitMix64 rng(kOrderSeed);
     std::vector<std::size_t> order(painters.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     for (unsigned frame = 0; frame < options_.frames; ++frame) {

@@ -41,7 +41,7 @@ bool is_forbidden(std::uint32_t code) {
 }
 
 /// Returns a width in parts of the font size.
-double width_of(std::uint32_t code) {
+double code_width(std::uint32_t code) {
   constexpr std::string_view kThin = "iljI.,:;'|!";
   constexpr std::string_view kSlim = "frt()[]/-\" ";
   constexpr std::string_view kWide = "mwMW@%+=<>";
@@ -86,7 +86,7 @@ double width_of(std::string_view text, double size) {
   double out = 0;
   while (!text.empty()) {
     const Character character = first_of(text);
-    out += width_of(character.code);
+    out += code_width(character.code);
     text.remove_prefix(character.bytes);
   }
   return out * size;
@@ -99,7 +99,7 @@ std::string shortened(std::string_view text, double size, double width) {
   double used = 0;
   while (kept < text.size()) {
     const Character character = first_of(text.substr(kept));
-    used += width_of(character.code) * size;
+    used += code_width(character.code) * size;
     if (used > room) break;
     kept += character.bytes;
   }

@@ -14,7 +14,7 @@ using namespace runstone::test;
 
 namespace {
 
-volatile std::sig_atomic_t never = 0;
+volatile std::sig_atomic_t never_interrupted = 0;
 
 /// Makes a world that three builders edit, each on a separate site. Returns its digest.
 Digest build_world(const std::string& folder) {
@@ -26,7 +26,7 @@ Digest build_world(const std::string& folder) {
   options.edits = 150;
   options.seconds = 60;
   options.view_radius = options.view_radius_v = 3;
-  const FleetReport report = BehaviourFleet(options).run(never);
+  const FleetReport report = BehaviourFleet(options).run(never_interrupted);
   REQUIRE(report.counts.confirmed == 450);
   const StopReport stopped = server->stop();
   REQUIRE(stopped.is_clean);
@@ -46,7 +46,7 @@ PlayReport play(std::uint16_t port, const RecordedLog& log, double speed, double
   options.play = "log";
   options.speed = speed;
   options.load_seconds = patience;
-  return PlayFleet(options, log).run(never);
+  return PlayFleet(options, log).run(never_interrupted);
 }
 
 }  // namespace

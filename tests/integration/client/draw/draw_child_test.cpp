@@ -15,10 +15,12 @@
 
 #include "tests/integration/client/draw/png_file.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/support/text_contains.hpp"
 
 namespace runstone {
 namespace {
 
+using test::contains;
 using test::is_green;
 using test::is_red;
 using test::is_sky;
@@ -70,10 +72,6 @@ std::string start_error(const DrawChildOptions& options) {
   REQUIRE_FALSE(child.has_value());
   CHECK(child.error().find('\n') == std::string::npos);
   return child.error();
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 }  // namespace

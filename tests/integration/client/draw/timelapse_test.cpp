@@ -17,6 +17,7 @@
 #include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/support/text_contains.hpp"
 
 namespace runstone {
 namespace {
@@ -94,10 +95,6 @@ std::size_t red_pixels(const PngFile& picture) {
     red += is_red({picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]}) ? 1U : 0U;
   }
   return red;
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 /// Sets PATH for one test.

@@ -14,7 +14,7 @@
 namespace runstone::test {
 namespace {
 
-constexpr ClientSequence kEdits = 4'000;
+constexpr ClientSequence kCrashEdits = 4'000;
 constexpr ClientInstance kInstance = 33;
 constexpr int kStartMs = 60'000;
 
@@ -86,7 +86,7 @@ TEST_CASE("after kill -9 durable edits are kept, and the others, offered again, 
     ServerProcess process(folder / "world");
     RawClient client(process.port());
     REQUIRE(client.join(1, kInstance).has_value());
-    for (ClientSequence seq = 1; seq <= kEdits; ++seq) client.send(edit(seq));
+    for (ClientSequence seq = 1; seq <= kCrashEdits; ++seq) client.send(edit(seq));
     while (durable < 100) {
       const auto message = client.next_of<Durable>();
       REQUIRE(message.has_value());
@@ -104,11 +104,11 @@ TEST_CASE("after kill -9 durable edits are kept, and the others, offered again, 
 
   // Offers again every edit that may not be durable, and some that are.
   std::thread sender([&] {
-    for (ClientSequence seq = durable - 50; seq <= kEdits; ++seq) client.send(edit(seq));
+    for (ClientSequence seq = durable - 50; seq <= kCrashEdits; ++seq) client.send(edit(seq));
   });
   ClientSequence answered = durable - 51;
   Sequence last = client.welcome.durable;
-  while (answered < kEdits) {
+  while (answered < kCrashEdits) {
     const auto message = client.next();
     REQUIRE(message.has_value());
     if (const auto* reject = std::get_if<Reject>(&*message)) {
@@ -124,13 +124,13 @@ TEST_CASE("after kill -9 durable edits are kept, and the others, offered again, 
     }
   }
   sender.join();
-  CHECK(last == kEdits);
+  CHECK(last == kCrashEdits);
 
   client.send(View{1, {0, 0, 0}, 0, 0});
   const auto snapshot = client.next_of<ChunkSnapshot>();
   REQUIRE(snapshot.has_value());
-  CHECK(snapshot->chunk.version.seq == kEdits);
-  for (ClientSequence seq = 1; seq <= kEdits; ++seq) {
+  CHECK(snapshot->chunk.version.seq == kCrashEdits);
+  for (ClientSequence seq = 1; seq <= kCrashEdits; ++seq) {
     const VoxelPos at = place_of(seq);
     REQUIRE(material_at(snapshot->chunk.voxels, local_of(at, 16)) == material_of(seq));
   }

@@ -12,6 +12,7 @@
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/support/compact_by_hand.hpp"
 #include "tests/support/raw_sql.hpp"
+#include "tests/support/text_contains.hpp"
 
 namespace runstone::test {
 namespace {
@@ -21,10 +22,6 @@ std::string start_error(const ServerConfig& config, const WorldCreation& creatio
   REQUIRE_FALSE(server.has_value());
   CHECK(server.error().find('\n') == std::string::npos);
   return server.error();
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 /// Changes at least one row of a closed world.

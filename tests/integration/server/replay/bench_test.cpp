@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/store/world_folder.hpp"
+#include "tests/integration/server/replay/read_json.hpp"
 #include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -20,11 +21,6 @@ void make_world(const std::string& folder, std::size_t edits) {
   REQUIRE(store->raise_epoch().has_value());
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
   REQUIRE(store->append(players, sample_records(rng, 1, 1, edits)).has_value());
-}
-
-nlohmann::json read_json(const std::string& file) {
-  std::ifstream in(file);
-  return nlohmann::json::parse(in);
 }
 
 }  // namespace

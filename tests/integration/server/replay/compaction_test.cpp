@@ -29,7 +29,8 @@ constexpr TimeUs kDay = 86'400'000'000;
 constexpr TimeUs kCutTime =
     1'700'000'000'000'000 + TimeUs{kCut} * 1000;  // of edit kCut, as sample_record() stamps it
 
-std::unique_ptr<Store> opened(const std::string& folder, const SqliteOptions& options = {}) {
+std::unique_ptr<Store> compacted_store(const std::string& folder,
+                                       const SqliteOptions& options = {}) {
   auto store = open_sqlite_world(folder, StoreAccess::read_write, options);
   if (!store) FAIL(store.error().message());
   return *std::move(store);
@@ -65,7 +66,7 @@ void make_keyframe(Store& store, Sequence at) {
 
 /// A closed world of kEdits edits with keyframes at 70 and 130, snapshots of some chunks and the
 /// checkpoint at 60.
-void make_world(const std::string& folder, const SqliteOptions& options = {}) {
+void make_compaction_world(const std::string& folder, const SqliteOptions& options = {}) {
   SplitMix64 rng(1);
   WorldMeta meta = sample_meta();
   meta.generator.name = "flat";
@@ -130,11 +131,11 @@ Outcome compact(const std::string& folder, TimeUs now_us, std::uint64_t keep_day
 
 TEST_CASE("a compacted world is unchanged from its new beginning on", "[store][compact]") {
   const TempFolder folder;
-  make_world(folder.path());
+  make_compaction_world(folder.path());
   std::map<Sequence, ChunkMap> before;
   std::vector<std::tuple<AuthorId, ClientInstance, ClientSequence, TimeUs>> marks;
   {
-    auto store = opened(folder.path());
+    auto store = compacted_store(folder.path());
     for (const Sequence at : {kCut, kCut + 1, Sequence{130}, Sequence{145}, kEdits})
       before[at] = moment_of(*store, at);
     marks = marks_of(*store);
@@ -151,7 +152,7 @@ TEST_CASE("a compacted world is unchanged from its new beginning on", "[store][c
   REQUIRE(done.done);
   CHECK(done.said.find("compacted   edits 1 to 100 into the base, 60 edits stay\n") == 0);
   {
-    auto store = opened(folder.path());
+    auto store = compacted_store(folder.path());
     CHECK(store->log_range()->first == kCut + 1);
     CHECK(*store->checkpoint() == kCut);
     check_whole(*store, before[kEdits]);
@@ -181,7 +182,7 @@ TEST_CASE("a compacted world is unchanged from its new beginning on", "[store][c
   CHECK(compact(folder.path(), kCutTime + 3 * kDay, 3).said ==
         "nothing to compact: no edit of the log is older than 3 days\n");
   REQUIRE(compact(folder.path(), kCutTime + kDay, 0).done);
-  auto store = opened(folder.path());
+  auto store = compacted_store(folder.path());
   CHECK(store->log_range()->first == kEdits + 4);
   CHECK(store->check().has_value());
   CHECK(store->keyframes()->empty());
@@ -189,14 +190,14 @@ TEST_CASE("a compacted world is unchanged from its new beginning on", "[store][c
 
 TEST_CASE("a compaction leaves a world without old edits unchanged", "[store][compact]") {
   const TempFolder folder;
-  make_world(folder.path());
+  make_compaction_world(folder.path());
   const std::string nothing = "nothing to compact: no edit of the log is older than 30 days\n";
   CHECK(compact(folder.path(), kCutTime + kDay, 30).said == nothing);
-  CHECK(opened(folder.path())->log_range()->first == 1);
+  CHECK(compacted_store(folder.path())->log_range()->first == 1);
   const TempFolder fresh;
   REQUIRE(create_world(fresh.path(), sample_meta()).has_value());
   CHECK(compact(fresh.path(), kCutTime, 30).said == nothing);
-  const auto held = opened(folder.path());
+  const auto held = compacted_store(folder.path());
   CHECK(compact(folder.path(), kCutTime, 0).said.find("another program is writing this world") !=
         std::string::npos);
   CHECK(held->compact(99).error().what == "is not there");  // no keyframe
@@ -212,13 +213,13 @@ TEST_CASE("a compaction that a power failure interrupts loses nothing and can be
     const TempFolder folder;
     PowerLossVfs vfs;
     const SqliteOptions options{vfs.name(), true};
-    make_world(folder.path(), options);
-    const ChunkMap at_end = moment_of(*opened(folder.path(), options), kEdits);
+    make_compaction_world(folder.path(), options);
+    const ChunkMap at_end = moment_of(*compacted_store(folder.path(), options), kEdits);
     vfs.cut_after(cut);
     const auto outcome = compact(folder.path(), kCutTime, 0, options);
     vfs.power_loss(rng);
     {
-      auto store = opened(folder.path(), options);
+      auto store = compacted_store(folder.path(), options);
       const Sequence first = store->log_range()->first;
       CHECK((first == 1 || first == kCut + 1));
       if (outcome.done) CHECK(first == kCut + 1);
@@ -226,7 +227,7 @@ TEST_CASE("a compaction that a power failure interrupts loses nothing and can be
       check_whole(*store, at_end);
     }
     compact(folder.path(), kCutTime, 0, options);
-    auto store = opened(folder.path(), options);
+    auto store = compacted_store(folder.path(), options);
     CHECK(store->log_range()->first == kCut + 1);
     check_whole(*store, at_end);
   }
@@ -242,13 +243,13 @@ TEST_CASE("a compaction that fills the disk reports it and loses nothing",
     const TempFolder folder;
     PowerLossVfs vfs;
     const SqliteOptions options{vfs.name(), true};
-    make_world(folder.path(), options);
-    const ChunkMap at_end = moment_of(*opened(folder.path(), options), kEdits);
+    make_compaction_world(folder.path(), options);
+    const ChunkMap at_end = moment_of(*compacted_store(folder.path(), options), kEdits);
     vfs.full_after(room);
     const auto outcome = compact(folder.path(), kCutTime, 0, options);
     vfs.make_room();
     INFO(outcome.said);
-    auto store = opened(folder.path(), options);
+    auto store = compacted_store(folder.path(), options);
     const Sequence first = store->log_range()->first;
     check_whole(*store, at_end);
     if (outcome.done) continue;
@@ -264,7 +265,7 @@ TEST_CASE("a compaction that fills the disk reports it and loses nothing",
     }
     store.reset();
     CHECK(compact(folder.path(), kCutTime, 0, options).done);
-    check_whole(*opened(folder.path(), options), at_end);
+    check_whole(*compacted_store(folder.path(), options), at_end);
   }
   CHECK(full > 3);
   CHECK(shrunk_too_late > 0);

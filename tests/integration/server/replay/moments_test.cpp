@@ -8,21 +8,23 @@
 
 #include "server/history/world_at.hpp"
 #include "server/replay/world_copy.hpp"
+#include "tests/integration/server/replay/read_json.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/support/text_contains.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
 
 namespace {
 
-constexpr Sequence kEdits = 120;
+constexpr Sequence kMomentEdits = 120;
 constexpr ChunkKey kImported{0, {7, 7, 7}};  // no edit touches it
 
 /// A closed world of edits a millisecond apart, with one imported chunk.
-void make_world(const std::string& folder) {
+void make_moment_world(const std::string& folder) {
   SplitMix64 rng(1);
   WorldMeta meta = sample_meta();
   meta.generator.name = "flat";
@@ -33,23 +35,14 @@ void make_world(const std::string& folder) {
               .has_value());
   REQUIRE(store->raise_epoch().has_value());
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
-  REQUIRE(store->append(players, sample_records(rng, 1, 1, kEdits)).has_value());
-}
-
-nlohmann::json read_json(const std::string& file) {
-  std::ifstream in(file);
-  return nlohmann::json::parse(in);
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
+  REQUIRE(store->append(players, sample_records(rng, 1, 1, kMomentEdits)).has_value());
 }
 
 }  // namespace
 
 TEST_CASE("a replay stops at a moment in any spelling", "[store][replay]") {
   const TempFolder folder;
-  make_world(folder.path());
+  make_moment_world(folder.path());
   // Edit n is stamped 2023-11-14T22:13:20Z + n ms.
   const std::vector<std::pair<std::string, std::string>> moments = {
       {"40", "edits       40, up to sequence 40\n"},
@@ -80,7 +73,7 @@ TEST_CASE("a replay stops at a moment in any spelling", "[store][replay]") {
 TEST_CASE("copy writes a moment as a new world", "[store][replay]") {
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy";
-  make_world(world);
+  make_moment_world(world);
   const auto outcome =
       run_replay({"copy", copy + "/", "--world", world, "--at", "70", "--json", folder / "w.json"});
   CHECK(outcome.err == "");
@@ -128,7 +121,7 @@ TEST_CASE("copy writes a moment as a new world", "[store][replay]") {
 
 TEST_CASE("a difference is reported in a table and as JSON", "[store][replay]") {
   const TempFolder folder;
-  make_world(folder.path());
+  make_moment_world(folder.path());
   const auto outcome = run_replay({"diff", "--world", folder.path(), "--from", "-100ms", "--to",
                                    "120", "--json", folder / "d.json"});
   CHECK(outcome.code == 2);  // milliseconds are no unit
@@ -159,7 +152,7 @@ TEST_CASE("a difference is reported in a table and as JSON", "[store][replay]") 
 
 TEST_CASE("verify compares every chunk of every keyframe", "[store][replay]") {
   const TempFolder folder;
-  make_world(folder.path());
+  make_moment_world(folder.path());
   // The edits are too scattered for a keyframe to be due. Two are made by hand, at 50 and 100.
   {
     auto store = *open_world(folder.path(), StoreAccess::read_write);

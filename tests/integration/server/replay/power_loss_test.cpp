@@ -113,15 +113,15 @@ void write_until_cut(const std::string& folder, const SqliteOptions& options, Po
   }
 }
 
-struct Outcome {
+struct PowerLossOutcome {
   int worlds_broken = 0;
   int cuts = 0;
   std::uint64_t durable = 0;
   std::string first;  // the first broken promise, with its seed
 };
 
-Outcome run(bool sync, std::uint64_t seeds, int lives) {
-  Outcome outcome;
+PowerLossOutcome run(bool sync, std::uint64_t seeds, int lives) {
+  PowerLossOutcome outcome;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SplitMix64 rng(seed);
     const TempFolder folder;  // holds the lock file only
@@ -148,7 +148,7 @@ Outcome run(bool sync, std::uint64_t seeds, int lives) {
 
 TEST_CASE("every edit that append returned for survives power loss, and batches are atomic",
           "[store][power-loss]") {
-  const Outcome outcome = run(true, 30, 6);
+  const PowerLossOutcome outcome = run(true, 30, 6);
   INFO(outcome.first);
   CHECK(outcome.worlds_broken == 0);
   CHECK(outcome.cuts > 50);  // the power really failed in the middle of work
@@ -156,7 +156,7 @@ TEST_CASE("every edit that append returned for survives power loss, and batches 
 }
 
 TEST_CASE("the power-loss test notices a store that does not sync", "[store][power-loss]") {
-  const Outcome outcome = run(false, 20, 6);
+  const PowerLossOutcome outcome = run(false, 20, 6);
   CHECK(outcome.worlds_broken > 10);
   CHECK_FALSE(outcome.first.empty());
 }

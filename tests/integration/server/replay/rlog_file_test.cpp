@@ -37,7 +37,7 @@ std::unique_ptr<Store> opened(const std::string& folder,
 }
 
 /// Makes a world of generated terrain with two epochs of `count` edits each.
-void make_world(const std::string& folder, std::size_t count) {
+void make_logged_world(const std::string& folder, std::size_t count) {
   WorldMeta meta = sample_meta();
   meta.generator = {"terrain", 1, 77, ""};
   auto store = *create_world(folder, meta);
@@ -83,7 +83,7 @@ void export_small_blocks(const std::string& folder, const std::string& file) {
 TEST_CASE("a world made from its exported log is the same world", "[store][rlog]") {
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy", file = folder / "log.rlog";
-  make_world(world, 60);
+  make_logged_world(world, 60);
   const ReplayOutcome written = run_replay({"export", file, "--world", world});
   INFO(written.out << written.err);
   REQUIRE(written.code == 0);
@@ -123,7 +123,7 @@ TEST_CASE("a log exported up to a sequence gives the world of that moment, and t
           "[store][rlog]") {
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy", file = folder / "log.rlog";
-  make_world(world, 40);
+  make_logged_world(world, 40);
   REQUIRE(run_replay({"export", file, "--world", world, "--at", "30"}).code == 0);
   REQUIRE(run_replay({"import", file, "--world", copy}).code == 0);
   CHECK(log_of(copy).size() == 30);
@@ -139,7 +139,7 @@ TEST_CASE(
     "[store][rlog]") {
   const TempFolder folder;
   const std::string world = folder / "world", file = folder / "log.rlog";
-  make_world(world, 40);
+  make_logged_world(world, 40);
   export_small_blocks(world, file);
   const Bytes sound = bytes_of(file);
   const auto begins = blocks_of(sound);  // world, players, five times 16 edits, end
@@ -188,7 +188,7 @@ TEST_CASE(
 TEST_CASE("a log is not imported into another world or another history of it", "[store][rlog]") {
   const TempFolder folder;
   const std::string world = folder / "world", file = folder / "log.rlog";
-  make_world(world, 20);
+  make_logged_world(world, 20);
   export_small_blocks(world, file);
   const auto refused = [&](const std::string& into) {
     const auto before = log_of(into);
@@ -254,7 +254,7 @@ TEST_CASE("the log of a world with base chunks can be imported into a copy of it
 
 TEST_CASE("files that cannot be read or written are named", "[store][rlog]") {
   const TempFolder folder;
-  make_world(folder / "world", 3);
+  make_logged_world(folder / "world", 3);
   CHECK(run_replay({"import", folder / "none.rlog", "--world", folder / "new"}).code == 2);
   CHECK(run_replay({"export", folder / "no/such/log.rlog", "--world", folder / "world"}).code == 2);
   write_bytes(folder / "text", {'n', 'o'});

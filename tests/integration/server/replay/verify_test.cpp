@@ -20,7 +20,7 @@ using namespace runstone::test;
 
 namespace {
 
-constexpr int kEdge = kSampleEdge;
+constexpr int kVerifiedEdge = kSampleEdge;
 
 }  // namespace
 
@@ -90,7 +90,7 @@ TEST_CASE("verify answers with an exit code, a table and a list", "[store][repla
 
 namespace {
 
-std::string bytes_of(const std::string& file) {
+std::string file_text(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -109,9 +109,9 @@ void make_small_world(const std::string& folder,
     EditRecord record = sample_record(rng, 1, records.size() + 1);
     record.cause = Cause::player;
     record.subject = 0;
-    record.edit = {SetVoxel{{cx * kEdge + 1, 2, 3}}, {}, 4};
+    record.edit = {SetVoxel{{cx * kVerifiedEdge + 1, 2, 3}}, {}, 4};
     Chunk chunk;
-    chunk.voxels = uniform_chunk(Extent::cube(kEdge), kEmpty);
+    chunk.voxels = uniform_chunk(Extent::cube(kVerifiedEdge), kEmpty);
     chunk.version = record.version;
     fill(chunk.voxels, index_of({1, 2, 3}, chunk.voxels.extent, chunk.voxels.order), 1, 4);
     const ChunkKey key{0, {cx, 0, 0}};
@@ -166,7 +166,7 @@ TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is ov
   REQUIRE(raw_sql(file,
                   "UPDATE edit_log SET descriptor = zeroblob(9) "
                   "WHERE seq = 2; PRAGMA wal_checkpoint(TRUNCATE)") == "0");
-  const std::string damaged = bytes_of(file), report = bytes_of(json);
+  const std::string damaged = file_text(file), report = file_text(json);
   REQUIRE(damaged.size() > 4096);
   // The full check finds the row, and so does the replay itself.
   for (const std::vector<std::string>& how :
@@ -180,8 +180,8 @@ TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is ov
   }
   // The log before the damaged row is sound.
   CHECK(run_replay({"verify", "--quick", "--world", world, "--at", "1"}).code == 0);
-  CHECK(bytes_of(file) == damaged);
-  CHECK(bytes_of(json) == report);
+  CHECK(file_text(file) == damaged);
+  CHECK(file_text(json) == report);
 }
 
 TEST_CASE("verify cannot read a world whose generator this program lacks", "[store][replay]") {

@@ -2,16 +2,12 @@
 // order.
 #include <catch2/catch.hpp>
 
+#include "tests/support/equal_quads.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {
-
-void require_equal(const QuadLayers& a, const QuadLayers& b) {
-  REQUIRE(a.quads == b.quads);
-  REQUIRE(a.first == b.first);
-}
 
 /// Changes one voxel or a stretch of the flattened chunk.
 DirtyLayers change(SplitMix64& rng, RunChunk& chunk) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "tests/support/equal_quads.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/random_chunk.hpp"
 
@@ -19,11 +20,6 @@ struct Trial {
     mesh_rdm(scene.chunk, scene.pointers(), *visibility, scratch, out);
   }
 };
-
-void require_equal(const QuadLayers& a, const QuadLayers& b) {
-  REQUIRE(a.quads == b.quads);
-  REQUIRE(a.first == b.first);
-}
 
 TEST_CASE("every instruction set gives the quads of the plain path", "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 7);

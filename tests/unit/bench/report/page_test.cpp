@@ -10,9 +10,12 @@
 #include "tests/bench/report/finding.hpp"
 #include "tests/bench/report/step.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/support/text_contains.hpp"
 
 namespace runstone::bench {
 namespace {
+
+using test::contains;
 
 ReportOptions options_of(const std::string& folder) {
   ReportOptions out;
@@ -24,10 +27,6 @@ ReportOptions options_of(const std::string& folder) {
 std::string text_of(const std::string& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 Finding edits_finding() {
@@ -48,9 +47,9 @@ TEST_CASE("a page without findings says so in every figure and draws none") {
   CHECK(made->figures > 20);
   CHECK(made->missing == made->figures);
   const std::string page = text_of(made->file);
-  CHECK(holds(page, "Nothing was measured yet."));
-  CHECK(holds(page, "Not measured: edits."));
-  CHECK_FALSE(holds(page, "<svg"));
+  CHECK(contains(page, "Nothing was measured yet."));
+  CHECK(contains(page, "Not measured: edits."));
+  CHECK_FALSE(contains(page, "<svg"));
   CHECK(std::filesystem::is_empty(folder / "out/csv"));
 }
 
@@ -61,16 +60,16 @@ TEST_CASE("a figure shows its measurements and its data, and links to nothing on
   REQUIRE(made.has_value());
   CHECK(made->missing == made->figures - 1);
   const std::string page = text_of(made->file);
-  CHECK(holds(page, "by hand take 250 µs as one stack and 1,000 µs one by one"));
-  CHECK(holds(page, "<svg"));
-  CHECK(holds(page, "bytes failed in this run: disk &lt;full&gt;."));
-  CHECK_FALSE(holds(page, "nan"));
+  CHECK(contains(page, "by hand take 250 µs as one stack and 1,000 µs one by one"));
+  CHECK(contains(page, "<svg"));
+  CHECK(contains(page, "bytes failed in this run: disk &lt;full&gt;."));
+  CHECK_FALSE(contains(page, "nan"));
   for (const char* outside : {"src=\"http", "href=\"http", "@import", "url(http", "<script"}) {
-    CHECK_FALSE(holds(page, outside));
+    CHECK_FALSE(contains(page, outside));
   }
   const std::string csv = text_of(folder / "out/csv/stacks.csv");
-  CHECK(holds(csv, "case,edits,median us,p90 us\r\n"));
-  CHECK(holds(csv, "\"by hand, as a stack\",1000,250,\r\n"));
+  CHECK(contains(csv, "case,edits,median us,p90 us\r\n"));
+  CHECK(contains(csv, "\"by hand, as a stack\",1000,250,\r\n"));
 }
 
 TEST_CASE("steps without measurements give no broken numbers") {
@@ -86,7 +85,7 @@ TEST_CASE("steps without measurements give no broken numbers") {
   REQUIRE(made.has_value());
   CHECK(made->missing == 0);
   const std::string page = text_of(made->file);
-  for (const char* broken : {"nan", "NaN", "inf\"", "-inf"}) CHECK_FALSE(holds(page, broken));
+  for (const char* broken : {"nan", "NaN", "inf\"", "-inf"}) CHECK_FALSE(contains(page, broken));
 }
 
 TEST_CASE("a result of another form counts as not measured") {
@@ -109,8 +108,8 @@ TEST_CASE("a result of another form counts as not measured") {
     const auto made = write_page(options, {});
     REQUIRE(made.has_value());
     const std::string page = text_of(made->file);
-    CHECK(holds(page, "The meshers were not measured yet."));
-    CHECK_FALSE(holds(page, "nan"));
+    CHECK(contains(page, "The meshers were not measured yet."));
+    CHECK_FALSE(contains(page, "nan"));
   }
 }
 
@@ -142,11 +141,11 @@ TEST_CASE(
   const auto made = write_page(options_of(folder / "out"), {});
   REQUIRE(made.has_value());
   const std::string page = text_of(made->file);
-  CHECK(holds(
+  CHECK(contains(
       page,
       "A frame takes 3.63 ms (geometric mean of 3 worlds) with our mesh, 8 with culled faces"));
-  CHECK(holds(page, "Too large to be drawn in most worlds, so not in the means: simple."));
-  CHECK(holds(page, "Drawn by llvmpipe, 640 by 360 pixels."));
+  CHECK(contains(page, "Too large to be drawn in most worlds, so not in the means: simple."));
+  CHECK(contains(page, "Drawn by llvmpipe, 640 by 360 pixels."));
 }
 
 TEST_CASE("results of another commit are named at their figures") {
@@ -160,7 +159,7 @@ TEST_CASE("results of another commit are named at their figures") {
   }
   const auto made = write_page(options_of(folder / "out"), {});
   REQUIRE(made.has_value());
-  CHECK(holds(text_of(made->file), "edits was measured on something else than the rest"));
+  CHECK(contains(text_of(made->file), "edits was measured on something else than the rest"));
 }
 
 TEST_CASE("the error of a page that cannot be written names the file") {
@@ -168,7 +167,7 @@ TEST_CASE("the error of a page that cannot be written names the file") {
   std::ofstream(folder / "out") << "a file where the folder should be";
   const auto made = write_page(options_of(folder / "out"), {});
   REQUIRE_FALSE(made.has_value());
-  CHECK(holds(made.error(), folder / "out"));
+  CHECK(contains(made.error(), folder / "out"));
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace {
 TimeUs clock_us = 0;
 TimeUs read_clock() { return clock_us; }
 
-constexpr ChunkCoord kHere{0, 0, 0};
-constexpr std::uint16_t kEdge = 16;
+constexpr ChunkCoord kSessionChunk{0, 0, 0};
+constexpr std::uint16_t kSessionEdge = 16;
 constexpr AuthorId kAuthor = 7;
 
 /// A server played by the test, with one headless session.
@@ -23,10 +23,10 @@ struct Bench {
     config.instance = 11;
     session.emplace(config, fleet, read_clock);
     greet(1, 0);
-    session->set_view({1, kHere, 0, 0});
+    session->set_view({1, kSessionChunk, 0, 0});
     ChunkSnapshot snapshot;
-    snapshot.key = {0, kHere};
-    snapshot.chunk.voxels = uniform_chunk(Extent::cube(kEdge), 3);
+    snapshot.key = {0, kSessionChunk};
+    snapshot.chunk.voxels = uniform_chunk(Extent::cube(kSessionEdge), 3);
     snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
     give(test::chunks_of(snapshot));
     CHECK(session->loaded());
@@ -38,7 +38,7 @@ struct Bench {
     const auto hello = std::get<Hello>(session->take_outgoing().at(0));
     Welcome welcome;
     welcome.epoch = epoch;
-    welcome.chunk_edge = kEdge;
+    welcome.chunk_edge = kSessionEdge;
     welcome.world_id.fill(3);
     welcome.materials = default_material_table();
     welcome.server_key = keys.public_key;
@@ -56,7 +56,7 @@ struct Bench {
   /// Passes the message as bytes, like a link.
   Result<bool> give_bytes(const Message& message) {
     const EncodedMessage encoded = encode_message(message);
-    return session->receive_bytes(encoded.kind, *encoded.bytes, kEdge, clock_us);
+    return session->receive_bytes(encoded.kind, *encoded.bytes, kSessionEdge, clock_us);
   }
   /// Returns true if the session took the bytes. Fails if they are malformed.
   bool takes(const Message& message) {
@@ -101,7 +101,7 @@ TEST_CASE("a headless session verifies commits and times each edit", "[bots][hea
       {Bench::edit(0, {2, 99, 5}), Bench::edit(3, bench.own(mine)), Bench::edit(4, {2, 98, 1})}};
   REQUIRE(bench.takes(commit));
   CHECK(bench.violations().total() == 0);
-  CHECK(bench.session->versions().version(kHere) == 5);
+  CHECK(bench.session->versions().version(kSessionChunk) == 5);
   CHECK(bench.session->counts().commits == 1);
   CHECK(bench.session->counts().edits == 3);
   CHECK(bench.session->local_edits().counters().confirmed == 1);
@@ -132,7 +132,7 @@ TEST_CASE("hostile commits end the connection", "[bots][headless]") {
     const EncodedMessage encoded = encode_message(Commit{1, 1, {Bench::edit(0)}});
     Bytes bytes = *encoded.bytes;
     bytes.resize(bytes.size() / 2);
-    CHECK_FALSE(bench.session->receive_bytes(encoded.kind, bytes, kEdge, 0).has_value());
+    CHECK_FALSE(bench.session->receive_bytes(encoded.kind, bytes, kSessionEdge, 0).has_value());
   }
   SECTION("with a list of previous sequences that does not fit") {
     OrderedEdit edit = Bench::edit(0);
@@ -225,19 +225,19 @@ TEST_CASE("a headless session offers edits again that the server has lost", "[bo
 
 TEST_CASE("chunks of one material become ground", "[bots][headless]") {
   Bench bench;
-  bench.session->set_view({1, kHere, 0, 1});
+  bench.session->set_view({1, kSessionChunk, 0, 1});
   CHECK_FALSE(bench.session->loaded());
   bench.give(UniformChunks{2, {{{0, {0, -1, 0}}, 3, {}}, {{0, {0, 1, 0}}, kEmpty, {}}}});
   CHECK(bench.session->loaded());
   CHECK(bench.fleet.ground.chunks() == 3);
-  CHECK(bench.fleet.ground.surface(1, 1) == kEdge - 1);
+  CHECK(bench.fleet.ground.surface(1, 1) == kSessionEdge - 1);
 }
 
 TEST_CASE("a headless session checks that its view is complete", "[bots][headless]") {
   Bench bench;
   bench.give(ViewState{0, 1, ViewPhase::complete, false, 0, 0, ""});
   CHECK(bench.violations().total() == 0);
-  bench.session->set_view({1, kHere, 0, 1});
+  bench.session->set_view({1, kSessionChunk, 0, 1});
   bench.give(ViewState{0, 2, ViewPhase::complete, false, 0, 0, ""});
   CHECK(bench.violations().all().contains("incomplete view"));
   CHECK_FALSE(bench.session->wants_close());

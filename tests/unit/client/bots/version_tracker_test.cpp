@@ -9,7 +9,7 @@ using runstone::test::chunks_of;
 
 namespace {
 
-constexpr ChunkCoord kHere{0, 0, 0};
+constexpr ChunkCoord kTracked{0, 0, 0};
 
 ChunkSnapshot snapshot_at(ChunkCoord at, Sequence seq, Epoch epoch = 1) {
   ChunkSnapshot snapshot;
@@ -24,8 +24,8 @@ ChunkSnapshot snapshot_at(ChunkCoord at, Sequence seq, Epoch epoch = 1) {
 VersionTracker book_at(Sequence seq) {
   VersionTracker tracker;
   tracker.open(1);
-  tracker.set_view({1, kHere, 0, 0});
-  tracker.receive(chunks_of(snapshot_at(kHere, seq)), 0);
+  tracker.set_view({1, kTracked, 0, 0});
+  tracker.receive(chunks_of(snapshot_at(kTracked, seq)), 0);
   return tracker;
 }
 
@@ -34,9 +34,9 @@ VersionTracker book_at(Sequence seq) {
 TEST_CASE("versions follow edits that continue them", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
   CHECK(tracker.known() == 1);
-  tracker.follow(kHere, 4, 7, 10);
-  tracker.follow(kHere, 7, 8, 20);
-  CHECK(tracker.version(kHere) == 8);
+  tracker.follow(kTracked, 4, 7, 10);
+  tracker.follow(kTracked, 7, 8, 20);
+  CHECK(tracker.version(kTracked) == 8);
   CHECK(tracker.counts().followed == 2);
   CHECK(tracker.behind() == 0);
   tracker.tick(kResendUsMax * 10);
@@ -47,16 +47,16 @@ TEST_CASE("an edit that overtakes its snapshot is held back, and one in the snap
           "[bots][headless]") {
   VersionTracker tracker;
   tracker.open(1);
-  tracker.set_view({1, kHere, 0, 0});
-  tracker.follow(kHere, 2, 3, 10);
-  tracker.follow(kHere, 3, 5, 10);
-  tracker.follow(kHere, 5, 6, 10);
+  tracker.set_view({1, kTracked, 0, 0});
+  tracker.follow(kTracked, 2, 3, 10);
+  tracker.follow(kTracked, 3, 5, 10);
+  tracker.follow(kTracked, 5, 6, 10);
   CHECK(tracker.known() == 0);
-  tracker.receive(chunks_of(snapshot_at(kHere, 3)), 20);
-  CHECK(tracker.version(kHere) == 6);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 3)), 20);
+  CHECK(tracker.version(kTracked) == 6);
   CHECK(tracker.counts().contained == 1);
   CHECK(tracker.counts().followed == 2);
-  tracker.follow(kHere, 3, 5, 30);
+  tracker.follow(kTracked, 3, 5, 30);
   CHECK(tracker.counts().contained == 2);
   CHECK(tracker.behind() == 0);
 }
@@ -65,12 +65,12 @@ TEST_CASE("a gap is a violation unless the chunk is sent again in time", "[bots]
   for (const bool resends : {true, false}) {
     CAPTURE(resends);
     VersionTracker tracker = book_at(4);
-    tracker.follow(kHere, 5, 6, 100);
-    CHECK(tracker.version(kHere) == 4);
+    tracker.follow(kTracked, 5, 6, 100);
+    CHECK(tracker.version(kTracked) == 4);
     CHECK(tracker.behind() == 1);
     if (resends) {
-      tracker.receive(chunks_of(snapshot_at(kHere, 6)), 1'100);
-      CHECK(tracker.version(kHere) == 6);
+      tracker.receive(chunks_of(snapshot_at(kTracked, 6)), 1'100);
+      CHECK(tracker.version(kTracked) == 6);
       CHECK(tracker.counts().resent == 1);
       CHECK(tracker.counts().behind_us.max() == 1'000);
     }
@@ -85,23 +85,23 @@ TEST_CASE("a gap is a violation unless the chunk is sent again in time", "[bots]
 
 TEST_CASE("a snapshot that does not close the gap leaves the chunk behind", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
-  tracker.follow(kHere, 6, 7, 100);
-  tracker.receive(chunks_of(snapshot_at(kHere, 5)), 200);
+  tracker.follow(kTracked, 6, 7, 100);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 5)), 200);
   CHECK(tracker.behind() == 1);
-  tracker.follow(kHere, 7, 9, 250);
-  tracker.receive(chunks_of(snapshot_at(kHere, 6)), 300);
+  tracker.follow(kTracked, 7, 9, 250);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 6)), 300);
   CHECK(tracker.behind() == 0);
-  CHECK(tracker.version(kHere) == 9);
+  CHECK(tracker.version(kTracked) == 9);
 }
 
 TEST_CASE("a digest check reveals edits that never arrived", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
-  tracker.receive(DigestCheck{{{{0, kHere}, {1, 4}, {}}}}, 10);
+  tracker.receive(DigestCheck{{{{0, kTracked}, {1, 4}, {}}}}, 10);
   CHECK(tracker.behind() == 0);
-  tracker.receive(DigestCheck{{{{0, kHere}, {1, 6}, {}}}}, 20);
+  tracker.receive(DigestCheck{{{{0, kTracked}, {1, 6}, {}}}}, 20);
   CHECK(tracker.behind() == 1);
   SECTION("the commits were gathered and come") {
-    tracker.follow(kHere, 4, 6, 30);
+    tracker.follow(kTracked, 4, 6, 30);
     CHECK(tracker.behind() == 0);
   }
   SECTION("they do not") {
@@ -112,26 +112,26 @@ TEST_CASE("a digest check reveals edits that never arrived", "[bots][headless]")
 
 TEST_CASE("a snapshot of a wrong digest or epoch is a violation", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
-  ChunkSnapshot wrong = snapshot_at(kHere, 5);
+  ChunkSnapshot wrong = snapshot_at(kTracked, 5);
   wrong.chunk.digest.lane[0] ^= 1;
   tracker.receive(chunks_of(wrong), 0);
   CHECK(tracker.violations().all().contains("snapshot digest"));
   CHECK_FALSE(tracker.violations().all().contains("epoch"));
-  tracker.receive(chunks_of(snapshot_at(kHere, 6, 2)), 0);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 6, 2)), 0);
   CHECK(tracker.violations().all().contains("epoch"));
   CHECK(tracker.violations().total() == 2);
 }
 
 TEST_CASE("an older snapshot is ignored, and so is one out of view", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
-  tracker.receive(chunks_of(snapshot_at(kHere, 3)), 0);
-  CHECK(tracker.version(kHere) == 4);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 3)), 0);
+  CHECK(tracker.version(kTracked) == 4);
   CHECK(tracker.counts().stale == 1);
   tracker.receive(chunks_of(snapshot_at({5, 0, 0}, 3)), 0);
   tracker.follow({5, 0, 0}, 8, 9, 0);
   CHECK(tracker.counts().outside == 1);
   CHECK(tracker.known() == 1);
-  tracker.follow(kHere, 5, 6, 0);
+  tracker.follow(kTracked, 5, 6, 0);
   tracker.set_view({2, {5, 0, 0}, 0, 0});
   CHECK(tracker.known() == 0);
   CHECK(tracker.behind() == 0);
@@ -141,35 +141,35 @@ TEST_CASE("a late snapshot of a chunk that left the view and came back is ignore
           "[bots][headless]") {
   VersionTracker tracker = book_at(4);
   tracker.set_view({2, {5, 0, 0}, 0, 0});
-  tracker.set_view({3, kHere, 0, 0});
-  tracker.receive(chunks_of(snapshot_at(kHere, 4), 1), 0);
-  tracker.receive(UniformChunks{1, {{{0, kHere}, 3, {}}}}, 0);
-  tracker.receive(ChunkUnavailable{1, {{0, kHere}}, UnavailableReason::damaged});
+  tracker.set_view({3, kTracked, 0, 0});
+  tracker.receive(chunks_of(snapshot_at(kTracked, 4), 1), 0);
+  tracker.receive(UniformChunks{1, {{{0, kTracked}, 3, {}}}}, 0);
+  tracker.receive(ChunkUnavailable{1, {{0, kTracked}}, UnavailableReason::damaged});
   CHECK(tracker.known() == 0);
   CHECK(tracker.counts().outside == 3);
-  tracker.receive(chunks_of(snapshot_at(kHere, 5), 3), 0);
-  CHECK(tracker.version(kHere) == 5);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 5), 3), 0);
+  CHECK(tracker.version(kTracked) == 5);
   CHECK(tracker.violations().total() == 0);
 }
 
 TEST_CASE("an answer to a view that was not sent is a violation", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
-  tracker.receive(chunks_of(snapshot_at(kHere, 5), 2), 0);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 5), 2), 0);
   CHECK(tracker.violations().all().at("view number").count == 1);
 }
 
 TEST_CASE("edits in place of a snapshot are a violation", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
-  tracker.receive(chunks_of(ChunkEdits{{0, kHere}, 4, {1, 5}, {}, {{5, {}}}}), 0);
+  tracker.receive(chunks_of(ChunkEdits{{0, kTracked}, 4, {1, 5}, {}, {{5, {}}}}), 0);
   CHECK(tracker.violations().all().at("chunk edits").count == 1);
-  CHECK(tracker.version(kHere) == 4);
+  CHECK(tracker.version(kTracked) == 4);
 }
 
 TEST_CASE("a view that is complete without all of its chunks is a violation", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
   tracker.complete(1);
   CHECK(tracker.violations().total() == 0);
-  tracker.set_view({2, kHere, 0, 1});
+  tracker.set_view({2, kTracked, 0, 1});
   tracker.complete(1);  // it was sent before the server got the new view
   CHECK(tracker.violations().total() == 0);
   tracker.receive(UniformChunks{2, {{{0, {0, -1, 0}}, 3, {}}}}, 0);
@@ -183,30 +183,30 @@ TEST_CASE("a view that is complete without all of its chunks is a violation", "[
 TEST_CASE("chunks of one material count as snapshots", "[bots][headless]") {
   VersionTracker tracker;
   tracker.open(1);
-  tracker.set_view({1, kHere, 0, 1});
-  tracker.follow(kHere, 4, 6, 0);
+  tracker.set_view({1, kTracked, 0, 1});
+  tracker.follow(kTracked, 4, 6, 0);
   tracker.receive(
       UniformChunks{1,
-                    {{{0, {0, -1, 0}}, 3, {}}, {{0, kHere}, 0, {1, 4}}, {{0, {0, 1, 0}}, 0, {}}}},
+                    {{{0, {0, -1, 0}}, 3, {}}, {{0, kTracked}, 0, {1, 4}}, {{0, {0, 1, 0}}, 0, {}}}},
       0);
   CHECK(tracker.known() == 3);
-  CHECK(tracker.version(kHere) == 6);
+  CHECK(tracker.version(kTracked) == 6);
   CHECK(tracker.counts().snapshots == 3);
   CHECK(tracker.violations().total() == 0);
-  tracker.receive(UniformChunks{1, {{{0, kHere}, 0, {2, 9}}}}, 0);
+  tracker.receive(UniformChunks{1, {{{0, kTracked}, 0, {2, 9}}}}, 0);
   CHECK(tracker.violations().all().contains("epoch"));
 }
 
 TEST_CASE("an unavailable chunk counts as known and is not followed", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
-  tracker.follow(kHere, 5, 6, 0);
-  tracker.receive(ChunkUnavailable{1, {{0, kHere}}, UnavailableReason::damaged});
+  tracker.follow(kTracked, 5, 6, 0);
+  tracker.receive(ChunkUnavailable{1, {{0, kTracked}}, UnavailableReason::damaged});
   CHECK(tracker.known() == 1);
   CHECK(tracker.behind() == 0);
-  tracker.follow(kHere, 8, 9, 0);
+  tracker.follow(kTracked, 8, 9, 0);
   CHECK(tracker.behind() == 0);
-  tracker.receive(chunks_of(snapshot_at(kHere, 9)), 0);
-  CHECK(tracker.version(kHere) == 9);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 9)), 0);
+  CHECK(tracker.version(kTracked) == 9);
   CHECK(tracker.known() == 1);
 }
 
@@ -214,23 +214,23 @@ TEST_CASE("held back edits are bounded, and the newest sequence is remembered",
           "[bots][headless]") {
   VersionTracker tracker;
   tracker.open(1);
-  tracker.set_view({1, kHere, 0, 0});
-  for (Sequence seq = 2; seq < 2 * kWaitingLinksMax; ++seq) tracker.follow(kHere, seq - 1, seq, 0);
-  tracker.receive(chunks_of(snapshot_at(kHere, 1)), 0);
+  tracker.set_view({1, kTracked, 0, 0});
+  for (Sequence seq = 2; seq < 2 * kWaitingLinksMax; ++seq) tracker.follow(kTracked, seq - 1, seq, 0);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 1)), 0);
   CHECK(tracker.behind() == 1);
-  tracker.receive(chunks_of(snapshot_at(kHere, 2 * kWaitingLinksMax)), 0);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 2 * kWaitingLinksMax)), 0);
   CHECK(tracker.behind() == 0);
 }
 
 TEST_CASE("a new connection expects every chunk anew", "[bots][headless]") {
   VersionTracker tracker = book_at(4);
-  tracker.follow(kHere, 5, 6, 0);
+  tracker.follow(kTracked, 5, 6, 0);
   tracker.set_view({2, {5, 0, 0}, 0, 0});
-  tracker.set_view({3, kHere, 0, 0});
+  tracker.set_view({3, kTracked, 0, 0});
   tracker.open(2);
   CHECK(tracker.known() == 0);
   CHECK(tracker.behind() == 0);
-  tracker.receive(chunks_of(snapshot_at(kHere, 2, 2)), 0);
-  CHECK(tracker.version(kHere) == 2);
+  tracker.receive(chunks_of(snapshot_at(kTracked, 2, 2)), 0);
+  CHECK(tracker.version(kTracked) == 2);
   CHECK(tracker.violations().total() == 0);
 }

@@ -35,11 +35,11 @@ FrameOrder small_frame() {
 }
 
 /// A draw thread with a fake screen, and the list of what it did.
-struct Bench {
-  Bench() = default;
-  ~Bench() { screen_log.release(); }  // also after a failed check, so that the thread can end
-  Bench(const Bench&) = delete;
-  Bench& operator=(const Bench&) = delete;
+struct ThreadBench {
+  ThreadBench() = default;
+  ~ThreadBench() { screen_log.release(); }  // also after a failed check, so that the thread can end
+  ThreadBench(const ThreadBench&) = delete;
+  ThreadBench& operator=(const ThreadBench&) = delete;
 
   FakeScreenLog screen_log;
   WakeUp wake;
@@ -65,7 +65,7 @@ struct Bench {
 TEST_CASE(
     "changes during a frame wait for its end, and only the newest change of each chunk is done",
     "[client_app]") {
-  Bench bench;
+  ThreadBench bench;
   CHECK(bench.thread.screen_name() == "fake");
   bench.screen_log.hold();
   bench.thread.draw(small_frame());
@@ -89,7 +89,7 @@ TEST_CASE(
 
 TEST_CASE("results come in the order of the draw thread: uploads, then the frame that shows them",
           "[client_app]") {
-  Bench bench;
+  ThreadBench bench;
   bench.screen_log.hold();
   bench.thread.upload(chunk(1), mesh_of(10, 1));
   bench.thread.draw(small_frame());
@@ -113,7 +113,7 @@ TEST_CASE("results come in the order of the draw thread: uploads, then the frame
 }
 
 TEST_CASE("materials reach the screen before the frame that needs them", "[client_app]") {
-  Bench bench;
+  ThreadBench bench;
   bench.thread.set_materials(MaterialTable{});
   bench.thread.draw(small_frame());
   bench.take_frames(1);
@@ -124,7 +124,7 @@ TEST_CASE("materials reach the screen before the frame that needs them", "[clien
 TEST_CASE("a screenshot shows its frame, and a file that cannot be written is named",
           "[client_app]") {
   const test::TempFolder folder;
-  Bench bench;
+  ThreadBench bench;
   FrameOrder order = small_frame();
   order.screenshots = {folder / "picture.png", folder / "no-such-folder/picture.png"};
   bench.thread.draw(order);
@@ -142,7 +142,7 @@ TEST_CASE("a screen that cannot be made fails the start with the same text", "[c
 }
 
 TEST_CASE("after a frame failed, every take_done() on the main thread throws", "[client_app]") {
-  Bench bench;
+  ThreadBench bench;
   bench.screen_log.fail_next();
   bench.thread.draw(small_frame());
   const auto take_until_failed = [&bench] { bench.take_frames(1); };

@@ -13,7 +13,7 @@ ChunkPtr chunk_at(Sequence seq) {
   return std::make_shared<const Chunk>(std::move(chunk));
 }
 
-struct Fixture {
+struct OutboxFixture {
   TrackedChunk& current(std::int32_t x, Sequence seq) {
     TrackedChunk& chunk = *table.track({0, {x, 0, 0}}).first;
     table.take_snapshot(chunk, chunk_at(seq));
@@ -25,7 +25,7 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "a chunk is handed to the cache once per version", "[replica]") {
+TEST_CASE_METHOD(OutboxFixture, "a chunk is handed to the cache once per version", "[replica]") {
   TrackedChunk& chunk = current(0, 1);
   current(1, 1);
   CHECK(outbox.take(&table, 1).size() == 1);
@@ -38,13 +38,15 @@ TEST_CASE_METHOD(Fixture, "a chunk is handed to the cache once per version", "[r
   CHECK(again[0].second->version.seq == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "only chunks that the server vouches for are handed over", "[replica]") {
+TEST_CASE_METHOD(OutboxFixture, "only chunks that the server vouches for are handed over",
+                 "[replica]") {
   table.set_confirmed(*table.track({0, {0, 0, 0}}).first, chunk_at(1));
   table.request(current(1, 1));
   CHECK(outbox.take(&table, 9).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "chunks that left the view come first, also while the past is shown",
+TEST_CASE_METHOD(OutboxFixture,
+                 "chunks that left the view come first, also while the past is shown",
                  "[replica]") {
   const TrackedChunk& left = current(5, 1);
   outbox.add(left);

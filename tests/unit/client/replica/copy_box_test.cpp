@@ -13,13 +13,13 @@
 namespace runstone::test {
 namespace {
 
-constexpr std::int32_t kEdge = 16;
+constexpr std::int32_t kCopyEdge = 16;
 const Arrival kNow{1000, 1100, 1200};
 
-struct Fixture {
-  Fixture() {
+struct CopyFixture {
+  CopyFixture() {
     replica.set_view({1, {0, 0, 0}, 3, 3});
-    static_cast<void>(replica.open({kEdge, 5, 77, 3, 0, 0, 0}));
+    static_cast<void>(replica.open({kCopyEdge, 5, 77, 3, 0, 0, 0}));
   }
   /// Shows the chunks -2 to 1 around the origin, with random voxels and axis orders.
   void load() {
@@ -29,7 +29,7 @@ struct Fixture {
           ChunkSnapshot snapshot;
           snapshot.key = {0, {x, y, z}};
           snapshot.chunk.voxels =
-              random_chunk(rng, Extent::cube(kEdge), random_order(rng), 4, Shape::boxes);
+              random_chunk(rng, Extent::cube(kCopyEdge), random_order(rng), 4, Shape::boxes);
           snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
           replica.receive(test::chunks_of(std::move(snapshot)), kNow);
         }
@@ -46,7 +46,7 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "a copy has the shown voxels of its box, and empty ones as chosen",
+TEST_CASE_METHOD(CopyFixture, "a copy has the shown voxels of its box, and empty ones as chosen",
                  "[replica]") {
   load();
   for (int round = 0; round < 60; ++round) {
@@ -77,7 +77,7 @@ TEST_CASE_METHOD(Fixture, "a copy has the shown voxels of its box, and empty one
   }
 }
 
-TEST_CASE_METHOD(Fixture, "a copy pasted where it was changes nothing", "[replica]") {
+TEST_CASE_METHOD(CopyFixture, "a copy pasted where it was changes nothing", "[replica]") {
   load();
   const VoxelBox box{{-20, -7, -30}, {25, 30, 31}};
   for (const CopyEmpty empty : {CopyEmpty::as_empty, CopyEmpty::as_untouched}) {
@@ -85,15 +85,16 @@ TEST_CASE_METHOD(Fixture, "a copy pasted where it was changes nothing", "[replic
     REQUIRE(copied.has_value());
     const EditDescriptor edit{Paste{box.min, *copied, {}}, {}, kEmpty};
     ApplyScratch scratch;
-    for (const ChunkCoord at : touched_chunks(edit, kEdge)) {
+    for (const ChunkCoord at : touched_chunks(edit, kCopyEdge)) {
       RunChunk chunk = *replica.shown({0, at});
       Digest digest;
-      CHECK_FALSE(apply_stack(chunk, digest, origin_of(at, kEdge), {&edit, 1}, scratch).changed);
+      CHECK_FALSE(
+          apply_stack(chunk, digest, origin_of(at, kCopyEdge), {&edit, 1}, scratch).changed);
     }
   }
 }
 
-TEST_CASE_METHOD(Fixture, "a copy that cannot be made returns the reason", "[replica]") {
+TEST_CASE_METHOD(CopyFixture, "a copy that cannot be made returns the reason", "[replica]") {
   CHECK(copy_box(Replica{}, {{0, 0, 0}, {1, 1, 1}}, CopyEmpty::as_empty).error().what ==
         std::string("no world is open"));
   load();
@@ -105,7 +106,7 @@ TEST_CASE_METHOD(Fixture, "a copy that cannot be made returns the reason", "[rep
         "box to copy reaches outside the world");
   ChunkSnapshot air;
   air.key = {0, {0, 2, 0}};
-  air.chunk.voxels = uniform_chunk(Extent::cube(kEdge), kEmpty);
+  air.chunk.voxels = uniform_chunk(Extent::cube(kCopyEdge), kEmpty);
   replica.receive(test::chunks_of(std::move(air)), kNow);
   CHECK(error_of({{0, 32, 0}, {4, 36, 4}}) == "clipboard has no material");
 }

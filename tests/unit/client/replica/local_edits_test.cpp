@@ -8,7 +8,7 @@ namespace {
 
 using Sequences = std::vector<ClientSequence>;
 
-struct Fixture {
+struct LocalEditsFixture {
   ClientSequence submit() {
     const auto seq = edits.submit({SetVoxel{{1, 2, 3}}, {}, 1}, {{0, {0, 0, 0}}}, 500);
     REQUIRE(seq.has_value());
@@ -24,7 +24,7 @@ Reject resolved(ClientSequence seq, Sequence at) {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "client sequences ascend from 1 without gaps", "[replica]") {
+TEST_CASE_METHOD(LocalEditsFixture, "client sequences ascend from 1 without gaps", "[replica]") {
   CHECK(submit() == 1);
   CHECK(submit() == 2);
   CHECK(edits.find(1)->submitted_us == 500);
@@ -34,8 +34,8 @@ TEST_CASE_METHOD(Fixture, "client sequences ascend from 1 without gaps", "[repli
   CHECK(edits.counters().submitted == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "an edit beyond the bound is refused and counts as not submitted",
-                 "[replica]") {
+TEST_CASE_METHOD(LocalEditsFixture,
+                 "an edit beyond the bound is refused and counts as not submitted", "[replica]") {
   for (std::size_t i = 0; i < kLocalEditsMax; ++i) submit();
   const auto refused = edits.submit({SetVoxel{{1, 2, 3}}, {}, 1}, {}, 0);
   REQUIRE_FALSE(refused.has_value());
@@ -43,7 +43,8 @@ TEST_CASE_METHOD(Fixture, "an edit beyond the bound is refused and counts as not
   CHECK(edits.counters().submitted == kLocalEditsMax);
 }
 
-TEST_CASE_METHOD(Fixture, "a confirmed edit is kept until its sequence is durable", "[replica]") {
+TEST_CASE_METHOD(LocalEditsFixture, "a confirmed edit is kept until its sequence is durable",
+                 "[replica]") {
   const ClientSequence seq = submit();
   CHECK(edits.confirm(seq, {1, 10}) == LocalEditState::pending);
   CHECK(state(seq) == LocalEditState::confirmed);
@@ -56,15 +57,16 @@ TEST_CASE_METHOD(Fixture, "a confirmed edit is kept until its sequence is durabl
   CHECK(edits.counters().durable == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a second commit of an edit is recognised and counts once", "[replica]") {
+TEST_CASE_METHOD(LocalEditsFixture, "a second commit of an edit is recognised and counts once",
+                 "[replica]") {
   const ClientSequence seq = submit();
   CHECK(edits.confirm(seq, {1, 10}) == LocalEditState::pending);
   CHECK(edits.confirm(seq, {1, 10}) == LocalEditState::confirmed);
   CHECK(edits.counters().confirmed == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a rejected edit leaves, and a confirmed one cannot be rejected",
-                 "[replica]") {
+TEST_CASE_METHOD(LocalEditsFixture,
+                 "a rejected edit leaves, and a confirmed one cannot be rejected", "[replica]") {
   const ClientSequence first = submit(), second = submit();
   edits.confirm(second, {1, 10});
   const auto rejection = edits.reject({first, RejectReason::rate_limited, "", 0}, {1, 10});
@@ -78,7 +80,8 @@ TEST_CASE_METHOD(Fixture, "a rejected edit leaves, and a confirmed one cannot be
   CHECK(edits.counters().rejected == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "an edit that was resolved unseen is durable with the sequence it names",
+TEST_CASE_METHOD(LocalEditsFixture,
+                 "an edit that was resolved unseen is durable with the sequence it names",
                  "[replica]") {
   const ClientSequence named = submit(), unnamed = submit();
   const auto rejection = edits.reject(resolved(named, 4), {1, 10});
@@ -94,7 +97,8 @@ TEST_CASE_METHOD(Fixture, "an edit that was resolved unseen is durable with the 
   CHECK(edits.counters().durable == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "a new connection offers lost edits again and asks about missed answers",
+TEST_CASE_METHOD(LocalEditsFixture,
+                 "a new connection offers lost edits again and asks about missed answers",
                  "[replica]") {
   const ClientSequence confirmed = submit(), missed = submit(), lost = submit(), open = submit();
   edits.confirm(confirmed, {1, 10});
@@ -114,7 +118,8 @@ TEST_CASE_METHOD(Fixture, "a new connection offers lost edits again and asks abo
   CHECK(edits.retire(100).unseen == Sequences{missed});
 }
 
-TEST_CASE_METHOD(Fixture, "an unseen edit that the server lost is pending again", "[replica]") {
+TEST_CASE_METHOD(LocalEditsFixture, "an unseen edit that the server lost is pending again",
+                 "[replica]") {
   const ClientSequence seq = submit();
   edits.reject(resolved(seq, 3), {1, 10});
   CHECK(edits.resume(0) == Sequences{seq});
@@ -122,7 +127,8 @@ TEST_CASE_METHOD(Fixture, "an unseen edit that the server lost is pending again"
   CHECK(edits.find(seq)->version == Version{});
 }
 
-TEST_CASE_METHOD(Fixture, "edits are overdue in the order in which they were sent", "[replica]") {
+TEST_CASE_METHOD(LocalEditsFixture, "edits are overdue in the order in which they were sent",
+                 "[replica]") {
   const ClientSequence first = submit(), second = submit(), third = submit();
   edits.mark_sent(first, 100);
   edits.mark_sent(second, 200);

@@ -6,8 +6,8 @@ using namespace runstone;
 
 namespace {
 
-struct Fixture {
-  Fixture() {
+struct PastViewFixture {
+  PastViewFixture() {
     current = table.track({0, {0, 0, 0}}).first;
     expected = table.track({0, {1, 0, 0}}).first;
     unavailable = table.track({0, {2, 0, 0}}).first;
@@ -28,7 +28,8 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "on the way into the past every chunk is expected and nothing is pending",
+TEST_CASE_METHOD(PastViewFixture,
+                 "on the way into the past every chunk is expected and nothing is pending",
                  "[replica]") {
   CHECK_FALSE(view.is_past());
   view.show(PastMoment{5, 1000}, table);
@@ -45,7 +46,8 @@ TEST_CASE_METHOD(Fixture, "on the way into the past every chunk is expected and 
   }
 }
 
-TEST_CASE_METHOD(Fixture, "from moment to moment a current chunk stays current", "[replica]") {
+TEST_CASE_METHOD(PastViewFixture, "from moment to moment a current chunk stays current",
+                 "[replica]") {
   view.show(PastMoment{5, 1000}, table);
   table.answer(*current);
   table.withhold(*unavailable);
@@ -55,7 +57,8 @@ TEST_CASE_METHOD(Fixture, "from moment to moment a current chunk stays current",
   CHECK(unavailable->state() == ChunkState::expected);
 }
 
-TEST_CASE_METHOD(Fixture, "back in the live world every chunk is expected and keeps its inbox",
+TEST_CASE_METHOD(PastViewFixture,
+                 "back in the live world every chunk is expected and keeps its inbox",
                  "[replica]") {
   view.show(PastMoment{5, 1000}, table);
   table.answer(*current);
@@ -68,7 +71,7 @@ TEST_CASE_METHOD(Fixture, "back in the live world every chunk is expected and ke
   CHECK(current->latest == 9);
 }
 
-TEST_CASE_METHOD(Fixture, "a new connection shows the live world and changes no chunk",
+TEST_CASE_METHOD(PastViewFixture, "a new connection shows the live world and changes no chunk",
                  "[replica]") {
   view.show(PastMoment{5, 1000}, table);
   table.answer(*current);

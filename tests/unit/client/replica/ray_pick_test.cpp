@@ -12,11 +12,11 @@ using namespace runstone;
 
 namespace {
 
-constexpr std::int32_t kEdge = 16;
+constexpr std::int32_t kRayEdge = 16;
 
 /// 3 x 3 x 3 chunks around the origin with random single voxels.
 void fill_world(Replica& replica, SplitMix64& rng) {
-  runstone::test::AuthorityModel world(kEdge);
+  runstone::test::AuthorityModel world(kRayEdge);
   for (ClientSequence i = 1; i <= 5000; ++i) {
     const auto at = [&] { return rng.between(-16, 31); };
     const VoxelPos pos{at(), at(), at()};
@@ -24,7 +24,7 @@ void fill_world(Replica& replica, SplitMix64& rng) {
         world.commit({9, 1, i}, {SetVoxel{pos}, {}, static_cast<Material>(1 + rng.below(4))}));
   }
   replica.set_view({1, {0, 0, 0}, 2, 1});
-  static_cast<void>(replica.open({kEdge, 1, 1, 1, 0, 0, 0}));
+  static_cast<void>(replica.open({kRayEdge, 1, 1, 1, 0, 0, 0}));
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
@@ -97,10 +97,10 @@ TEST_CASE("a picked voxel is the nearest one that the ray meets", "[replica]") {
 
 TEST_CASE("a hit names the face through which the ray entered", "[replica]") {
   Replica replica;
-  runstone::test::AuthorityModel world(kEdge);
+  runstone::test::AuthorityModel world(kRayEdge);
   static_cast<void>(world.commit({9, 1, 1}, {SetVoxel{{5, 5, 5}}, {}, 3}));
   replica.set_view({1, {0, 0, 0}, 0, 0});
-  static_cast<void>(replica.open({kEdge, 1, 1, 1, 0, 0, 0}));
+  static_cast<void>(replica.open({kRayEdge, 1, 1, 1, 0, 0, 0}));
   replica.receive(test::chunks_of(world.snapshot({0, 0, 0})), {});
   const double turn = 2 * std::numbers::pi;
 

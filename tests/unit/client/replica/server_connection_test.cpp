@@ -20,7 +20,7 @@ SessionConfig config() {
 }
 
 /// A connection, and its server played by the test.
-struct Fixture {
+struct ConnectionFixture {
   Dispatch receive(Message message) { return connection.receive(message, {now, now, now}); }
   /// Returns the queued messages of one kind. Drops the others.
   template <class T>
@@ -73,7 +73,7 @@ Pose pose_at(double x) {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "a connection opens with the handshake", "[replica]") {
+TEST_CASE_METHOD(ConnectionFixture, "a connection opens with the handshake", "[replica]") {
   CHECK(connection.state() == SessionState::offline);
   CHECK_FALSE(connection.accepts_input());
   greet();
@@ -100,7 +100,7 @@ TEST_CASE_METHOD(Fixture, "a connection opens with the handshake", "[replica]") 
   CHECK(connection.connect_count() == 2);
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(ConnectionFixture,
                  "handshake messages in the wrong state end the connection with one goodbye",
                  "[replica]") {
   SECTION("ready before welcome") {
@@ -138,7 +138,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(goodbyes[0].reason == GoodbyeReason::unexpected_message);
 }
 
-TEST_CASE_METHOD(Fixture, "messages for the session are left as they are", "[replica]") {
+TEST_CASE_METHOD(ConnectionFixture, "messages for the session are left as they are", "[replica]") {
   greet();
   receive(welcome());
   Message message = Durable{1, 7};
@@ -154,7 +154,8 @@ TEST_CASE_METHOD(Fixture, "messages for the session are left as they are", "[rep
   CHECK(receive(Durable{1, 7}) == Dispatch::handled);
 }
 
-TEST_CASE_METHOD(Fixture, "a goodbye of the server is not answered, and some reasons are final",
+TEST_CASE_METHOD(ConnectionFixture,
+                 "a goodbye of the server is not answered, and some reasons are final",
                  "[replica]") {
   greet();
   GoodbyeReason reason = GoodbyeReason::closing;
@@ -179,7 +180,8 @@ TEST_CASE_METHOD(Fixture, "a goodbye of the server is not answered, and some rea
   CHECK_FALSE(connection.wants_close());
 }
 
-TEST_CASE_METHOD(Fixture, "a server that is silent too long ends the connection in every state",
+TEST_CASE_METHOD(ConnectionFixture,
+                 "a server that is silent too long ends the connection in every state",
                  "[replica]") {
   bool is_opened = false;
   SECTION("while greeting") { greet(); }
@@ -207,7 +209,8 @@ TEST_CASE_METHOD(Fixture, "a server that is silent too long ends the connection 
   CHECK(take<Goodbye>().size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "pings are sent at once and then at the given interval", "[replica]") {
+TEST_CASE_METHOD(ConnectionFixture, "pings are sent at once and then at the given interval",
+                 "[replica]") {
   open();
   CHECK(goes_on());
   CHECK(take<Ping>() == std::vector{Ping{now}});
@@ -224,8 +227,8 @@ TEST_CASE_METHOD(Fixture, "pings are sent at once and then at the given interval
   CHECK(take<Ping>().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a pong gives the server's clock, in which edits carry their time",
-                 "[replica]") {
+TEST_CASE_METHOD(ConnectionFixture,
+                 "a pong gives the server's clock, in which edits carry their time", "[replica]") {
   open();
   LocalEdit own;
   own.edit = {SetVoxel{{1, 2, 3}}, {}, 4};
@@ -238,7 +241,8 @@ TEST_CASE_METHOD(Fixture, "a pong gives the server's clock, in which edits carry
   CHECK(take<EditRequest>() == std::vector{EditRequest{2, now + 5'000, own.edit}});
 }
 
-TEST_CASE_METHOD(Fixture, "poses are sent when they change, one per kMoveEveryUs", "[replica]") {
+TEST_CASE_METHOD(ConnectionFixture, "poses are sent when they change, one per kMoveEveryUs",
+                 "[replica]") {
   open();
   CHECK(goes_on());
   CHECK(take<Move>() ==
@@ -261,7 +265,7 @@ TEST_CASE_METHOD(Fixture, "poses are sent when they change, one per kMoveEveryUs
   CHECK(take<Move>() == std::vector{Move{pose_at(2)}});
 }
 
-TEST_CASE_METHOD(Fixture, "a connection knows when its next tick is due", "[replica]") {
+TEST_CASE_METHOD(ConnectionFixture, "a connection knows when its next tick is due", "[replica]") {
   CHECK(connection.tick_due_us(kPingEveryUs) == std::numeric_limits<TimeUs>::max());
   greet();
   CHECK(connection.tick_due_us(kPingEveryUs) == now + kServerSilenceUsMax + 1);
@@ -278,7 +282,7 @@ TEST_CASE_METHOD(Fixture, "a connection knows when its next tick is due", "[repl
   CHECK(connection.tick_due_us(kPingEveryUs) == now + 1);  // no message has arrived since
 }
 
-TEST_CASE_METHOD(Fixture, "a view is sent within the server's limits when it changes",
+TEST_CASE_METHOD(ConnectionFixture, "a view is sent within the server's limits when it changes",
                  "[replica]") {
   CHECK(connection.view() == View{1, {0, 0, 0}, 9, 2});
   open();
@@ -298,7 +302,7 @@ TEST_CASE_METHOD(Fixture, "a view is sent within the server's limits when it cha
   CHECK(connection.send_view());
 }
 
-TEST_CASE_METHOD(Fixture, "each view that is sent has the next number of its connection",
+TEST_CASE_METHOD(ConnectionFixture, "each view that is sent has the next number of its connection",
                  "[replica]") {
   open();
   CHECK(connection.view().number == 1);  // that of the view to be sent
@@ -323,7 +327,7 @@ TEST_CASE_METHOD(Fixture, "each view that is sent has the next number of its con
   CHECK(connection.view().number == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "chunk requests are split by the limit of keys per message",
+TEST_CASE_METHOD(ConnectionFixture, "chunk requests are split by the limit of keys per message",
                  "[replica]") {
   open();
   connection.request_chunks({});
@@ -343,7 +347,7 @@ TEST_CASE_METHOD(Fixture, "chunk requests are split by the limit of keys per mes
   CHECK(asked == keys);
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(ConnectionFixture,
                  "a pin outlives a restart of the server, and another world gets its own pin",
                  "[replica]") {
   open();

@@ -15,7 +15,7 @@ using namespace runstone::test;
 
 namespace {
 
-constexpr Sequence kEdits = 400;
+constexpr Sequence kLoggedEdits = 400;
 constexpr KeyframePolicy kPolicy{40, 3};
 
 /// Returns a random edit near the chunk at the origin. It touches few chunks, so that keyframes
@@ -34,7 +34,7 @@ struct Logged {
   std::unique_ptr<Store> store;
   std::unique_ptr<Generator> generator;
 
-  explicit Logged(std::uint64_t seed, Sequence count = kEdits) {
+  explicit Logged(std::uint64_t seed, Sequence count = kLoggedEdits) {
     SplitMix64 rng(seed);
     WorldMeta meta = sample_meta();
     meta.generator.name = "flat";
@@ -138,7 +138,7 @@ TEST_CASE("a log that grows gets the same keyframes as a complete log", "[histor
   Logged logged(2, 1);
   SplitMix64 rng(3);
   KeyframeMaker maker(*logged.store, *logged.generator, kPolicy);
-  for (Sequence next = 2; next < kEdits; next += 7) {
+  for (Sequence next = 2; next < kLoggedEdits; next += 7) {
     auto more = sample_records(rng, 2, next, 7);
     for (EditRecord& record : more) record.edit = small_edit(rng);
     REQUIRE(logged.store->append_history({}, more).has_value());
@@ -157,7 +157,7 @@ TEST_CASE("a moment is the same with keyframes and without", "[history][keyframe
   std::map<Sequence, std::vector<std::pair<ChunkKey, Chunk>>> without;
   SplitMix64 rng(5);
   for (int i = 0; i < 12; ++i) {
-    const Sequence seq = rng.below(kEdits + 1);
+    const Sequence seq = rng.below(kLoggedEdits + 1);
     without[seq] = chunks_at(logged, seq);
   }
   logged.make_keyframes();
@@ -170,13 +170,14 @@ TEST_CASE("a moment is the same with keyframes and without", "[history][keyframe
     CHECK(chunks_at(logged, seq) == chunks);
   }
   WorldAt follower = logged.at(0);  // moves past keyframes without reading them
-  REQUIRE(follower.advance(kEdits).has_value());
-  for (const auto& [key, chunk] : chunks_at(logged, kEdits)) CHECK(*follower.chunk(key) == chunk);
+  REQUIRE(follower.advance(kLoggedEdits).has_value());
+  for (const auto& [key, chunk] : chunks_at(logged, kLoggedEdits))
+    CHECK(*follower.chunk(key) == chunk);
 }
 
 TEST_CASE("an interrupted keyframe does no harm and is made again", "[history][keyframe]") {
   Logged logged(6);
-  const auto at_end = chunks_at(logged, kEdits);
+  const auto at_end = chunks_at(logged, kLoggedEdits);
   KeyframeMaker maker(*logged.store, *logged.generator, kPolicy);
   const std::vector<Sequence> due = due_places(logged.records, kPolicy);
   int chunks_left = 13;  // a keyframe has nearly thirty chunks
@@ -195,16 +196,16 @@ TEST_CASE("an interrupted keyframe does no harm and is made again", "[history][k
   CHECK(raw_sql(logged.store->file(), "SELECT count(*) FROM keyframe_chunk") == "13");
   CHECK(places(*logged.store).empty());
   check(*logged.store);
-  CHECK(chunks_at(logged, kEdits) == at_end);
+  CHECK(chunks_at(logged, kLoggedEdits) == at_end);
   // Rows beside the first keyframe are older than it, or belong to it.
   KeyframeMaker other(*logged.store, *logged.generator, kPolicy);
   REQUIRE(other.make_at(due.front() + 20, logged.save()).has_value());
   check(*logged.store);
-  CHECK(chunks_at(logged, kEdits) == at_end);
+  CHECK(chunks_at(logged, kLoggedEdits) == at_end);
   REQUIRE(maker.make_due(logged.save()).has_value());
   CHECK(maker.made() > 2);
   check(*logged.store);
-  CHECK(chunks_at(logged, kEdits) == at_end);
+  CHECK(chunks_at(logged, kLoggedEdits) == at_end);
 }
 
 TEST_CASE("making keyframes can be cancelled between chunks", "[history][keyframe]") {
@@ -253,10 +254,10 @@ TEST_CASE("a store takes no keyframe that its chunks do not prove", "[history][k
   other.at.time_us += 1;
   CHECK(refused(chunks, other) == "keyframe seq=120");
   other = *keyframe;
-  other.at.version.seq = kEdits + 1;
+  other.at.version.seq = kLoggedEdits + 1;
   CHECK(refused(chunks, other) == "keyframe seq=401");
   Chunk future = *chunks.front().second;
-  future.version = {2, kEdits + 1};
+  future.version = {2, kLoggedEdits + 1};
   CHECK(refused({{chunks.front().first, std::make_shared<const Chunk>(future)}}, *keyframe)
             .starts_with("keyframe_chunk chunk="));
   REQUIRE(logged.store->save_keyframe(chunks, keyframe).has_value());
@@ -277,7 +278,7 @@ TEST_CASE("the check names damage in keyframes, and no moment contains it",
   Logged logged(10);
   logged.make_keyframes();
   const Sequence first = places(*logged.store).front();
-  const auto at_first = chunks_at(logged, first), at_end = chunks_at(logged, kEdits);
+  const auto at_first = chunks_at(logged, first), at_end = chunks_at(logged, kLoggedEdits);
   logged.store.reset();
   const std::string place = "keyframe seq=" + std::to_string(first);
   struct Damage {
@@ -319,7 +320,8 @@ TEST_CASE("the check names damage in keyframes, and no moment contains it",
     CHECK((damage.where.empty() ? where.starts_with("keyframe") : where == damage.where));
     // A moment cannot be opened, or a chunk cannot be read, or all chunks are right.
     bool is_noticed = false;
-    for (const auto& [seq, chunks] : {std::pair(first, &at_first), std::pair(kEdits, &at_end)}) {
+    for (const auto& [seq, chunks] :
+         {std::pair(first, &at_first), std::pair(kLoggedEdits, &at_end)}) {
       auto world = WorldAt::open(*store, *logged.generator, seq);
       if (!world) CHECK(world.error().kind == StoreError::Kind::corrupt);
       is_noticed |= !world;

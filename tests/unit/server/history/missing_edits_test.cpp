@@ -13,7 +13,7 @@ using namespace runstone::test;
 
 namespace {
 
-constexpr Sequence kEdits = 200;
+constexpr Sequence kKeptEdits = 200;
 constexpr std::size_t kPlenty = std::size_t{1} << 20;
 
 struct Log {
@@ -24,9 +24,9 @@ struct Log {
   Log() {
     SplitMix64 rng(5);
     store = *create_world(folder.path(), sample_meta());
-    records = sample_records(rng, 1, 1, kEdits);
+    records = sample_records(rng, 1, 1, kKeptEdits);
     for (EditRecord& record : records) {
-      if (record.version.seq > kEdits / 2) record.version.epoch = 2;
+      if (record.version.seq > kKeptEdits / 2) record.version.epoch = 2;
     }
     REQUIRE(store->raise_epoch().has_value());
     REQUIRE(store->raise_epoch().has_value());
@@ -96,5 +96,5 @@ TEST_CASE("a version that is not in the log, or too far behind, gets no edits", 
   CHECK_FALSE(
       log.missing(key, newest, kept, 4).has_value());  // a snapshot of four bytes is shorter
   // The log ends before the version of the chunk, so a snapshot is the only complete answer.
-  CHECK_FALSE(log.missing(key, {newest.epoch, kEdits + 1}, kept).has_value());
+  CHECK_FALSE(log.missing(key, {newest.epoch, kKeptEdits + 1}, kept).has_value());
 }

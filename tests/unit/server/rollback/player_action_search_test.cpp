@@ -6,8 +6,6 @@
 namespace runstone::test {
 namespace {
 
-constexpr SessionId kGriefer = 1, kBuilder = 2;
-
 /// Ana sets voxels in one chunk. Another player builds over all but the first.
 struct BuiltOver : RollbackBench {
   explicit BuiltOver(int edits) {

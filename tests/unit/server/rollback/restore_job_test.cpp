@@ -10,7 +10,7 @@
 namespace runstone::test {
 namespace {
 
-constexpr SessionId kBuilder = 1;
+constexpr SessionId kRestorer = 1;
 constexpr ClientInstance kInstance = 77;
 const ChunkKey kHere{0, {0, 0, 0}}, kThere{0, {1, 0, 0}};
 
@@ -22,8 +22,8 @@ std::shared_ptr<const Clipboard> one_cell() {
 
 struct JobBench {
   explicit JobBench(AuthorId payer = 0, WorldConfig c = config())
-      : bench(std::move(c)), author(bench.join(kBuilder, 1).author), job(order(payer)) {
-    bench.view(kBuilder, kSmall);
+      : bench(std::move(c)), author(bench.join(kRestorer, 1).author), job(order(payer)) {
+    bench.view(kRestorer, kSmall);
   }
   static RestoreOrder order(AuthorId payer) {
     Selection selection;
@@ -108,7 +108,7 @@ TEST_CASE("the rest of a chunk is planned again if another player edits it betwe
   b.step();
   CHECK(b.job.progress().edits == 2);
   b.write_log();
-  b.bench.edit(kBuilder, 1, kAtOrigin, 2);
+  b.bench.edit(kRestorer, 1, kAtOrigin, 2);
   b.bench.server.commit(b.bench.now());
   b.write_log();
   for (int i = 0; i < 2; ++i) {  // the other chunk is written
@@ -139,9 +139,9 @@ TEST_CASE("a job with a payer writes as fast as the rate of the payer allows", "
   b.step();
   CHECK(b.job.progress().edits == 4);
   CHECK(b.job.progress().waits_for.find("edits_per_second") != std::string::npos);
-  b.bench.edit(kBuilder, 1, kAtOrigin);  // the bucket holds one edit
-  REQUIRE(b.bench.environment.messages<Reject>(kBuilder, kEdge).size() == 1);
-  CHECK(b.bench.environment.messages<Reject>(kBuilder, kEdge)[0].reason ==
+  b.bench.edit(kRestorer, 1, kAtOrigin);  // the bucket holds one edit
+  REQUIRE(b.bench.environment.messages<Reject>(kRestorer, kEdge).size() == 1);
+  CHECK(b.bench.environment.messages<Reject>(kRestorer, kEdge)[0].reason ==
         RejectReason::rate_limited);
   SECTION("the budget grows with time") {
     b.bench.tick(200'000);
@@ -154,7 +154,7 @@ TEST_CASE("a job with a payer writes as fast as the rate of the payer allows", "
     CHECK(b.job.progress().edits == 8);
   }
   SECTION("an author without a session pays nothing, and the job ends") {
-    b.bench.server.disconnected(kBuilder);
+    b.bench.server.disconnected(kRestorer);
     b.step();
     CHECK(b.job.state() == RestoreJob::State::done);
   }

@@ -17,6 +17,8 @@
 
 namespace runstone::test {
 
+inline constexpr SessionId kGriefer = 1, kBuilder = 2;
+
 class RollbackBench : public RollbackService::Workers {
  public:
   explicit RollbackBench(WorldConfig c = config())

@@ -5,7 +5,6 @@
 namespace runstone::test {
 namespace {
 
-constexpr SessionId kGriefer = 1, kBuilder = 2;
 constexpr VoxelBox kHouse = {{0, 0, 0}, {8, 8, 8}};
 constexpr VoxelBox kGrief = {{-20, 0, -20}, {20, 4, 20}};
 

@@ -30,7 +30,7 @@ EditRecord make_world(const std::string& folder, SplitMix64& rng, std::size_t co
 
 LogEnd end_of(const EditRecord& record) { return {record.version, record.time_us}; }
 
-std::unique_ptr<Store> opened(const std::string& folder) {
+std::unique_ptr<Store> compacted_store(const std::string& folder) {
   auto store = open_world(folder, StoreAccess::read_write);
   if (!store) FAIL(store.error().message());
   return *std::move(store);
@@ -43,7 +43,7 @@ TEST_CASE("the range of a log that was never compacted begins at 1", "[store]") 
   SplitMix64 rng(1);
   CHECK(*(*create_world(folder / "new", sample_meta()))->log_range() == LogRange{});
   const EditRecord last = make_world(folder / "old", rng, 7);
-  CHECK(*opened(folder / "old")->log_range() == LogRange{1, {{1, 7}, last.time_us}});
+  CHECK(*compacted_store(folder / "old")->log_range() == LogRange{1, {{1, 7}, last.time_us}});
 }
 
 TEST_CASE("a log that was compacted to its end does not begin at 1 again", "[store]") {
@@ -51,7 +51,7 @@ TEST_CASE("a log that was compacted to its end does not begin at 1 again", "[sto
   SplitMix64 rng(2);
   const LogEnd head = end_of(make_world(folder.path(), rng, 7));
   compact_by_hand(folder / "world.sqlite", head, {{kKey, sample_chunk(rng, {1, 5})}});
-  auto store = opened(folder.path());
+  auto store = compacted_store(folder.path());
   CHECK(*store->log_range() == LogRange{8, head});
   CHECK(*store->last_sequence() == 7);
   CHECK(*store->checkpoint() == 7);
@@ -81,7 +81,7 @@ TEST_CASE("a base chunk carries the version at which it was completed", "[store]
   const LogEnd head = end_of(make_world(folder.path(), rng, 7));
   const ChunkPtr completed = sample_chunk(rng, {1, 5});
   compact_by_hand(folder / "world.sqlite", head, {{kKey, completed}, {{0, {9, 9, 9}}, completed}});
-  auto store = opened(folder.path());
+  auto store = compacted_store(folder.path());
   const auto loaded = store->load_base(kKey);
   REQUIRE((loaded.has_value() && loaded->has_value()));
   CHECK((*loaded)->version == Version{1, 5});
@@ -117,13 +117,13 @@ TEST_CASE("a log that does not fit its head is noticed", "[store][damage]") {
     make_world(folder.path(), rng, 7);
     auto head = LogEnd{};
     {
-      auto store = opened(folder.path());
+      auto store = compacted_store(folder.path());
       head = store->log_range()->last;
       REQUIRE(store->append({}, sample_records(rng, 1, 8, 5)).has_value());
     }
     compact_by_hand(folder / "world.sqlite", head, {});
     REQUIRE(raw_sql(folder / "world.sqlite", sql).empty());
-    auto store = opened(folder.path());
+    auto store = compacted_store(folder.path());
     const auto range = store->log_range();
     return range ? store->check() ? "fine" : store->check().error().where : range.error().where;
   };
@@ -142,11 +142,11 @@ TEST_CASE("base chunks that hold edits of the log, and a head beyond the checkpo
     const TempFolder folder;
     make_world(folder.path(), rng, 7);
     {
-      auto store = opened(folder.path());
+      auto store = compacted_store(folder.path());
       REQUIRE(store->append({}, sample_records(rng, 1, 8, 5)).has_value());
     }
     compact_by_hand(folder / "world.sqlite", head, {{kKey, sample_chunk(rng, base)}});
-    const auto checked = opened(folder.path())->check();
+    const auto checked = compacted_store(folder.path())->check();
     return checked ? "" : checked.error().where + " " + checked.error().what;
   };
   CHECK(verdict({1, 7}, {{1, 7}, 5}).empty());

@@ -7,14 +7,14 @@
 namespace runstone {
 namespace {
 
-struct Bench {
+struct CheckpointerBench {
   EditLimits limits() const {
     EditLimits l;
     l.chunk_edge = 16;
     l.material_count = 4;
     return l;
   }
-  Bench(SnapshotPolicy policy, LogPosition log, Sequence checkpoint)
+  CheckpointerBench(SnapshotPolicy policy, LogPosition log, Sequence checkpoint)
       : authority(limits(), log),
         checkpointer(policy, checkpoint),
         durable(log.last),
@@ -49,7 +49,7 @@ struct Bench {
 ChunkKey key_at(std::int32_t x) { return {0, {x, 0, 0}}; }
 
 TEST_CASE("a round starts after enough edits or enough time, and only after edits", "[world]") {
-  Bench bench({3, 1000, 10}, {1, 0, 0}, 0);
+  CheckpointerBench bench({3, 1000, 10}, {1, 0, 0}, 0);
   bench.step(0);
   bench.step(5000);
   CHECK(bench.checkpointer.rounds() == 0);
@@ -72,7 +72,7 @@ TEST_CASE("a round starts after enough edits or enough time, and only after edit
 }
 
 TEST_CASE("snapshots wait until their edits are durable, also while edits keep coming", "[world]") {
-  Bench bench({1, 1'000'000, 10}, {1, 0, 0}, 0);
+  CheckpointerBench bench({1, 1'000'000, 10}, {1, 0, 0}, 0);
   bench.edit(0, 1);
   bench.step();
   CHECK(bench.environment.loads == std::deque<ChunkKey>{key_at(0)});  // its stack needs a base
@@ -95,7 +95,7 @@ TEST_CASE("snapshots wait until their edits are durable, also while edits keep c
 }
 
 TEST_CASE("a round writes slices, and only the last one moves the checkpoint", "[world]") {
-  Bench bench({5, 1'000'000, 2}, {1, 0, 0}, 0);
+  CheckpointerBench bench({5, 1'000'000, 2}, {1, 0, 0}, 0);
   for (std::int32_t x = 0; x < 5; ++x) bench.edit(x);
   bench.durable = 5;
   std::vector<std::size_t> sizes;
@@ -116,7 +116,7 @@ TEST_CASE("a round writes slices, and only the last one moves the checkpoint", "
 }
 
 TEST_CASE("the checkpoint stays below the first edit that only the log has", "[world]") {
-  Bench bench({4, 1'000'000, 10}, {1, 0, 0}, 0);
+  CheckpointerBench bench({4, 1'000'000, 10}, {1, 0, 0}, 0);
   bench.edit(0);
   bench.edit(7);  // sequence 2: its chunk will fail to load
   bench.edit(0);
@@ -141,7 +141,7 @@ TEST_CASE("the checkpoint stays below the first edit that only the log has", "[w
 }
 
 TEST_CASE("finish() writes every dirty chunk, also those that a start replayed", "[world]") {
-  Bench bench({1000, 1'000'000'000, 10}, {2, 3, 0}, 0);
+  CheckpointerBench bench({1000, 1'000'000'000, 10}, {2, 3, 0}, 0);
   for (Sequence seq = 1; seq <= 3; ++seq) {
     bench.authority.replay_onto_stack(
         {{1, seq}, {1, 1, seq}, 0, Cause::player, {SetVoxel{{16, 1, 1}}, {}, 2}});

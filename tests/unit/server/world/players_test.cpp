@@ -7,24 +7,24 @@ using namespace runstone;
 
 namespace {
 
-PublicKey key_of(std::uint8_t first) { return PublicKey{first}; }
+PublicKey player_key(std::uint8_t first) { return PublicKey{first}; }
 
 }  // namespace
 
 TEST_CASE("a player who leaves without an edit is a visitor until the key comes back",
           "[server][players]") {
   Players players;
-  const AuthorId ana = players.enter(key_of(1), "ana");
-  const AuthorId ben = players.enter(key_of(2), "ben");
+  const AuthorId ana = players.enter(player_key(1), "ana");
+  const AuthorId ben = players.enter(player_key(2), "ben");
   REQUIRE(players.take_unsaved(ben).has_value());
   CHECK_FALSE(players.forget_unsaved(ben));  // the store has ben
   REQUIRE(players.forget_unsaved(ana));
   REQUIRE(players.visitors().size() == 1);
   CHECK(players.visitors()[0].author == ana);
   CHECK(players.visitors()[0].name == "ana");
-  CHECK(players.visitors()[0].key == key_of(1));
+  CHECK(players.visitors()[0].key == player_key(1));
 
-  const AuthorId again = players.enter(key_of(1), "anna");
+  const AuthorId again = players.enter(player_key(1), "anna");
   CHECK(again > ben);
   CHECK(players.visitors().empty());
 }

@@ -12,7 +12,7 @@ using namespace runstone::bench::chart;
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNotFinite = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> texts_of(const Scale& scale) {
   std::vector<std::string> out;
@@ -86,7 +86,7 @@ TEST_CASE("the lowest bar of a logarithmic scale can be seen", "[chart]") {
 }
 
 TEST_CASE("a scale knows the values that it cannot show", "[chart]") {
-  for (const double value : {kNan, kInfinity, -kInfinity, 1e300, -1e300}) {
+  for (const double value : {kNan, kNotFinite, -kNotFinite, 1e300, -1e300}) {
     CAPTURE(value);
     CHECK_FALSE(Scale::can_show(value, false));
     CHECK_FALSE(Scale::can_show(value, true));
@@ -97,7 +97,7 @@ TEST_CASE("a scale knows the values that it cannot show", "[chart]") {
   CHECK_FALSE(Scale::can_show(-3, true));
   CHECK_FALSE(Scale::can_show(1e-300, true));
   CHECK_FALSE(
-      scale_of({kNan, kInfinity}, false, Scale::Start::bars, Scale::Ends::round, 5).has_values());
+      scale_of({kNan, kNotFinite}, false, Scale::Start::bars, Scale::Ends::round, 5).has_values());
   CHECK_FALSE(scale_of({0, -1}, true, Scale::Start::bars, Scale::Ends::round, 5).has_values());
   CHECK(scale_of({kNan, 1}, true, Scale::Start::bars, Scale::Ends::round, 5).has_values());
 }
@@ -112,7 +112,7 @@ TEST_CASE("any values give a scale with separate ends, few ascending ticks, and 
       case 1:
         return kNan;
       case 2:
-        return kInfinity;
+        return kNotFinite;
       case 3:
         return random() % 2 == 0 ? 1e16 + static_cast<double>(random() % 5) : 5e-324;
       default:
