@@ -84,7 +84,8 @@ Result<Copies, std::string> lay_copies(const std::string& from, const std::strin
       copy[j].first = key;
       if (!copy[j].second->voxels.is_uniform()) ++out.mixed;
     }
-    if (const auto saved = (*target)->save_base(copy); !saved) return failure(saved.error().message());
+    if (const auto saved = (*target)->save_base(copy); !saved)
+      return failure(saved.error().message());
   }
   return out;
 }

@@ -19,12 +19,13 @@ Rectangles greedy_rectangles(const std::vector<std::string>& rows) {
 
 TEST_CASE("greedy: a quad grows as wide as it can, then as high", "[mesh][reference]") {
   CHECK(greedy_rectangles({"111",  //
-                "111",  //
-                "11."}) == Rectangles{{0, 0, 3, 2, 1}, {0, 2, 2, 1, 1}});
-  CHECK(greedy_rectangles({"11.",  //
-                // The quad is as high as there are whole rows of its width, which may be parts of
-                // longer ones.
-                "111", "111"}) == Rectangles{{0, 0, 2, 3, 1}, {2, 1, 1, 2, 1}});
+                           "111",  //
+                           "11."}) == Rectangles{{0, 0, 3, 2, 1}, {0, 2, 2, 1, 1}});
+  CHECK(greedy_rectangles(
+            {"11.",  //
+             // The quad is as high as there are whole rows of its width, which may be parts of
+             // longer ones.
+             "111", "111"}) == Rectangles{{0, 0, 2, 3, 1}, {2, 1, 1, 2, 1}});
 }
 
 TEST_CASE("greedy: the first face decides, even where two quads would do", "[mesh][reference]") {

@@ -186,8 +186,8 @@ TEST_CASE("chunks of one material count as snapshots", "[bots][headless]") {
   tracker.set_view({1, kTracked, 0, 1});
   tracker.follow(kTracked, 4, 6, 0);
   tracker.receive(
-      UniformChunks{1,
-                    {{{0, {0, -1, 0}}, 3, {}}, {{0, kTracked}, 0, {1, 4}}, {{0, {0, 1, 0}}, 0, {}}}},
+      UniformChunks{
+          1, {{{0, {0, -1, 0}}, 3, {}}, {{0, kTracked}, 0, {1, 4}}, {{0, {0, 1, 0}}, 0, {}}}},
       0);
   CHECK(tracker.known() == 3);
   CHECK(tracker.version(kTracked) == 6);
@@ -215,7 +215,8 @@ TEST_CASE("held back edits are bounded, and the newest sequence is remembered",
   VersionTracker tracker;
   tracker.open(1);
   tracker.set_view({1, kTracked, 0, 0});
-  for (Sequence seq = 2; seq < 2 * kWaitingLinksMax; ++seq) tracker.follow(kTracked, seq - 1, seq, 0);
+  for (Sequence seq = 2; seq < 2 * kWaitingLinksMax; ++seq)
+    tracker.follow(kTracked, seq - 1, seq, 0);
   tracker.receive(chunks_of(snapshot_at(kTracked, 1)), 0);
   CHECK(tracker.behind() == 1);
   tracker.receive(chunks_of(snapshot_at(kTracked, 2 * kWaitingLinksMax)), 0);
