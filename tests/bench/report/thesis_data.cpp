@@ -6,6 +6,8 @@
 #include <sstream>
 #include <vector>
 
+#include "tests/bench/report/rows.hpp"
+
 namespace runstone::bench {
 namespace {
 
