@@ -25,7 +25,7 @@ namespace {
 
 using asio::ip::tcp;
 
-constexpr unsigned kEdge = 32;
+constexpr unsigned kTransferEdge = 32;
 constexpr std::int32_t kSide = 4;        // chunks of a world's scene along each axis
 constexpr double kSecondsPerCell = 3;    // repetitions end after this time
 constexpr double kWinningMargin = 1.02;  // a smaller difference is a draw
@@ -42,13 +42,13 @@ struct Cell {
 TransferScene scenario_of(unsigned number) {
   TransferScene out;
   out.name = fmt::format("scenario {}", number);
-  out.edge = kEdge;
+  out.edge = kTransferEdge;
   out.visibility = std::make_shared<const VisibilityTable>(test::scenario_visibility());
-  const auto world = test::scenario_generator(number, kEdge);
+  const auto world = test::scenario_generator(number, kTransferEdge);
   for (std::int32_t x = -1; x <= 1; ++x) {
     for (std::int32_t y = -1; y <= 1; ++y) {
       for (std::int32_t z = -1; z <= 1; ++z) {
-        out.chunks[{x, y, z}] = test::scenario_scene(*world, {x, y, z}, kEdge, true).chunk;
+        out.chunks[{x, y, z}] = test::scenario_scene(*world, {x, y, z}, kTransferEdge, true).chunk;
       }
     }
   }
@@ -59,7 +59,7 @@ TransferScene scenario_of(unsigned number) {
 TransferScene scene_of(const VoxelWorld& world) {
   TransferScene out;
   out.name = world.name;
-  out.edge = kEdge;
+  out.edge = kTransferEdge;
   out.visibility = world.visibility;
   VoxelPos middle{};
   if (world.bounds) {
@@ -67,11 +67,12 @@ TransferScene scene_of(const VoxelWorld& world) {
     middle = {(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2,
               (box.min.z + box.max.z) / 2};
   }
-  const ChunkCoord at = chunk_of(middle, kEdge);
+  const ChunkCoord at = chunk_of(middle, kTransferEdge);
   for (std::int32_t x = at.x - kSide / 2; x < at.x + kSide / 2; ++x) {
     for (std::int32_t y = at.y - kSide / 2; y < at.y + kSide / 2; ++y) {
       for (std::int32_t z = at.z - kSide / 2; z < at.z + kSide / 2; ++z) {
-        out.chunks[{x, y, z}] = chunk_of_world(world, origin_of({x, y, z}, kEdge), kEdge);
+        out.chunks[{x, y, z}] =
+            chunk_of_world(world, origin_of({x, y, z}, kTransferEdge), kTransferEdge);
       }
     }
   }

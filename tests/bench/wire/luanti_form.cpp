@@ -10,7 +10,7 @@
 namespace runstone::bench {
 namespace {
 
-constexpr int kLevel = 3;
+constexpr int kLuantiLevel = 3;
 constexpr std::uint8_t kNetworkVersion = 2;
 constexpr std::size_t kPlainBytesMax = std::size_t{1} << 20;
 
@@ -19,7 +19,7 @@ struct Free {
   void operator()(ZSTD_DStream* stream) const { ZSTD_freeDStream(stream); }
 };
 
-struct Scratch {
+struct LuantiScratch {
   std::unique_ptr<ZSTD_CStream, Free> compressor{ZSTD_createCStream()};
   std::unique_ptr<ZSTD_DStream, Free> decompressor{ZSTD_createDStream()};
   Bytes plain;  // of the block to send
@@ -27,8 +27,8 @@ struct Scratch {
   Bytes received = Bytes(kPlainBytesMax);
 };
 
-Scratch& scratch() {
-  thread_local Scratch mine;
+LuantiScratch& luanti_scratch() {
+  thread_local LuantiScratch mine;
   return mine;
 }
 
@@ -48,7 +48,7 @@ struct Stream {
 };
 
 /// Decompresses one stream from the front of `in`.
-Result<Stream> decompress(ByteView in, Scratch& s) {
+Result<Stream> decompress(ByteView in, LuantiScratch& s) {
   ZSTD_initDStream(s.decompressor.get());
   ZSTD_inBuffer source{in.data(), in.size(), 0};
   ZSTD_outBuffer target{s.received.data(), s.received.size(), 0};
@@ -75,7 +75,7 @@ Result<void> read_nodes(ByteReader& in, LuantiNodes& out) {
 }  // namespace
 
 void encode_luanti_block(const LuantiNodes& nodes, Bytes& out) {
-  Scratch& s = scratch();
+  LuantiScratch& s = luanti_scratch();
   s.plain.assign({0, 0xff, 0xff, 2, 2});
   for (const std::uint16_t id : nodes.id) put_u16(s.plain, id);
   s.plain.insert(s.plain.end(), nodes.param1.begin(), nodes.param1.end());
@@ -84,7 +84,7 @@ void encode_luanti_block(const LuantiNodes& nodes, Bytes& out) {
 
   const std::size_t at = out.size();
   out.resize(at + ZSTD_compressBound(s.plain.size()));
-  ZSTD_initCStream(s.compressor.get(), kLevel);
+  ZSTD_initCStream(s.compressor.get(), kLuantiLevel);
   ZSTD_inBuffer source{s.plain.data(), s.plain.size(), 0};
   ZSTD_outBuffer target{out.data() + at, out.size() - at, 0};
   // There are two calls, as in Luanti. If the call that ends the frame had all input, zstd would
@@ -97,7 +97,7 @@ void encode_luanti_block(const LuantiNodes& nodes, Bytes& out) {
 }
 
 Result<void> decode_luanti_wire(ByteView block, LuantiNodes& out) {
-  const auto stream = decompress(block, scratch());
+  const auto stream = decompress(block, luanti_scratch());
   if (!stream) return Unexpected<Error>{stream.error()};
   if (stream->bytes + 1 != block.size() || block.back() != kNetworkVersion) {
     return fail(ErrorCode::trailing_bytes, "block does not end as it should");
@@ -109,7 +109,7 @@ Result<void> decode_luanti_wire(ByteView block, LuantiNodes& out) {
 
 Result<void> decode_luanti_row(ByteView row, LuantiNodes& out) {
   if (row.empty() || row[0] != 29) return fail(ErrorCode::bad_version, "row is not of version 29");
-  const auto stream = decompress(row.subspan(1), scratch());
+  const auto stream = decompress(row.subspan(1), luanti_scratch());
   if (!stream) return Unexpected<Error>{stream.error()};
   ByteReader in(stream->plain);
   in.bytes(1 + 2 + 4);
