@@ -24,8 +24,8 @@ add_compile_options(-ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # g++ 12 reports overlapping copies in std::string where there are none (gcc bug 105651).
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)
-  # In a unity build g++ takes a .cpp for a header, where a member's type may not be of an unnamed namespace. Headers are
-  # compiled without unity in the header sets, which keep this warning.
+  # In a unity build g++ takes a .cpp for a header, where a member's type may not be of an unnamed namespace. The preset
+  # debug compiles each file alone and keeps this warning.
   add_compile_options($<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wno-subobject-linkage>)
 endif()
 
