@@ -58,10 +58,11 @@ std::vector<SessionId> receivers_of(WorldState& world, const OrderedBatch& batch
 void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& batch,
                      const Clocks& now) {
   mark_stale(world, session, batch.touched, now);
-  const WorldSession& mine = *world.find(session);
   for (std::size_t i = 0; i < batch.commit.edits.size(); ++i) {
     const OrderedEdit& edit = batch.commit.edits[i];
-    if (edit.op.author != mine.author || edit.op.instance != mine.instance) continue;
+    const WorldSession* mine = world.find(session);
+    if (mine == nullptr) return;  // too many answers were pending: the session is closed
+    if (edit.op.author != mine->author || edit.op.instance != mine->instance) continue;
     answer(world, session,
            {edit.op.seq, RejectReason::already_resolved,
             "applied; its commit did not fit the queue", batch.commit.first + i});

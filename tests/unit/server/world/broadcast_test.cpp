@@ -179,5 +179,24 @@ TEST_CASE("answers that do not fit are sent later in order, and too many close t
   CHECK(bench.environment.closed[0].reason == GoodbyeReason::timed_out);
 }
 
+TEST_CASE("a session may be closed by the answers to a commit that did not fit its queue",
+          "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.join(2, 2);
+  bench.environment.full.insert(1);
+  ClientSequence seq = 0;
+  while (seq < 4096) bench.edit(1, ++seq, kAtOrigin, 99);  // as many answers as may be pending
+  REQUIRE(bench.environment.closed.empty());
+  for (int i = 0; i < 3; ++i) bench.edit(1, ++seq, kAtOrigin);
+  bench.edit(2, 1, kAtOrigin);
+  bench.server.commit(bench.now());
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].session == 1);
+  CHECK(bench.server.head() == 4);
+  CHECK(bench.commits(2).size() == 1);
+  CHECK(bench.commits(1).empty());
+}
+
 }  // namespace
 }  // namespace runstone
