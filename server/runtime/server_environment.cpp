@@ -64,7 +64,10 @@ void ServerEnvironment::load_chunk(const ChunkKey& key) {
     if (loaded) {
       world_->chunk_loaded(key, *std::move(loaded), read_clocks());
     } else {
-      world_->chunk_failed(key, loaded.error().message(), read_clocks());
+      const bool is_damaged = loaded.error().kind != StoreError::Kind::io &&
+                              loaded.error().kind != StoreError::Kind::locked;
+      world_->chunk_failed(key, is_damaged ? LoadFailure::damaged : LoadFailure::not_read,
+                           loaded.error().message(), read_clocks());
     }
   });
 }

@@ -26,6 +26,12 @@ struct OpenedHistory {
   TimeUs utc_us = 0;  // the time when that edit was ordered
 };
 
+/// Why a chunk could not be loaded.
+enum class LoadFailure : std::uint8_t {
+  damaged,  // its row does not decode, or contradicts the log
+  not_read  // it could not be read now, for example because too many files are open
+};
+
 class WorldEnvironment {
  public:
   virtual ~WorldEnvironment() = default;

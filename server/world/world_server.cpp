@@ -67,6 +67,14 @@ void retry_pending(WorldState& world, const Clocks& now) {
   }
 }
 
+/// Loads chunks again whose pause has ended. Their residency stayed `loading`.
+void retry_loads(WorldState& world, const Clocks& now) {
+  for (const ChunkKey& key : world.load_retries.take_due(now.steady_us)) {
+    world.loads.load_started();
+    world.environment.load_chunk(key);
+  }
+}
+
 /// Counts the end of a load that was under way.
 void count_load_end(WorldState& world, const ChunkKey& key) {
   if (world.authority.chunks().residency(key) == Residency::loading) world.loads.load_ended();
@@ -203,6 +211,7 @@ void WorldServer::tick(const Clocks& now) {
   broadcast_durable(world, now);
   send_due_digest_checks(world, now);
   open_waiting_history(world);
+  retry_loads(world, now);
   retry_pending(world, now);
   step_checkpointer(now);
   collect_released(world);
@@ -213,6 +222,7 @@ void WorldServer::tick(const Clocks& now) {
 void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
   WorldState& world = *state_;
   count_load_end(world, key);
+  world.load_retries.ended(key);
   if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
     ++world.counters.chunks_failed;
     world.environment.log(WorldLogLevel::error,
@@ -226,9 +236,20 @@ void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& n
   start_loads(world);
 }
 
-void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, const Clocks& now) {
+void WorldServer::chunk_failed(const ChunkKey& key, LoadFailure failure, const std::string& what,
+                               const Clocks& now) {
   WorldState& world = *state_;
   count_load_end(world, key);
+  if (failure == LoadFailure::not_read && !world.is_stopping) {
+    if (const auto pause_us = world.load_retries.failed(key, now.steady_us)) {
+      world.environment.log(WorldLogLevel::error, "chunk=" + text_of(key) + " not read, again in " +
+                                                      std::to_string(*pause_us / 1'000'000) +
+                                                      " s: " + what);
+      start_loads(world);
+      return;
+    }
+  }
+  world.load_retries.ended(key);
   ++world.counters.chunks_failed;
   world.authority.chunks().quarantine(key);
   world.environment.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + what);
@@ -279,6 +300,8 @@ void WorldServer::begin_stop(const Clocks& now) {
     close_session(world, world.sessions.begin()->first, GoodbyeReason::closing, "the server stops");
   }
   collect_released(world);
+  world.load_retries.hurry();
+  retry_loads(world, now);
   step_checkpointer(now);
 }
 

@@ -94,8 +94,10 @@ class WorldServer {
 
   // Answers of WorldEnvironment.
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now);
-  /// Quarantines the chunk. `what` names file, table and row.
-  void chunk_failed(const ChunkKey& key, const std::string& what, const Clocks& now);
+  /// Quarantines a damaged chunk. Loads one that could not be read again later, a few times.
+  /// `what` names file, table and row.
+  void chunk_failed(const ChunkKey& key, LoadFailure failure, const std::string& what,
+                    const Clocks& now);
   /// Answers a session's history request, with the reason if it failed.
   void history_opened(SessionId session, std::uint32_t request,
                       const Result<OpenedHistory, std::string>& opened, const Clocks& now);

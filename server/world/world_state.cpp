@@ -29,7 +29,7 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
       random(std::move(random_)),
       authority(limits_of(config), start.log),
       checkpointer(config.snapshots, start.checkpoint),
-      interest(CoordLimit{kWorldLimit / config.chunk_edge}),
+      interest(CoordLimit::of(config.chunk_edge)),
       loads(config.loads_in_flight_max),
       durable(start.log.last),
       view_chunks_left(config.view_chunks_per_tick) {

@@ -9,6 +9,7 @@
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
 #include "server/world/load_queue.hpp"
+#include "server/world/load_retries.hpp"
 #include "server/world/players.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
@@ -28,6 +29,7 @@ struct WorldState {
   Checkpointer checkpointer;
   Interest interest;
   LoadQueue loads;
+  LoadRetries load_retries;
   Players players;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick

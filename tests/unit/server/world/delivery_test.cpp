@@ -86,7 +86,8 @@ TEST_CASE("a quarantined chunk is logged, unavailable to every session, and neve
   REQUIRE(bench.environment.loads.size() == 1);
   bench.environment.loads.clear();
   CHECK(unavailable(1).empty());
-  bench.server.chunk_failed({}, "world.sqlite: snapshot chunk=0,0,0: bad checksum", bench.now());
+  bench.server.chunk_failed({}, LoadFailure::damaged,
+                            "world.sqlite: snapshot chunk=0,0,0: bad checksum", bench.now());
   REQUIRE(bench.environment.lines.size() >= 1);
   CHECK(bench.environment.lines.back().find("snapshot chunk=0,0,0: bad checksum") !=
         std::string::npos);
@@ -104,6 +105,68 @@ TEST_CASE("a quarantined chunk is logged, unavailable to every session, and neve
   bench.server.commit(bench.now());
   CHECK(bench.server.head() == 1);  // it is ordered, logged and answered
   CHECK(bench.commits(1).size() == 1);
+}
+
+TEST_CASE("a chunk that could not be read is loaded again later, and then arrives", "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.send_view(1, View{1, {0, 0, 0}, 0, 0});
+  for (TimeUs pause_us = 1'000'000; pause_us <= 32'000'000; pause_us *= 2) {
+    CAPTURE(pause_us);
+    REQUIRE(bench.environment.loads.size() == 1);
+    bench.environment.loads.clear();
+    bench.server.chunk_failed({}, LoadFailure::not_read, "too many open files", bench.now());
+    CHECK(bench.environment.lines.back().find("too many open files") != std::string::npos);
+    bench.server.received(1, Ping{1}, bench.now());  // the client is not silent
+    bench.tick(pause_us - 50'000);
+    CHECK(bench.environment.loads.empty());
+    bench.server.received(1, Ping{1}, bench.now());
+    bench.tick();
+  }
+  CHECK(bench.environment.messages<ChunkUnavailable>(1, kEdge).empty());
+  bench.answer_loads();
+  CHECK(bench.environment.snapshots.size() == 1);
+}
+
+TEST_CASE("a chunk that could not be read seven times in a row is quarantined", "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.send_view(1, View{1, {0, 0, 0}, 0, 0});
+  for (int failure = 0; failure < 7; ++failure) {
+    REQUIRE(bench.environment.loads.size() == 1);
+    bench.environment.loads.clear();
+    bench.server.chunk_failed({}, LoadFailure::not_read, "no such device", bench.now());
+    // No message comes from the client meanwhile, but enough pings that it stays.
+    for (int second = 0; second < 33; ++second) {
+      bench.server.received(1, Ping{1}, bench.now());
+      bench.tick(1'000'000);
+    }
+  }
+  CHECK(bench.environment.loads.empty());
+  CHECK(bench.environment.messages<ChunkUnavailable>(1, kEdge).size() == 1);
+  CHECK(bench.environment.lines.back().find("quarantined: no such device") != std::string::npos);
+}
+
+TEST_CASE("a stop does not wait for a chunk that cannot be read", "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.edit(1, 1, kAtOrigin);
+  bench.server.commit(bench.now());
+  bench.server.durable(1, bench.now());
+  bench.send_view(1, View{1, {0, 0, 0}, 0, 0});
+  REQUIRE(bench.environment.loads.size() == 1);
+  bench.environment.loads.clear();
+  bench.server.chunk_failed({}, LoadFailure::not_read, "too many open files", bench.now());
+  CHECK_FALSE(bench.server.is_flushed());
+  bench.server.begin_stop(bench.now());
+  REQUIRE(bench.environment.loads.size() == 1);  // at once, a last time
+  bench.environment.loads.clear();
+  bench.server.chunk_failed({}, LoadFailure::not_read, "too many open files", bench.now());
+  for (const auto& save : std::exchange(bench.environment.saves, {})) {
+    CHECK(save.chunks.empty());
+    bench.server.snapshots_saved(bench.now());
+  }
+  CHECK(bench.server.is_flushed());
 }
 
 TEST_CASE("a loaded chunk that contradicts the log is unavailable", "[world]") {
@@ -125,7 +188,7 @@ TEST_CASE("chunk unavailable waits for room like a snapshot", "[world]") {
   bench.send_view(1, View{1, {0, 0, 0}, 0, 0});
   bench.environment.loads.clear();
   bench.environment.full.insert(1);
-  bench.server.chunk_failed({}, "damaged", bench.now());
+  bench.server.chunk_failed({}, LoadFailure::damaged, "damaged", bench.now());
   CHECK(unavailable_count() == 0);
   bench.environment.full.clear();
   bench.server.drained(1, bench.now());
