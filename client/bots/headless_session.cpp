@@ -4,8 +4,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "client/replica/view_size.hpp"
 #include "protocol/codec/message_table.hpp"
+#include "protocol/codec/view_size.hpp"
 
 namespace runstone {
 
@@ -108,7 +108,7 @@ void HeadlessSession::on_view_state(const ViewState& state) {
 void HeadlessSession::on_session_accepted(const SessionAccepted& accepted, TimeUs now_us) {
   last_ = 0;
   durable_ = welcome()->durable;
-  versions_.open(welcome()->epoch);
+  versions_.open(welcome()->epoch, CoordLimit::of(welcome()->chunk_edge));
   if (has_view_) send_view();
   local_edits_.resume(accepted.resolved);
   for (const ClientSequence seq : local_edits_.unanswered()) {
@@ -150,7 +150,7 @@ void HeadlessSession::send_view() {
 
 bool HeadlessSession::loaded() const {
   return is_open() && connection_.view_was_sent() && versions_.behind() == 0 &&
-         versions_.known() == chunks_in(view());
+         versions_.known() == chunks_in(view(), CoordLimit::of(welcome()->chunk_edge));
 }
 
 // Edits.

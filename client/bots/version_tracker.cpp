@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "client/replica/view_size.hpp"
 #include "common/core/key_text.hpp"
 
 namespace runstone {
@@ -39,8 +38,9 @@ void VersionCounts::merge(const VersionCounts& other) {
   behind_us.merge(other.behind_us);
 }
 
-void VersionTracker::open(Epoch epoch) {
+void VersionTracker::open(Epoch epoch, CoordLimit world) {
   epoch_ = epoch;
+  world_ = world;
   views_.reopen();
   chunks_.clear();
   requests_.clear();
@@ -139,7 +139,7 @@ void VersionTracker::receive(const ChunkUnavailable& unavailable) {
 void VersionTracker::complete(std::uint32_t view) {
   // The chunks of an older view may have been forgotten.
   if (!views_.current() || views_.current()->number != view) return;
-  const std::size_t expected = chunks_in(*views_.current());
+  const std::size_t expected = chunks_in(*views_.current(), world_);
   if (known() == expected) return;
   violations_.add("incomplete view", "view " + std::to_string(view) + " is complete, and " +
                                          std::to_string(known()) + " of its " +

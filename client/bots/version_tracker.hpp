@@ -25,6 +25,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/view_size.hpp"
 
 namespace runstone {
 
@@ -65,8 +66,8 @@ struct VersionCounts {
 
 class VersionTracker {
  public:
-  /// Opens a connection. All chunks are expected again.
-  void open(Epoch epoch);
+  /// Opens a connection. All chunks of the view that the world has are expected again.
+  void open(Epoch epoch, CoordLimit world);
   /// Forgets the chunks outside of the view. The view was sent with its number.
   void set_view(const View& view);
 
@@ -111,6 +112,7 @@ class VersionTracker {
   void forget(const Known& chunk);
 
   Epoch epoch_ = 0;
+  CoordLimit world_;
   RecentViews views_;
   std::map<ChunkCoord, Known> chunks_;
   std::size_t held_ = 0, unavailable_ = 0, behind_ = 0;

@@ -4,9 +4,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "client/replica/view_size.hpp"
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
+#include "protocol/codec/view_size.hpp"
 
 namespace runstone {
 
@@ -240,7 +240,9 @@ void ClientSession::send_view() {
   connection_.send_view();
 }
 
-std::size_t ClientSession::view_chunks() const { return chunks_in(view()); }
+std::size_t ClientSession::view_chunks() const {
+  return chunks_in(view(), CoordLimit::of(welcome()->chunk_edge));
+}
 
 bool ClientSession::loaded() const {
   return is_open() && !history_.is_loading() &&

@@ -78,6 +78,8 @@ class ClientSession {
   bool loading_history() const { return history_.is_loading(); }
   /// Returns why the newest history request was refused, or an empty string.
   const std::string& history_refusal() const { return history_.refusal(); }
+  /// Returns the newest request of this connection; its number is 0 if there was none.
+  const HistoryRequest& history_request() const { return history_.newest(); }
 
   /// Sends a command, such as "undo". Fails with
   ///   - bad_value unless open, while another command runs, or if the text is not 1 to
@@ -114,7 +116,7 @@ class ClientSession {
   /// Returns the view in force: the requested one within the server's limits. See
   /// ServerConnection::view().
   View view() const { return connection_.view(); }
-  /// Returns the number of chunks in view.
+  /// Returns the number of chunks in view that the world has. Requires an open session.
   std::size_t view_chunks() const;
   /// Returns true if every chunk in view arrived on this connection or is unavailable, and none
   /// waits to be repaired.

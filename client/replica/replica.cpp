@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "protocol/codec/view_size.hpp"
 
 namespace runstone {
 
@@ -328,18 +329,22 @@ std::vector<CachedChunk> Replica::take_claims() {
   return claims;
 }
 
+bool Replica::is_expected(const ChunkKey& key) const {
+  return parameters_ && view() &&
+         has_chunk(*view(), CoordLimit::of(parameters_->chunk_edge), key.at) && !unavailable(key);
+}
+
 std::vector<ChunkKey> Replica::missing() const {
   std::vector<ChunkKey> keys;
   if (!parameters_ || past_.is_past() || !view()) return keys;
-  const std::int32_t limit = kWorldLimit / parameters_->chunk_edge;
-  const auto is_inside = [limit](std::int32_t c) { return c >= -limit && c < limit; };
+  const CoordLimit world = CoordLimit::of(parameters_->chunk_edge);
   const View& v = *view();
   const std::int32_t h = v.radius_h, up = v.radius_v;
   for (std::int32_t x = v.centre.x - h; x <= v.centre.x + h; ++x) {
     for (std::int32_t y = v.centre.y - up; y <= v.centre.y + up; ++y) {
       for (std::int32_t z = v.centre.z - h; z <= v.centre.z + h; ++z) {
         const ChunkKey key{0, {x, y, z}};
-        if (!v.contains(key.at) || !is_inside(x) || !is_inside(y) || !is_inside(z)) continue;
+        if (!has_chunk(v, world, key.at)) continue;
         const TrackedChunk* chunk = chunks_.find(key);
         const bool is_expected = chunk == nullptr || chunk->state() == ChunkState::expected ||
                                  chunk->state() == ChunkState::requested;

@@ -155,6 +155,9 @@ class Replica {
   /// Chunks that the server said on this connection it cannot send.
   std::size_t unavailable_count() const { return chunks_.count(ChunkState::unavailable); }
   bool unavailable(const ChunkKey& key) const;
+  /// Returns true if the server sends this chunk sooner or later: the view and the world have it,
+  /// and it is not unavailable.
+  bool is_expected(const ChunkKey& key) const;
   const LocalEdits& local_edits() const { return local_edits_; }
   Sequence durable() const { return durable_; }
   /// Newest sequence seen in a message of the server.

@@ -70,9 +70,7 @@ bool MeshPlanner::ready(const ChunkKey& key, const State& state) const {
   if (state.edited) return true;
   for (int i = 0; i < kDirectionCount; ++i) {
     const ChunkKey next = beside(key, static_cast<Direction>(i));
-    const bool will_come =
-        replica_.view() && replica_.view()->contains(next.at) && !replica_.unavailable(next);
-    if (will_come && !replica_.shown(next)) return false;
+    if (replica_.is_expected(next) && !replica_.shown(next)) return false;
   }
   return true;
 }

@@ -8,18 +8,9 @@
 
 #include "common/core/coords.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/view_size.hpp"
 
 namespace runstone {
-
-/// Chunk coordinates of a world are in [-limit, limit). A view may extend beyond; it has no chunks
-/// there.
-struct CoordLimit {
-  std::int32_t limit = kWorldLimit;
-  bool contains(ChunkCoord c) const {
-    return c.x >= -limit && c.x < limit && c.y >= -limit && c.y < limit && c.z >= -limit &&
-           c.z < limit;
-  }
-};
 
 /// Returns the squared distance from the view's centre, in chunks.
 std::int64_t distance2(const View& view, ChunkCoord at);

@@ -23,7 +23,7 @@ ChunkSnapshot snapshot_at(ChunkCoord at, Sequence seq, Epoch epoch = 1) {
 /// Makes a tracker of one chunk, at this sequence.
 VersionTracker book_at(Sequence seq) {
   VersionTracker tracker;
-  tracker.open(1);
+  tracker.open(1, {});
   tracker.set_view({1, kTracked, 0, 0});
   tracker.receive(chunks_of(snapshot_at(kTracked, seq)), 0);
   return tracker;
@@ -46,7 +46,7 @@ TEST_CASE("versions follow edits that continue them", "[bots][headless]") {
 TEST_CASE("an edit that overtakes its snapshot is held back, and one in the snapshot is dropped",
           "[bots][headless]") {
   VersionTracker tracker;
-  tracker.open(1);
+  tracker.open(1, {});
   tracker.set_view({1, kTracked, 0, 0});
   tracker.follow(kTracked, 2, 3, 10);
   tracker.follow(kTracked, 3, 5, 10);
@@ -182,7 +182,7 @@ TEST_CASE("a view that is complete without all of its chunks is a violation", "[
 
 TEST_CASE("chunks of one material count as snapshots", "[bots][headless]") {
   VersionTracker tracker;
-  tracker.open(1);
+  tracker.open(1, {});
   tracker.set_view({1, kTracked, 0, 1});
   tracker.follow(kTracked, 4, 6, 0);
   tracker.receive(
@@ -213,7 +213,7 @@ TEST_CASE("an unavailable chunk counts as known and is not followed", "[bots][he
 TEST_CASE("held back edits are bounded, and the newest sequence is remembered",
           "[bots][headless]") {
   VersionTracker tracker;
-  tracker.open(1);
+  tracker.open(1, {});
   tracker.set_view({1, kTracked, 0, 0});
   for (Sequence seq = 2; seq < 2 * kWaitingLinksMax; ++seq)
     tracker.follow(kTracked, seq - 1, seq, 0);
@@ -228,7 +228,7 @@ TEST_CASE("a new connection expects every chunk anew", "[bots][headless]") {
   tracker.follow(kTracked, 5, 6, 0);
   tracker.set_view({2, {5, 0, 0}, 0, 0});
   tracker.set_view({3, kTracked, 0, 0});
-  tracker.open(2);
+  tracker.open(2, {});
   CHECK(tracker.known() == 0);
   CHECK(tracker.behind() == 0);
   tracker.receive(chunks_of(snapshot_at(kTracked, 2, 2)), 0);

@@ -32,6 +32,19 @@ TEST_CASE_METHOD(SessionBench, "a session opens with the handshake and then send
   CHECK(session.loaded());
 }
 
+TEST_CASE_METHOD(SessionBench, "a view at the border of the world is loaded without chunks beyond",
+                 "[replica]") {
+  static_cast<void>(open());
+  const std::int32_t top = kWorldLimit / kEdge - 1;
+  session.set_view({2, {0, top, 0}, 0, 1});
+  REQUIRE(take<View>(sent()).size() == 1);
+  receive(chunks_of(server.world.snapshot({0, top, 0}), 2));
+  CHECK_FALSE(session.loaded());
+  receive(chunks_of(server.world.snapshot({0, top - 1, 0}), 2));
+  CHECK(session.view_chunks() == 2);
+  CHECK(session.loaded());
+}
+
 TEST_CASE_METHOD(SessionBench, "a view is loaded when each chunk arrived or is unavailable",
                  "[replica]") {
   static_cast<void>(open());

@@ -49,7 +49,7 @@ struct Server {
 };
 
 template <class T>
-std::vector<T> take(std::vector<Message>& messages) {
+std::vector<T> take(const std::vector<Message>& messages) {
   std::vector<T> out;
   for (const Message& message : messages) {
     if (const auto* wanted = std::get_if<T>(&message)) out.push_back(*wanted);

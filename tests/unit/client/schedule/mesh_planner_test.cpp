@@ -7,6 +7,7 @@
 #include "tests/unit/client/schedule/planner_bench.hpp"
 
 using namespace runstone;
+using test::chunks_of;
 using test::layers_of;
 using test::PlannerBench;
 
@@ -112,6 +113,18 @@ TEST_CASE_METHOD(PlannerBench, "a chunk does not wait for a neighbour that the s
   CHECK(planner.dirty_count() == 0);
   load({1, 0, 0});  // it arrives later: the neighbour is meshed again
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+}
+
+TEST_CASE_METHOD(PlannerBench, "a chunk at the border of the world waits for nothing beyond it",
+                 "[schedule]") {
+  const ChunkCoord top{0, kWorldLimit / kBenchEdge - 1, 0};
+  replica.set_view({2, top, 0, 1});  // the topmost chunk and the one below; nothing is above
+  replica.receive(chunks_of(world.snapshot(top), 2), {});
+  pass_changes();
+  CHECK(drain().empty());
+  replica.receive(chunks_of(world.snapshot({0, top.y - 1, 0}), 2), {});
+  pass_changes();
+  CHECK(drain().size() == 2);
 }
 
 TEST_CASE_METHOD(PlannerBench, "loading a view meshes every chunk once", "[schedule]") {

@@ -50,6 +50,7 @@ TEST_CASE("a view difference is exactly the chunks of one view outside of the ot
     std::vector<ChunkCoord> all;
     append_difference(a, std::nullopt, limit, all);
     REQUIRE(all.size() == cells_by_trying(a, limit).size());
+    REQUIRE(all.size() == chunks_in(a, limit));
   }
 }
 
@@ -58,6 +59,7 @@ TEST_CASE("a view at the border of the world ends there and does not overflow", 
   std::vector<ChunkCoord> cells;
   append_difference({1, {INT32_MAX, INT32_MIN, INT32_MAX}, 64, 64}, std::nullopt, limit, cells);
   CHECK(cells.empty());
+  CHECK(chunks_in({1, {INT32_MAX, INT32_MIN, INT32_MAX}, 64, 64}, limit) == 0);
   append_difference({1, {limit.limit - 1, 0, 0}, 1, 0}, std::nullopt, limit, cells);
   CHECK(cells.size() == 4);  // the fifth would lie outside
 }
