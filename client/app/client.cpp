@@ -143,14 +143,20 @@ void Client::poll_window(TimeUs now_us) {
 
 void Client::scrub(int steps) {
   const Sequence newest = session_.replica().newest();
-  const bool is_live = !session_.replica().past() && !session_.loading_history();
-  const auto from = static_cast<std::int64_t>(is_live ? newest : scrubbed_to_);
+  Sequence from = newest;
+  if (session_.loading_history()) {
+    const HistoryRequest& under_way = session_.history_request();
+    if (under_way.to == HistoryTarget::sequence) from = under_way.seq;
+  } else if (session_.replica().past()) {
+    from = session_.replica().past()->seq;
+  }
   const auto step = static_cast<std::int64_t>(std::max<Sequence>(1, newest / kScrubSteps));
-  const auto to = static_cast<Sequence>(std::max<std::int64_t>(0, from + steps * step));
+  const auto to = static_cast<Sequence>(
+      std::max<std::int64_t>(0, static_cast<std::int64_t>(from) + steps * step));
   HistoryRequest request;  // the live world
   if (to < newest) {
     request.to = HistoryTarget::sequence;
-    request.seq = scrubbed_to_ = to;
+    request.seq = to;
   }
   static_cast<void>(session_.request_history(request));
 }
@@ -167,6 +173,10 @@ void Client::drain_changes() {
   pipeline_.take(changes, session_.clock(), steady_now_us());
   for (const auto& [key, reason] : changes.unavailable) {
     spdlog::warn("chunk={} unavailable: {}", text_of(key), to_string(reason));
+  }
+  if (session_.history_refusal() != logged_refusal_) {
+    logged_refusal_ = session_.history_refusal();
+    if (!logged_refusal_.empty()) spdlog::warn("the past is not shown: {}", logged_refusal_);
   }
   for (const RejectedEdit& reject : changes.rejects) {
     spdlog::info("edit={} rejected: {} {}", reject.seq, to_string(reject.reason), reject.detail);

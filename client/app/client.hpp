@@ -77,7 +77,7 @@ class Client {
   TimeUs polled_us_ = 0;             // when the window was last polled
   TimeUs titled_us_ = 0;             // when the title was last set
   std::uint64_t titled_frames_ = 0;  // frames presented by then
-  Sequence scrubbed_to_ = 0;         // while the past is shown or requested
+  std::string logged_refusal_;       // of the newest request to see the past
   bool end_requested_ = false;       // by the user or a signal
 };
 

@@ -63,9 +63,9 @@ class MeshPipeline {
   bool is_up_to_date() const {
     return planner_.dirty_count() == 0 && is_idle() && !uploads_waiting_ && !frame_.uploads;
   }
-  /// Returns true if every mesh that was queued for upload before the first call has been
-  /// presented. That takes at most two frames, whatever other players edit meanwhile. Call it when
-  /// the program wants to end.
+  /// Returns true if every edit that was meshed before the first call has been presented. That
+  /// takes at most two frames, whatever other players edit meanwhile. Call it when the program
+  /// wants to end.
   bool has_caught_up();
   std::uint64_t frames_presented() const { return frames_.presented; }
   LatencyRecorder& recorder() { return recorder_; }
@@ -110,7 +110,7 @@ class MeshPipeline {
   // These flags are set by events since the last frame was ordered.
   bool changed_ = true;           // the camera, a marker or a mesh changed
   bool uploads_waiting_ = false;  // a mesh was queued for upload
-  bool edits_waiting_ = false;    // a mesh with edits was queued for upload
+  bool edits_waiting_ = false;    // a mesh was queued while an edit was not presented yet
   struct {
     bool in_progress = false, uploads = false, screenshots = false;
   } frame_;  // the frame in progress; true if it shows new meshes, and if it becomes screenshots
