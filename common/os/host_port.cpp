@@ -18,18 +18,43 @@ bool may_be_v6(std::string_view text) {
          address.find_first_not_of("0123456789abcdefABCDEF:.") == std::string_view::npos;
 }
 
+struct Ports {
+  std::uint16_t if_absent;
+  std::uint16_t lowest;
+};
+
 /// Requires a nonempty `host`. `port` is the text after the colon, or nullopt without a colon.
-Parsed with_port(std::string_view host, std::optional<std::string_view> port,
-                 std::uint16_t default_port) {
-  HostPort out{std::string(host), default_port};
+Parsed with_port(std::string_view host, std::optional<std::string_view> port, Ports ports) {
+  HostPort out{std::string(host), ports.if_absent};
   if (!port) return out;
   const char* const begin = port->data();
   const char* const end = begin + port->size();
   const auto [rest, error] = std::from_chars(begin, end, out.port);
-  if (error != std::errc() || rest != end || out.port == 0) {
-    return Unexpected<std::string>{"the port is not a number from 1 to 65535"};
+  if (error != std::errc() || rest != end || out.port < ports.lowest) {
+    return Unexpected<std::string>{"the port is not a number from " + std::to_string(ports.lowest) +
+                                   " to 65535"};
   }
   return out;
+}
+
+Parsed parse(std::string_view text, Ports ports) {
+  if (text.starts_with('[')) {
+    const std::size_t bracket = text.find(']');
+    if (bracket == std::string_view::npos) return wrong_form();
+    const std::string_view host = text.substr(1, bracket - 1);
+    if (!may_be_v6(host)) return wrong_form();
+    const std::string_view rest = text.substr(bracket + 1);
+    if (rest.empty()) return with_port(host, std::nullopt, ports);
+    if (rest.front() != ':') return wrong_form();
+    return with_port(host, rest.substr(1), ports);
+  }
+  const std::size_t colon = text.find(':');
+  const bool has_two_colons = colon != text.rfind(':');
+  if (text.empty() || (has_two_colons ? !may_be_v6(text) : colon == 0)) return wrong_form();
+  if (colon == std::string_view::npos || has_two_colons) {
+    return with_port(text, std::nullopt, ports);
+  }
+  return with_port(text.substr(0, colon), text.substr(colon + 1), ports);
 }
 
 }  // namespace
@@ -40,23 +65,13 @@ std::string to_string(const HostPort& address) {
 }
 
 Result<HostPort, std::string> parse_host_port(std::string_view text, std::uint16_t default_port) {
-  if (text.starts_with('[')) {
-    const std::size_t bracket = text.find(']');
-    if (bracket == std::string_view::npos) return wrong_form();
-    const std::string_view host = text.substr(1, bracket - 1);
-    if (!may_be_v6(host)) return wrong_form();
-    const std::string_view rest = text.substr(bracket + 1);
-    if (rest.empty()) return with_port(host, std::nullopt, default_port);
-    if (rest.front() != ':') return wrong_form();
-    return with_port(host, rest.substr(1), default_port);
-  }
-  const std::size_t colon = text.find(':');
-  const bool has_two_colons = colon != text.rfind(':');
-  if (text.empty() || (has_two_colons ? !may_be_v6(text) : colon == 0)) return wrong_form();
-  if (colon == std::string_view::npos || has_two_colons) {
-    return with_port(text, std::nullopt, default_port);
-  }
-  return with_port(text.substr(0, colon), text.substr(colon + 1), default_port);
+  return parse(text, {default_port, 1});
+}
+
+Result<HostPort, std::string> parse_listen_address(std::string_view text,
+                                                   std::uint16_t default_port) {
+  const bool is_any = text.starts_with(':') && text.rfind(':') == 0;
+  return parse(is_any ? "0.0.0.0" + std::string(text) : std::string(text), {default_port, 0});
 }
 
 }  // namespace runstone

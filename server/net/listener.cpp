@@ -3,42 +3,24 @@
 #include <asio/co_spawn.hpp>
 #include <asio/detached.hpp>
 #include <asio/post.hpp>
-#include <charconv>
 #include <chrono>
 #include <utility>
 #include <vector>
 
+#include "common/os/host_port.hpp"
+#include "protocol/default_port.hpp"
 #include "server/net/await_tuple.hpp"
 
 namespace runstone {
 namespace {
 
-struct HostPort {
-  std::string host;
-  std::uint16_t port = 0;
-};
-
-Result<HostPort, std::string> parse_address(const std::string& text) {
-  const auto colon = text.rfind(':');
-  HostPort parsed;
-  if (colon != std::string::npos) {
-    parsed.host = text.substr(0, colon);
-    if (parsed.host.size() > 1 && parsed.host.front() == '[' && parsed.host.back() == ']') {
-      parsed.host = parsed.host.substr(1, parsed.host.size() - 2);
-    }
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, parsed.port);
-    if (error == std::errc{} && rest == end && rest != text.data() + colon + 1) return parsed;
-  }
-  return Unexpected<std::string>{"cannot listen on \"" + text + "\": the form is HOST:PORT"};
-}
-
 Result<void, std::string> bind_to(asio::ip::tcp::acceptor& acceptor, const std::string& address) {
-  const auto parsed = parse_address(address);
-  if (!parsed) return Unexpected<std::string>{parsed.error()};
-  const auto cannot = [&](const asio::error_code& error) {
-    return Unexpected<std::string>{"cannot listen on " + address + ": " + error.message()};
+  const auto cannot_listen = [&](const std::string& why) {
+    return Unexpected<std::string>{"cannot listen on \"" + address + "\": " + why};
   };
+  const auto parsed = parse_listen_address(address, kDefaultPort);
+  if (!parsed) return cannot_listen(parsed.error());
+  const auto cannot = [&](const asio::error_code& error) { return cannot_listen(error.message()); };
   asio::error_code error;
   asio::ip::tcp::resolver resolver(acceptor.get_executor());
   const auto ends = resolver.resolve(

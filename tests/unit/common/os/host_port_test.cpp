@@ -48,3 +48,14 @@ TEST_CASE("an address of a wrong form is refused", "[os]") {
     CHECK_FALSE(address.error().empty());
   }
 }
+
+TEST_CASE("a server may listen on every address and on a free port", "[os]") {
+  CHECK(parse_listen_address(":4000", kDefault).value() == HostPort{"0.0.0.0", 4000});
+  CHECK(parse_listen_address("127.0.0.1:0", kDefault).value() == HostPort{"127.0.0.1", 0});
+  CHECK(parse_listen_address("[::]:0", kDefault).value() == HostPort{"::", 0});
+  CHECK(parse_listen_address("localhost", kDefault).value() == HostPort{"localhost", kDefault});
+  for (const char* text : {"", ":", "host:", "host:65536", "host:-1", "[]:1", "[::1"}) {
+    CAPTURE(text);
+    CHECK_FALSE(parse_listen_address(text, kDefault).has_value());
+  }
+}
