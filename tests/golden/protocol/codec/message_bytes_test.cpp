@@ -16,7 +16,7 @@
 namespace runstone::test {
 namespace {
 
-constexpr std::uint16_t kEdge = 16;
+constexpr std::uint16_t kChunkEdge = 16;
 
 template <std::size_t N>
 std::array<std::uint8_t, N> counting(std::uint8_t first) {
@@ -104,7 +104,7 @@ Commit a_commit() {
 }
 
 Chunks some_chunks() {
-  const RunChunk voxels = uniform_chunk(Extent::cube(kEdge), 7, AxisOrder::yxz);
+  const RunChunk voxels = uniform_chunk(Extent::cube(kChunkEdge), 7, AxisOrder::yxz);
   const ChunkSnapshot snapshot{{0, {1, -2, 2}}, {voxels, {3, 500}, digest_of(voxels)}};
   ChunkEdits edits{{0, {1, -2, 3}}, 499, {3, 500}, {{1, 2}}, {}};
   edits.edits.push_back({500, {SetVoxel{{17, -31, 50}}, {}, 300}});
@@ -244,7 +244,7 @@ TEST_CASE("messages of version 1 are read", "[protocol][golden]") {
     const MessageKind kind = golden.message.index();
     CAPTURE(info_of(kind).name);
     const Sender sender = may_send(info_of(kind), Sender::client) ? Sender::client : Sender::server;
-    const auto decoded = decode_message(sender, kind, from_hex(golden.hex), kEdge);
+    const auto decoded = decode_message(sender, kind, from_hex(golden.hex), kChunkEdge);
     if (!decoded) FAIL(decoded.error().what);
     CHECK(*decoded == golden.message);
     kinds.insert(kind);
@@ -276,7 +276,7 @@ TEST_CASE("the framed message of the protocol page is read", "[protocol][golden]
   int count = 0;
   const auto fed = reader.feed(
       from_hex(page_example("view-frame")), [&](MessageKind kind, ByteView bytes) -> Result<void> {
-        const auto decoded = decode_message(Sender::client, kind, bytes, kEdge);
+        const auto decoded = decode_message(Sender::client, kind, bytes, kChunkEdge);
         if (!decoded) return Unexpected<Error>{decoded.error()};
         CHECK(*decoded == Message(View{12, {1, -2, 3}, 6, 3}));
         ++count;

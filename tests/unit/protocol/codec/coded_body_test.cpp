@@ -21,7 +21,7 @@ Bytes with_body(const Bytes& body, const char* palette = "02 00 00") {
   return out;
 }
 
-ErrorCode error_of(const Bytes& bytes) {
+ErrorCode coded_error(const Bytes& bytes) {
   const auto decoded = decode_chunk(bytes);
   REQUIRE_FALSE(decoded.has_value());
   return decoded.error().code;
@@ -102,33 +102,34 @@ TEST_CASE("canonical coded runs are decoded", "[protocol]") {
 }
 
 TEST_CASE("coded bytes whose fields contradict each other are refused", "[protocol]") {
-  CHECK(error_of(with_body({})) == ErrorCode::truncated);
-  CHECK(error_of(with_body({0xff, 0xff, 0xff, 0xff})) != ErrorCode::unknown_kind);
-  CHECK(error_of(with_body({0}, "01 05")) ==
+  CHECK(coded_error(with_body({})) == ErrorCode::truncated);
+  CHECK(coded_error(with_body({0xff, 0xff, 0xff, 0xff})) != ErrorCode::unknown_kind);
+  CHECK(coded_error(with_body({0}, "01 05")) ==
         ErrorCode::trailing_bytes);  // one material needs no body
-  CHECK(error_of(with_body({}, "00")) == ErrorCode::broken_invariant);  // no material
-  CHECK(error_of(with_body({}, "03 00 00")) ==
+  CHECK(coded_error(with_body({}, "00")) == ErrorCode::broken_invariant);  // no material
+  CHECK(coded_error(with_body({}, "03 00 00")) ==
         ErrorCode::truncated);  // counts three materials, has two
-  CHECK(error_of(with_body({}, "81 04 00 00")) ==
+  CHECK(coded_error(with_body({}, "81 04 00 00")) ==
         ErrorCode::bad_value);  // more materials than voxels
-  CHECK(error_of(from_hex("03 02 00 08 08 08 01 00")) == ErrorCode::bad_version);
-  CHECK(error_of(from_hex("03 01 08 08 08 08 01 00")) ==
+  CHECK(coded_error(from_hex("03 02 00 08 08 08 01 00")) == ErrorCode::bad_version);
+  CHECK(coded_error(from_hex("03 01 08 08 08 08 01 00")) ==
         ErrorCode::bad_value);  // the zstd flag of packed
-  CHECK(error_of(from_hex("03 01 00 07 08 08 01 00")) == ErrorCode::bad_value);
+  CHECK(coded_error(from_hex("03 01 00 07 08 08 01 00")) == ErrorCode::bad_value);
   CHECK(decode_chunk(from_hex("03 01 00 08 08 08 01 05")).has_value());
 
   // A run that ends behind its stretch: distance 7, at most 6.
-  CHECK(error_of(Spelling().index(false).fresh(true).fresh(true).fresh(true).fresh(true).bytes()) ==
+  CHECK(coded_error(
+            Spelling().index(false).fresh(true).fresh(true).fresh(true).fresh(true).bytes()) ==
         ErrorCode::not_canonical);
   // A change to the same material.
-  CHECK(error_of(Spelling()
-                     .index(false)
-                     .fresh(true)
-                     .fresh(false)
-                     .fresh(false)
-                     .fresh(false)
-                     .index(false)
-                     .bytes()) == ErrorCode::not_canonical);
+  CHECK(coded_error(Spelling()
+                        .index(false)
+                        .fresh(true)
+                        .fresh(false)
+                        .fresh(false)
+                        .fresh(false)
+                        .index(false)
+                        .bytes()) == ErrorCode::not_canonical);
   // A palette index of 3 in two bits; there are three materials.
   AdaptiveBit high, low;
   Bytes body;
@@ -136,7 +137,7 @@ TEST_CASE("coded bytes whose fields contradict each other are refused", "[protoc
   coder.code(high, true);
   coder.code(low, true);
   coder.finish();
-  CHECK(error_of(with_body(body, "03 00 00 00")) == ErrorCode::not_canonical);
+  CHECK(coded_error(with_body(body, "03 00 00 00")) == ErrorCode::not_canonical);
 }
 
 TEST_CASE("a palette with a material that no coded run has is refused", "[protocol]") {

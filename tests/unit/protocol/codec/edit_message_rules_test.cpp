@@ -7,7 +7,7 @@
 namespace runstone::test {
 namespace {
 
-const EditDescriptor kEdit{SetVoxel{{1, 2, 3}}, {}, 1};
+const EditDescriptor kValidEdit{SetVoxel{{1, 2, 3}}, {}, 1};
 
 /// One edit of a commit, field by field as docs/protocol.md lists them.
 struct EditFields {
@@ -15,7 +15,7 @@ struct EditFields {
   std::uint8_t cause = 0;
   std::uint64_t subject = 0;
   std::int64_t ordered_us = 50, delay_us = 20;  // relative to the edit before; from click to order
-  Bytes edit = encode(kEdit);
+  Bytes edit = encode(kValidEdit);
   std::optional<std::uint64_t> edit_bytes;  // if it differs from the size of the edit
   std::uint64_t count = 1;                  // of touched chunks
   Bytes previous{1};
@@ -69,9 +69,9 @@ TEST_CASE(
       return wire::CreateEditRequest(b, seq, submitted_us, b.CreateVector(edit));
     });
   };
-  const Bytes edit = encode(kEdit);
+  const Bytes edit = encode(kValidEdit);
   REQUIRE(request(1, edit).has_value());
-  CHECK(*request(1, edit) == Message(EditRequest{1, 0, kEdit}));
+  CHECK(*request(1, edit) == Message(EditRequest{1, 0, kValidEdit}));
   CHECK(request(kSequenceMax, edit).has_value());
   CHECK_FALSE(request(kSequenceMax + 1, edit).has_value());  // the store has 63 bits
   CHECK_FALSE(request(0, edit).has_value());

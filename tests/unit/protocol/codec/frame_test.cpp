@@ -26,7 +26,7 @@ std::optional<Error> error_in_pieces(ByteView stream, std::size_t piece, Sender 
 
 /// Returns the error of a server's stream given in hex, or nullopt if it is accepted. The stream
 /// has the same result whole and byte by byte.
-std::optional<Error> error_of(std::string_view hex, Sender sender = Sender::server) {
+std::optional<Error> frame_error(std::string_view hex, Sender sender = Sender::server) {
   const Bytes stream = from_hex(hex);
   const auto whole = error_in_pieces(stream, stream.size(), sender);
   CHECK(error_in_pieces(stream, 1, sender) == whole);
@@ -53,8 +53,8 @@ std::optional<MessageKind> kind_in(FrameClass frame_class, Sender sender) {
 TEST_CASE("a frame with a bad header is refused, and the error names where it began",
           "[protocol]") {
   const std::string good = "0100 11 00 00000000 aa";  // Pong
-  REQUIRE_FALSE(error_of(good));
-  REQUIRE_FALSE(error_of(good + "0100 11 00 01000000"));
+  REQUIRE_FALSE(frame_error(good));
+  REQUIRE_FALSE(frame_error(good + "0100 11 00 01000000"));
   const struct {
     const char* second;
     ErrorCode code;
@@ -74,7 +74,7 @@ TEST_CASE("a frame with a bad header is refused, and the error names where it be
   };
   for (const auto& c : cases) {
     CAPTURE(c.second);
-    const auto error = error_of(good + c.second);
+    const auto error = frame_error(good + c.second);
     REQUIRE(error);
     CHECK(error->code == c.code);
     CHECK(error->offset == 9);
@@ -101,18 +101,18 @@ TEST_CASE("no kind of a client belongs to the class chunks", "[protocol]") {
 TEST_CASE("a frame that interrupts a message of its class is refused", "[protocol]") {
   const std::string begun = "0100 09 01 00000000 aa";  // Commit, more follows
   // Durable is of the same class.
-  const auto error = error_of(begun + "0100 0b 00 01000000 bb");
+  const auto error = frame_error(begun + "0100 0b 00 01000000 bb");
   REQUIRE(error);
   CHECK(error->code == ErrorCode::broken_invariant);
   CHECK(error->offset == 9);
   // Pong and Chunks are of other classes, and a fragment of the same kind continues the message.
   const std::string between = begun + "0100 11 00 01000000 bb" + "0100 07 01 02000000 cc";
-  REQUIRE_FALSE(error_of(between));
+  REQUIRE_FALSE(frame_error(between));
   const std::string ended = between + "0100 09 00 03000000 dd";
-  REQUIRE_FALSE(error_of(ended));
-  REQUIRE_FALSE(error_of(ended + "0100 0b 00 04000000 bb"));
+  REQUIRE_FALSE(frame_error(ended));
+  REQUIRE_FALSE(frame_error(ended + "0100 0b 00 04000000 bb"));
   // The message of the class chunks has not ended.
-  CHECK(error_of(ended + "0100 19 00 04000000 bb"));
+  CHECK(frame_error(ended + "0100 19 00 04000000 bb"));
 }
 
 TEST_CASE("a message may have the size of its class limit and not one byte more", "[protocol]") {
