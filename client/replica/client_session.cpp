@@ -96,7 +96,8 @@ void ClientSession::on_session_accepted(const SessionAccepted& accepted, TimeUs 
                              .head = world.head,
                              .resolved = accepted.resolved,
                              .heights = world.heights,
-                             .edit_volume_max = world.edit_volume_max});
+                             .edit_volume_max = world.edit_volume_max,
+                             .material_count = world.materials.size()});
   refresh_view();
   tick(now_us);
   for (auto& [message, arrival] : std::exchange(early_, {})) receive(std::move(message), arrival);
@@ -116,10 +117,6 @@ void ClientSession::tick(TimeUs now_us) {
 
 Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs submitted_us,
                                              TimeUs now_us) {
-  if (const auto valid = validate(edit); !valid) return Unexpected<Error>{valid.error()};
-  if (welcome() && !welcome()->materials.knows(material_max(edit))) {
-    return fail(ErrorCode::not_found, "material is not in the world's table");
-  }
   const auto seq = replica_->submit(edit, submitted_us, now_us);
   if (seq && is_open()) {
     waiting_.push_back(*seq);

@@ -106,7 +106,7 @@ void Replica::show_moment(const std::optional<PastMoment>& past) {
 
 Result<ClientSequence> Replica::submit(const EditDescriptor& edit, TimeUs submitted_us,
                                        TimeUs now_us) {
-  if (const auto ok = check_edit(edit); !ok) return Unexpected<Error>{ok.error()};
+  if (const auto ok = check(edit); !ok) return Unexpected<Error>{ok.error()};
   std::vector<ChunkKey> keys;
   for (const ChunkCoord at : touched_chunks(edit, parameters_->chunk_edge)) {
     keys.push_back({0, at});
@@ -127,20 +127,20 @@ Result<ClientSequence> Replica::submit(const EditDescriptor& edit, TimeUs submit
   return seq;
 }
 
-Result<void> Replica::check_edit(const EditDescriptor& edit) const {
+Result<void> Replica::check(const EditDescriptor& edit) const {
   if (!parameters_) return fail(ErrorCode::bad_value, "no world is open");
   if (past_.is_past()) return fail(ErrorCode::bad_value, "the past cannot be edited");
   if (const auto ok = validate(edit); !ok) return Unexpected<Error>{ok.error()};
-  if (touched_chunks_bound(edit, parameters_->chunk_edge) > kTouchedChunksMax) {
-    return fail(ErrorCode::limit_exceeded, "edit touches too many chunks");
+  switch (check_edit(edit, parameters_->edit_limits()).value_or(RejectReason{})) {
+    case RejectReason::unknown_material:
+      return fail(ErrorCode::not_found, "material is not in the world's table");
+    case RejectReason::outside_world:
+      return fail(ErrorCode::bad_value, "edit reaches above or below the world's heights");
+    case RejectReason::too_large:
+      return fail(ErrorCode::limit_exceeded, "edit covers more voxels or chunks than allowed");
+    default:
+      return {};
   }
-  if (!within(edit, parameters_->heights)) {
-    return fail(ErrorCode::bad_value, "edit reaches above or below the world's heights");
-  }
-  if (counted_voxels(edit) > parameters_->edit_volume_max) {
-    return fail(ErrorCode::limit_exceeded, "edit covers more voxels than the server allows");
-  }
-  return {};
 }
 
 void Replica::add_pending_to_chunks(ClientSequence seq) {

@@ -48,6 +48,7 @@
 #include "common/edits/descriptor/height_limits.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/rules/edit_check.hpp"
 
 namespace runstone {
 
@@ -59,8 +60,12 @@ struct SessionParameters {
   Epoch epoch = 0;
   Sequence durable = 0, head = 0;
   ClientSequence resolved = 0;
-  HeightLimits heights{};                                                     // of edits
-  std::uint64_t edit_volume_max = std::numeric_limits<std::uint64_t>::max();  // voxels per edit
+  // Of edits. A default EditLimits would know no material but air.
+  HeightLimits heights{};
+  std::uint64_t edit_volume_max = std::numeric_limits<std::uint64_t>::max();
+  std::size_t material_count = std::numeric_limits<std::size_t>::max();
+
+  EditLimits edit_limits() const { return {chunk_edge, material_count, heights, edit_volume_max}; }
 };
 
 class Replica {
@@ -86,7 +91,8 @@ class Replica {
   /// Shows a local edit at once and keeps it until it is durable. `submitted_us`: the click, or the
   /// scheduled time. Fails
   ///   - before open(), and while the past is shown;
-  ///   - if the descriptor is invalid, or exceeds the heights or the edit volume of the world;
+  ///   - if the descriptor is invalid, has a material that the world lacks, or exceeds the heights or
+  ///     the edit volume of the world;
   ///   - if it touches an unavailable chunk or more than kTouchedChunksMax chunks;
   ///   - if kLocalEditsMax edits are kept.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
@@ -172,7 +178,7 @@ class Replica {
   void take_missing_edits(const ChunkEdits& edits, TimeUs now_us);
   void expect_all_chunks(const SharedHistory& history);
   void add_pending_to_chunks(ClientSequence seq);
-  Result<void> check_edit(const EditDescriptor& edit) const;
+  Result<void> check(const EditDescriptor& edit) const;
   void confirm_local(ClientSequence seq, const Version& version);
   void retire_durable();
 

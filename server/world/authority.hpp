@@ -15,8 +15,8 @@
 
 #include "common/edits/descriptor/edit_record.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/rules/edit_check.hpp"
 #include "server/world/clocks.hpp"
-#include "server/world/edit_check.hpp"
 #include "server/world/operation_watermarks.hpp"
 #include "server/world/world_chunks.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "protocol/rules/edit_check.hpp"
 #include "server/world/delivery.hpp"
-#include "server/world/edit_check.hpp"
 
 namespace runstone {
 namespace {

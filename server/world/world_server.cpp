@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "common/core/key_text.hpp"
+#include "protocol/rules/edit_check.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/cached_chunk_handlers.hpp"
 #include "server/world/command_handlers.hpp"
 #include "server/world/delivery.hpp"
 #include "server/world/digest_check_scheduler.hpp"
-#include "server/world/edit_check.hpp"
 #include "server/world/handshake_handlers.hpp"
 #include "server/world/presence.hpp"
 #include "server/world/request_handlers.hpp"

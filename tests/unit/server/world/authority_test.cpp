@@ -138,29 +138,6 @@ TEST_CASE("the oldest rejections of an instance are dropped beyond the bound", "
   CHECK(marks.answer_to({1, 8, 2}) == RejectReason::already_resolved);
 }
 
-TEST_CASE("edits beyond the limits are rejected with their reason", "[world]") {
-  const auto reason = [](const EditDescriptor& edit) { return check_edit(edit, limits()); };
-  CHECK_FALSE(reason({FillSphere{{0, 0, 0}, 20}, {}, 1}).has_value());
-  CHECK(reason({FillSphere{{0, 0, 0}, 30}, {}, 1}) == RejectReason::too_large);  // volume
-  CHECK(reason({FillBox{{{0, 0, 0}, {4096, 1, 4096}}}, {}, 1}) ==
-        RejectReason::too_large);                                                     // chunks
-  CHECK(reason({FillBox{{{0, 0, 0}, {0, 1, 1}}}, {}, 1}) == RejectReason::bad_edit);  // empty
-  const auto stroke = [&](std::int32_t length, std::uint16_t radius) {
-    return reason({FillStroke{{{0, 0, 0}, {length, 0, 0}}, radius}, {}, 1});
-  };
-  CHECK_FALSE(stroke(1024, 2).has_value());           // counts 1,029 layers of 5 x 5
-  CHECK(stroke(1024, 3) == RejectReason::too_large);  // 1,031 of 7 x 7
-  CHECK(stroke(0, 2) == RejectReason::bad_edit);      // one point twice
-  CHECK(stroke(1025, 2) == RejectReason::bad_edit);
-  CHECK(reason({FillStroke{{{0, 0, 0}, {1024, 1024, 1024}}, 1}, {}, 1}) ==
-        RejectReason::too_large);  // chunks
-  CHECK(reason({SetVoxel{{kWorldLimit, 0, 0}}, {}, 1}) == RejectReason::bad_edit);
-  CHECK(reason({SetVoxel{{0, 0, 0}}, {}, 8}) == RejectReason::unknown_material);
-  CHECK(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 8}, 1}) ==
-        RejectReason::unknown_material);
-  CHECK_FALSE(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 7}, 1}).has_value());
-}
-
 TEST_CASE(
     "edits of the server may be larger and higher than those of players, within the commit's limit",
     "[world]") {
@@ -178,36 +155,6 @@ TEST_CASE(
   EditOffer unknown = offer(4, box(0, 4), 8);
   unknown.cause = Cause::redo;
   CHECK(authority.submit(unknown, true) == RejectReason::unknown_material);
-}
-
-TEST_CASE("a paste is checked by its touched chunks and each of its materials", "[world]") {
-  EditLimits l = limits();
-  l.heights = {0, 8};
-  const auto paste = [](VoxelPos at, Material high, std::uint32_t touched) {
-    ClipboardBuilder cells({128, 1, 128}, AxisOrder::xzy);
-    cells.append(touched, Material{1});
-    cells.append(1, high);
-    cells.append(128 * 128 - 1 - touched, std::nullopt);
-    return EditDescriptor{Paste{at, *cells.finish(), {}}, {}, kEmpty};
-  };
-  CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 900), l).has_value());
-  CHECK(check_edit(paste({0, 7, 0}, 8, 900), l) == RejectReason::unknown_material);
-  CHECK(check_edit(paste({0, 8, 0}, 7, 900), l) == RejectReason::outside_world);
-  l.volume_max = 901;
-  CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 900), l).has_value());
-  CHECK(check_edit(paste({0, 7, 0}, 7, 901), l) == RejectReason::too_large);
-  l.touched_chunks_max = 8;  // a row along x
-  CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 127), l).has_value());
-  CHECK(check_edit(paste({1, 7, 0}, 7, 127), l) == RejectReason::too_large);
-
-  CHECK(edit_tokens({SetVoxel{{1, 1, 1}}, {}, 1}, 16) == 1);
-  CHECK(edit_tokens({FillSphere{{0, 0, 0}, 3}, {}, 1}, 16) == 8);
-  CHECK(edit_tokens({FillSphere{{8, 8, 8}, 60}, {}, 1}, 16) == 9 * 9 * 9);  // by its box
-  FillStroke scribble;  // many points, all in one chunk
-  scribble.radius = 1;
-  for (std::int32_t i = 0; i < 100; ++i) scribble.points.push_back({4 + i % 2, 4 + i % 3, 4});
-  CHECK(edit_tokens({scribble, {}, 1}, 16) == 1);
-  CHECK(edit_tokens({FillBox{{{0, 0, 0}, {4096, 4096, 4096}}}, {}, 1}, 16) == kTouchedChunksMax);
 }
 
 TEST_CASE("a commit ends before its message is too long, whatever the size of the edits",
@@ -243,22 +190,6 @@ TEST_CASE("a commit ends before its message is too long, whatever the size of th
     CHECK_FALSE(authority.submit(offer(seq, SetVoxel{{1, 1, 1}}, 1), true).has_value());
   }
   CHECK(authority.commit(kNow)->records.size() == 3000);
-}
-
-TEST_CASE("an edit that reaches above or below the world is rejected as a whole", "[world]") {
-  EditLimits l = limits();
-  l.heights = {-8, 8};
-  const auto reason = [&](const EditShape& shape) { return check_edit({shape, {}, 1}, l); };
-  CHECK_FALSE(reason(SetVoxel{{0, -8, 0}}).has_value());
-  CHECK_FALSE(reason(SetVoxel{{0, 7, 0}}).has_value());
-  CHECK(reason(SetVoxel{{0, 8, 0}}) == RejectReason::outside_world);
-  CHECK(reason(SetVoxel{{0, -9, 0}}) == RejectReason::outside_world);
-  CHECK_FALSE(reason(FillBox{{{0, -8, 0}, {1, 8, 1}}}).has_value());
-  CHECK(reason(FillBox{{{0, 0, 0}, {1, 9, 1}}}) == RejectReason::outside_world);
-  CHECK_FALSE(reason(FillStroke{{{0, -6, 0}, {9, 5, 0}}, 2}).has_value());
-  CHECK(reason(FillStroke{{{0, -6, 0}, {9, 6, 0}}, 2}) == RejectReason::outside_world);
-  CHECK_FALSE(reason(FillSphere{{0, 2, 0}, 5}).has_value());
-  CHECK(reason(FillSphere{{0, 3, 0}, 5}) == RejectReason::outside_world);
 }
 
 TEST_CASE("the subject of an edit is in its commit and its record", "[world]") {

@@ -1,5 +1,6 @@
-// Edit check: decides whether an edit may be ordered. No check visits the voxels of the geometry,
-// so an oversized edit costs little.
+// Edit check: decides whether an edit may be ordered. The server decides by it; a client calls it
+// before it shows and sends an edit, so that both give the same answer. No check visits the voxels
+// of the geometry, so an oversized edit costs little.
 #pragma once
 #include <cstdint>
 #include <optional>

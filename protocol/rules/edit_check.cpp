@@ -1,4 +1,4 @@
-#include "server/world/edit_check.hpp"
+#include "protocol/rules/edit_check.hpp"
 
 #include <algorithm>
 #include <limits>
