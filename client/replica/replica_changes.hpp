@@ -83,8 +83,9 @@ struct ReplicaChanges {
   std::vector<EditChange> edits;    // in the order applied
   std::vector<RejectedEdit> rejects;
   std::vector<ClientSequence> durable;  // local edits that are known to be on disk now
-  /// Local edits that the server resolved while this client was not connected, and whose commits
-  /// will not arrive. They were applied and are durable, or were rejected: the chunks show which.
+  /// Local edits that the server resolved, and whose commits will not arrive: the connection was
+  /// lost, or a commit did not fit the session's send queue on the server. They were applied and
+  /// are durable, or were rejected: the chunks show which.
   std::vector<ClientSequence> unseen;
   std::vector<UnavailableChunk> unavailable;
 };

@@ -64,7 +64,9 @@ struct LatencyReport {
   // Local edits:
   Histogram durable;           // submit -> known to be on disk
   std::uint64_t rejected = 0;  // rejected by the server; in none of the above
-  std::uint64_t unseen = 0;    // resolved while not connected; not in local_confirmed and durable
+  /// Resolved, but their commits did not arrive (ReplicaChanges::unseen). They are not in
+  /// local_confirmed and durable.
+  std::uint64_t unseen = 0;
   const PathReport& operator[](EditPath path) const {
     return paths[static_cast<std::size_t>(path)];
   }
