@@ -59,6 +59,8 @@ class ChunkUpdater {
   void predict(TrackedChunk& chunk, const EditDescriptor& edit, EditChange& cause);
   /// Shows the confirmed runs with the pending edits on top. Requires a confirmed chunk.
   void show(TrackedChunk& chunk, std::span<EditChange* const> cause = {});
+  /// The replica is about to erase the chunk: it is not shown any more.
+  void forget(const TrackedChunk& chunk) { shown_.forget(chunk); }
 
   /// Requests a snapshot, and applies nothing else to the chunk until it arrives.
   void request(TrackedChunk& chunk, TimeUs now_us);

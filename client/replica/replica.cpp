@@ -51,9 +51,7 @@ void Replica::expect_all_chunks(const SharedHistory& history) {
 }
 
 void Replica::reset() {
-  for (const auto& [key, chunk] : chunks_) {
-    if (chunk.shown) changes_.removed(key);
-  }
+  for (const auto& [key, chunk] : chunks_) updater_.forget(chunk);
   chunks_.clear();
   claims_.clear();
   local_edits_.clear();
@@ -66,7 +64,7 @@ void Replica::set_view(const View& view) {
   views_.set(view);
   chunks_.erase_if([&](const TrackedChunk& chunk) {
     if (view.contains(chunk.key.at)) return false;
-    if (chunk.shown) changes_.removed(chunk.key);
+    updater_.forget(chunk);
     if (!past_.is_past()) outbox_.add(chunk);
     claims_.forget(chunk.key);
     return true;

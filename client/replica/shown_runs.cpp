@@ -43,6 +43,10 @@ void ShownRuns::hide(TrackedChunk& chunk) {
   }
 }
 
+void ShownRuns::forget(const TrackedChunk& chunk) {
+  if (chunk.shown) changes_.removed(chunk.key);
+}
+
 /// Queues for the chunk `key`, if it is shown, that these layers of its neighbour on `side`
 /// changed.
 void ShownRuns::change_border(const ChunkKey& key, Direction side, const DirtyLayers& dirty,
