@@ -20,7 +20,7 @@ namespace runstone {
 
 struct ApplyResult {
   bool changed = false;  // any voxel has another material than before
-  DirtyLayers dirty;
+  DirtyLayers dirty;     // the layers of these voxels, as mesh_rdm_layers() takes them
   // Maximal groups of replaced runs, ascending. `first` counts in the new runs.
   std::vector<EditArea> areas;
   std::uint64_t voxels_changed = 0;

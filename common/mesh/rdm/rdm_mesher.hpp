@@ -64,7 +64,10 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
 /// same order.
 ///   - `mesh` is the mesh of the chunk and its neighbours before the edit, in the chunk's present
 ///     axis order.
-///   - `dirty` are the layers in which a voxel of the chunk changed since (ApplyResult::dirty).
+///   - `dirty` are the layers in which a voxel of the chunk changed since. A holder whose chunks
+///     change by apply_stack() only passes the union of ApplyResult::dirty. The client compares the
+///     runs instead (layer_diff.hpp), because its shown runs also change by snapshots and by
+///     predictions that are withdrawn.
 ///   - `beyond` are the same of each neighbour. Only its layer that touches the chunk matters.
 ///
 /// In each dirty layer, the rows in which a voxel may have changed are decoded and joined with the
