@@ -278,7 +278,7 @@ enum class RejectReason : std::uint8_t {
   unknown_material = 3,
   too_large = 4,  // too many voxels or touched chunks
   out_of_reach = 5,
-  not_permitted = 6,
+  not_permitted = 6,  // reserved: no server sends it yet
   rate_limited = 7,
   bad_edit = 8,       // not a valid descriptor
   outside_world = 9,  // a voxel lies above or below the height limits
