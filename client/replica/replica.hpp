@@ -136,7 +136,8 @@ class Replica {
   /// Returns nullopt while the live world is shown.
   const std::optional<PastMoment>& past() const { return past_.moment(); }
 
-  /// Return null if nothing is held or shown.
+  /// Return null if nothing is held or shown. The digest of a confirmed chunk is as sent; only a
+  /// digest check compares the voxels with the server's digest.
   ChunkPtr confirmed(const ChunkKey& key) const;
   ShownPtr shown(const ChunkKey& key) const;
   /// Returns a number that rises whenever the mesh of the chunk is out of date: when its shown

@@ -1,6 +1,8 @@
 // Messages as plain structs, with the functions that encode and decode them. A decoded struct is
-// valid: sizes, ranges, enum values, descriptor bytes and chunk runs were checked. The one
-// exception is EditRequest::fault.
+// valid: sizes, ranges, enum values, descriptor bytes and chunk runs were checked. There are two
+// exceptions:
+//   - an EditRequest whose descriptor is not valid has a `fault` in place of the edit;
+//   - the digest of a snapshot is not compared with its voxels.
 #pragma once
 #include <array>
 #include <cstdint>
