@@ -51,7 +51,7 @@ class TrackedChunk {
   };
 
   const ChunkKey key;
-  ShownPtr shown;                    // null until the first snapshot
+  ShownPtr shown;                    // null if nothing is shown
   std::uint64_t serial = 0;          // see Replica::shown_serial()
   std::vector<PendingEdit> pending;  // ascending by seq
   std::vector<InboxEdit> inbox;      // ascending by sequence
@@ -65,8 +65,8 @@ class TrackedChunk {
   ChunkState state() const { return state_; }
   bool is_current() const { return state_ == ChunkState::current; }
   bool is_unavailable() const { return state_ == ChunkState::unavailable; }
-  /// Returns null until the first snapshot, and after a restart of the server that may have lost
-  /// this version.
+  /// Returns null if nothing is held: before the first snapshot or cached copy, while the chunk is
+  /// unavailable, and after a restart of the server that may have lost this version.
   const ChunkPtr& confirmed() const { return confirmed_; }
   /// Returns true if the server vouches for the confirmed chunk and the cache does not have this
   /// version.
