@@ -1,5 +1,4 @@
-// LatencyRecorder: times every edit on its path to this client's screen, stage by stage (design:
-// latency-plus-mesh).
+// LatencyRecorder: times every edit on its path to this client's screen, stage by stage.
 //   submit -> ordered -> received -> unpacked -> applied -> meshed -> uploaded -> presented
 // Three paths are recorded separately:
 //   - local_predicted: a local edit, as predicted: submit -> applied (to the shown runs) -> meshed
