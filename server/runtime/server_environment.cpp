@@ -76,11 +76,11 @@ void ServerEnvironment::open_history(SessionId session, const HistoryRequest& re
   });
 }
 
-void ServerEnvironment::load_history_chunk(SessionId session, std::uint32_t view, Sequence at,
+void ServerEnvironment::load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                                            const ChunkKey& key) {
   readers_.load_history_chunk(
-      at, key, [this, session, view, key](const Result<ChunkPtr, std::string>& chunk) {
-        world_->history_chunk_loaded(session, view, key, chunk, read_clocks());
+      at, key, [this, session, history, key](const Result<ChunkPtr, std::string>& chunk) {
+        world_->history_chunk_loaded(session, history, key, chunk, read_clocks());
       });
 }
 

@@ -54,7 +54,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
   void load_chunk(const ChunkKey& key) override;
   void open_history(SessionId session, const HistoryRequest& request) override;
-  void load_history_chunk(SessionId session, std::uint32_t view, Sequence at,
+  void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                           const ChunkKey& key) override;
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                       Sequence checkpoint) override;

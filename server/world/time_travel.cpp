@@ -83,7 +83,7 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
     return deliver(world, session, now);
   }
   HistoryView history;
-  history.number = ++world.history_count;
+  history.number = HistoryNumber{++world.history_count};
   history.seq = opened->seq;
   history.utc_us = opened->utc_us;
   if (mine->history) history.sent = std::move(mine->history->sent);
@@ -103,11 +103,11 @@ void deliver_history(WorldState& world, SessionId session) {
   }
 }
 
-void on_history_chunk(WorldState& world, SessionId session, std::uint32_t view_number,
+void on_history_chunk(WorldState& world, SessionId session, HistoryNumber number,
                       const ChunkKey& key, const ChunkPtr& chunk, const Clocks& now) {
   WorldSession* mine = world.find(session);
-  if (mine == nullptr || !mine->history || mine->history->number != view_number)
-    return;  // an answer for an earlier view
+  if (mine == nullptr || !mine->history || mine->history->number != number)
+    return;  // an answer for an earlier history view
   HistoryView& history = *mine->history;
   --history.loading;
   if (world.interest.find(session)->state(key) == ChunkInterest::loading_history) {

@@ -243,14 +243,14 @@ void WorldServer::history_opened(SessionId session, std::uint32_t request,
   on_history_opened(*state_, session, request, opened, now);
 }
 
-void WorldServer::history_chunk_loaded(SessionId session, std::uint32_t request,
+void WorldServer::history_chunk_loaded(SessionId session, HistoryNumber history,
                                        const ChunkKey& key,
                                        const Result<ChunkPtr, std::string>& chunk,
                                        const Clocks& now) {
   if (!chunk)
     state_->environment.log(WorldLogLevel::error,
                             "chunk=" + text_of(key) + " of the past: " + chunk.error());
-  on_history_chunk(*state_, session, request, key, chunk ? *chunk : nullptr, now);
+  on_history_chunk(*state_, session, history, key, chunk ? *chunk : nullptr, now);
 }
 
 void WorldServer::durable(Sequence seq, const Clocks& now) {
