@@ -289,6 +289,8 @@ inline constexpr std::uint8_t kRejectReasonMax = 9;
 /// Returns the name in docs/protocol.md, or "unknown".
 const char* to_string(RejectReason reason);
 
+/// The answer to an edit for which no commit will follow: the edit was rejected, or
+/// (already_resolved) it was applied or rejected earlier.
 struct Reject {
   ClientSequence client_seq = 0;
   RejectReason reason = RejectReason::busy;

@@ -114,7 +114,7 @@ void on_history_chunk(WorldState& world, SessionId session, HistoryNumber number
     const auto sent = history.sent.find(key);
     if (chunk != nullptr && sent != history.sent.end() && sent->second == chunk->version) {
       world.interest.set_state(session, key, ChunkInterest::history_sent);
-    } else if (answer_chunk(world, session, key, chunk, ChunkInterest::history_sent, now) &&
+    } else if (send_chunk(world, session, key, chunk, ChunkInterest::history_sent, now) &&
                chunk != nullptr) {
       history.sent[key] = chunk->version;
     }

@@ -59,10 +59,10 @@ void close_silent_sessions(WorldState& world, const Clocks& now) {
 
 void retry_pending(WorldState& world, const Clocks& now) {
   for (const SessionId id : world.open_sessions()) {
-    send_pending_answers(world, id);
+    send_pending_rejects(world, id);
     deliver(world, id, now);
     if (world.find(id) == nullptr) continue;
-    send_not_modified(world, id, false);  // answers wait for more of them until the next tick
+    send_not_modified(world, id, false);  // they wait for more of them until the next tick
     send_uniform(world, id, now);
   }
 }
@@ -120,7 +120,7 @@ void WorldServer::drained(SessionId session, const Clocks& now) {
   WorldSession* mine = state_->find(session);
   if (mine == nullptr) return;
   mine->stalled_us.reset();
-  send_pending_answers(*state_, session);
+  send_pending_rejects(*state_, session);
   deliver(*state_, session, now);
 }
 

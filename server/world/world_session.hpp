@@ -54,8 +54,8 @@ struct WorldSession {
   Sequence durable_sent = 0;  // the last one sent; welcome sends the first
   Sequence awaits_durable =
       0;  // the client's last edit; the session gets the watermark at once until then
-  // Answers to edits that did not fit the session's queue, in order. They are sent when it drains.
-  std::vector<Reject> pending_answers;
+  // Rejects that did not fit the session's queue, in order. They are sent when it drains.
+  std::vector<Reject> pending_rejects;
   TokenBucket edits{0, 0};
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};
   std::optional<std::uint32_t> command;  // id of the command under way
