@@ -97,7 +97,7 @@ void ServerEnvironment::command(SessionId session, AuthorId author, const Public
   commands_->run(session, author, key, text);
 }
 
-void ServerEnvironment::log(WorldLogLevel level, const std::string& line) {
+void ServerEnvironment::report(OperatorLogLevel level, const std::string& line) {
   lines_.write(level, line, read_clocks().steady_us);
 }
 

@@ -13,7 +13,7 @@
 #include "server/runtime/command_runner.hpp"
 #include "server/runtime/connected_sessions.hpp"
 #include "server/runtime/durable_log.hpp"
-#include "server/runtime/world_log.hpp"
+#include "server/runtime/operator_log.hpp"
 #include "server/runtime/world_readers.hpp"
 #include "server/world/world_environment.hpp"
 
@@ -60,14 +60,14 @@ class ServerEnvironment final : public WorldEnvironment {
                       Sequence checkpoint) override;
   void command(SessionId session, AuthorId author, const PublicKey& key,
                const std::string& text) override;
-  void log(WorldLogLevel level, const std::string& line) override;
+  void report(OperatorLogLevel level, const std::string& line) override;
 
  private:
   ConnectedSessions& sessions_;
   Listener& listener_;
   ChunkSender& sender_;
   WorldReaders& readers_;
-  WorldLog lines_;
+  OperatorLog lines_;
   WorldServer* world_ = nullptr;
   DurableLog* log_ = nullptr;
   CommandRunner* commands_ = nullptr;

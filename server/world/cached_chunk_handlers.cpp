@@ -48,8 +48,8 @@ ClaimReply reply_to_claim(WorldState& world, SessionId session, const ChunkKey& 
       return ClaimReply::queued;
     }
     ++world.counters.claims_drifted;
-    world.environment.log(
-        WorldLogLevel::warn,
+    world.environment.report(
+        OperatorLogLevel::warn,
         "session=" + std::to_string(session) + " chunk=" + text_of(key) +
             " differs in the client's cache at the same version: sending a snapshot");
     return ClaimReply::none;

@@ -18,7 +18,7 @@
 namespace runstone {
 
 /// Levels of a line for the operator. The environment chooses the logger.
-enum class WorldLogLevel { debug, info, warn, error };
+enum class OperatorLogLevel { debug, info, warn, error };
 
 /// Identifies a history view among all of the server, from 1. Answers of workers carry it.
 enum class HistoryNumber : std::uint32_t {};
@@ -100,7 +100,7 @@ class WorldEnvironment {
                        const std::string& /*text*/) {}
 
   /// Writes one line for the operator, with fields as in "session=7 chunk=1,0,-3 seq=9120".
-  virtual void log(WorldLogLevel /*level*/, const std::string& /*line*/) {}
+  virtual void report(OperatorLogLevel /*level*/, const std::string& /*line*/) {}
 };
 
 }  // namespace runstone

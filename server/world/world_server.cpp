@@ -215,8 +215,8 @@ void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& n
   count_load_end(world, key);
   if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
     ++world.counters.chunks_failed;
-    world.environment.log(WorldLogLevel::error,
-                          "chunk=" + text_of(key) + " quarantined: " + *wrong);
+    world.environment.report(OperatorLogLevel::error,
+                             "chunk=" + text_of(key) + " quarantined: " + *wrong);
   }
   deliver_loaded(world, key, now);
   // A chunk that was loaded for its stack alone has no user, so nothing else makes it a candidate
@@ -231,7 +231,8 @@ void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, con
   count_load_end(world, key);
   ++world.counters.chunks_failed;
   world.authority.chunks().quarantine(key);
-  world.environment.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + what);
+  world.environment.report(OperatorLogLevel::error,
+                           "chunk=" + text_of(key) + " quarantined: " + what);
   deliver_loaded(world, key, now);
   step_checkpointer(now);
   start_loads(world);
@@ -248,8 +249,8 @@ void WorldServer::history_chunk_loaded(SessionId session, HistoryNumber history,
                                        const Result<ChunkPtr, std::string>& chunk,
                                        const Clocks& now) {
   if (!chunk)
-    state_->environment.log(WorldLogLevel::error,
-                            "chunk=" + text_of(key) + " of the past: " + chunk.error());
+    state_->environment.report(OperatorLogLevel::error,
+                               "chunk=" + text_of(key) + " of the past: " + chunk.error());
   on_history_chunk(*state_, session, history, key, chunk ? *chunk : nullptr, now);
 }
 

@@ -69,10 +69,11 @@ void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
                    const std::string& text) {
   if (world.find(session) == nullptr) return;
   ++world.counters.sessions_closed;
-  const auto level = reason == GoodbyeReason::closing ? WorldLogLevel::debug : WorldLogLevel::warn;
-  world.environment.log(level, "session=" + std::to_string(session) + " closed reason=" +
-                                   std::to_string(static_cast<unsigned>(reason)) + " (" +
-                                   to_string(reason) + ") text=\"" + text + "\"");
+  const auto level =
+      reason == GoodbyeReason::closing ? OperatorLogLevel::debug : OperatorLogLevel::warn;
+  world.environment.report(level, "session=" + std::to_string(session) + " closed reason=" +
+                                      std::to_string(static_cast<unsigned>(reason)) + " (" +
+                                      to_string(reason) + ") text=\"" + text + "\"");
   forget_session(world, session);
   world.environment.close(session, reason, text);
 }

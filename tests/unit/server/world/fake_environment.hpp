@@ -117,7 +117,9 @@ class FakeEnvironment : public WorldEnvironment {
                       Sequence checkpoint) override {
     saves.push_back({std::move(chunks), checkpoint});
   }
-  void log(WorldLogLevel /*level*/, const std::string& line) override { lines.push_back(line); }
+  void report(OperatorLogLevel /*level*/, const std::string& line) override {
+    lines.push_back(line);
+  }
 
   /// Returns the messages of one kind sent to a session, oldest first.
   template <class Kind>
