@@ -2,9 +2,9 @@
 // functions; ReplicaChunks performs them and counts.
 //
 //   expected --request--> requested      answer: requested --> repairing, the others --> current
-//   current  --request--> repairing      take_snapshot: every state --> current
-//                                        withhold:      every state --> unavailable
-//                                        expect:        every state --> expected
+//   current  --request--> repairing      take_snapshot:   every state --> current
+//                                        set_unavailable: every state --> unavailable
+//                                        expect:          every state --> expected
 //
 // `expect` begins another connection, or another moment of the past.
 #pragma once

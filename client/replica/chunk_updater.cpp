@@ -104,11 +104,11 @@ bool ChunkUpdater::take_missing_edits(TrackedChunk& chunk, const ChunkEdits& upd
   return true;
 }
 
-void ChunkUpdater::withhold(TrackedChunk& chunk, UnavailableReason reason) {
+void ChunkUpdater::set_unavailable(TrackedChunk& chunk, UnavailableReason reason) {
   if (chunk.is_unavailable()) return;
   // A copy of an earlier connection would get no more edits: showing nothing is better than showing
   // something stale.
-  chunks_.withhold(chunk);
+  chunks_.set_unavailable(chunk);
   shown_.hide(chunk);
   changes_.unavailable({chunk.key, reason});
 }
@@ -120,9 +120,9 @@ void ChunkUpdater::adopt(TrackedChunk& chunk, ChunkPtr cached, TimeUs now_us) {
   advance(chunk, false, now_us);
 }
 
-void ChunkUpdater::hold(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool is_held_back) {
+void ChunkUpdater::add_to_inbox(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool may_wait) {
   chunk.inbox.push_back(std::move(edit));
-  if (!is_held_back) return;
+  if (!may_wait) return;
   ++counters_.chunk_edits_buffered;
   if (chunk.inbox.size() <= kInboxEditsMax) return;
   // chunk.latest remembers what the next snapshot must contain.

@@ -39,15 +39,15 @@ class ChunkUpdater {
   /// confirmed chunk.
   bool take_missing_edits(TrackedChunk& chunk, const ChunkEdits& update, TimeUs now_us);
   /// The server cannot send the chunk.
-  void withhold(TrackedChunk& chunk, UnavailableReason reason);
+  void set_unavailable(TrackedChunk& chunk, UnavailableReason reason);
   /// Takes a chunk from a cache. The server has not vouched for it. Requires a chunk without a
   /// confirmed one.
   void adopt(TrackedChunk& chunk, ChunkPtr cached, TimeUs now_us);
 
-  /// Appends an ordered edit to the inbox. `is_held_back`: it cannot be applied before a snapshot.
-  /// Then the inbox is bounded by kInboxEditsMax: beyond it, the edits are dropped, and a snapshot
-  /// that contains them is requested later.
-  void hold(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool is_held_back);
+  /// Appends an ordered edit to the inbox. `may_wait`: the edit may have to wait for the
+  /// server's answer about the chunk. Then the inbox is bounded by kInboxEditsMax: beyond it, the
+  /// edits are dropped, and a snapshot that contains them is requested later.
+  void add_to_inbox(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool may_wait);
   /// Applies what follows in the inbox, requests a snapshot at a gap, and shows the result. Does
   /// nothing without a confirmed chunk, and while a snapshot is awaited.
   void advance(TrackedChunk& chunk, TimeUs now_us) { advance(chunk, false, now_us); }

@@ -252,7 +252,7 @@ void Replica::receive(const ChunkUnavailable& unavailable) {
   for (const ChunkKey& key : unavailable.keys) {
     if (!accepts(key, unavailable.view)) continue;
     claims_.answer(key);
-    updater_.withhold(track(key), unavailable.reason);
+    updater_.set_unavailable(track(key), unavailable.reason);
   }
 }
 
@@ -293,8 +293,8 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
       chunk.latest = std::max(chunk.latest, version.seq);
       if (is_local) chunk.confirm_pending(ordered.op.seq, version.seq);
       if (chunk.is_unavailable()) continue;
-      updater_.hold(chunk, {shared_info(), ordered.previous[c]},
-                    !chunk.is_current() || past_.is_past());
+      updater_.add_to_inbox(chunk, {shared_info(), ordered.previous[c]},
+                            !chunk.is_current() || past_.is_past());
       touched[key] = &chunk;
     }
   }

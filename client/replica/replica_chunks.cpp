@@ -30,7 +30,7 @@ void ReplicaChunks::take_snapshot(TrackedChunk& chunk, ChunkPtr confirmed) {
   set_state(chunk, ChunkState::current);
 }
 
-void ReplicaChunks::withhold(TrackedChunk& chunk) {
+void ReplicaChunks::set_unavailable(TrackedChunk& chunk) {
   set_confirmed(chunk, nullptr);
   chunk.inbox.clear();
   set_state(chunk, ChunkState::unavailable);

@@ -39,7 +39,7 @@ class ReplicaChunks {
   /// A snapshot becomes the confirmed chunk: no request is open any more.
   void take_snapshot(TrackedChunk& chunk, ChunkPtr confirmed);
   /// Drops what is held. The shown runs stay until the caller hides them.
-  void withhold(TrackedChunk& chunk);
+  void set_unavailable(TrackedChunk& chunk);
 
   /// Replaces the confirmed chunk, in any state; null drops it.
   void set_confirmed(TrackedChunk& chunk, ChunkPtr confirmed);

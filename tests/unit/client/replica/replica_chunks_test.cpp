@@ -66,7 +66,7 @@ TEST_CASE("a snapshot ends a request, and an unavailable chunk holds nothing", "
   CHECK(table.confirmed_count() == 1);
 
   chunk.inbox.push_back({});
-  table.withhold(chunk);
+  table.set_unavailable(chunk);
   CHECK(chunk.is_unavailable());
   CHECK(chunk.confirmed() == nullptr);
   CHECK(chunk.inbox.empty());
@@ -95,7 +95,7 @@ TEST_CASE("counts by state equal those of a walk after any transitions", "[repli
         table.take_snapshot(chunk, some_chunk());
         break;
       case 3:
-        table.withhold(chunk);
+        table.set_unavailable(chunk);
         break;
       case 4:
         table.expect(chunk);
