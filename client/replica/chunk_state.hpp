@@ -2,7 +2,7 @@
 // functions; ReplicaChunks performs them and counts.
 //
 //   expected --request--> requested      answer: requested --> repairing, the others --> current
-//   current  --request--> repairing      take_snapshot:   every state --> current
+//   current  --request--> repairing      set_current:     every state --> current
 //                                        set_unavailable: every state --> unavailable
 //                                        expect:          every state --> expected
 //

@@ -4,7 +4,7 @@
 
 namespace runstone {
 
-bool ChunkUpdater::take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us) {
+bool ChunkUpdater::apply_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us) {
   const bool was_vouched = is_vouched(chunk.state());
   chunks_.answer(chunk);
   if (chunk.confirmed() && !is_needed(chunk, snapshot, was_vouched)) {
@@ -20,7 +20,7 @@ bool ChunkUpdater::take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now
   }
   ++counters_.snapshots_taken;
   const Sequence seq = snapshot.version.seq;
-  chunks_.take_snapshot(chunk, std::make_shared<const Chunk>(std::move(snapshot)));
+  chunks_.set_current(chunk, std::make_shared<const Chunk>(std::move(snapshot)));
   chunk.drop_answered(seq);
   advance(chunk, true, now_us);
   return true;
@@ -43,7 +43,7 @@ bool ChunkUpdater::is_needed(TrackedChunk& chunk, const Chunk& snapshot, bool wa
 
 void ChunkUpdater::replace(TrackedChunk& chunk, Chunk snapshot) {
   ++counters_.snapshots_taken;
-  chunks_.take_snapshot(chunk, std::make_shared<const Chunk>(std::move(snapshot)));
+  chunks_.set_current(chunk, std::make_shared<const Chunk>(std::move(snapshot)));
   show(chunk);
 }
 
@@ -54,7 +54,7 @@ void ChunkUpdater::vouch(TrackedChunk& chunk, TimeUs now_us) {
   advance(chunk, true, now_us);
 }
 
-void ChunkUpdater::take_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us) {
+void ChunkUpdater::apply_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us) {
   chunks_.answer(chunk);
   ++counters_.same_taken;
   if (!chunk.is_current()) return;
@@ -63,8 +63,8 @@ void ChunkUpdater::take_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs n
   request(chunk, now_us);
 }
 
-bool ChunkUpdater::take_missing_edits(TrackedChunk& chunk, const ChunkEdits& update,
-                                      TimeUs now_us) {
+bool ChunkUpdater::apply_missing_edits(TrackedChunk& chunk, const ChunkEdits& update,
+                                       TimeUs now_us) {
   chunks_.answer(chunk);
   if (!chunk.is_current()) return false;
   if (!chunk.confirmed()) {
@@ -132,7 +132,7 @@ void ChunkUpdater::add_to_inbox(TrackedChunk& chunk, TrackedChunk::InboxEdit edi
 
 void ChunkUpdater::advance(TrackedChunk& chunk, bool from_snapshot, TimeUs now_us) {
   if (!chunk.confirmed() || is_awaiting(chunk.state())) return;
-  const TrackedChunk::Advance taken = chunk.advance();
+  const TrackedChunk::ReadyEdits taken = chunk.take_ready_edits();
   counters_.chunk_edits_applied += taken.applied.size();
   counters_.chunk_edits_contained += taken.contained.size();
   std::vector<EditChange*> cause;

@@ -28,16 +28,16 @@ class ChunkUpdater {
 
   /// Takes a snapshot, and applies the edits in the inbox that follow. Returns false if the
   /// confirmed chunk is as new and not in doubt: then the snapshot is ignored.
-  bool take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us);
+  bool apply_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us);
   /// Takes a snapshot of another moment, whatever its version. Applies nothing.
   void replace(TrackedChunk& chunk, Chunk snapshot);
   /// The server says that the claimed chunk, at `seq`, is as it has it. Requests a snapshot if the
   /// confirmed chunk is older.
-  void take_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us);
+  void apply_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us);
   /// Takes the edits that a claimed chunk lacked. Requests a snapshot if they do not follow the
   /// confirmed chunk, or if the digest differs after them. Returns true if they became part of the
   /// confirmed chunk.
-  bool take_missing_edits(TrackedChunk& chunk, const ChunkEdits& update, TimeUs now_us);
+  bool apply_missing_edits(TrackedChunk& chunk, const ChunkEdits& update, TimeUs now_us);
   /// The server cannot send the chunk.
   void set_unavailable(TrackedChunk& chunk, UnavailableReason reason);
   /// Takes a chunk from a cache. The server has not vouched for it. Requires a chunk without a

@@ -199,25 +199,25 @@ void Replica::receive(Chunks chunks, const Arrival& arrival) {
   for (ChunkAnswer& answer : chunks.chunks) {
     if (!accepts(key_of(answer), chunks.view)) continue;
     if (auto* snapshot = std::get_if<ChunkSnapshot>(&answer)) {
-      take_snapshot(snapshot->key, std::move(snapshot->chunk), arrival.now_us);
+      receive_snapshot(snapshot->key, std::move(snapshot->chunk), arrival.now_us);
     } else {
-      take_missing_edits(std::get<ChunkEdits>(answer), arrival.now_us);
+      receive_missing_edits(std::get<ChunkEdits>(answer), arrival.now_us);
     }
   }
 }
 
-void Replica::take_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us) {
+void Replica::receive_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us) {
   TrackedChunk& chunk = track(key);
   claims_.answer(key);
   if (past_.is_past()) return updater_.replace(chunk, std::move(snapshot));
   const Sequence seq = snapshot.version.seq;
-  if (updater_.take_snapshot(chunk, std::move(snapshot), now_us)) newest_ = std::max(newest_, seq);
+  if (updater_.apply_snapshot(chunk, std::move(snapshot), now_us)) newest_ = std::max(newest_, seq);
 }
 
-void Replica::take_missing_edits(const ChunkEdits& edits, TimeUs now_us) {
+void Replica::receive_missing_edits(const ChunkEdits& edits, TimeUs now_us) {
   if (past_.is_past()) return;
   claims_.answer(edits.key);
-  if (updater_.take_missing_edits(track(edits.key), edits, now_us)) {
+  if (updater_.apply_missing_edits(track(edits.key), edits, now_us)) {
     newest_ = std::max(newest_, edits.to.seq);
   }
 }
@@ -227,7 +227,7 @@ void Replica::receive(const ChunksNotModified& same, TimeUs now_us) {
   for (const UnmodifiedChunk& entry : same.chunks) {
     if (!accepts(entry.key, same.view)) continue;
     claims_.answer(entry.key);
-    updater_.take_not_modified(track(entry.key), entry.seq, now_us);
+    updater_.apply_not_modified(track(entry.key), entry.seq, now_us);
   }
 }
 
@@ -243,7 +243,7 @@ void Replica::receive(const UniformChunks& uniform, const Arrival& arrival) {
       chunk.digest = digest_of(chunk.voxels);
     }
     chunk.version = each.version;
-    take_snapshot(each.key, chunk, arrival.now_us);
+    receive_snapshot(each.key, chunk, arrival.now_us);
   }
 }
 

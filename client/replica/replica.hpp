@@ -166,8 +166,8 @@ class Replica {
   bool is_in_view(const ChunkKey& key) const { return views_.contains(key); }
   bool accepts(const ChunkKey& key, std::uint32_t view);
   TrackedChunk& track(const ChunkKey& key);
-  void take_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us);
-  void take_missing_edits(const ChunkEdits& edits, TimeUs now_us);
+  void receive_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us);
+  void receive_missing_edits(const ChunkEdits& edits, TimeUs now_us);
   void expect_all_chunks(const SharedHistory& history);
   void add_pending_to_chunks(ClientSequence seq);
   Result<void> check_edit(const EditDescriptor& edit) const;

@@ -25,7 +25,7 @@ void ReplicaChunks::clear() {
   awaiting_.clear();
 }
 
-void ReplicaChunks::take_snapshot(TrackedChunk& chunk, ChunkPtr confirmed) {
+void ReplicaChunks::set_current(TrackedChunk& chunk, ChunkPtr confirmed) {
   set_confirmed(chunk, std::move(confirmed));
   set_state(chunk, ChunkState::current);
 }

@@ -84,8 +84,8 @@ class TrackedChunk {
   /// many.
   std::size_t drop_answered(Sequence seq);
 
-  /// What advance() took from the inbox.
-  struct Advance {
+  /// What take_ready_edits() took from the inbox.
+  struct ReadyEdits {
     std::vector<EditDescriptor> stack;  // to be applied to the confirmed runs
     std::vector<OrderedPtr> applied;    // the same edits
     std::vector<OrderedPtr> contained;  // the confirmed runs contain them already
@@ -93,7 +93,7 @@ class TrackedChunk {
   };
   /// Takes edits from the front of the inbox until one does not follow the version reached. Local
   /// edits among them are no longer pending. Requires confirmed().
-  Advance advance();
+  ReadyEdits take_ready_edits();
 
   /// Returns the runs to show: those of the confirmed chunk itself if nothing is pending, otherwise
   /// a copy with the pending edits applied. Requires confirmed().
