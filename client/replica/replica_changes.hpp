@@ -24,24 +24,24 @@ struct Arrival {
 
 /// The changed layers that the mesh of a chunk depends on, in the form of the arguments of
 /// mesh_rdm_layers().
-struct VisibleLayers {
-  DirtyLayers dirty;  // layers in which a shown voxel changed
+struct ChangedLayers {
+  DirtyLayers here;  // layers in which a shown voxel changed
   /// By Direction: all changed layers of the neighbour, if the layer that touches this chunk
   /// changed; else empty.
   std::array<DirtyLayers, kDirectionCount> beyond;
-  VisibleLayers& operator|=(const VisibleLayers& other) {
-    dirty |= other.dirty;
+  ChangedLayers& operator|=(const ChangedLayers& other) {
+    here |= other.here;
     for (std::size_t d = 0; d < beyond.size(); ++d) beyond[d] |= other.beyond[d];
     return *this;
   }
-  friend bool operator==(const VisibleLayers&, const VisibleLayers&) = default;
+  friend bool operator==(const ChangedLayers&, const ChangedLayers&) = default;
 };
 
 /// One chunk whose mesh is out of date. Changes of a chunk are merged until they are drained.
 struct ChunkChange {
   ChunkKey key;
   std::uint64_t serial = 0;  // see Replica::shown_serial()
-  VisibleLayers layers;      // all that changed, except by neighbours that entered or left the view
+  ChangedLayers layers;      // all that changed, except by neighbours that entered or left the view
   bool whole = false;        // nothing was shown here before, or at some time in between
   bool removed = false;      // out of view or unavailable: nothing is shown here
   std::vector<OperationId> edits;  // edits that this change contains, in the order applied

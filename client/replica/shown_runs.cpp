@@ -18,7 +18,7 @@ void ShownRuns::show(TrackedChunk& chunk, ShownPtr next, std::span<EditChange* c
 
   ChunkChange& change = changes_.chunk(chunk.key);
   change.serial = chunk.serial;
-  change.layers.dirty |= dirty;
+  change.layers.here |= dirty;
   change.whole = change.whole || whole;
   change.removed = false;
   ChangeQueue::attribute(change, cause);

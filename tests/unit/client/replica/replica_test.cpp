@@ -16,10 +16,10 @@ TEST_CASE_METHOD(ReplicaBench,
   const ReplicaChanges changes = replica.drain_changes();
   REQUIRE(changes.chunks.size() == 1);
   CHECK(changes.chunks[0].key == kHere);
-  CHECK(changes.chunks[0].layers.dirty.layer[0].count() == 1);
-  CHECK(changes.chunks[0].layers.dirty.layer[0].test(3));
-  CHECK(changes.chunks[0].layers.dirty.layer[1].test(4));
-  CHECK(changes.chunks[0].layers.dirty.layer[2].test(5));
+  CHECK(changes.chunks[0].layers.here.layer[0].count() == 1);
+  CHECK(changes.chunks[0].layers.here.layer[0].test(3));
+  CHECK(changes.chunks[0].layers.here.layer[1].test(4));
+  CHECK(changes.chunks[0].layers.here.layer[2].test(5));
   CHECK(changes.chunks[0].edits == std::vector{other(1)});
   REQUIRE(changes.edits.size() == 1);
   CHECK(changes.edits[0].op == other(1));
@@ -39,11 +39,11 @@ TEST_CASE_METHOD(ReplicaBench, "an edit at the border changes the mesh of the ne
   const ReplicaChanges changes = replica.drain_changes();
   REQUIRE(changes.chunks.size() == 2);
   CHECK(changes.chunks[1].key == kRight);
-  CHECK_FALSE(changes.chunks[1].layers.dirty.any());
-  VisibleLayers beside;
-  beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = changes.chunks[0].layers.dirty;
+  CHECK_FALSE(changes.chunks[1].layers.here.any());
+  ChangedLayers beside;
+  beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = changes.chunks[0].layers.here;
   CHECK(changes.chunks[1].layers == beside);
-  CHECK(changes.chunks[0].layers.beyond == VisibleLayers{}.beyond);
+  CHECK(changes.chunks[0].layers.beyond == ChangedLayers{}.beyond);
   CHECK(changes.edits[0].chunks == std::vector{kHere, kRight});
 }
 
@@ -437,7 +437,7 @@ TEST_CASE_METHOD(ReplicaBench, "a chunk of an earlier connection that became una
   const ReplicaChanges changes = replica.drain_changes();
   REQUIRE(changes.chunks.size() == 2);
   CHECK(changes.chunks[0].removed);
-  VisibleLayers beside;
+  ChangedLayers beside;
   beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = all_layers(Extent::cube(kEdge));
   CHECK(changes.chunks[1].layers == beside);
   static_cast<void>(replica.open(parameters()));  // it may have been repaired
