@@ -12,7 +12,7 @@ void want_all(WorldState& world, SessionId session) {
   for (const ChunkKey& key : world.loads.cancel(session)) {
     world.interest.set_state(session, key, ChunkInterest::wanted);
   }
-  world.interest.want_again(session, {});
+  world.interest.want_all_again(session);
   world.find(session)->claims.clear();
   collect_released(world);
 }
