@@ -16,7 +16,7 @@ void add_session(FleetReport& report, const ReplicaBot& bot) {
   report.standing.intact += standing.intact;
   report.standing.changed += standing.changed;
   report.standing.unseen += standing.unseen;
-  report.audited += bot.session().replica().counters().audited;
+  report.digests_checked += bot.session().replica().counters().digests_checked;
   report.drifted += bot.session().replica().counters().drifted;
 }
 

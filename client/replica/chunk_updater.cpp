@@ -181,7 +181,7 @@ void ChunkUpdater::check_digest(TrackedChunk& chunk, const DigestCheckEntry& che
     return;
   }
   if (held.version != check.version) return;
-  ++counters_.audited;
+  ++counters_.digests_checked;
   // Computed from the runs, not the digest that followed the edits: the runs are what is meshed.
   if (digest_of(held.voxels) == check.digest) return;
   ++counters_.drifted;

@@ -103,18 +103,18 @@ struct ReplicaCounters {
   std::uint64_t chunk_edits_buffered = 0;   // held back for a snapshot
   std::uint64_t buffer_overflows = 0;
   std::uint64_t gaps = 0;
-  std::uint64_t requests = 0;        // chunks that were requested, repetitions included
-  StackDepths confirmed_stacks;      // edit stacks applied to confirmed runs
-  StackDepths predicted_stacks;      // edit stacks applied on top of them
-  std::uint64_t audited = 0;         // digests compared at equal version
-  std::uint64_t fell_behind = 0;     // found by two digest checks: a commit was lost
-  std::uint64_t drifted = 0;         // digests that differed: a snapshot is requested
-  std::uint64_t repaired = 0;        // snapshots that replaced other voxels of their version
-  std::uint64_t claims_refuted = 0;  // cached chunks that were not the server's: replaced
-  std::uint64_t adopted = 0;         // chunks that came from a cache
-  std::uint64_t claimed = 0;         // chunks that this client claimed to hold
-  std::uint64_t same_taken = 0;      // claimed chunks that the server has not modified
-  std::uint64_t updates_taken = 0;   // claimed chunks that were completed by the edits they lacked
+  std::uint64_t requests = 0;         // chunks that were requested, repetitions included
+  StackDepths confirmed_stacks;       // edit stacks applied to confirmed runs
+  StackDepths predicted_stacks;       // edit stacks applied on top of them
+  std::uint64_t digests_checked = 0;  // compared at equal version
+  std::uint64_t fell_behind = 0;      // found by two digest checks: a commit was lost
+  std::uint64_t drifted = 0;          // digests that differed: a snapshot is requested
+  std::uint64_t repaired = 0;         // snapshots that replaced other voxels of their version
+  std::uint64_t claims_refuted = 0;   // cached chunks that were not the server's: replaced
+  std::uint64_t adopted = 0;          // chunks that came from a cache
+  std::uint64_t claimed = 0;          // chunks that this client claimed to hold
+  std::uint64_t same_taken = 0;       // claimed chunks that the server has not modified
+  std::uint64_t updates_taken = 0;    // claimed chunks that were completed by the edits they lacked
   /// Chunks newer than what a restarted server is known to have kept.
   std::uint64_t dropped_by_epoch = 0;
 };

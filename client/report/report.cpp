@@ -84,7 +84,7 @@ Json replica_json(const Replica& replica) {
               {"predicted_stacks", c.predicted_stacks.text()},
               {"gaps", c.gaps},
               {"requests", c.requests},
-              {"audited", c.audited},
+              {"digests_checked", c.digests_checked},
               {"fell_behind", c.fell_behind},
               {"drifted", c.drifted},
               {"repaired", c.repaired},
@@ -236,8 +236,8 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
     fmt::format_to(into, "frames: {}, each {} ms (p50)\n", report.frames.presented,
                    cell(report.frames.draw_us.percentile(0.5)));
   }
-  fmt::format_to(into, "drift: {} of {} audited\n", session.replica().counters().drifted,
-                 session.replica().counters().audited);
+  fmt::format_to(into, "drift: {} of {} digests checked\n", session.replica().counters().drifted,
+                 session.replica().counters().digests_checked);
   fmt::format_to(into, "dense expansions: {}\n", dense_expansions());
   return out;
 }

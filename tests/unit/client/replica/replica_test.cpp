@@ -281,9 +281,9 @@ TEST_CASE_METHOD(ReplicaBench,
   const Chunk& truth = world.chunk(kHere.at);
   replica.receive(DigestCheck{{{kHere, {3, 99}, truth.digest}}},
                   2000);  // no comparison at another version
-  CHECK(replica.counters().audited == 0);
+  CHECK(replica.counters().digests_checked == 0);
   replica.receive(DigestCheck{{{kHere, truth.version, truth.digest}}}, 2000);
-  CHECK(replica.counters().audited == 1);
+  CHECK(replica.counters().digests_checked == 1);
   CHECK(replica.counters().drifted == 1);
   CHECK(replica.take_requests() == std::vector{kHere});
 
@@ -295,7 +295,7 @@ TEST_CASE_METHOD(ReplicaBench,
   require_in_step(kHere);
   replica.receive(
       DigestCheck{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 3000);
-  CHECK(replica.counters().audited == 2);
+  CHECK(replica.counters().digests_checked == 2);
   CHECK(replica.counters().drifted == 1);
 }
 
@@ -304,18 +304,18 @@ TEST_CASE_METHOD(ReplicaBench,
                  "[replica]") {
   replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // never arrives
-  const auto audit = [&] {
+  const auto check_digest = [&] {
     replica.receive(
         DigestCheck{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 2000);
   };
-  audit();  // it may have overtaken the commit
+  check_digest();  // it may have overtaken the commit
   CHECK(replica.take_requests().empty());
-  audit();
+  check_digest();
   CHECK(replica.take_requests() == std::vector{kHere});
   CHECK(replica.counters().fell_behind == 1);
   replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   require_in_step(kHere);
-  audit();
+  check_digest();
   CHECK(replica.counters().fell_behind == 1);
   CHECK(replica.counters().drifted == 0);
 }

@@ -99,6 +99,6 @@ TEST_CASE("the table has chunks, drift and dense expansions on lines of their ow
       Catch::Contains("meshes of changed layers only: 10, each 5.0 us; 1.5 MiB of meshes kept\n"));
   CHECK_THAT(table,
              Catch::Contains("dense expansions: " + std::to_string(dense_expansions()) + "\n"));
-  CHECK_THAT(table, Catch::Contains("drift: 0 of 0 audited\n"));
+  CHECK_THAT(table, Catch::Contains("drift: 0 of 0 digests checked\n"));
   CHECK_THAT(table, Catch::Matches("(.|\n)*remote +meshed +10 +0\\.10 +0\\.10 +inf +inf\n(.|\n)*"));
 }
