@@ -63,7 +63,7 @@ std::string to_json(const FleetReport& report) {
                        {"rejected", c.rejected},
                        {"durable", c.durable},
                        {"of_others", c.others}}},
-                     {"own_us", histogram_json(c.confirm_us)},
+                     {"local_us", histogram_json(c.confirm_us)},
                      {"seen_us", histogram_json(report.seen_us)},
                      {"seen_worst_us", report.seen_worst_us},
                      {"unattributed", report.unattributed},

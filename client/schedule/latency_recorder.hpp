@@ -42,7 +42,7 @@ const char* to_string(LatencyStage stage);
 
 enum class EditPath : std::uint8_t { local_predicted, local_confirmed, remote };
 inline constexpr std::size_t kEditPathCount = 3;
-/// Returns the name in reports: "own_predicted", "own_confirmed" or "remote".
+/// Returns the name in reports: "local_predicted", "local_confirmed" or "remote".
 const char* to_string(EditPath path);
 
 struct PathReport {

@@ -80,12 +80,12 @@ TEST_CASE("edits that this client refused are counted apart, and are in no perce
           "[client_app]") {
   const ClientSession session(SessionConfig{});
   ClientReport report = sample();
-  CHECK(json::parse(to_json(report, session))["latency_us"]["own_refused"] == 0);
+  CHECK(json::parse(to_json(report, session))["latency_us"]["local_refused"] == 0);
   CHECK_THAT(to_table(report, session), !Catch::Contains("refused"));
   report.edits_refused = 2;
   const json latency = json::parse(to_json(report, session))["latency_us"];
-  CHECK(latency["own_refused"] == 2);
-  CHECK(latency["own_confirmed"]["edits"] == 0);
+  CHECK(latency["local_refused"] == 2);
+  CHECK(latency["local_confirmed"]["edits"] == 0);
   CHECK_THAT(to_table(report, session), Catch::Contains("edits refused by this client: 2\n"));
 }
 
