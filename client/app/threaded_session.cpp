@@ -145,8 +145,9 @@ void ThreadedSession::flush() {
 
 void ThreadedSession::step_cache(TimeUs now_us) {
   if (!cache_) return;
-  for (auto& found : cache_->take_answers()) session_.receive_cached(std::move(found), now_us);
-  while (auto question = session_.take_cache_lookup()) cache_->ask(*std::move(question));
+  for (auto& found : cache_->drain_results())
+    session_.receive_cache_result(std::move(found), now_us);
+  while (auto lookup = session_.take_cache_lookup()) cache_->look_up(*std::move(lookup));
   if (now_us - kept_us_ >= kKeepUs) {
     kept_us_ = now_us;
     keep_chunks(cache_->room());
