@@ -21,14 +21,14 @@ namespace {
 
 class ExampleBot {
  public:
-  explicit ExampleBot(NetConfig server)
+  explicit ExampleBot(LinkConfig server)
       : session_(config()), net_(std::move(server), [this] { wake_up_.notify(); }) {}
 
   /// Runs until the server ordered the edit or the time is over. Returns true if it was ordered.
   bool run(TimeUs end_us) {
     while (!is_ordered() && steady_now_us() < end_us) {
       wake_up_.wait(std::chrono::milliseconds(10));
-      for (NetEvent& event : net_.take_events()) handle(event);
+      for (LinkEvent& event : net_.take_events()) handle(event);
       session_.tick(steady_now_us());
       if (session_.loaded() && !placed_) place();
       flush();
@@ -49,12 +49,12 @@ class ExampleBot {
     return out;
   }
 
-  void handle(NetEvent& event) {
+  void handle(LinkEvent& event) {
     const TimeUs now_us = steady_now_us();
-    if (const auto* connected = std::get_if<NetConnected>(&event)) {
+    if (const auto* connected = std::get_if<LinkConnected>(&event)) {
       connection_ = connected->connection;
       session_.connected(random_nonce(), now_us);
-    } else if (auto* received = std::get_if<NetReceived>(&event)) {
+    } else if (auto* received = std::get_if<LinkReceived>(&event)) {
       session_.receive(std::move(received->message),
                        {received->received_us, received->unpacked_us, now_us});
     } else {
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: example-bot HOST PORT\n");
     return 2;
   }
-  NetConfig server;
+  LinkConfig server;
   server.host = argv[1];
   server.port = static_cast<std::uint16_t>(std::atoi(argv[2]));
   ExampleBot bot(std::move(server));

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "client/app/edit_tool.hpp"
-#include "client/app/network_session.hpp"
 #include "client/app/options.hpp"
 #include "client/app/player.hpp"
 #include "client/app/script_actions.hpp"
+#include "client/app/threaded_session.hpp"
 #include "client/app/view_follower.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/net/wake_up.hpp"
@@ -63,7 +63,7 @@ class Client {
 
   const ClientOptions options_;
   WakeUp wake_;
-  NetworkSession network_;
+  ThreadedSession network_;
   ClientSession& session_;          // of network_
   std::unique_ptr<Window> window_;  // null off screen
   MeshPipeline pipeline_;

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "client/app/network_session.hpp"
+#include "client/app/threaded_session.hpp"
 #include "client/net/wake_up.hpp"
 #include "client/report/exit_code.hpp"
 #include "common/os/steady_clock.hpp"
@@ -22,7 +22,7 @@ std::string material_list(const MaterialTable& materials) {
 
 int list_materials(const ClientOptions& options, const volatile std::sig_atomic_t& stop) {
   WakeUp wake;
-  NetworkSession network(options, [&wake] { wake.notify(); });
+  ThreadedSession network(options, [&wake] { wake.notify(); });
   network.start(steady_now_us());
   std::string failure = "interrupted";
   while (stop == 0) {

@@ -56,8 +56,8 @@ class HeadlessSession {
   /// Returns true if every chunk of the view arrived or is unavailable, and none lacks edits.
   bool loaded() const;
 
-  /// Reads a commit without decoding it into a message, see LinkEvents::on_bytes(). Returns true if
-  /// it was a commit of an open connection and was read. Returns false, and reads nothing, for
+  /// Reads a commit without decoding it into a message, see LinkCallbacks::on_bytes(). Returns true
+  /// if it was a commit of an open connection and was read. Returns false, and reads nothing, for
   /// other messages. Fails if the commit is malformed.
   Result<bool> receive_bytes(MessageKind kind, ByteView body, std::uint16_t chunk_edge,
                              TimeUs received_us);

@@ -19,7 +19,7 @@ struct PlayCounts {
   std::uint64_t submitted = 0;  // retries included
   std::uint64_t retried = 0;    // rejected for a while (`rate_limited`, `busy`)
   std::uint64_t confirmed = 0, durable = 0;
-  std::uint64_t unseen = 0;  // resolved while not connected: the outcome is unknown
+  std::uint64_t unseen = 0;  // resolved, but the commit did not arrive: the outcome is unknown
   std::map<std::string, std::uint64_t> rejected;  // by the server, finally; by reason
   std::map<std::string, std::uint64_t> refused;   // by the session; by reason
   Histogram confirm_us;                           // from the due time until the commit was applied

@@ -34,7 +34,7 @@ void VersionCounts::merge(const VersionCounts& other) {
   contained += other.contained;
   held_back += other.held_back;
   resent += other.resent;
-  audited += other.audited;
+  versions_checked += other.versions_checked;
   behind_us.merge(other.behind_us);
 }
 
@@ -146,11 +146,11 @@ void VersionTracker::complete(std::uint32_t view) {
                                          std::to_string(expected) + " chunks were answered");
 }
 
-void VersionTracker::receive(const DigestCheck& audit, TimeUs now_us) {
-  for (const DigestCheckEntry& entry : audit.entries) {
+void VersionTracker::receive(const DigestCheck& check, TimeUs now_us) {
+  for (const DigestCheckEntry& entry : check.entries) {
     const auto found = chunks_.find(entry.key.at);
     if (entry.key.lod != 0 || found == chunks_.end() || !found->second.held) continue;
-    ++counts_.audited;
+    ++counts_.versions_checked;
     // Commits are batched for a while, and a digest check may overtake them.
     found->second.latest = std::max(found->second.latest, entry.version.seq);
     advance(found->second, now_us);

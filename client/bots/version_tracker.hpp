@@ -52,15 +52,15 @@ class Violations {
 
 /// Counts since the tracker was made. An edit counts once per chunk in view.
 struct VersionCounts {
-  std::uint64_t snapshots = 0;  // verified, digest included
-  std::uint64_t stale = 0;      // older than what is known: allowed, and ignored
-  std::uint64_t outside = 0;    // answers for chunks that are not in view, or left it since
-  std::uint64_t followed = 0;   // chunk edits that continued the version of their chunk
-  std::uint64_t contained = 0;  // chunk edits that a snapshot contained
-  std::uint64_t held_back = 0;  // chunk edits that arrived before their snapshot
-  std::uint64_t resent = 0;     // snapshots in place of commits that did not arrive
-  std::uint64_t audited = 0;    // versions compared with digest checks
-  Histogram behind_us;          // of chunks sent again: since the first sign of a missing edit
+  std::uint64_t snapshots = 0;         // verified, digest included
+  std::uint64_t stale = 0;             // older than what is known: allowed, and ignored
+  std::uint64_t outside = 0;           // answers for chunks that are not in view, or left it since
+  std::uint64_t followed = 0;          // chunk edits that continued the version of their chunk
+  std::uint64_t contained = 0;         // chunk edits that a snapshot contained
+  std::uint64_t held_back = 0;         // chunk edits that arrived before their snapshot
+  std::uint64_t resent = 0;            // snapshots in place of commits that did not arrive
+  std::uint64_t versions_checked = 0;  // versions compared with digest checks
+  Histogram behind_us;  // of chunks sent again: since the first sign of a missing edit
   void merge(const VersionCounts& other);
 };
 
@@ -76,7 +76,7 @@ class VersionTracker {
   void receive(const ChunkUnavailable& unavailable);
   /// Every chunk of the view of this number was answered.
   void complete(std::uint32_t view);
-  void receive(const DigestCheck& audit, TimeUs now_us);
+  void receive(const DigestCheck& check, TimeUs now_us);
   /// An edit of a commit touches this chunk, whose sequence was `previous` before it.
   void follow(ChunkCoord at, Sequence previous, Sequence seq, TimeUs now_us);
   /// Finds chunks that were not sent again in time. Cost: O(1) while none is behind.

@@ -10,10 +10,10 @@ CacheThread::CacheThread(std::unique_ptr<ChunkCache> cache, std::function<void()
 
 CacheThread::~CacheThread() { stop(); }
 
-void CacheThread::ask(CacheLookup question) {
+void CacheThread::look_up(CacheLookup lookup) {
   {
     const std::lock_guard lock(mutex_);
-    questions_.push_back(std::move(question));
+    lookups_.push_back(std::move(lookup));
   }
   has_work_.notify_one();
 }
@@ -33,9 +33,9 @@ void CacheThread::keep(const CachedWorld& world, std::vector<KeyedChunk> chunks)
   has_work_.notify_one();
 }
 
-std::vector<std::vector<KeyedChunk>> CacheThread::take_answers() {
+std::vector<std::vector<KeyedChunk>> CacheThread::drain_results() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(answers_, {});
+  return std::exchange(results_, {});
 }
 
 void CacheThread::stop() {
@@ -60,14 +60,14 @@ std::string CacheThread::take_warning() {
 void CacheThread::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    has_work_.wait(lock, [this] { return ends_ || !questions_.empty() || !batches_.empty(); });
-    if (!questions_.empty()) {
-      const CacheLookup question = std::move(questions_.front());
-      questions_.pop_front();
+    has_work_.wait(lock, [this] { return ends_ || !lookups_.empty() || !batches_.empty(); });
+    if (!lookups_.empty()) {
+      const CacheLookup lookup = std::move(lookups_.front());
+      lookups_.pop_front();
       lock.unlock();
-      auto found = cache_->find(question.world, question.keys);
+      auto found = cache_->find(lookup.world, lookup.keys);
       lock.lock();
-      answers_.push_back(std::move(found));
+      results_.push_back(std::move(found));
       lock.unlock();
       wake_();
       lock.lock();

@@ -1,6 +1,6 @@
 // CacheThread: runs the chunk cache on its own thread, so that a session never waits for the disk.
-// Questions are handled before chunks to keep. Each question is answered once, in order. Threads:
-// the owner makes all calls. `wake` is called from the cache thread.
+// Lookups are handled before chunks to keep. Each lookup has one result, in order.
+// Threads: the owner makes all calls. `wake` is called from the cache thread.
 #pragma once
 #include <condition_variable>
 #include <cstddef>
@@ -21,18 +21,18 @@ class CacheThread {
   /// The greatest number of chunks that wait to be written. Further ones stay with the replica.
   static constexpr std::size_t kKeepMax = 4'096;
 
-  /// `wake` is called after each answer.
+  /// `wake` is called after each result.
   CacheThread(std::unique_ptr<ChunkCache> cache, std::function<void()> wake);
   /// Calls stop().
   ~CacheThread();
 
-  void ask(CacheLookup question);
+  void look_up(CacheLookup lookup);
   /// Returns the number of chunks that keep() accepts now.
   std::size_t room() const;
   void keep(const CachedWorld& world, std::vector<KeyedChunk> chunks);
-  /// Returns the chunks found since the last call: one entry for each question, in order.
-  std::vector<std::vector<KeyedChunk>> take_answers();
-  /// Writes the waiting chunks and ends the thread. Later questions and chunks are ignored.
+  /// Returns the results of lookups since the last call, in order: the chunks that were found.
+  std::vector<std::vector<KeyedChunk>> drain_results();
+  /// Writes the waiting chunks and ends the thread. Later lookups and chunks are ignored.
   void stop();
 
   CacheCounters counters() const;
@@ -51,10 +51,10 @@ class CacheThread {
   // It guards all members below except thread_. No other lock is taken while it is locked.
   mutable std::mutex mutex_;
   std::condition_variable has_work_;
-  std::deque<CacheLookup> questions_;
+  std::deque<CacheLookup> lookups_;
   std::deque<Batch> batches_;
   std::size_t waiting_ = 0;  // chunks in batches_ and in the one being written
-  std::vector<std::vector<KeyedChunk>> answers_;
+  std::vector<std::vector<KeyedChunk>> results_;
   CacheCounters counters_;
   std::string warning_;
   bool ends_ = false;

@@ -60,7 +60,7 @@ struct BehaviourFleet::Parts {
 
   void join(TimeUs now_us) {
     const std::size_t index = bots.size();
-    NetConfig link = net;
+    LinkConfig link = net;
     const BotConfig& config = configs[index];
     if (config.role == BotRole::join_storm) link.pause_ms_first = 1;  // it reconnects at once
     bots.push_back(make_fleet_bot(io, link, config, statistics, index < options.replicas));
@@ -138,7 +138,7 @@ struct BehaviourFleet::Parts {
     Meter now;
     now.process = process_time();
     for (const auto& bot : bots) {
-      const NetStats& net_stats = bot->stats();
+      const LinkStats& net_stats = bot->stats();
       now.frame_bytes += net_stats.bytes_received.load();
       const Traffic received = net_stats.received.read();
       for (std::size_t i = 0; i < now.class_bytes.size(); ++i) {
@@ -159,7 +159,7 @@ struct BehaviourFleet::Parts {
   }
 
   const BotOptions options;
-  NetConfig net;
+  LinkConfig net;
   std::vector<BotConfig> configs;
   asio::io_context io{1};
   asio::steady_timer timer{io};

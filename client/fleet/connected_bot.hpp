@@ -17,7 +17,7 @@ class ConnectedBot {
  public:
   /// Starts connecting. `io` must outlive the bot.
   template <class... BotArguments>
-  ConnectedBot(asio::io_context& io, const NetConfig& net, BotArguments&&... arguments)
+  ConnectedBot(asio::io_context& io, const LinkConfig& net, BotArguments&&... arguments)
       : bot_(std::forward<BotArguments>(arguments)...),
         link_(io, bot_.session(), bot_.name(), net) {}
 

@@ -16,7 +16,7 @@ void add_session(FleetReport& report, const ReplicaBot& bot) {
   report.standing.intact += standing.intact;
   report.standing.changed += standing.changed;
   report.standing.unseen += standing.unseen;
-  report.audited += bot.session().replica().counters().audited;
+  report.digests_checked += bot.session().replica().counters().digests_checked;
   report.drifted += bot.session().replica().counters().drifted;
 }
 
@@ -32,11 +32,11 @@ template <class BotType>
 class ConnectedFleetBot final : public FleetBot {
  public:
   template <class... BotArguments>
-  ConnectedFleetBot(asio::io_context& io, const NetConfig& net, BotArguments&&... arguments)
+  ConnectedFleetBot(asio::io_context& io, const LinkConfig& net, BotArguments&&... arguments)
       : bot_(io, net, std::forward<BotArguments>(arguments)...) {}
 
   Bot& bot() override { return bot_.bot(); }
-  const NetStats& stats() const override { return bot_.link().stats(); }
+  const LinkStats& stats() const override { return bot_.link().stats(); }
   bool is_final() const override { return bot_.link().is_final(); }
   std::string failure(const std::string& what) const override { return bot_.failure(what); }
   void step(TimeUs now_us) override { bot_.step(now_us); }
@@ -57,7 +57,7 @@ class ConnectedFleetBot final : public FleetBot {
 
 }  // namespace
 
-std::unique_ptr<FleetBot> make_fleet_bot(asio::io_context& io, const NetConfig& net,
+std::unique_ptr<FleetBot> make_fleet_bot(asio::io_context& io, const LinkConfig& net,
                                          const BotConfig& config, FleetStatistics& statistics,
                                          bool has_replica) {
   if (has_replica)

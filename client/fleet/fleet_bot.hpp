@@ -16,7 +16,7 @@ class FleetBot {
  public:
   virtual ~FleetBot() = default;
   virtual Bot& bot() = 0;
-  virtual const NetStats& stats() const = 0;
+  virtual const LinkStats& stats() const = 0;
   /// Returns true if the server refused this bot for good.
   virtual bool is_final() const = 0;
   /// Returns a line such as "bot-3 does not see the world around it: the server is full".
@@ -28,7 +28,7 @@ class FleetBot {
 };
 
 /// Makes a bot, which starts connecting. `io` and `statistics` must outlive it.
-std::unique_ptr<FleetBot> make_fleet_bot(asio::io_context& io, const NetConfig& net,
+std::unique_ptr<FleetBot> make_fleet_bot(asio::io_context& io, const LinkConfig& net,
                                          const BotConfig& config, FleetStatistics& statistics,
                                          bool has_replica);
 

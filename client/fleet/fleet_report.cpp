@@ -39,7 +39,7 @@ Json versions_json(const FleetReport& report) {
           {"answers_outside", v.outside},
           {"chunks_resent", v.resent},
           {"behind_us", histogram_json(v.behind_us)},
-          {"versions_audited", v.audited},
+          {"versions_checked", v.versions_checked},
           {"violations", std::move(violations)}};
 }
 
@@ -63,7 +63,7 @@ std::string to_json(const FleetReport& report) {
                        {"rejected", c.rejected},
                        {"durable", c.durable},
                        {"of_others", c.others}}},
-                     {"own_us", histogram_json(c.confirm_us)},
+                     {"local_us", histogram_json(c.confirm_us)},
                      {"seen_us", histogram_json(report.seen_us)},
                      {"seen_worst_us", report.seen_worst_us},
                      {"unattributed", report.unattributed},
@@ -74,7 +74,7 @@ std::string to_json(const FleetReport& report) {
                        {"intact", report.standing.intact},
                        {"changed", report.standing.changed},
                        {"unseen", report.standing.unseen}}},
-                     {"audited", report.audited},
+                     {"digests_checked", report.digests_checked},
                      {"drifted", report.drifted},
                      {"verified", versions_json(report)},
                      {"losses", report.losses},
@@ -117,11 +117,11 @@ std::string to_table(const FleetReport& report) {
       "voxels set and not set again: {}, of them {} intact, {} changed, {} out of sight\n"
       "edits of others seen {}; drift: {} of {} chunk digests\n",
       report.standing.held, report.standing.intact, report.standing.changed, report.standing.unseen,
-      c.others, report.drifted, report.audited);
+      c.others, report.drifted, report.digests_checked);
   table += fmt::format(
       "without a replica: {} commits of {} edits verified, {} chunk edits followed, {} snapshots, "
-      "{} chunks resent, {} versions audited, {} violations\n",
-      report.commits, report.commit_edits, v.followed, v.snapshots, v.resent, v.audited,
+      "{} chunks resent, {} versions checked, {} violations\n",
+      report.commits, report.commit_edits, v.followed, v.snapshots, v.resent, v.versions_checked,
       report.violations.total());
   for (const auto& [name, entry] : report.violations.all()) {
     table += fmt::format("violation: {} {}, first: {}\n", entry.count, name, entry.first);

@@ -25,7 +25,7 @@ struct FleetReport {
   EditLedger::Standing standing;      // of the bots with a replica
   // Counts of the bots with a replica: chunk digests that were compared with the server's, and
   // digests that differed.
-  std::uint64_t audited = 0, drifted = 0;
+  std::uint64_t digests_checked = 0, drifted = 0;
   // Counts of the bots without a replica.
   std::uint64_t commits = 0, commit_edits = 0;
   VersionCounts versions;

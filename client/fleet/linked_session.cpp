@@ -12,7 +12,7 @@ namespace runstone {
 
 template <class Session>
 LinkedSession<Session>::LinkedSession(asio::io_context& io, Session& session,
-                                      const std::string& name, const NetConfig& net)
+                                      const std::string& name, const LinkConfig& net)
     : session_(session), name_(name), link_(io, net, *this) {
   link_.start();
 }
@@ -39,7 +39,7 @@ void LinkedSession<Session>::on_connected(ConnectionNumber connection) {
 }
 
 template <class Session>
-void LinkedSession<Session>::on_received(NetReceived received) {
+void LinkedSession<Session>::on_received(LinkReceived received) {
   const TimeUs now_us = steady_now_us();
   session_.receive(std::move(received.message),
                    {received.received_us, received.unpacked_us, now_us});
@@ -52,7 +52,7 @@ Result<bool> LinkedSession<Session>::on_bytes(MessageKind kind, ByteView body,
   if constexpr (std::is_same_v<Session, HeadlessSession>) {
     return session_.receive_bytes(kind, body, chunk_edge, received_us);
   } else {
-    return LinkEvents::on_bytes(kind, body, chunk_edge, received_us);
+    return LinkCallbacks::on_bytes(kind, body, chunk_edge, received_us);
   }
 }
 

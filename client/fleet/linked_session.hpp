@@ -18,14 +18,14 @@ inline constexpr std::int64_t kGoodbyeMs = 1'000;
 
 /// Session is ClientSession or HeadlessSession.
 template <class Session>
-class LinkedSession final : private LinkEvents {
+class LinkedSession final : private LinkCallbacks {
  public:
   /// Starts connecting. `session` and `io` must outlive this object. `io` must not run any more
   /// when this object is destroyed.
   LinkedSession(asio::io_context& io, Session& session, const std::string& name,
-                const NetConfig& net);
+                const LinkConfig& net);
 
-  const NetStats& stats() const { return link_.stats(); }
+  const LinkStats& stats() const { return link_.stats(); }
   /// Returns why the last connection ended, or an empty text if none did.
   const std::string& last_failure() const { return last_failure_; }
   /// Returns the number of connections that could not be made, or that ended although the session
@@ -41,7 +41,7 @@ class LinkedSession final : private LinkEvents {
 
  private:
   void on_connected(ConnectionNumber connection) override;
-  void on_received(NetReceived received) override;
+  void on_received(LinkReceived received) override;
   Result<bool> on_bytes(MessageKind kind, ByteView body, std::uint16_t chunk_edge,
                         TimeUs received_us) override;
   void on_disconnected(ConnectionNumber connection, std::string why) override;

@@ -38,7 +38,7 @@ std::uint64_t progress_of(const PlayBot& bot) {
 struct PlayFleet::Parts {
   Parts(const BotOptions& fleet_options, const RecordedLog& recorded)
       : options(fleet_options), log(recorded) {
-    const NetConfig net{.host = options.server.host, .port = options.server.port};
+    const LinkConfig net{.host = options.server.host, .port = options.server.port};
     for (const RecordedAuthor& author : log.authors)
       players.push_back(std::make_unique<Player>(io, net, author, new_player(), options.speed));
   }
@@ -113,7 +113,7 @@ PlayReport PlayFleet::run(const volatile std::sig_atomic_t& stop) {
   }
   for (const auto& player : fleet.players) {
     add_to(report.counts, player->bot().counts());
-    const NetStats& stats = player->link().stats();
+    const LinkStats& stats = player->link().stats();
     report.traffic.add({stats.received.read(), stats.sent.read()});
   }
   fleet.leave();

@@ -41,7 +41,7 @@ std::string to_json(const PlayReport& report) {
                                          {"refused", c.refused},
                                          {"unseen", c.unseen},
                                          {"durable", c.durable}}},
-                                       {"own_us", histogram_json(c.confirm_us)},
+                                       {"local_us", histogram_json(c.confirm_us)},
                                        {"traffic", traffic_json(report.traffic)}};
   return json.dump(1) + "\n";
 }

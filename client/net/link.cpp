@@ -26,8 +26,8 @@ using std::chrono::milliseconds;
 }  // namespace
 
 struct Link::State {
-  State(asio::io_context& context, NetConfig net_config, LinkEvents& link_events)
-      : io(context), config(std::move(net_config)), events(link_events) {}
+  State(asio::io_context& context, LinkConfig link_config, LinkCallbacks& link_callbacks)
+      : io(context), config(std::move(link_config)), callbacks(link_callbacks) {}
 
   // These functions act on the current connection.
   Result<void> take_message(FrameReader& reader, ByteView bytes, TimeUs received_us);
@@ -36,9 +36,9 @@ struct Link::State {
   void close_socket();
 
   asio::io_context& io;
-  const NetConfig config;
-  LinkEvents& events;
-  NetStats stats;
+  const LinkConfig config;
+  LinkCallbacks& callbacks;
+  LinkStats stats;
 
   asio::ip::tcp::resolver resolver{io};
   asio::ip::tcp::socket socket{io};
@@ -68,7 +68,7 @@ Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, Time
     const std::uint64_t frames = reader.frames(frame_class) -
                                  std::exchange(frames_before[static_cast<std::size_t>(frame_class)],
                                                reader.frames(frame_class));
-    const auto taken = events.on_bytes(kind, body, chunk_edge, received_us);
+    const auto taken = callbacks.on_bytes(kind, body, chunk_edge, received_us);
     if (!taken) return Unexpected<Error>{taken.error()};
     if (*taken) {
       stats.received.add(kind, body.size(), frames);
@@ -83,14 +83,14 @@ Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, Time
       chunk_edge = welcome->chunk_edge;
       features = welcome->features;
     }
-    NetReceived received;
+    LinkReceived received;
     received.connection = connection;
     received.message = std::move(*message);
     received.bytes = body.size();
     received.received_us = received_us;
     received.unpacked_us = end_ns / 1000;
     received.unpack_ns = end_ns - start_ns;
-    events.on_received(std::move(received));
+    callbacks.on_received(std::move(received));
     return {};
   });
 }
@@ -154,7 +154,7 @@ asio::awaitable<void> read_messages(State& state) {
     }
     state.chunk_bytes = reader.frame_bytes(FrameClass::chunks);
     state.send_receive_ack();
-    while (!state.stopping && state.events.is_full()) {
+    while (!state.stopping && state.callbacks.is_full()) {
       state.pause.expires_after(milliseconds(1));
       co_await state.pause.async_wait(kTuple);
     }
@@ -241,12 +241,12 @@ asio::awaitable<void> keep_connected(State& state) {
       state.others.clear();
       state.queued_bytes = 0;
       pause_ms = state.config.pause_ms_first;
-      state.events.on_connected(state.connection);
+      state.callbacks.on_connected(state.connection);
       asio::co_spawn(state.io, write_messages(state, state.connection), asio::detached);
       co_await read_messages(state);
-      state.events.on_disconnected(state.connection, state.why_closed);
+      state.callbacks.on_disconnected(state.connection, state.why_closed);
     } else {
-      state.events.on_disconnected(0, std::move(failure));
+      state.callbacks.on_disconnected(0, std::move(failure));
     }
     if (state.stopping) break;
     const auto spread = static_cast<std::int64_t>(
@@ -259,8 +259,8 @@ asio::awaitable<void> keep_connected(State& state) {
 
 }  // namespace
 
-Link::Link(asio::io_context& io, NetConfig config, LinkEvents& events)
-    : state_(std::make_unique<State>(io, std::move(config), events)) {
+Link::Link(asio::io_context& io, LinkConfig config, LinkCallbacks& callbacks)
+    : state_(std::make_unique<State>(io, std::move(config), callbacks)) {
   if (sodium_init() < 0) throw std::runtime_error("libsodium cannot start");
 }
 
@@ -293,6 +293,6 @@ void Link::stop(std::int64_t wait_ms) {
   });
 }
 
-const NetStats& Link::stats() const { return state_->stats; }
+const LinkStats& Link::stats() const { return state_->stats; }
 
 }  // namespace runstone

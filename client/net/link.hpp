@@ -23,7 +23,7 @@ inline constexpr std::size_t kSendBytesMax = 8 * 1024 * 1024;
 
 using ConnectionNumber = std::uint64_t;  // from 1
 
-struct NetReceived {
+struct LinkReceived {
   ConnectionNumber connection = 0;
   Message message;
   std::size_t bytes = 0;       // size of the message without frame headers
@@ -32,7 +32,7 @@ struct NetReceived {
   std::int64_t unpack_ns = 0;  // time spent decoding and verifying
 };
 
-struct NetConfig {
+struct LinkConfig {
   std::string host;
   std::uint16_t port = 0;
   std::size_t events_max = 4096;  // of NetClient: events that were not taken yet
@@ -43,18 +43,18 @@ struct NetConfig {
 };
 
 /// Counts over all connections since the start.
-struct NetStats {
+struct LinkStats {
   std::atomic<std::uint64_t> bytes_received{0}, bytes_sent{0};  // with frame headers
   TrafficMeter received, sent;  // messages; received ones count once they are verified
   std::atomic<std::uint64_t> connections{0};
 };
 
 /// The callbacks of a link.
-class LinkEvents {
+class LinkCallbacks {
  public:
-  virtual ~LinkEvents() = default;
+  virtual ~LinkCallbacks() = default;
   virtual void on_connected(ConnectionNumber connection) = 0;
-  virtual void on_received(NetReceived received) = 0;
+  virtual void on_received(LinkReceived received) = 0;
   /// Offers a message before it is decoded. `body` is 8-aligned and lives until the call returns.
   /// `chunk_edge` is 0 before Welcome. Returns true if the callee verified and handled the message;
   /// then on_received() is not called for it. An error closes the connection.
@@ -70,9 +70,9 @@ class LinkEvents {
 
 class Link {
  public:
-  /// `io` and `events` must outlive the link. `io` must not run any more when the link is
+  /// `io` and `callbacks` must outlive the link. `io` must not run any more when the link is
   /// destroyed.
-  Link(asio::io_context& io, NetConfig config, LinkEvents& events);
+  Link(asio::io_context& io, LinkConfig config, LinkCallbacks& callbacks);
   ~Link();
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
@@ -88,7 +88,7 @@ class Link {
   /// Stops the link after the queued messages are sent, or after `wait_ms`. Then the io_context has
   /// no more work of the link.
   void stop(std::int64_t wait_ms);
-  const NetStats& stats() const;
+  const LinkStats& stats() const;
 
  private:
   struct State;

@@ -8,23 +8,23 @@
 
 namespace runstone {
 
-struct NetClient::State final : private LinkEvents {
-  State(NetConfig config, std::function<void()> net_wake)
+struct NetClient::State final : private LinkCallbacks {
+  State(LinkConfig config, std::function<void()> net_wake)
       : events_max(config.events_max),
         wake(std::move(net_wake)),
         link(io, std::move(config), *this) {}
 
-  void push(NetEvent event) {
+  void push(LinkEvent event) {
     {
       const std::lock_guard lock(mutex);
       events.push_back(std::move(event));
     }
     wake();
   }
-  void on_connected(ConnectionNumber connection) override { push(NetConnected{connection}); }
-  void on_received(NetReceived received) override { push(std::move(received)); }
+  void on_connected(ConnectionNumber connection) override { push(LinkConnected{connection}); }
+  void on_received(LinkReceived received) override { push(std::move(received)); }
   void on_disconnected(ConnectionNumber connection, std::string why) override {
-    push(NetDisconnected{connection, std::move(why)});
+    push(LinkDisconnected{connection, std::move(why)});
   }
   bool is_full() override {
     const std::lock_guard lock(mutex);
@@ -36,11 +36,11 @@ struct NetClient::State final : private LinkEvents {
   asio::io_context io{1};
   Link link;  // used by the thread only
   std::mutex mutex;
-  std::vector<NetEvent> events;  // guarded by mutex
+  std::vector<LinkEvent> events;  // guarded by mutex
   std::thread thread;
 };
 
-NetClient::NetClient(NetConfig config, std::function<void()> wake)
+NetClient::NetClient(LinkConfig config, std::function<void()> wake)
     : state_(std::make_unique<State>(std::move(config), std::move(wake))) {
   state_->link.start();
   state_->thread = std::thread([raw = state_.get()] { raw->io.run(); });
@@ -48,7 +48,7 @@ NetClient::NetClient(NetConfig config, std::function<void()> wake)
 
 NetClient::~NetClient() { stop(0); }
 
-std::vector<NetEvent> NetClient::take_events() {
+std::vector<LinkEvent> NetClient::take_events() {
   const std::lock_guard lock(state_->mutex);
   return std::exchange(state_->events, {});
 }
@@ -68,6 +68,6 @@ void NetClient::stop(std::int64_t wait_ms) {
   state_->thread.join();
 }
 
-const NetStats& NetClient::stats() const { return state_->link.stats(); }
+const LinkStats& NetClient::stats() const { return state_->link.stats(); }
 
 }  // namespace runstone

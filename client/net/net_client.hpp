@@ -15,31 +15,31 @@
 
 namespace runstone {
 
-struct NetConnected {
+struct LinkConnected {
   ConnectionNumber connection = 0;
 };
-struct NetDisconnected {
+struct LinkDisconnected {
   ConnectionNumber connection = 0;  // 0: no connection could be made
   std::string why;
 };
-using NetEvent = std::variant<NetConnected, NetReceived, NetDisconnected>;
+using LinkEvent = std::variant<LinkConnected, LinkReceived, LinkDisconnected>;
 
 class NetClient {
  public:
   /// Starts connecting. `wake` is called from the network thread after each new event.
-  NetClient(NetConfig config, std::function<void()> wake);
+  NetClient(LinkConfig config, std::function<void()> wake);
   /// Stops and joins.
   ~NetClient();
   NetClient(const NetClient&) = delete;
   NetClient& operator=(const NetClient&) = delete;
 
   /// Returns the events since the last call, in order.
-  std::vector<NetEvent> take_events();
+  std::vector<LinkEvent> take_events();
   /// These calls have the meaning of those of Link. stop() also waits for the thread to end.
   void send(ConnectionNumber connection, const EncodedMessage& message);
   void close(ConnectionNumber connection);
   void stop(std::int64_t milliseconds);
-  const NetStats& stats() const;
+  const LinkStats& stats() const;
 
  private:
   struct State;

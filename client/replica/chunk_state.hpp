@@ -2,9 +2,9 @@
 // functions; ReplicaChunks performs them and counts.
 //
 //   expected --request--> requested      answer: requested --> repairing, the others --> current
-//   current  --request--> repairing      take_snapshot: every state --> current
-//                                        withhold:      every state --> unavailable
-//                                        expect:        every state --> expected
+//   current  --request--> repairing      set_current:     every state --> current
+//                                        set_unavailable: every state --> unavailable
+//                                        expect:          every state --> expected
 //
 // `expect` begins another connection, or another moment of the past.
 #pragma once
@@ -17,10 +17,13 @@ namespace runstone {
 
 enum class ChunkState : std::uint8_t {
   /// The server has not answered. A copy from a cache or an earlier connection may be shown.
+  /// Commits that continue its version are applied. A commit that does not follow waits in the
+  /// inbox, and no snapshot is requested: the answer closes the gap.
   expected,
   /// As expected, but a snapshot was requested. Nothing but a snapshot is applied.
   requested,
-  /// The server has vouched for the confirmed chunk. Commits are applied to it.
+  /// The server has vouched for the confirmed chunk. Commits are applied to it, and a gap makes it
+  /// request a snapshot.
   current,
   /// As current, but edits got lost or the digest differs, and a snapshot was requested. Nothing
   /// but a snapshot is applied.

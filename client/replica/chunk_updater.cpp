@@ -4,7 +4,7 @@
 
 namespace runstone {
 
-bool ChunkUpdater::take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us) {
+bool ChunkUpdater::apply_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us) {
   const bool was_vouched = is_vouched(chunk.state());
   chunks_.answer(chunk);
   if (chunk.confirmed() && !is_needed(chunk, snapshot, was_vouched)) {
@@ -20,7 +20,7 @@ bool ChunkUpdater::take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now
   }
   ++counters_.snapshots_taken;
   const Sequence seq = snapshot.version.seq;
-  chunks_.take_snapshot(chunk, std::make_shared<const Chunk>(std::move(snapshot)));
+  chunks_.set_current(chunk, std::make_shared<const Chunk>(std::move(snapshot)));
   chunk.drop_answered(seq);
   advance(chunk, true, now_us);
   return true;
@@ -43,7 +43,7 @@ bool ChunkUpdater::is_needed(TrackedChunk& chunk, const Chunk& snapshot, bool wa
 
 void ChunkUpdater::replace(TrackedChunk& chunk, Chunk snapshot) {
   ++counters_.snapshots_taken;
-  chunks_.take_snapshot(chunk, std::make_shared<const Chunk>(std::move(snapshot)));
+  chunks_.set_current(chunk, std::make_shared<const Chunk>(std::move(snapshot)));
   show(chunk);
 }
 
@@ -54,7 +54,7 @@ void ChunkUpdater::vouch(TrackedChunk& chunk, TimeUs now_us) {
   advance(chunk, true, now_us);
 }
 
-void ChunkUpdater::take_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us) {
+void ChunkUpdater::apply_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us) {
   chunks_.answer(chunk);
   ++counters_.same_taken;
   if (!chunk.is_current()) return;
@@ -63,8 +63,8 @@ void ChunkUpdater::take_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs n
   request(chunk, now_us);
 }
 
-bool ChunkUpdater::take_missing_edits(TrackedChunk& chunk, const ChunkEdits& update,
-                                      TimeUs now_us) {
+bool ChunkUpdater::apply_missing_edits(TrackedChunk& chunk, const ChunkEdits& update,
+                                       TimeUs now_us) {
   chunks_.answer(chunk);
   if (!chunk.is_current()) return false;
   if (!chunk.confirmed()) {
@@ -104,11 +104,11 @@ bool ChunkUpdater::take_missing_edits(TrackedChunk& chunk, const ChunkEdits& upd
   return true;
 }
 
-void ChunkUpdater::withhold(TrackedChunk& chunk, UnavailableReason reason) {
+void ChunkUpdater::set_unavailable(TrackedChunk& chunk, UnavailableReason reason) {
   if (chunk.is_unavailable()) return;
   // A copy of an earlier connection would get no more edits: showing nothing is better than showing
   // something stale.
-  chunks_.withhold(chunk);
+  chunks_.set_unavailable(chunk);
   shown_.hide(chunk);
   changes_.unavailable({chunk.key, reason});
 }
@@ -120,9 +120,9 @@ void ChunkUpdater::adopt(TrackedChunk& chunk, ChunkPtr cached, TimeUs now_us) {
   advance(chunk, false, now_us);
 }
 
-void ChunkUpdater::hold(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool is_held_back) {
+void ChunkUpdater::add_to_inbox(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool may_wait) {
   chunk.inbox.push_back(std::move(edit));
-  if (!is_held_back) return;
+  if (!may_wait) return;
   ++counters_.chunk_edits_buffered;
   if (chunk.inbox.size() <= kInboxEditsMax) return;
   // chunk.latest remembers what the next snapshot must contain.
@@ -132,7 +132,7 @@ void ChunkUpdater::hold(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool 
 
 void ChunkUpdater::advance(TrackedChunk& chunk, bool from_snapshot, TimeUs now_us) {
   if (!chunk.confirmed() || is_awaiting(chunk.state())) return;
-  const TrackedChunk::Advance taken = chunk.advance();
+  const TrackedChunk::ReadyEdits taken = chunk.take_ready_edits();
   counters_.chunk_edits_applied += taken.applied.size();
   counters_.chunk_edits_contained += taken.contained.size();
   std::vector<EditChange*> cause;
@@ -181,7 +181,7 @@ void ChunkUpdater::check_digest(TrackedChunk& chunk, const DigestCheckEntry& che
     return;
   }
   if (held.version != check.version) return;
-  ++counters_.audited;
+  ++counters_.digests_checked;
   // Computed from the runs, not the digest that followed the edits: the runs are what is meshed.
   if (digest_of(held.voxels) == check.digest) return;
   ++counters_.drifted;

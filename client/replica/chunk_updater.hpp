@@ -28,26 +28,26 @@ class ChunkUpdater {
 
   /// Takes a snapshot, and applies the edits in the inbox that follow. Returns false if the
   /// confirmed chunk is as new and not in doubt: then the snapshot is ignored.
-  bool take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us);
+  bool apply_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us);
   /// Takes a snapshot of another moment, whatever its version. Applies nothing.
   void replace(TrackedChunk& chunk, Chunk snapshot);
   /// The server says that the claimed chunk, at `seq`, is as it has it. Requests a snapshot if the
   /// confirmed chunk is older.
-  void take_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us);
+  void apply_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us);
   /// Takes the edits that a claimed chunk lacked. Requests a snapshot if they do not follow the
   /// confirmed chunk, or if the digest differs after them. Returns true if they became part of the
   /// confirmed chunk.
-  bool take_missing_edits(TrackedChunk& chunk, const ChunkEdits& update, TimeUs now_us);
+  bool apply_missing_edits(TrackedChunk& chunk, const ChunkEdits& update, TimeUs now_us);
   /// The server cannot send the chunk.
-  void withhold(TrackedChunk& chunk, UnavailableReason reason);
+  void set_unavailable(TrackedChunk& chunk, UnavailableReason reason);
   /// Takes a chunk from a cache. The server has not vouched for it. Requires a chunk without a
   /// confirmed one.
   void adopt(TrackedChunk& chunk, ChunkPtr cached, TimeUs now_us);
 
-  /// Appends an ordered edit to the inbox. `is_held_back`: it cannot be applied before a snapshot.
-  /// Then the inbox is bounded by kInboxEditsMax: beyond it, the edits are dropped, and a snapshot
-  /// that contains them is requested later.
-  void hold(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool is_held_back);
+  /// Appends an ordered edit to the inbox. `may_wait`: the edit may have to wait for the
+  /// server's answer about the chunk. Then the inbox is bounded by kInboxEditsMax: beyond it, the
+  /// edits are dropped, and a snapshot that contains them is requested later.
+  void add_to_inbox(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool may_wait);
   /// Applies what follows in the inbox, requests a snapshot at a gap, and shows the result. Does
   /// nothing without a confirmed chunk, and while a snapshot is awaited.
   void advance(TrackedChunk& chunk, TimeUs now_us) { advance(chunk, false, now_us); }
@@ -59,6 +59,8 @@ class ChunkUpdater {
   void predict(TrackedChunk& chunk, const EditDescriptor& edit, EditChange& cause);
   /// Shows the confirmed runs with the pending edits on top. Requires a confirmed chunk.
   void show(TrackedChunk& chunk, std::span<EditChange* const> cause = {});
+  /// The replica is about to erase the chunk: it is not shown any more.
+  void forget(const TrackedChunk& chunk) { shown_.forget(chunk); }
 
   /// Requests a snapshot, and applies nothing else to the chunk until it arrives.
   void request(TrackedChunk& chunk, TimeUs now_us);

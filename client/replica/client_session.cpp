@@ -210,7 +210,7 @@ std::optional<CacheLookup> ClientSession::take_cache_lookup() {
   return CacheLookup{*world, std::exchange(lookup_keys_, {})};
 }
 
-void ClientSession::receive_cached(std::vector<KeyedChunk> found, TimeUs now_us) {
+void ClientSession::receive_cache_result(std::vector<KeyedChunk> found, TimeUs now_us) {
   if (lookups_stale_ != 0) {
     // The lookup was made for an earlier connection: another server may be there now.
     --lookups_stale_;

@@ -95,11 +95,11 @@ class ClientSession {
   bool command_ok() const { return is_command_ok_; }
 
   /// Returns the chunks to look up in the cache before the next view is sent, or nullopt if there
-  /// are none. The view waits for receive_cached(), at most kCacheWaitUsMax.
+  /// are none. The view waits for receive_cache_result(), at most kCacheWaitUsMax.
   std::optional<CacheLookup> take_cache_lookup();
-  /// Takes what the cache found for the oldest lookup that is open. It may be late, or of an
-  /// earlier connection.
-  void receive_cached(std::vector<KeyedChunk> found, TimeUs now_us);
+  /// Takes the result of the oldest lookup that is open: the chunks that the cache found. It may be
+  /// late, or of an earlier connection.
+  void receive_cache_result(std::vector<KeyedChunk> found, TimeUs now_us);
   /// Returns the world as its server describes it now, or nullopt unless open.
   std::optional<CachedWorld> cached_world() const;
   void set_pose(const Pose& pose) { connection_.set_pose(pose); }

@@ -1,5 +1,6 @@
-// LocalEdits: the edits of this client, from the click until they are known to be on disk
-// (invariant 5). Every client session uses this one state machine, whether it has a replica or not.
+// LocalEdits: the edits of this client, from the click until they are known to be on disk. The
+// server acknowledges an edit twice: by its commit, or by a reject, and by the durable watermark.
+// Every client session uses this one state machine, whether it has a replica or not.
 //
 //   submit --> pending --confirm--> confirmed --retire--> (removed, durable)
 //                 |   --reject----> (removed, rejected)

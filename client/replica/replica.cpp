@@ -52,9 +52,7 @@ void Replica::expect_all_chunks(const SharedHistory& history) {
 }
 
 void Replica::reset() {
-  for (const auto& [key, chunk] : chunks_) {
-    if (chunk.shown) changes_.removed(key);
-  }
+  for (const auto& [key, chunk] : chunks_) updater_.forget(chunk);
   chunks_.clear();
   claims_.clear();
   local_edits_.clear();
@@ -67,7 +65,7 @@ void Replica::set_view(const View& view) {
   views_.set(view);
   chunks_.erase_if([&](const TrackedChunk& chunk) {
     if (view.contains(chunk.key.at)) return false;
-    if (chunk.shown) changes_.removed(chunk.key);
+    updater_.forget(chunk);
     if (!past_.is_past()) outbox_.add(chunk);
     claims_.forget(chunk.key);
     return true;
@@ -202,25 +200,25 @@ void Replica::receive(Chunks chunks, const Arrival& arrival) {
   for (ChunkAnswer& answer : chunks.chunks) {
     if (!accepts(key_of(answer), chunks.view)) continue;
     if (auto* snapshot = std::get_if<ChunkSnapshot>(&answer)) {
-      take_snapshot(snapshot->key, std::move(snapshot->chunk), arrival.now_us);
+      receive_snapshot(snapshot->key, std::move(snapshot->chunk), arrival.now_us);
     } else {
-      take_missing_edits(std::get<ChunkEdits>(answer), arrival.now_us);
+      receive_missing_edits(std::get<ChunkEdits>(answer), arrival.now_us);
     }
   }
 }
 
-void Replica::take_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us) {
+void Replica::receive_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us) {
   TrackedChunk& chunk = track(key);
   claims_.answer(key);
   if (past_.is_past()) return updater_.replace(chunk, std::move(snapshot));
   const Sequence seq = snapshot.version.seq;
-  if (updater_.take_snapshot(chunk, std::move(snapshot), now_us)) newest_ = std::max(newest_, seq);
+  if (updater_.apply_snapshot(chunk, std::move(snapshot), now_us)) newest_ = std::max(newest_, seq);
 }
 
-void Replica::take_missing_edits(const ChunkEdits& edits, TimeUs now_us) {
+void Replica::receive_missing_edits(const ChunkEdits& edits, TimeUs now_us) {
   if (past_.is_past()) return;
   claims_.answer(edits.key);
-  if (updater_.take_missing_edits(track(edits.key), edits, now_us)) {
+  if (updater_.apply_missing_edits(track(edits.key), edits, now_us)) {
     newest_ = std::max(newest_, edits.to.seq);
   }
 }
@@ -230,7 +228,7 @@ void Replica::receive(const ChunksNotModified& same, TimeUs now_us) {
   for (const UnmodifiedChunk& entry : same.chunks) {
     if (!accepts(entry.key, same.view)) continue;
     claims_.answer(entry.key);
-    updater_.take_not_modified(track(entry.key), entry.seq, now_us);
+    updater_.apply_not_modified(track(entry.key), entry.seq, now_us);
   }
 }
 
@@ -246,7 +244,7 @@ void Replica::receive(const UniformChunks& uniform, const Arrival& arrival) {
       chunk.digest = digest_of(chunk.voxels);
     }
     chunk.version = each.version;
-    take_snapshot(each.key, chunk, arrival.now_us);
+    receive_snapshot(each.key, chunk, arrival.now_us);
   }
 }
 
@@ -255,7 +253,7 @@ void Replica::receive(const ChunkUnavailable& unavailable) {
   for (const ChunkKey& key : unavailable.keys) {
     if (!accepts(key, unavailable.view)) continue;
     claims_.answer(key);
-    updater_.withhold(track(key), unavailable.reason);
+    updater_.set_unavailable(track(key), unavailable.reason);
   }
 }
 
@@ -296,8 +294,8 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
       chunk.latest = std::max(chunk.latest, version.seq);
       if (is_local) chunk.confirm_pending(ordered.op.seq, version.seq);
       if (chunk.is_unavailable()) continue;
-      updater_.hold(chunk, {shared_info(), ordered.previous[c]},
-                    !chunk.is_current() || past_.is_past());
+      updater_.add_to_inbox(chunk, {shared_info(), ordered.previous[c]},
+                            !chunk.is_current() || past_.is_past());
       touched[key] = &chunk;
     }
   }

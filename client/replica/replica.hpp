@@ -142,7 +142,8 @@ class Replica {
   /// Returns nullopt while the live world is shown.
   const std::optional<PastMoment>& past() const { return past_.moment(); }
 
-  /// Return null if nothing is held or shown.
+  /// Return null if nothing is held or shown. The digest of a confirmed chunk is as sent; only a
+  /// digest check compares the voxels with the server's digest.
   ChunkPtr confirmed(const ChunkKey& key) const;
   ShownPtr shown(const ChunkKey& key) const;
   /// Returns a number that rises whenever the mesh of the chunk is out of date: when its shown
@@ -174,8 +175,8 @@ class Replica {
   bool is_in_view(const ChunkKey& key) const { return views_.contains(key); }
   bool accepts(const ChunkKey& key, std::uint32_t view);
   TrackedChunk& track(const ChunkKey& key);
-  void take_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us);
-  void take_missing_edits(const ChunkEdits& edits, TimeUs now_us);
+  void receive_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us);
+  void receive_missing_edits(const ChunkEdits& edits, TimeUs now_us);
   void expect_all_chunks(const SharedHistory& history);
   void add_pending_to_chunks(ClientSequence seq);
   Result<void> check(const EditDescriptor& edit) const;

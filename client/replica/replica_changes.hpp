@@ -24,24 +24,24 @@ struct Arrival {
 
 /// The changed layers that the mesh of a chunk depends on, in the form of the arguments of
 /// mesh_rdm_layers().
-struct VisibleLayers {
-  DirtyLayers dirty;  // layers in which a shown voxel changed
+struct ChangedLayers {
+  DirtyLayers here;  // layers in which a shown voxel changed
   /// By Direction: all changed layers of the neighbour, if the layer that touches this chunk
   /// changed; else empty.
   std::array<DirtyLayers, kDirectionCount> beyond;
-  VisibleLayers& operator|=(const VisibleLayers& other) {
-    dirty |= other.dirty;
+  ChangedLayers& operator|=(const ChangedLayers& other) {
+    here |= other.here;
     for (std::size_t d = 0; d < beyond.size(); ++d) beyond[d] |= other.beyond[d];
     return *this;
   }
-  friend bool operator==(const VisibleLayers&, const VisibleLayers&) = default;
+  friend bool operator==(const ChangedLayers&, const ChangedLayers&) = default;
 };
 
 /// One chunk whose mesh is out of date. Changes of a chunk are merged until they are drained.
 struct ChunkChange {
   ChunkKey key;
   std::uint64_t serial = 0;  // see Replica::shown_serial()
-  VisibleLayers layers;      // all that changed, except by neighbours that entered or left the view
+  ChangedLayers layers;      // all that changed, except by neighbours that entered or left the view
   bool whole = false;        // nothing was shown here before, or at some time in between
   bool removed = false;      // out of view or unavailable: nothing is shown here
   std::vector<OperationId> edits;  // edits that this change contains, in the order applied
@@ -83,8 +83,9 @@ struct ReplicaChanges {
   std::vector<EditChange> edits;    // in the order applied
   std::vector<RejectedEdit> rejects;
   std::vector<ClientSequence> durable;  // local edits that are known to be on disk now
-  /// Local edits that the server resolved while this client was not connected, and whose commits
-  /// will not arrive. They were applied and are durable, or were rejected: the chunks show which.
+  /// Local edits that the server resolved, and whose commits will not arrive: the connection was
+  /// lost, or a commit did not fit the session's send queue on the server. They were applied and
+  /// are durable, or were rejected: the chunks show which.
   std::vector<ClientSequence> unseen;
   std::vector<UnavailableChunk> unavailable;
 };
@@ -102,18 +103,18 @@ struct ReplicaCounters {
   std::uint64_t chunk_edits_buffered = 0;   // held back for a snapshot
   std::uint64_t buffer_overflows = 0;
   std::uint64_t gaps = 0;
-  std::uint64_t requests = 0;        // chunks that were requested, repetitions included
-  StackDepths confirmed_stacks;      // edit stacks applied to confirmed runs
-  StackDepths predicted_stacks;      // edit stacks applied on top of them
-  std::uint64_t audited = 0;         // digests compared at equal version
-  std::uint64_t fell_behind = 0;     // found by two digest checks: a commit was lost
-  std::uint64_t drifted = 0;         // digests that differed: a snapshot is requested
-  std::uint64_t repaired = 0;        // snapshots that replaced other voxels of their version
-  std::uint64_t claims_refuted = 0;  // cached chunks that were not the server's: replaced
-  std::uint64_t adopted = 0;         // chunks that came from a cache
-  std::uint64_t claimed = 0;         // chunks that this client claimed to hold
-  std::uint64_t same_taken = 0;      // claimed chunks that the server has not modified
-  std::uint64_t updates_taken = 0;   // claimed chunks that were completed by the edits they lacked
+  std::uint64_t requests = 0;         // chunks that were requested, repetitions included
+  StackDepths confirmed_stacks;       // edit stacks applied to confirmed runs
+  StackDepths predicted_stacks;       // edit stacks applied on top of them
+  std::uint64_t digests_checked = 0;  // compared at equal version
+  std::uint64_t fell_behind = 0;      // found by two digest checks: a commit was lost
+  std::uint64_t drifted = 0;          // digests that differed: a snapshot is requested
+  std::uint64_t repaired = 0;         // snapshots that replaced other voxels of their version
+  std::uint64_t claims_refuted = 0;   // cached chunks that were not the server's: replaced
+  std::uint64_t adopted = 0;          // chunks that came from a cache
+  std::uint64_t claimed = 0;          // chunks that this client claimed to hold
+  std::uint64_t same_taken = 0;       // claimed chunks that the server has not modified
+  std::uint64_t updates_taken = 0;    // claimed chunks that were completed by the edits they lacked
   /// Chunks newer than what a restarted server is known to have kept.
   std::uint64_t dropped_by_epoch = 0;
 };

@@ -25,12 +25,12 @@ void ReplicaChunks::clear() {
   awaiting_.clear();
 }
 
-void ReplicaChunks::take_snapshot(TrackedChunk& chunk, ChunkPtr confirmed) {
+void ReplicaChunks::set_current(TrackedChunk& chunk, ChunkPtr confirmed) {
   set_confirmed(chunk, std::move(confirmed));
   set_state(chunk, ChunkState::current);
 }
 
-void ReplicaChunks::withhold(TrackedChunk& chunk) {
+void ReplicaChunks::set_unavailable(TrackedChunk& chunk) {
   set_confirmed(chunk, nullptr);
   chunk.inbox.clear();
   set_state(chunk, ChunkState::unavailable);

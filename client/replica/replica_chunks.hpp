@@ -37,9 +37,9 @@ class ReplicaChunks {
   void request(TrackedChunk& chunk) { set_state(chunk, after_request(chunk.state_)); }
   void expect(TrackedChunk& chunk) { set_state(chunk, ChunkState::expected); }
   /// A snapshot becomes the confirmed chunk: no request is open any more.
-  void take_snapshot(TrackedChunk& chunk, ChunkPtr confirmed);
+  void set_current(TrackedChunk& chunk, ChunkPtr confirmed);
   /// Drops what is held. The shown runs stay until the caller hides them.
-  void withhold(TrackedChunk& chunk);
+  void set_unavailable(TrackedChunk& chunk);
 
   /// Replaces the confirmed chunk, in any state; null drops it.
   void set_confirmed(TrackedChunk& chunk, ChunkPtr confirmed);

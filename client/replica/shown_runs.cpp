@@ -18,7 +18,7 @@ void ShownRuns::show(TrackedChunk& chunk, ShownPtr next, std::span<EditChange* c
 
   ChunkChange& change = changes_.chunk(chunk.key);
   change.serial = chunk.serial;
-  change.layers.dirty |= dirty;
+  change.layers.here |= dirty;
   change.whole = change.whole || whole;
   change.removed = false;
   ChangeQueue::attribute(change, cause);
@@ -41,6 +41,10 @@ void ShownRuns::hide(TrackedChunk& chunk) {
     change_border({chunk.key.lod, neighbour(chunk.key.at, d)}, opposite(d),
                   all_layers(was_shown->extent), {});
   }
+}
+
+void ShownRuns::forget(const TrackedChunk& chunk) {
+  if (chunk.shown) changes_.removed(chunk.key);
 }
 
 /// Queues for the chunk `key`, if it is shown, that these layers of its neighbour on `side`

@@ -1,6 +1,6 @@
 // ShownRuns: replaces the runs that a replica shows, and queues the change for the mesher: for the
 // chunk itself, and for the neighbours at whose border a voxel changed. Every change of shown runs
-// goes through here. One thread.
+// goes through here, also that of a chunk that the replica stops tracking. One thread.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -23,6 +23,9 @@ class ShownRuns {
   /// Shows nothing any more. Queues the removal even if nothing was shown, because neighbours wait
   /// for the chunk.
   void hide(TrackedChunk& chunk);
+  /// Queues the removal of a chunk that the replica is about to erase, if it is shown. Queues no
+  /// change of its neighbours: their meshes are kept until their own voxels change.
+  void forget(const TrackedChunk& chunk);
 
  private:
   void change_border(const ChunkKey& key, Direction side, const DirtyLayers& dirty,

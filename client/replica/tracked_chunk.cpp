@@ -33,8 +33,8 @@ std::size_t TrackedChunk::drop_answered(Sequence seq) {
   });
 }
 
-TrackedChunk::Advance TrackedChunk::advance() {
-  Advance out;
+TrackedChunk::ReadyEdits TrackedChunk::take_ready_edits() {
+  ReadyEdits out;
   out.version = confirmed_->version;
   std::size_t taken = 0;
   for (; taken < inbox.size(); ++taken) {

@@ -51,7 +51,7 @@ class TrackedChunk {
   };
 
   const ChunkKey key;
-  ShownPtr shown;                    // null until the first snapshot
+  ShownPtr shown;                    // null if nothing is shown
   std::uint64_t serial = 0;          // see Replica::shown_serial()
   std::vector<PendingEdit> pending;  // ascending by seq
   std::vector<InboxEdit> inbox;      // ascending by sequence
@@ -65,8 +65,8 @@ class TrackedChunk {
   ChunkState state() const { return state_; }
   bool is_current() const { return state_ == ChunkState::current; }
   bool is_unavailable() const { return state_ == ChunkState::unavailable; }
-  /// Returns null until the first snapshot, and after a restart of the server that may have lost
-  /// this version.
+  /// Returns null if nothing is held: before the first snapshot or cached copy, while the chunk is
+  /// unavailable, and after a restart of the server that may have lost this version.
   const ChunkPtr& confirmed() const { return confirmed_; }
   /// Returns true if the server vouches for the confirmed chunk and the cache does not have this
   /// version.
@@ -84,8 +84,8 @@ class TrackedChunk {
   /// many.
   std::size_t drop_answered(Sequence seq);
 
-  /// What advance() took from the inbox.
-  struct Advance {
+  /// What take_ready_edits() took from the inbox.
+  struct ReadyEdits {
     std::vector<EditDescriptor> stack;  // to be applied to the confirmed runs
     std::vector<OrderedPtr> applied;    // the same edits
     std::vector<OrderedPtr> contained;  // the confirmed runs contain them already
@@ -93,7 +93,7 @@ class TrackedChunk {
   };
   /// Takes edits from the front of the inbox until one does not follow the version reached. Local
   /// edits among them are no longer pending. Requires confirmed().
-  Advance advance();
+  ReadyEdits take_ready_edits();
 
   /// Returns the runs to show: those of the confirmed chunk itself if nothing is pending, otherwise
   /// a copy with the pending edits applied. Requires confirmed().

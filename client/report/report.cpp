@@ -69,7 +69,7 @@ Json replica_json(const Replica& replica) {
   return Json{{"confirmed_chunks", replica.confirmed_count()},
               {"awaiting", replica.awaiting_count()},
               {"unavailable", replica.unavailable_count()},
-              {"own_not_durable", replica.local_edits().all().size()},
+              {"local_not_durable", replica.local_edits().all().size()},
               {"newest", replica.newest()},
               {"durable", replica.durable()},
               {"snapshots_taken", c.snapshots_taken},
@@ -84,7 +84,7 @@ Json replica_json(const Replica& replica) {
               {"predicted_stacks", c.predicted_stacks.text()},
               {"gaps", c.gaps},
               {"requests", c.requests},
-              {"audited", c.audited},
+              {"digests_checked", c.digests_checked},
               {"fell_behind", c.fell_behind},
               {"drifted", c.drifted},
               {"repaired", c.repaired},
@@ -93,11 +93,11 @@ Json replica_json(const Replica& replica) {
               {"claimed", c.claimed},
               {"same_taken", c.same_taken},
               {"updates_taken", c.updates_taken},
-              {"own_submitted", local.submitted},
-              {"own_confirmed", local.confirmed},
-              {"own_rejected", local.rejected},
-              {"own_durable", local.durable},
-              {"own_offered_again", local.offered_again},
+              {"local_submitted", local.submitted},
+              {"local_confirmed", local.confirmed},
+              {"local_rejected", local.rejected},
+              {"local_durable", local.durable},
+              {"local_offered_again", local.offered_again},
               {"dropped_by_epoch", c.dropped_by_epoch}};
 }
 
@@ -121,7 +121,7 @@ std::string cell(const std::optional<std::int64_t>& us) {
 
 void add_row(std::string& out, const char* path, const char* stage, const Histogram& h) {
   if (h.count() == 0) return;
-  fmt::format_to(std::back_inserter(out), "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", path,
+  fmt::format_to(std::back_inserter(out), "{:<15} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", path,
                  stage, h.count(), cell(h.percentile(0.5)), cell(h.percentile(0.9)),
                  cell(h.percentile(0.99)), cell(h.max()));
 }
@@ -175,10 +175,10 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
     const auto path = static_cast<EditPath>(w);
     latency[to_string(path)] = path_json(report.latency[path]);
   }
-  latency["own_durable"] = histogram_summary(report.latency.durable);
-  latency["own_rejected"] = report.latency.rejected;
-  latency["own_unseen"] = report.latency.unseen;
-  latency["own_refused"] = report.edits_refused;
+  latency["local_durable"] = histogram_summary(report.latency.durable);
+  latency["local_rejected"] = report.latency.rejected;
+  latency["local_unseen"] = report.latency.unseen;
+  latency["local_refused"] = report.edits_refused;
   out["latency_us"] = std::move(latency);
   out["join"] = Json{{"near", part_json(report.join.near)}, {"view", part_json(report.join.view)}};
   const SnapshotStats& snapshots = report.snapshots;
@@ -215,7 +215,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
 std::string to_table(const ClientReport& report, const ClientSession& session) {
   std::string out;
   const auto into = std::back_inserter(out);
-  fmt::format_to(into, "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", "edits (ms)", "until",
+  fmt::format_to(into, "{:<15} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", "edits (ms)", "until",
                  "count", "p50", "p90", "p99", "max");
   for (std::size_t w = 0; w < kEditPathCount; ++w) {
     const auto path = static_cast<EditPath>(w);
@@ -224,7 +224,7 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
               report.latency[path].since_submit[s]);
     }
   }
-  add_row(out, "own", "durable", report.latency.durable);
+  add_row(out, "local", "durable", report.latency.durable);
   if (session.clock().known()) {
     fmt::format_to(into, "clock offset error: at most {:.3f} ms\n",
                    static_cast<double>(session.clock().error_us()) / 1000);
@@ -236,8 +236,8 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
     fmt::format_to(into, "frames: {}, each {} ms (p50)\n", report.frames.presented,
                    cell(report.frames.draw_us.percentile(0.5)));
   }
-  fmt::format_to(into, "drift: {} of {} audited\n", session.replica().counters().drifted,
-                 session.replica().counters().audited);
+  fmt::format_to(into, "drift: {} of {} digests checked\n", session.replica().counters().drifted,
+                 session.replica().counters().digests_checked);
   fmt::format_to(into, "dense expansions: {}\n", dense_expansions());
   return out;
 }

@@ -18,7 +18,7 @@ const char* to_string(LatencyStage stage) {
 }
 
 const char* to_string(EditPath path) {
-  constexpr std::array<const char*, kEditPathCount> kNames = {"own_predicted", "own_confirmed",
+  constexpr std::array<const char*, kEditPathCount> kNames = {"local_predicted", "local_confirmed",
                                                               "remote"};
   return kNames[static_cast<std::size_t>(path)];
 }

@@ -1,5 +1,4 @@
-// LatencyRecorder: times every edit on its path to this client's screen, stage by stage (design:
-// latency-plus-mesh).
+// LatencyRecorder: times every edit on its path to this client's screen, stage by stage.
 //   submit -> ordered -> received -> unpacked -> applied -> meshed -> uploaded -> presented
 // Three paths are recorded separately:
 //   - local_predicted: a local edit, as predicted: submit -> applied (to the shown runs) -> meshed
@@ -43,7 +42,7 @@ const char* to_string(LatencyStage stage);
 
 enum class EditPath : std::uint8_t { local_predicted, local_confirmed, remote };
 inline constexpr std::size_t kEditPathCount = 3;
-/// Returns the name in reports: "own_predicted", "own_confirmed" or "remote".
+/// Returns the name in reports: "local_predicted", "local_confirmed" or "remote".
 const char* to_string(EditPath path);
 
 struct PathReport {
@@ -64,7 +63,9 @@ struct LatencyReport {
   // Local edits:
   Histogram durable;           // submit -> known to be on disk
   std::uint64_t rejected = 0;  // rejected by the server; in none of the above
-  std::uint64_t unseen = 0;    // resolved while not connected; not in local_confirmed and durable
+  /// Resolved, but their commits did not arrive (ReplicaChanges::unseen). They are not in
+  /// local_confirmed and durable.
+  std::uint64_t unseen = 0;
   const PathReport& operator[](EditPath path) const {
     return paths[static_cast<std::size_t>(path)];
   }

@@ -52,7 +52,7 @@ struct MeshJob {
   /// The mesh to start from, and the layers that changed since, as arguments of mesh_rdm_layers().
   /// Null if the whole chunk is to be meshed.
   MeshPtr before;
-  VisibleLayers changed;
+  ChangedLayers changed;
 };
 
 enum class JobSize : std::uint8_t {
@@ -99,7 +99,7 @@ class MeshPlanner {
     bool counted = false;        // counted in chunks_
     std::uint64_t job = 0;       // number of the open job; 0: none
     std::uint64_t serial = 0;    // of the newest change
-    VisibleLayers changed;       // since the newest job was made
+    ChangedLayers changed;       // since the newest job was made
     // The sources of the newest job, and its mesh. The mesh is null while the job is open or void.
     AxisOrder order{};
     std::uint8_t open_sides = 0;  // bit per Direction: there was no neighbour

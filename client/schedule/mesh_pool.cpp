@@ -81,7 +81,7 @@ MeshResult MeshPool::mesh(const MeshJob& job, Scratch& scratch) const {
   const std::int64_t start = clock_();
   if (job.before) {
     scratch.mesh = *job.before;
-    result.layers_only = mesh_rdm_layers(*job.chunk, neighbours, visibility_, job.changed.dirty,
+    result.layers_only = mesh_rdm_layers(*job.chunk, neighbours, visibility_, job.changed.here,
                                          job.changed.beyond, scratch.rdm, scratch.mesh);
   } else {
     mesh_rdm(*job.chunk, neighbours, visibility_, scratch.rdm, scratch.mesh);

@@ -40,11 +40,6 @@ struct OperationId {
   friend auto operator<=>(const OperationId&, const OperationId&) = default;
 };
 
-using TraceId = std::uint64_t;
-/// Returns a number that connects the log lines of one edit on every machine. It is derived, never
-/// random, so a replay logs the same number.
-TraceId trace_id(const OperationId& op);
-
 /// The reason why an edit is in the log. Values are frozen: they are stored.
 enum class Cause : std::uint8_t {
   player = 0,

@@ -1,5 +1,5 @@
-// ChunkMesh: the quads of one chunk in two draw passes, kept per direction and layer. An edit
-// replaces only the layers that it touched ("dirty layers" in the design).
+// ChunkMesh: the quads of one chunk in two draw passes, kept per direction and layer. After an edit
+// only the layers in which a voxel changed (DirtyLayers) and the layers beside them are replaced.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -11,7 +11,10 @@ namespace runstone {
 struct Chunk {
   RunChunk voxels;
   Version version;
-  Digest digest;  // of voxels; updated with each edit, recomputed by audits
+  /// Of the voxels. It is updated with each edit. In a chunk that arrived in a snapshot it follows
+  /// from the digest as sent, which nobody compared with the voxels: code that must find drift
+  /// computes digest_of(voxels).
+  Digest digest;
   friend bool operator==(const Chunk&, const Chunk&) = default;
 };
 

@@ -1,5 +1,6 @@
-// Dense expansion, for oracles, tools and reference meshers only. Every expansion is counted. The
-// counter stays zero on the main path of server and client (invariant 1 of the design).
+// Dense expansion: a buffer with a material per voxel of more than one layer. It is for oracles,
+// tools and reference meshers only. Every expansion is counted. Server and client work on runs from
+// end to end, so the counter stays zero there.
 #pragma once
 #include <cstdint>
 #include <span>

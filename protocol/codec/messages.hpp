@@ -1,6 +1,8 @@
 // Messages as plain structs, with the functions that encode and decode them. A decoded struct is
-// valid: sizes, ranges, enum values, descriptor bytes and chunk runs were checked. The one
-// exception is EditRequest::fault.
+// valid: sizes, ranges, enum values, descriptor bytes and chunk runs were checked. There are two
+// exceptions:
+//   - an EditRequest whose descriptor is not valid has a `fault` in place of the edit;
+//   - the digest of a snapshot is not compared with its voxels.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -278,7 +280,7 @@ enum class RejectReason : std::uint8_t {
   unknown_material = 3,
   too_large = 4,  // too many voxels or touched chunks
   out_of_reach = 5,
-  not_permitted = 6,
+  not_permitted = 6,  // reserved: no server sends it yet
   rate_limited = 7,
   bad_edit = 8,       // not a valid descriptor
   outside_world = 9,  // a voxel lies above or below the height limits
@@ -287,6 +289,8 @@ inline constexpr std::uint8_t kRejectReasonMax = 9;
 /// Returns the name in docs/protocol.md, or "unknown".
 const char* to_string(RejectReason reason);
 
+/// The answer to an edit for which no commit will follow: the edit was rejected, or
+/// (already_resolved) it was applied or rejected earlier.
 struct Reject {
   ClientSequence client_seq = 0;
   RejectReason reason = RejectReason::busy;

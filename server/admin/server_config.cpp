@@ -146,9 +146,10 @@ const std::vector<Field>& fields() {
              "edits between two keyframes, at least, 0: none"),
       number("log_queue_records", &C::log_queue_records, 1, 10'000'000,
              "records until edits are rejected busy"),
-      number("audit_ms", &C::audit_ms, 10, 3'600'000,
-             "milliseconds between two audits of a session"),
-      number("audit_chunks", &C::audit_chunks, 0, 1'024, "digests per audit, 0: none"),
+      number("digest_check_ms", &C::digest_check_ms, 10, 3'600'000,
+             "milliseconds between two digest checks of a session"),
+      number("digest_check_chunks", &C::digest_check_chunks, 0, 1'024,
+             "digests per check, 0: none"),
       number("counters_s", &C::counters_s, 0, 86'400,
              "seconds between two lines of counters, 0: never"),
   };

@@ -65,8 +65,8 @@ struct ServerConfig {
   std::uint64_t snapshot_s = 30;             // seconds between two rounds, 1..86400
   std::uint64_t keyframe_edits = 32'768;     // least number between two keyframes, 0: none .. 10^9
   std::uint64_t log_queue_records = 65'536;  // above it edits are rejected as busy, 1..10^7
-  std::uint64_t audit_ms = 1'000;            // between two digest checks of a session, 10..3600000
-  std::uint64_t audit_chunks = 8;            // digests per check, 0: none .. 1024
+  std::uint64_t digest_check_ms = 1'000;     // between two digest checks of a session, 10..3600000
+  std::uint64_t digest_check_chunks = 8;     // digests per check, 0: none .. 1024
   std::uint64_t counters_s = 60;             // seconds between two lines of counters, 0: never
   friend bool operator==(const ServerConfig&, const ServerConfig&) = default;
 };

@@ -35,14 +35,24 @@ std::size_t Interest::set_view(SessionId session, const View& view) {
   return moved.entered;
 }
 
-void Interest::want_again(SessionId session, std::span<const View> skipped) {
+template <class IsMeant>
+void Interest::want_again(SessionId session, IsMeant is_meant) {
   std::vector<ChunkKey> again;
   for (const auto& [key, state] : at(session).chunks()) {
-    const auto holds = [&](const View& view) { return view.contains(key.at); };
-    if (skipped.empty() || !std::all_of(skipped.begin(), skipped.end(), holds))
-      again.push_back(key);
+    if (is_meant(key.at)) again.push_back(key);
   }
   for (const ChunkKey& key : again) set_state(session, key, ChunkInterest::wanted);
+}
+
+void Interest::want_all_again(SessionId session) {
+  want_again(session, [](ChunkCoord) { return true; });
+}
+
+void Interest::want_again_outside(SessionId session, std::span<const View> views) {
+  want_again(session, [views](ChunkCoord at) {
+    return !std::all_of(views.begin(), views.end(),
+                        [at](const View& view) { return view.contains(at); });
+  });
 }
 
 std::optional<ChunkKey> Interest::nearest_wanted(SessionId session) {

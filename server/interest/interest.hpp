@@ -33,10 +33,11 @@ class Interest {
 
   /// Sets the session's view. Returns how many chunks it added.
   std::size_t set_view(SessionId session, const View& view);
-  /// Makes chunks wanted again that lie outside of any of the `skipped` views, or all chunks if
-  /// there are none. It is for a client that had other views in between and may have dropped those
-  /// chunks.
-  void want_again(SessionId session, std::span<const View> skipped);
+  /// Makes all chunks wanted again.
+  void want_all_again(SessionId session);
+  /// Makes the chunks wanted again that lie outside of at least one of these views. It is for a
+  /// client that had these views in between and may have dropped those chunks.
+  void want_again_outside(SessionId session, std::span<const View> views);
   std::optional<ChunkKey> nearest_wanted(SessionId session);
   std::optional<ChunkKey> next_for_digest_check(SessionId session);
   /// Moves a chunk to a state. Returns false if it is not in the session's view.
@@ -60,6 +61,9 @@ class Interest {
   void leave(SessionId session, const ChunkKey& key, ChunkInterest was);
   void enter(SessionId session, const ChunkKey& key, ChunkInterest now);
   SessionInterest& at(SessionId session);
+  /// Makes the chunks wanted again for which `is_meant` returns true; it takes a ChunkCoord.
+  template <class IsMeant>
+  void want_again(SessionId session, IsMeant is_meant);
 
   CoordLimit limit_;
   std::map<SessionId, SessionInterest> sessions_;

@@ -28,7 +28,7 @@ class ChunkGate {
   /// without queueing them.
   std::size_t open(TimeUs now_us, std::size_t room_bytes = SIZE_MAX) {
     if (room_bytes <= kFrameHeaderBytes) return 0;
-    if (is_paced_ && pace_.room(now_us) == 0) return 0;
+    if (is_paced_ && !pace_.may_send(now_us)) return 0;
     const std::size_t bytes = std::min(is_paced_ ? pace_.fragment_bytes() : kFragmentBytesMax,
                                        room_bytes - kFrameHeaderBytes);
     if (!session_.is_limited() && !shared_.is_limited()) return bytes;
@@ -42,7 +42,7 @@ class ChunkGate {
   }
   /// Returns when to call open() again after it returned 0, if no acknowledgement comes before.
   TimeUs next_us(TimeUs now_us) const {
-    if (is_paced_ && pace_.room(now_us) == 0) return pace_.next_us(now_us);
+    if (is_paced_ && !pace_.may_send(now_us)) return pace_.next_us(now_us);
     return std::max(now_us, slot_us_.value_or(now_us));
   }
 

@@ -80,10 +80,9 @@ bool ChunkPace::is_late() const { return late_in_a_row_ >= kLateInARow; }
 // Less room than a fragment counts as none, so that fragments do not become small.
 bool ChunkPace::is_full() const { return in_flight() + fragment_bytes() > window(); }
 
-std::size_t ChunkPace::room(TimeUs now_us) const {
-  if (is_full()) return now_us >= silent_until() ? fragment_bytes() : 0;
-  if (rate() != 0 && next_us_ > now_us + kAheadUs) return 0;
-  return fragment_bytes();
+bool ChunkPace::may_send(TimeUs now_us) const {
+  if (is_full()) return now_us >= silent_until();
+  return rate() == 0 || next_us_ <= now_us + kAheadUs;
 }
 
 TimeUs ChunkPace::next_us(TimeUs now_us) const {

@@ -41,8 +41,8 @@ class ChunkPace {
   /// by the server, not by the link.
   void mark_app_limited() { app_limited_until_ = sent_; }
 
-  /// Returns how many bytes may be sent now.
-  std::size_t room(TimeUs now_us) const;
+  /// Returns true if a fragment of fragment_bytes() may be sent now.
+  bool may_send(TimeUs now_us) const;
   /// Returns when bytes may be sent again if no acknowledgement comes before; at least `now_us`.
   TimeUs next_us(TimeUs now_us) const;
   /// Returns the body bytes of one fragment: fewer on a slow link, so that an edit waits less.

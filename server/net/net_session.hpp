@@ -87,7 +87,9 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   void close(GoodbyeReason reason, const std::string& text);
   /// Reports that a message of NetEvents::on_message() was handled.
   void handled(std::size_t message_bytes);
-  /// Closes the connection at once, without a goodbye.
+  /// Calls close() with `server_full` and closes the socket without waiting for the linger time.
+  /// Nothing can be queued afterwards. The goodbye reaches the client only if the writer sends it
+  /// before the socket is closed.
   void abort();
 
  private:

@@ -37,8 +37,8 @@ std::string sending_part(const WorldServer& world, const NetCounters& net,
                          const RuntimeCounters& runtime) {
   const WorldCounters& w = world.counters();
   return fmt::format(
-      "queue_full={} audits_sent={} audit_mismatches={} commits_sent={} commit_enqueue_us={} "
-      "commit_sends={} commit_send_ms={} bytes_in={} bytes_out={}",
+      "queue_full={} digest_checks_sent={} digest_mismatches={} commits_sent={} "
+      "commit_enqueue_us={} commit_sends={} commit_send_ms={} bytes_in={} bytes_out={}",
       w.queue_full, w.digest_checks_sent, w.digest_mismatches, w.commits_sent,
       runtime.commit_enqueue_us, net.commit_sends.load(), net.commit_send_ns.load() / 1'000'000,
       net.bytes_in.load(), net.bytes_out.load());

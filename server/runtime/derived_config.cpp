@@ -32,8 +32,8 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.edit_burst = config.edit_burst;
   world.idle_us_max = static_cast<TimeUs>(config.idle_s) * kUsPerSecond;
   world.preferred_encoding = config.encoding;
-  world.digest_check_interval_us = static_cast<TimeUs>(config.audit_ms) * kUsPerMs;
-  world.digest_check_chunks = config.audit_chunks;
+  world.digest_check_interval_us = static_cast<TimeUs>(config.digest_check_ms) * kUsPerMs;
+  world.digest_check_chunks = config.digest_check_chunks;
   world.resident_bytes_max = config.memory_mib << 20;
   world.snapshots.edits_max = config.snapshot_edits;
   world.snapshots.interval_us = static_cast<TimeUs>(config.snapshot_s) * kUsPerSecond;

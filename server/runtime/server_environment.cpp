@@ -79,11 +79,11 @@ void ServerEnvironment::open_history(SessionId session, const HistoryRequest& re
   });
 }
 
-void ServerEnvironment::load_history_chunk(SessionId session, std::uint32_t view, Sequence at,
+void ServerEnvironment::load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                                            const ChunkKey& key) {
   readers_.load_history_chunk(
-      at, key, [this, session, view, key](const Result<ChunkPtr, std::string>& chunk) {
-        world_->history_chunk_loaded(session, view, key, chunk, read_clocks());
+      at, key, [this, session, history, key](const Result<ChunkPtr, std::string>& chunk) {
+        world_->history_chunk_loaded(session, history, key, chunk, read_clocks());
       });
 }
 
@@ -100,7 +100,7 @@ void ServerEnvironment::command(SessionId session, AuthorId author, const Public
   commands_->run(session, author, key, text);
 }
 
-void ServerEnvironment::log(WorldLogLevel level, const std::string& line) {
+void ServerEnvironment::report(OperatorLogLevel level, const std::string& line) {
   lines_.write(level, line, read_clocks().steady_us);
 }
 

@@ -13,7 +13,7 @@
 #include "server/runtime/command_runner.hpp"
 #include "server/runtime/connected_sessions.hpp"
 #include "server/runtime/durable_log.hpp"
-#include "server/runtime/world_log.hpp"
+#include "server/runtime/operator_log.hpp"
 #include "server/runtime/world_readers.hpp"
 #include "server/world/world_environment.hpp"
 
@@ -54,20 +54,20 @@ class ServerEnvironment final : public WorldEnvironment {
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
   void load_chunk(const ChunkKey& key) override;
   void open_history(SessionId session, const HistoryRequest& request) override;
-  void load_history_chunk(SessionId session, std::uint32_t view, Sequence at,
+  void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                           const ChunkKey& key) override;
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                       Sequence checkpoint) override;
   void command(SessionId session, AuthorId author, const PublicKey& key,
                const std::string& text) override;
-  void log(WorldLogLevel level, const std::string& line) override;
+  void report(OperatorLogLevel level, const std::string& line) override;
 
  private:
   ConnectedSessions& sessions_;
   Listener& listener_;
   ChunkSender& sender_;
   WorldReaders& readers_;
-  WorldLog lines_;
+  OperatorLog lines_;
   WorldServer* world_ = nullptr;
   DurableLog* log_ = nullptr;
   CommandRunner* commands_ = nullptr;

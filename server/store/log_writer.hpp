@@ -2,8 +2,10 @@
 // snapshots and keyframes, from bounded queues.
 //   - Group commit: all batches that were queued during the last fsync become one transaction, and
 //     one call of on_durable. A slow disk makes larger groups. No clock is needed.
-//   - Full: has_room() returns false, and the world rejects edits as busy. A job is refused if the
-//     queue of jobs is full, and the world offers its chunks again later.
+//   - Full: has_room() returns false, and the world rejects edits as busy. The queue of jobs does
+//     not fill in a server: the checkpointer and the keyframe thread each have at most one job
+//     under way. So a refused job means that the writer has failed or stopped. The job
+//     is not offered again.
 //   - Order: records go before jobs, and a job is written in slices. A record therefore never waits
 //     for many chunks.
 //   - Failure: after the first error nothing more is written, on_failed is called once, and queued

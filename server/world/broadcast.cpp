@@ -61,11 +61,11 @@ void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& b
   for (std::size_t i = 0; i < batch.commit.edits.size(); ++i) {
     const OrderedEdit& edit = batch.commit.edits[i];
     const WorldSession* mine = world.find(session);
-    if (mine == nullptr) return;  // too many answers were pending: the session is closed
+    if (mine == nullptr) return;  // too many rejects were pending: the session is closed
     if (edit.op.author != mine->author || edit.op.instance != mine->instance) continue;
-    answer(world, session,
-           {edit.op.seq, RejectReason::already_resolved,
-            "applied; its commit did not fit the queue", batch.commit.first + i});
+    send_reject(world, session,
+                {edit.op.seq, RejectReason::already_resolved,
+                 "applied; its commit did not fit the queue", batch.commit.first + i});
   }
 }
 

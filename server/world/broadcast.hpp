@@ -6,7 +6,8 @@
 namespace runstone {
 
 /// Orders the queued edits, appends them to the log, and sends each commit to the subscribers of
-/// the chunks it touched and to the authors of its edits. Cost: O(subscribers of touched chunks).
+/// the chunks it touched and to the authors of its edits. Cost of each commit: O(edits + subscribers
+/// of touched chunks + sessions), because the sessions of the authors are searched among all.
 void commit_and_broadcast(WorldState& world, const Clocks& now);
 /// Sends the durable watermark to the sessions whose client has edits that are not yet
 /// acknowledged.

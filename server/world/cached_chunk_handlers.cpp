@@ -34,36 +34,36 @@ void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& 
   }
 }
 
-ClaimAnswer answer_claim(WorldState& world, SessionId session, const ChunkKey& key,
-                         const ChunkPtr& chunk) {
+ClaimReply reply_to_claim(WorldState& world, SessionId session, const ChunkKey& key,
+                          const ChunkPtr& chunk) {
   WorldSession& mine = *world.find(session);
   const CachedChunk* claim = mine.claims.find(key);
-  if (claim == nullptr) return ClaimAnswer::none;
+  if (claim == nullptr) return ClaimReply::none;
   if (claim->version == chunk->version) {
     const bool is_same = claim->digest == claim_digest(chunk->digest);
     mine.claims.drop(key);
     if (is_same) {
       mine.not_modified_due.push_back({key, chunk->version.seq});
       ++world.counters.not_modified_sent;
-      return ClaimAnswer::queued;
+      return ClaimReply::queued;
     }
     ++world.counters.claims_drifted;
-    world.environment.log(
-        WorldLogLevel::warn,
+    world.environment.report(
+        OperatorLogLevel::warn,
         "session=" + std::to_string(session) + " chunk=" + text_of(key) +
             " differs in the client's cache at the same version: sending a snapshot");
-    return ClaimAnswer::none;
+    return ClaimReply::none;
   }
   if (!can_read_missing_edits(world, *claim, chunk->version)) {
     mine.claims.drop(key);
-    return ClaimAnswer::none;
+    return ClaimReply::none;
   }
   if (!world.environment.send_update(session, view_in_force(world, session), key, chunk,
                                      claim->version))
-    return ClaimAnswer::full;
+    return ClaimReply::full;
   mine.claims.drop(key);
   ++world.counters.updates_sent;
-  return ClaimAnswer::queued;
+  return ClaimReply::queued;
 }
 
 bool send_not_modified(WorldState& world, SessionId session, bool is_more) {

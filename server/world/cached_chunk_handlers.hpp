@@ -16,14 +16,14 @@ namespace runstone {
 /// than kClaimsPerSessionMax claims.
 void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& cached);
 
-enum class ClaimAnswer {
+enum class ClaimReply {
   none,    // there is no claim, or it is of no use: send a snapshot
-  queued,  // an answer is queued
+  queued,  // the reply is queued
   full,    // the session's queue is full
 };
-/// Answers the session's claim of this chunk, if there is one. Requires a chunk.
-ClaimAnswer answer_claim(WorldState& world, SessionId session, const ChunkKey& key,
-                         const ChunkPtr& chunk);
+/// Replies to the session's claim of this chunk, if there is one. Requires a chunk.
+ClaimReply reply_to_claim(WorldState& world, SessionId session, const ChunkKey& key,
+                          const ChunkPtr& chunk);
 /// Sends the "not modified" answers that are due. While more may follow (`is_more`), it sends only
 /// full messages. Returns false if the session's queue is full; the rest stays due.
 bool send_not_modified(WorldState& world, SessionId session, bool is_more);

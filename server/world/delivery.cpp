@@ -125,8 +125,8 @@ void forget_unsent(WorldState& world, SessionId session) {
   world.environment.forget_outside(session, *interest.view());
 }
 
-bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
-                  ChunkInterest then, const Clocks& now) {
+bool send_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
+                ChunkInterest then, const Clocks& now) {
   if (chunk == nullptr) {
     const ChunkUnavailable unavailable{
         view_in_force(world, session), {key}, UnavailableReason::damaged};
@@ -138,10 +138,10 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
     ++world.counters.unavailable_sent;
     return true;
   }
-  const ClaimAnswer held = then == ChunkInterest::subscribed
-                               ? answer_claim(world, session, key, chunk)
-                               : ClaimAnswer::none;
-  if (held == ClaimAnswer::queued) {
+  const ClaimReply held = then == ChunkInterest::subscribed
+                              ? reply_to_claim(world, session, key, chunk)
+                              : ClaimReply::none;
+  if (held == ClaimReply::queued) {
     world.interest.set_state(session, key, then);
     return true;
   }
@@ -150,7 +150,7 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
                                       : world.environment.send_snapshot(
                                             session, view_in_force(world, session), key, chunk);
   };
-  if (held == ClaimAnswer::full || !send()) {
+  if (held == ClaimReply::full || !send()) {
     put_off(world, session, key, now);
     return false;
   }
@@ -191,7 +191,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
     const ChunkPtr chunk = chunks.find(*key);
     const Residency residency = chunks.residency(*key);
     if (chunk != nullptr || residency == Residency::quarantined) {
-      if (!answer_chunk(world, session, *key, chunk, ChunkInterest::subscribed, now)) break;
+      if (!send_chunk(world, session, *key, chunk, ChunkInterest::subscribed, now)) break;
     } else {
       world.interest.set_state(session, *key, ChunkInterest::waiting);
       if (residency == Residency::absent) world.loads.request(session, *key);
@@ -211,7 +211,7 @@ void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now) {
     if (is_stalled(world, *world.find(session), now)) {
       world.interest.set_state(session, key, ChunkInterest::wanted);
     } else {
-      answer_chunk(world, session, key, chunk, ChunkInterest::subscribed, now);
+      send_chunk(world, session, key, chunk, ChunkInterest::subscribed, now);
     }
     deliver(world, session, now);
   }

@@ -23,8 +23,8 @@ void forget_unsent(WorldState& world, SessionId session);
 /// Queues a wanted chunk for the session and moves it to the state `then`. Sends "chunk
 /// unavailable" if `chunk` is null. Returns false if the session's queue is full; the chunk stays
 /// wanted.
-bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
-                  ChunkInterest then, const Clocks& now);
+bool send_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
+                ChunkInterest then, const Clocks& now);
 /// Queues a load that the world itself needs. Does nothing unless the chunk is absent.
 void request_load(WorldState& world, const ChunkKey& key);
 /// Starts queued loads, up to loads_in_flight_max.

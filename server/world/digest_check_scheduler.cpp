@@ -20,9 +20,9 @@ void send_digest_check(WorldState& world, SessionId session) {
     const Digest digest = digest_of(chunk->voxels);
     if (digest != chunk->digest) {
       ++world.counters.digest_mismatches;
-      world.environment.log(WorldLogLevel::error,
-                            "chunk=" + text_of(*key) + " digest of runs " + to_hex(digest) +
-                                " differs from the stored one " + to_hex(chunk->digest));
+      world.environment.report(OperatorLogLevel::error,
+                               "chunk=" + text_of(*key) + " digest of runs " + to_hex(digest) +
+                                   " differs from the stored one " + to_hex(chunk->digest));
     }
     check.entries.push_back({*key, chunk->version, digest});
   }

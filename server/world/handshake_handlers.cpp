@@ -107,9 +107,9 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
   world.interest.open(session);
   world.environment.opened(session);
   ++world.counters.sessions_opened;
-  world.environment.log(WorldLogLevel::info, "session=" + std::to_string(session) +
-                                                 " open author=" + std::to_string(mine.author) +
-                                                 " name=\"" + mine.name + "\"");
+  world.environment.report(OperatorLogLevel::info,
+                           "session=" + std::to_string(session) + " open author=" +
+                               std::to_string(mine.author) + " name=\"" + mine.name + "\"");
   world.player_list_changed = true;
   const SessionAccepted accepted{mine.author,
                                  world.authority.resolved().of(mine.author, mine.instance)};

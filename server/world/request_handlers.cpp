@@ -67,7 +67,8 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   const bool maybe_applied = *refusal == RejectReason::already_resolved;
   const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;
   mine.awaits_durable = std::max(mine.awaits_durable, applied_by);
-  answer(world, session, {request.client_seq, *refusal, detail_of(*refusal, request), applied_by});
+  send_reject(world, session,
+              {request.client_seq, *refusal, detail_of(*refusal, request), applied_by});
 }
 
 void on_move(WorldState& world, SessionId session, const Move& move) {

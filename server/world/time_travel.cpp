@@ -12,7 +12,7 @@ void want_all(WorldState& world, SessionId session) {
   for (const ChunkKey& key : world.loads.cancel(session)) {
     world.interest.set_state(session, key, ChunkInterest::wanted);
   }
-  world.interest.want_again(session, {});
+  world.interest.want_all_again(session);
   world.find(session)->claims.clear();
   collect_released(world);
 }
@@ -83,7 +83,7 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
     return deliver(world, session, now);
   }
   HistoryView history;
-  history.number = ++world.history_count;
+  history.number = HistoryNumber{++world.history_count};
   history.seq = opened->seq;
   history.utc_us = opened->utc_us;
   if (mine->history) history.sent = std::move(mine->history->sent);
@@ -103,18 +103,18 @@ void deliver_history(WorldState& world, SessionId session) {
   }
 }
 
-void on_history_chunk(WorldState& world, SessionId session, std::uint32_t view_number,
+void on_history_chunk(WorldState& world, SessionId session, HistoryNumber number,
                       const ChunkKey& key, const ChunkPtr& chunk, const Clocks& now) {
   WorldSession* mine = world.find(session);
-  if (mine == nullptr || !mine->history || mine->history->number != view_number)
-    return;  // an answer for an earlier view
+  if (mine == nullptr || !mine->history || mine->history->number != number)
+    return;  // an answer for an earlier history view
   HistoryView& history = *mine->history;
   --history.loading;
   if (world.interest.find(session)->state(key) == ChunkInterest::loading_history) {
     const auto sent = history.sent.find(key);
     if (chunk != nullptr && sent != history.sent.end() && sent->second == chunk->version) {
       world.interest.set_state(session, key, ChunkInterest::history_sent);
-    } else if (answer_chunk(world, session, key, chunk, ChunkInterest::history_sent, now) &&
+    } else if (send_chunk(world, session, key, chunk, ChunkInterest::history_sent, now) &&
                chunk != nullptr) {
       history.sent[key] = chunk->version;
     }

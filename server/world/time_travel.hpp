@@ -23,8 +23,8 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
                        const Result<OpenedHistory, std::string>& opened, const Clocks& now);
 /// Handles the answer to WorldEnvironment::load_history_chunk(). `chunk` is null if it cannot be
 /// read.
-void on_history_chunk(WorldState& world, SessionId session, std::uint32_t view, const ChunkKey& key,
-                      const ChunkPtr& chunk, const Clocks& now);
+void on_history_chunk(WorldState& world, SessionId session, HistoryNumber history,
+                      const ChunkKey& key, const ChunkPtr& chunk, const Clocks& now);
 
 /// Loads the session's wanted chunks as they were, nearest first. Requires a history view.
 void deliver_history(WorldState& world, SessionId session);

@@ -23,9 +23,9 @@ void apply_view(WorldState& world, SessionId id, const Clocks& now) {
   }
   const bool has_skipped = mine.has_skipped_too_many || !mine.skipped_views.empty();
   if (mine.has_skipped_too_many) {
-    world.interest.want_again(id, {});
+    world.interest.want_all_again(id);
   } else if (has_skipped) {
-    world.interest.want_again(id, mine.skipped_views);
+    world.interest.want_again_outside(id, mine.skipped_views);
   }
   mine.skipped_views.clear();
   mine.has_skipped_too_many = false;

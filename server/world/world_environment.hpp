@@ -18,7 +18,10 @@
 namespace runstone {
 
 /// Levels of a line for the operator. The environment chooses the logger.
-enum class WorldLogLevel { debug, info, warn, error };
+enum class OperatorLogLevel { debug, info, warn, error };
+
+/// Identifies a history view among all of the server, from 1. Answers of workers carry it.
+enum class HistoryNumber : std::uint32_t {};
 
 /// The place in the log where a view of the past ends.
 struct OpenedHistory {
@@ -86,9 +89,9 @@ class WorldEnvironment {
   /// not live. Called at most once for a session until it is answered. Answer:
   /// WorldServer::history_opened().
   virtual void open_history(SessionId /*session*/, const HistoryRequest& /*request*/) {}
-  /// Makes a chunk as it was after edit `at`, on a worker. The answer repeats `view`. Answer:
+  /// Makes a chunk as it was after edit `at`, on a worker. The answer repeats `history`. Answer:
   /// WorldServer::history_chunk_loaded().
-  virtual void load_history_chunk(SessionId /*session*/, std::uint32_t /*view*/, Sequence /*at*/,
+  virtual void load_history_chunk(SessionId /*session*/, HistoryNumber /*history*/, Sequence /*at*/,
                                   const ChunkKey& /*key*/) {}
   /// Writes immutable chunks as snapshots, then moves the checkpoint: every edit up to it is
   /// contained in snapshots. Requires that each chunk's version is durable. Answer:
@@ -103,7 +106,7 @@ class WorldEnvironment {
                        const std::string& /*text*/) {}
 
   /// Writes one line for the operator, with fields as in "session=7 chunk=1,0,-3 seq=9120".
-  virtual void log(WorldLogLevel /*level*/, const std::string& /*line*/) {}
+  virtual void report(OperatorLogLevel /*level*/, const std::string& /*line*/) {}
 };
 
 }  // namespace runstone

@@ -59,10 +59,10 @@ void close_silent_sessions(WorldState& world, const Clocks& now) {
 
 void retry_pending(WorldState& world, const Clocks& now) {
   for (const SessionId id : world.open_sessions()) {
-    send_pending_answers(world, id);
+    send_pending_rejects(world, id);
     deliver(world, id, now);
     if (world.find(id) == nullptr) continue;
-    send_not_modified(world, id, false);  // answers wait for more of them until the next tick
+    send_not_modified(world, id, false);  // they wait for more of them until the next tick
     send_uniform(world, id, now);
   }
 }
@@ -128,7 +128,7 @@ void WorldServer::drained(SessionId session, const Clocks& now) {
   WorldSession* mine = state_->find(session);
   if (mine == nullptr) return;
   mine->stalled_us.reset();
-  send_pending_answers(*state_, session);
+  send_pending_rejects(*state_, session);
   deliver(*state_, session, now);
 }
 
@@ -225,8 +225,8 @@ void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& n
   world.load_retries.ended(key);
   if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
     ++world.counters.chunks_failed;
-    world.environment.log(WorldLogLevel::error,
-                          "chunk=" + text_of(key) + " quarantined: " + *wrong);
+    world.environment.report(OperatorLogLevel::error,
+                             "chunk=" + text_of(key) + " quarantined: " + *wrong);
   }
   deliver_loaded(world, key, now);
   // A chunk that was loaded for its stack alone has no user, so nothing else makes it a candidate
@@ -242,9 +242,9 @@ void WorldServer::chunk_failed(const ChunkKey& key, LoadFailure failure, const s
   count_load_end(world, key);
   if (failure == LoadFailure::not_read && !world.is_stopping) {
     if (const auto pause_us = world.load_retries.failed(key, now.steady_us)) {
-      world.environment.log(WorldLogLevel::error, "chunk=" + text_of(key) + " not read, again in " +
-                                                      std::to_string(*pause_us / 1'000'000) +
-                                                      " s: " + what);
+      world.environment.report(OperatorLogLevel::error,
+                               "chunk=" + text_of(key) + " not read, again in " +
+                                   std::to_string(*pause_us / 1'000'000) + " s: " + what);
       start_loads(world);
       return;
     }
@@ -252,7 +252,8 @@ void WorldServer::chunk_failed(const ChunkKey& key, LoadFailure failure, const s
   world.load_retries.ended(key);
   ++world.counters.chunks_failed;
   world.authority.chunks().quarantine(key);
-  world.environment.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + what);
+  world.environment.report(OperatorLogLevel::error,
+                           "chunk=" + text_of(key) + " quarantined: " + what);
   deliver_loaded(world, key, now);
   step_checkpointer(now);
   start_loads(world);
@@ -264,14 +265,14 @@ void WorldServer::history_opened(SessionId session, std::uint32_t request,
   on_history_opened(*state_, session, request, opened, now);
 }
 
-void WorldServer::history_chunk_loaded(SessionId session, std::uint32_t request,
+void WorldServer::history_chunk_loaded(SessionId session, HistoryNumber history,
                                        const ChunkKey& key,
                                        const Result<ChunkPtr, std::string>& chunk,
                                        const Clocks& now) {
   if (!chunk)
-    state_->environment.log(WorldLogLevel::error,
-                            "chunk=" + text_of(key) + " of the past: " + chunk.error());
-  on_history_chunk(*state_, session, request, key, chunk ? *chunk : nullptr, now);
+    state_->environment.report(OperatorLogLevel::error,
+                               "chunk=" + text_of(key) + " of the past: " + chunk.error());
+  on_history_chunk(*state_, session, history, key, chunk ? *chunk : nullptr, now);
 }
 
 void WorldServer::durable(Sequence seq, const Clocks& now) {

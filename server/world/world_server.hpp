@@ -101,8 +101,8 @@ class WorldServer {
   /// Answers a session's history request, with the reason if it failed.
   void history_opened(SessionId session, std::uint32_t request,
                       const Result<OpenedHistory, std::string>& opened, const Clocks& now);
-  /// Brings a chunk of the past for history view `view`. The error names file, table and row.
-  void history_chunk_loaded(SessionId session, std::uint32_t view, const ChunkKey& key,
+  /// Brings a chunk of the past for this history view. The error names file, table and row.
+  void history_chunk_loaded(SessionId session, HistoryNumber history, const ChunkKey& key,
                             const Result<ChunkPtr, std::string>& chunk, const Clocks& now);
   /// Reports that every edit up to `seq` is on disk.
   void durable(Sequence seq, const Clocks& now);

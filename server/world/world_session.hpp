@@ -11,6 +11,7 @@
 #include "protocol/codec/message_table.hpp"
 #include "server/interest/cache_claims.hpp"
 #include "server/limits/token_bucket.hpp"
+#include "server/world/world_environment.hpp"
 
 namespace runstone {
 
@@ -27,8 +28,7 @@ inline constexpr std::uint64_t kCommandsPerSecond = 10, kCommandBurst = 20;
 
 /// A session's view of the past.
 struct HistoryView {
-  std::uint32_t number =
-      0;              // counts all history views of the server; identifies answers of workers
+  HistoryNumber number{};
   Sequence seq = 0;   // the last edit that it contains
   TimeUs utc_us = 0;  // when that edit was ordered
   // Chunks of the past that the session has. They are not sent again while the view stays.
@@ -54,8 +54,8 @@ struct WorldSession {
   Sequence durable_sent = 0;  // the last one sent; welcome sends the first
   Sequence awaits_durable =
       0;  // the client's last edit; the session gets the watermark at once until then
-  // Answers to edits that did not fit the session's queue, in order. They are sent when it drains.
-  std::vector<Reject> pending_answers;
+  // Rejects that did not fit the session's queue, in order. They are sent when it drains.
+  std::vector<Reject> pending_rejects;
   TokenBucket edits{0, 0};
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};
   std::optional<std::uint32_t> command;  // id of the command under way

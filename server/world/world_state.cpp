@@ -8,8 +8,8 @@
 namespace runstone {
 namespace {
 
-// A session with more pending answers does not read at all.
-constexpr std::size_t kPendingAnswersMax = 4096;
+// A session with more pending rejects does not read at all.
+constexpr std::size_t kPendingRejectsMax = 4096;
 
 EditLimits limits_of(const WorldConfig& config) {
   EditLimits limits;
@@ -69,10 +69,11 @@ void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
                    const std::string& text) {
   if (world.find(session) == nullptr) return;
   ++world.counters.sessions_closed;
-  const auto level = reason == GoodbyeReason::closing ? WorldLogLevel::debug : WorldLogLevel::warn;
-  world.environment.log(level, "session=" + std::to_string(session) + " closed reason=" +
-                                   std::to_string(static_cast<unsigned>(reason)) + " (" +
-                                   to_string(reason) + ") text=\"" + text + "\"");
+  const auto level =
+      reason == GoodbyeReason::closing ? OperatorLogLevel::debug : OperatorLogLevel::warn;
+  world.environment.report(level, "session=" + std::to_string(session) + " closed reason=" +
+                                      std::to_string(static_cast<unsigned>(reason)) + " (" +
+                                      to_string(reason) + ") text=\"" + text + "\"");
   forget_session(world, session);
   world.environment.close(session, reason, text);
 }
@@ -85,27 +86,27 @@ bool send_or_close(WorldState& world, SessionId session, const Message& message)
   return false;
 }
 
-void answer(WorldState& world, SessionId session, Reject reject) {
+void send_reject(WorldState& world, SessionId session, Reject reject) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return;
-  mine->pending_answers.push_back(std::move(reject));
-  if (mine->pending_answers.size() == 1) {
-    send_pending_answers(world, session);
-  } else if (mine->pending_answers.size() > kPendingAnswersMax) {
+  mine->pending_rejects.push_back(std::move(reject));
+  if (mine->pending_rejects.size() == 1) {
+    send_pending_rejects(world, session);
+  } else if (mine->pending_rejects.size() > kPendingRejectsMax) {
     close_session(world, session, GoodbyeReason::timed_out,
                   "send queue full: the peer reads too slowly");
   }
 }
 
-void send_pending_answers(WorldState& world, SessionId session) {
+void send_pending_rejects(WorldState& world, SessionId session) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return;
   std::size_t sent = 0;
-  while (sent < mine->pending_answers.size() &&
-         send_or_skip(world, session, encode_message(mine->pending_answers[sent])))
+  while (sent < mine->pending_rejects.size() &&
+         send_or_skip(world, session, encode_message(mine->pending_rejects[sent])))
     ++sent;
-  mine->pending_answers.erase(mine->pending_answers.begin(),
-                              mine->pending_answers.begin() + static_cast<std::ptrdiff_t>(sent));
+  mine->pending_rejects.erase(mine->pending_rejects.begin(),
+                              mine->pending_rejects.begin() + static_cast<std::ptrdiff_t>(sent));
   if (mine->durable_sent < world.durable && mine->durable_sent < mine->awaits_durable) {
     send_durable(world, session, encode_message(Durable{world.authority.epoch(), world.durable}));
   }
@@ -113,7 +114,7 @@ void send_pending_answers(WorldState& world, SessionId session) {
 
 void send_durable(WorldState& world, SessionId session, const EncodedMessage& encoded) {
   WorldSession* mine = world.find(session);
-  if (mine == nullptr || !mine->pending_answers.empty() || mine->durable_sent == world.durable)
+  if (mine == nullptr || !mine->pending_rejects.empty() || mine->durable_sent == world.durable)
     return;
   if (send_or_skip(world, session, encoded)) mine->durable_sent = world.durable;
 }

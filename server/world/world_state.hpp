@@ -84,13 +84,13 @@ void forget_session(WorldState& world, SessionId session);
 /// Sends a message that the session must not miss. Closes the session if its queue is full. Returns
 /// true if the message is queued.
 bool send_or_close(WorldState& world, SessionId session, const Message& message);
-/// Answers an edit. If the session's queue is full, the answer is sent later, in order. A session
-/// with too many pending answers is closed.
-void answer(WorldState& world, SessionId session, Reject reject);
-/// Sends pending answers as far as they fit, then the durable watermark if the session awaits it.
-void send_pending_answers(WorldState& world, SessionId session);
+/// Sends a reject. If the session's queue is full, the reject is sent later, in order. A session
+/// with too many pending rejects is closed.
+void send_reject(WorldState& world, SessionId session, Reject reject);
+/// Sends pending rejects as far as they fit, then the durable watermark if the session awaits it.
+void send_pending_rejects(WorldState& world, SessionId session);
 /// Sends the durable watermark, which `encoded` holds, unless the session has it. Does nothing
-/// while answers are pending, because they precede it. If the session's queue is full, a later call
+/// while rejects are pending, because they precede it. If the session's queue is full, a later call
 /// sends it.
 void send_durable(WorldState& world, SessionId session, const EncodedMessage& encoded);
 /// Sends a message that a later one of its kind replaces. Returns false, and only counts, if the

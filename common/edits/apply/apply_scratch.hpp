@@ -15,9 +15,9 @@
 
 namespace runstone {
 
-/// One edit of a stack, one segment of a stroke or one box of a paste, clipped to the current
-/// chunk.
-struct StackedEdit {
+/// One part of an edit of the stack, clipped to the current chunk. A stroke has a part for each
+/// segment, a paste one for each box, and any other edit has one part.
+struct StackPart {
   OrderedShape shape;
   Mask mask;
   Material material = kEmpty;
@@ -56,28 +56,28 @@ class MaterialFactors {
   std::array<Slot, kSlots> slots_{};
 };
 
-/// Voxels [first, last) of one line that edit `edit` of the stack covers. `next` chains the entries
+/// Voxels [first, last) of one line that part `part` of the stack covers. `next` chains the entries
 /// of a line from the bottom of the stack to its top.
 struct LineEntry {
   std::uint32_t next = 0;  // entry number + 1; 0 ends the chain
-  std::uint32_t edit = 0;
+  std::uint32_t part = 0;
   std::uint8_t first = 0, last = 0;
 };
 
 struct ApplyScratch {
-  std::vector<StackedEdit> stack;     // the edits that may touch the chunk, bottom first
+  std::vector<StackPart> stack;       // the parts that may touch the chunk, bottom first
   std::vector<IndexSpan> spans;       // of a single edit
   std::vector<Change> changes;        // ascending, disjoint
   std::vector<Run> runs;              // new runs of all edit areas, one after another
   std::vector<Run> whole;             // the same, with the kept runs between them
   std::vector<EditArea> areas;        // of write_changes(); apply_stack() uses those of its result
-  std::vector<std::uint64_t> active;  // the active set: bit i is edit i of `stack`
-  std::vector<std::uint32_t> starting;  // chains of edits by the layer where they begin
-  std::vector<std::uint32_t> ending;    // chains of edits by the layer where they end
+  std::vector<std::uint64_t> active;  // the active set: bit i is part i of `stack`
+  std::vector<std::uint32_t> starting;  // chains of parts by the layer where they begin
+  std::vector<std::uint32_t> ending;    // chains of parts by the layer where they end
   std::vector<LineEntry> entries;       // of the current layer
   LayerPlan plan;                       // of the layer painter
   LayerCanvas canvas;
-  std::vector<std::uint32_t> program;  // edits to be evaluated over a stretch, bottom first
+  std::vector<std::uint32_t> program;  // parts to be evaluated over a stretch, bottom first
   MaterialFactors factors;
 };
 

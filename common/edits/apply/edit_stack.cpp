@@ -15,7 +15,7 @@ namespace {
 // Fills the stack with all parts of the edits that may touch the chunk. Returns the number of these
 // edits.
 std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
-                     std::vector<StackedEdit>& stack) {
+                     std::vector<StackPart>& stack) {
   stack.clear();
   std::size_t count = 0;
   for (const EditDescriptor& edit : edits) {
@@ -33,10 +33,10 @@ std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const Edi
 // For a layer that edits cover completely, the sweep visits only runs, even if the layer has many
 // voxels.
 ChangeSearch cheaper_search(std::size_t edits, const RunChunk& chunk,
-                            std::span<const StackedEdit> stack) {
+                            std::span<const StackPart> stack) {
   if (edits == 1) return ChangeSearch::walk;
   const OrderedExtent extent = ordered(chunk.extent, chunk.order);
-  const bool whole = std::any_of(stack.begin(), stack.end(), [&](const StackedEdit& part) {
+  const bool whole = std::any_of(stack.begin(), stack.end(), [&](const StackPart& part) {
     return part.shape.covers_layers(extent);
   });
   return whole ? ChangeSearch::sweep : ChangeSearch::paint;

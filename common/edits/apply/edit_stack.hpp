@@ -1,8 +1,10 @@
 // The edit stack: all edits pending on a chunk, latest on top, applied in one sweep over its runs
 // (thesis 9.2, stack-based edit indexing; 7.3.3, edit indices and edit areas). Server commit,
 // client prediction, replay and rollback all call apply_stack(): same code, same result.
-// Evaluation: of each voxel, only the edits from the topmost unconditional one upward matter,
-// because that one overwrites the voxel. The masks above it are tested in order.
+// Three searches find the changes, and all give the same result:
+//   - a single edit is walked span by span (walk_changes() in edit_sweep.hpp);
+//   - a stack with an edit that covers whole layers is swept run by run (sweep_changes());
+//   - any other stack is painted layer by layer (layer_painter.hpp).
 #pragma once
 #include <cstdint>
 #include <span>
@@ -20,7 +22,7 @@ namespace runstone {
 
 struct ApplyResult {
   bool changed = false;  // any voxel has another material than before
-  DirtyLayers dirty;
+  DirtyLayers dirty;     // the layers of these voxels, as mesh_rdm_layers() takes them
   // Maximal groups of replaced runs, ascending. `first` counts in the new runs.
   std::vector<EditArea> areas;
   std::uint64_t voxels_changed = 0;

@@ -14,7 +14,7 @@
 namespace runstone {
 namespace {
 
-bool unconditional(const StackedEdit& edit) { return edit.mask.kind == MaskKind::everything; }
+bool unconditional(const StackPart& part) { return part.mask.kind == MaskKind::everything; }
 
 // Room for a line, for the voxel before it, and for stores and loads of whole words behind it.
 struct LineBuffer {
@@ -33,13 +33,12 @@ void fill_loosely(Material* line, std::uint32_t first, std::uint32_t last, Mater
   }
 }
 
-void apply_to_line(const StackedEdit& edit, Material* line, std::uint32_t first,
-                   std::uint32_t last) {
-  const Material material = edit.material;
+void apply_to_line(const StackPart& part, Material* line, std::uint32_t first, std::uint32_t last) {
+  const Material material = part.material;
   const auto replace_if = [&](auto&& admits) {
     for (std::uint32_t i = first; i < last; ++i) line[i] = admits(line[i]) ? material : line[i];
   };
-  switch (edit.mask.kind) {
+  switch (part.mask.kind) {
     case MaskKind::everything:
       std::fill(line + first, line + last, material);
       break;
@@ -50,7 +49,7 @@ void apply_to_line(const StackedEdit& edit, Material* line, std::uint32_t first,
       replace_if([](Material present) { return present != kEmpty; });
       break;
     case MaskKind::only_material:
-      replace_if([wanted = edit.mask.material](Material present) { return present == wanted; });
+      replace_if([wanted = part.mask.material](Material present) { return present == wanted; });
       break;
   }
 }
@@ -79,8 +78,8 @@ class Sweep {
   }
 
  private:
-  // Chains every edit to the layers where it begins and ends: heads first, then one link per edit.
-  // The links are numbers + 1, so the link of edit i is at extent_.s + i + 1.
+  // Chains every part to the layers where it begins and ends: heads first, then one link per part.
+  // The links are numbers + 1, so the link of part i is at extent_.s + i + 1.
   void chain_by_layer() {
     const std::size_t size = extent_.s + 1 + stack_.size();
     scratch_.starting.assign(size, 0);
@@ -95,16 +94,16 @@ class Sweep {
     }
   }
 
-  void activate(std::uint32_t edit) {
-    scratch_.active[edit / 64] |= std::uint64_t{1} << (edit % 64);
+  void activate(std::uint32_t part) {
+    scratch_.active[part / 64] |= std::uint64_t{1} << (part % 64);
     ++active_count_;
   }
-  void deactivate(std::uint32_t edit) {
-    scratch_.active[edit / 64] &= ~(std::uint64_t{1} << (edit % 64));
+  void deactivate(std::uint32_t part) {
+    scratch_.active[part / 64] &= ~(std::uint64_t{1} << (part % 64));
     --active_count_;
   }
 
-  // Calls visit(edit number) for the active set from the top of the stack downward, while it
+  // Calls visit(part number) for the active set from the top of the stack downward, while it
   // returns true.
   template <class F>
   void from_top(F&& visit) const {
@@ -126,22 +125,22 @@ class Sweep {
     }
   }
 
-  // Returns true if all edits that matter in this layer cover it completely. They are the program
+  // Returns true if all parts that matter in this layer cover it completely. They are the program
   // then.
   bool whole_layer_program() {
     scratch_.program.clear();
     bool whole = true;
-    from_top([&](std::uint32_t edit) {
-      whole = stack_[edit].shape.covers_layers(extent_);
-      scratch_.program.push_back(edit);
-      return whole && !unconditional(stack_[edit]);
+    from_top([&](std::uint32_t part) {
+      whole = stack_[part].shape.covers_layers(extent_);
+      scratch_.program.push_back(part);
+      return whole && !unconditional(stack_[part]);
     });
     std::reverse(scratch_.program.begin(), scratch_.program.end());
     return whole;
   }
 
   // Adds the rows of the layer to the chains of their lines, from the top of the stack downward, so
-  // that each chain begins at the bottom. A row is left out if edits above it without a mask cover
+  // that each chain begins at the bottom. A row is left out if parts above it without a mask cover
   // it.
   void enter_rows(std::uint32_t s) {
     std::fill_n(lines_.begin(), extent_.m, 0u);
@@ -150,15 +149,15 @@ class Sweep {
     const LineBits full = bits_below(extent_.f);
     std::uint32_t open_lines = extent_.m;
     from_top([&](std::uint32_t number) {
-      const StackedEdit& edit = stack_[number];
-      for_each_row(edit.shape, s, [&](std::uint32_t m, std::uint32_t first, std::uint32_t last) {
+      const StackPart& part = stack_[number];
+      for_each_row(part.shape, s, [&](std::uint32_t m, std::uint32_t first, std::uint32_t last) {
         const LineBits row = bits_between(first, last);
         LineBits& covered = covered_[m];
         if (!(row & ~covered).any()) return;
         scratch_.entries.push_back(
             {lines_[m], number, static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(last)});
         lines_[m] = static_cast<std::uint32_t>(scratch_.entries.size());
-        if (!unconditional(edit)) return;
+        if (!unconditional(part)) return;
         covered = covered | row;
         if (covered == full) --open_lines;
       });
@@ -174,7 +173,7 @@ class Sweep {
     scratch_.program.clear();
     for (std::uint32_t link = chain; link != 0 && same_voxels; link = entry(link).next) {
       same_voxels = entry(link).first == bottom.first && entry(link).last == bottom.last;
-      scratch_.program.push_back(entry(link).edit);
+      scratch_.program.push_back(entry(link).part);
     }
     if (same_voxels) {
       interval(begin + bottom.first, begin + bottom.last);
@@ -190,8 +189,8 @@ class Sweep {
       const VoxelIndex end = std::min(cursor_.end(), last);
       const Material before = cursor_.material();
       Material after = before;
-      for (const std::uint32_t edit : scratch_.program) {
-        if (stack_[edit].mask.admits(after)) after = stack_[edit].material;
+      for (const std::uint32_t part : scratch_.program) {
+        if (stack_[part].mask.admits(after)) after = stack_[part].material;
       }
       if (after != before) tally_.stretch(at, end, before, after);
       at = end;
@@ -205,7 +204,7 @@ class Sweep {
     LineBits cuts = unpack(begin, before);
     std::memcpy(after, before, extent_.f * sizeof(Material));
     for (std::uint32_t link = chain; link != 0; link = entry(link).next) {
-      apply_to_line(stack_[entry(link).edit], after, entry(link).first, entry(link).last);
+      apply_to_line(stack_[entry(link).part], after, entry(link).first, entry(link).last);
     }
     LineBits changed = differing(before, after, extent_.f);
     if (!changed.any()) return;
@@ -238,28 +237,28 @@ class Sweep {
   Runs runs_;
   const OrderedExtent extent_;
   ApplyScratch& scratch_;
-  const std::vector<StackedEdit>& stack_;
+  const std::vector<StackPart>& stack_;
   ChangeTally& tally_;
   RunCursor<Runs> cursor_;
   std::uint32_t active_count_ = 0;
   // Heads of the chains of the current layer: entry number + 1.
   std::array<std::uint32_t, kSideMax> lines_{};
-  // Voxels of the layer that edits without a mask overwrite.
+  // Voxels of the layer that parts without a mask overwrite.
   std::array<LineBits, kSideMax> covered_{};
   LineBuffer before_, after_;
 };
 
-// Applies `edit` to the spans. Requires ascending spans, none before the cursor.
+// Applies `part` to the spans. Requires ascending spans, none before the cursor.
 template <class Runs>
-void walk_spans(RunCursor<Runs>& cursor, const StackedEdit& edit, std::span<const IndexSpan> spans,
+void walk_spans(RunCursor<Runs>& cursor, const StackPart& part, std::span<const IndexSpan> spans,
                 ChangeTally& tally) {
   for (const IndexSpan& span : spans) {
     cursor.seek(span.first);
     for (VoxelIndex at = span.first; at < span.last;) {
       const VoxelIndex end = std::min(cursor.end(), span.last);
       const Material before = cursor.material();
-      if (before != edit.material && edit.mask.admits(before)) {
-        tally.stretch(at, end, before, edit.material);
+      if (before != part.material && part.mask.admits(before)) {
+        tally.stretch(at, end, before, part.material);
       }
       at = end;
       if (at < span.last) cursor.next();
@@ -283,13 +282,13 @@ void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tal
     RunCursor<Runs> cursor(runs);
     if (scratch.stack.front().shape.form == OrderedShape::Form::capsule) {
       // The segments of a stroke overlap and differ only in shape.
-      for (const StackedEdit& part : scratch.stack) append_spans(part.shape, extent, scratch.spans);
+      for (const StackPart& part : scratch.stack) append_spans(part.shape, extent, scratch.spans);
       if (scratch.stack.size() > 1) unite_spans(scratch.spans, 0);
       walk_spans(cursor, scratch.stack.front(), scratch.spans, tally);
       return;
     }
     // The boxes of a paste come in index order. They do not overlap, and each has its material.
-    for (const StackedEdit& part : scratch.stack) {
+    for (const StackPart& part : scratch.stack) {
       scratch.spans.clear();
       append_spans(part.shape, extent, scratch.spans);
       walk_spans(cursor, part, scratch.spans, tally);

@@ -1,7 +1,8 @@
 // The edit sweep: finds the changes of a stack of edits in a chunk, in one ascending pass over
-// layers, lines and runs. In each layer it scans the active set from the top of the stack. An edit
-// is dropped if edits above it that have no mask cover it, and the scan ends when such edits cover
-// the layer. The remaining edits of a line are evaluated from the bottom upward, masks in order.
+// layers, lines and runs. Of each voxel, only the edits from the topmost one without a mask upward
+// matter, because that one overwrites the voxel. So in each layer the sweep scans the active set
+// from the top of the stack. An edit is dropped if edits above it that have no mask cover it, and
+// the scan ends when such edits cover the layer. The remaining edits of a line are evaluated from the bottom upward, masks in order.
 // Where they cover the same voxels, this is done run by run. Otherwise it is done on the unpacked
 // line, which has at most 128 voxels (thesis 7.3.3 unpacks its edit areas likewise). Internal to
 // edits.

@@ -52,7 +52,7 @@ class Painter {
   void make_plan() {
     // The number of parts that begin minus the number of parts that end, by layer.
     std::array<std::uint32_t, LayerPlan::kBand + 1> parts{};
-    for (const StackedEdit& part : stack_) {
+    for (const StackPart& part : stack_) {
       const auto [first, last] = layers_of(part.shape);
       if (first >= last) continue;
       ++parts[first - band_first_];
@@ -75,7 +75,7 @@ class Painter {
   }
 
   void enter(std::uint32_t number) {
-    const StackedEdit& part = stack_[number];
+    const StackPart& part = stack_[number];
     const OrderedShape& shape = part.shape;
     const auto [first, last] = layers_of(shape);
     if (first >= last) return;
@@ -132,7 +132,7 @@ class Painter {
   }
 
   void paint(const LayerPiece& piece) const {
-    const StackedEdit& part = stack_[piece.part];
+    const StackPart& part = stack_[piece.part];
     const Brush brush(part.mask, part.material);
     const bool is_short = static_cast<std::int32_t>(extent_.f) <= Brush::lanes();
     Material* line = canvas_.line(piece.m_first);
@@ -182,7 +182,7 @@ class Painter {
   }
 
   const OrderedExtent extent_;
-  const std::vector<StackedEdit>& stack_;
+  const std::vector<StackPart>& stack_;
   LayerPlan& plan_;
   LayerCanvas& canvas_;
   ChangeTally& tally_;

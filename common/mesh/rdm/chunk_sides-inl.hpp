@@ -21,17 +21,17 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// Form: a SweepTraits.
-template <class Form>
+/// Traits: a SweepTraits.
+template <class Traits>
 class ChunkSides {
-  using Lanes = typename Form::Lanes;
-  using Row = typename Form::Row;
+  using Lanes = typename Traits::Lanes;
+  using Row = typename Traits::Row;
 
  public:
   ChunkSides(const SweepInput& input, SweepState<Row>& state)
       : st_(state),
         e_(input.extent),
-        mixed_(Form::kManyMaterials && input.palette->has_transparent()) {}
+        mixed_(Traits::kManyMaterials && input.palette->has_transparent()) {}
 
   /// Adds the part of layer s, in slot `slot`, to the sides. Requires hiding rows that are its
   /// opaque ones.

@@ -24,16 +24,16 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// Form: a SweepTraits.
-template <class Form>
+/// Traits: a SweepTraits.
+template <class Traits>
 class LayerBuilder {
-  using Lanes = typename Form::Lanes;
-  using IndexLanes = typename Form::IndexLanes;
-  using Row = typename Form::Row;
-  using Index = typename Form::Index;
-  using Line = typename Form::Line;
+  using Lanes = typename Traits::Lanes;
+  using IndexLanes = typename Traits::IndexLanes;
+  using Row = typename Traits::Row;
+  using Index = typename Traits::Index;
+  using Line = typename Traits::Line;
   using Rows = LayerRows<Row>;
-  static constexpr bool kManyMaterials = Form::kManyMaterials;
+  static constexpr bool kManyMaterials = Traits::kManyMaterials;
   static_assert(IndexLanes::template kBehind<Index> <= LayerIndices<Row, Index>::kRoom);
 
  public:

@@ -25,16 +25,16 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// One call of sweep_layers() or sweep_layers_plain(). Form: a SweepTraits.
-template <class Form>
+/// One call of sweep_layers() or sweep_layers_plain(). Traits: a SweepTraits.
+template <class Traits>
 class Sweep {
-  using Lanes = typename Form::Lanes;
-  using Row = typename Form::Row;
+  using Lanes = typename Traits::Lanes;
+  using Row = typename Traits::Row;
   using V = typename Lanes::V;
   using Rows = LayerRows<Row>;
-  using Tracer = StripTracer<Form>;
+  using Tracer = StripTracer<Traits>;
   using RowSet = typename Tracer::RowSet;
-  static constexpr bool kManyMaterials = Form::kManyMaterials;
+  static constexpr bool kManyMaterials = Traits::kManyMaterials;
 
  public:
   Sweep(const SweepInput& input, const Borders<Row>& borders, SweepState<Row>& state)
@@ -219,8 +219,8 @@ class Sweep {
   const OrderedExtent e_;
   const bool wants_chunk_sides_;
   LayerPair layers_;
-  LayerBuilder<Form> builder_;
-  ChunkSides<Form> chunk_sides_;
+  LayerBuilder<Traits> builder_;
+  ChunkSides<Traits> chunk_sides_;
   Tracer tracer_;
 };
 

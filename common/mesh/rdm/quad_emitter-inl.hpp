@@ -25,12 +25,12 @@ namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
 /// A new value is made for each side of each layer, so that the compiler can keep it in registers
-/// while bytes are written. Form: a SweepTraits.
-template <class Form>
+/// while bytes are written. Traits: a SweepTraits.
+template <class Traits>
 class QuadEmitter {
-  using Row = typename Form::Row;
-  using Index = typename Form::Index;
-  static constexpr bool kManyMaterials = Form::kManyMaterials;
+  using Row = typename Traits::Row;
+  using Index = typename Traits::Index;
+  static constexpr bool kManyMaterials = Traits::kManyMaterials;
 
  public:
   /// `layer`: the palette indices of the strips' voxels.
@@ -105,7 +105,10 @@ class QuadEmitter {
   }
 
  private:
-  /// Marks an open quad of the transparent pass. The bit is zero in a closed quad.
+  /// Marks a quad of the transparent pass while it is open. The bit is zero in a closed quad.
+  /// Flipping the highest bit is an addition of 2^63 modulo 2^64, so it commutes with the addition
+  /// in QuadShape::close(), whatever the open quad has borrowed: a marked quad that is closed is
+  /// the closed quad with this bit set.
   static constexpr std::uint64_t kTransparentQuad = std::uint64_t{1} << 63;
   /// Returns the buckets of the quad's pass, and clears the mark of the quad.
   HWY_INLINE QuadBuckets::Bucket* pass_of(Quad& quad) const {

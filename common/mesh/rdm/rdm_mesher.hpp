@@ -55,7 +55,9 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours,
 /// Makes the same mesh with kept borders of neighbours. Requires borders that match `neighbours` as
 /// they are now: their runs are read only where transparent voxels may meet. If `chunk_borders` is
 /// not null, it becomes the result of chunk_borders->read(chunk, visibility), at little cost,
-/// because the sweep visits all of its voxels.
+/// because the sweep visits all of its voxels. It is for holders that mesh whole chunks again and
+/// again, such as the mesher benchmarks. The client does not keep borders: it remeshes single layers
+/// with mesh_rdm_layers().
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out,
               ChunkBorders* chunk_borders = nullptr);
@@ -64,7 +66,10 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
 /// same order.
 ///   - `mesh` is the mesh of the chunk and its neighbours before the edit, in the chunk's present
 ///     axis order.
-///   - `dirty` are the layers in which a voxel of the chunk changed since (ApplyResult::dirty).
+///   - `dirty` are the layers in which a voxel of the chunk changed since. A holder whose chunks
+///     change by apply_stack() only passes the union of ApplyResult::dirty. The client compares the
+///     runs instead (layer_diff.hpp), because its shown runs also change by snapshots and by
+///     predictions that are withdrawn.
 ///   - `beyond` are the same of each neighbour. Only its layer that touches the chunk matters.
 ///
 /// In each dirty layer, the rows in which a voxel may have changed are decoded and joined with the

@@ -13,11 +13,11 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// The faces of some rows, and the first and last of each strip. Form: a SweepTraits.
-template <class Form>
+/// The faces of some rows, and the first and last of each strip. Traits: a SweepTraits.
+template <class Traits>
 struct StripLanes {
-  using Lanes = typename Form::Lanes;
-  using Row = typename Form::Row;
+  using Lanes = typename Traits::Lanes;
+  using Row = typename Traits::Row;
   using V = typename Lanes::V;
   V face, start, end;
 
@@ -26,7 +26,7 @@ struct StripLanes {
     const V f = Lanes::load(face);
     V before = Lanes::up(f);
     V behind = Lanes::down(f);
-    if constexpr (Form::kManyMaterials) {
+    if constexpr (Traits::kManyMaterials) {
       const V c = Lanes::load(cut);
       before = Lanes::without(before, c);
       behind = Lanes::without(behind, Lanes::down(c));
@@ -39,7 +39,7 @@ struct StripLanes {
     V x = Lanes::either(Lanes::differing(now.face, before.face),
                         Lanes::either(Lanes::differing(now.start, before.start),
                                       Lanes::differing(now.end, before.end)));
-    if constexpr (Form::kManyMaterials) {
+    if constexpr (Traits::kManyMaterials) {
       x = Lanes::either(x, Lanes::both(Lanes::both(now.face, before.face), Lanes::load(cut)));
     }
     return x;

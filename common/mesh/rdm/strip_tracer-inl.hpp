@@ -24,16 +24,16 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// Form: a SweepTraits.
-template <class Form>
+/// Traits: a SweepTraits.
+template <class Traits>
 class StripTracer {
-  using Lanes = typename Form::Lanes;
-  using IndexLanes = typename Form::IndexLanes;
-  using Row = typename Form::Row;
-  using Index = typename Form::Index;
+  using Lanes = typename Traits::Lanes;
+  using IndexLanes = typename Traits::IndexLanes;
+  using Row = typename Traits::Row;
+  using Index = typename Traits::Index;
   using Strips = RowStrips<Row>;
-  using Emitter = QuadEmitter<Form>;
-  static constexpr bool kManyMaterials = Form::kManyMaterials;
+  using Emitter = QuadEmitter<Traits>;
+  static constexpr bool kManyMaterials = Traits::kManyMaterials;
 
  public:
   /// One bit for each row in which strips may end or begin.
@@ -186,7 +186,7 @@ class StripTracer {
   };
   /// Finds the strips that close and open, for all rows.
   void compare_along(const Lines& in) {
-    using Vectors = StripLanes<Form>;
+    using Vectors = StripLanes<Traits>;
     Row* const closing = st_.closing.data();
     Row* const opening = st_.opening.data();
     Row* const start = st_.start.data();

@@ -67,7 +67,9 @@ struct SweepState {
   // The part that StripTracer writes for one side of a layer: strips that end and begin, by row.
   // Last bits of strips that close and that open, and first bits of strips.
   Rows closing, opening, start;
-  Rows joins_previous;  // of upright strips: bits that close in the previous row as well
+  // Of a side across the fastest axis: bits that close, in the same material, in the previous row
+  // as well.
+  Rows joins_previous;
   /// Places of bits that close and open, row * kRowBits + bit, with room for a step behind.
   std::array<std::uint16_t, kPlaces + 4> closed, opened;
   // The part that StripTracer keeps from row to row, or from layer to layer.

@@ -25,7 +25,7 @@ FleetReport fleet_report(const json& report) {
   const json none = json::object();
   FleetReport out;
   out.local_only = !report.contains("seen_us");
-  const json& seen = report.value(out.local_only ? "own_us" : "seen_us", none);
+  const json& seen = report.value(out.local_only ? "local_us" : "seen_us", none);
   out.p50_ms = number_at(seen, "p50") / 1000;
   out.p90_ms = number_at(seen, "p90") / 1000;
   out.p99_ms = number_at(seen, "p99") / 1000;

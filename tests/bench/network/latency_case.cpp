@@ -48,18 +48,18 @@ struct Stage {
   const char* title;
 };
 constexpr std::array<Stage, 12> kStages = {{
-    {"own_predicted", "applied", "local edit, predicted: applied"},
-    {"own_predicted", "meshed", "local edit, predicted: meshed"},
-    {"own_confirmed", "ordered", "local edit, confirmed: ordered"},
-    {"own_confirmed", "received", "local edit, confirmed: received"},
-    {"own_confirmed", "unpacked", "local edit, confirmed: unpacked"},
-    {"own_confirmed", "applied", "local edit, confirmed: applied"},
+    {"local_predicted", "applied", "local edit, predicted: applied"},
+    {"local_predicted", "meshed", "local edit, predicted: meshed"},
+    {"local_confirmed", "ordered", "local edit, confirmed: ordered"},
+    {"local_confirmed", "received", "local edit, confirmed: received"},
+    {"local_confirmed", "unpacked", "local edit, confirmed: unpacked"},
+    {"local_confirmed", "applied", "local edit, confirmed: applied"},
     {"remote", "ordered", "remote edit: ordered"},
     {"remote", "received", "remote edit: received"},
     {"remote", "unpacked", "remote edit: unpacked"},
     {"remote", "applied", "remote edit: applied"},
     {"remote", "meshed", "remote edit: meshed"},
-    {"own_durable", "", "local edit: durable on disk"},
+    {"local_durable", "", "local edit: durable on disk"},
 }};
 constexpr std::array<const char*, 4> kRanks = {"p50", "p90", "p99", "max"};
 

@@ -148,7 +148,7 @@ ReportFigure latency(const Evidence& evidence) {
     chart.ranges.push_back({value("p50"), value("p50"), value("p99"), value("max")});
   };
   for (const char* profile : kProfiles) {
-    add(profile, "idle", "own_predicted_meshed", fmt::format("{}: local edit", profile),
+    add(profile, "idle", "local_predicted_meshed", fmt::format("{}: local edit", profile),
         Role::ours);
     add(profile, "idle", "remote_meshed", fmt::format("{}: remote edit", profile), Role::other);
     add(profile, "streaming 20 clients", "remote_meshed",
@@ -166,8 +166,8 @@ ReportFigure latency(const Evidence& evidence) {
   out.sentence = fmt::format(
       "The local edit is predicted, so it is meshed after {} ms on loopback and {} on broadband "
       "alike (p50); a remote edit takes the network's delay in addition: {} and {}.",
-      format_value(p("loopback", "idle", "own_predicted_meshed_p50_ms")),
-      format_value(p("broadband", "idle", "own_predicted_meshed_p50_ms")),
+      format_value(p("loopback", "idle", "local_predicted_meshed_p50_ms")),
+      format_value(p("broadband", "idle", "local_predicted_meshed_p50_ms")),
       format_value(p("loopback", "idle", "remote_meshed_p50_ms")),
       format_value(p("broadband", "idle", "remote_meshed_p50_ms")));
   out.steps = steps;

@@ -34,5 +34,5 @@ TEST_CASE("a fleet's report is read from its bots' report, with infinite latenci
   CHECK(seen.p50_ms == 1.5);
   CHECK(std::isinf(seen.p90_ms));
   CHECK(std::isinf(seen.max_ms));
-  CHECK(fleet_report(json::parse(R"({"own_us": {"p50": 1500}})")).rows.empty());
+  CHECK(fleet_report(json::parse(R"({"local_us": {"p50": 1500}})")).rows.empty());
 }

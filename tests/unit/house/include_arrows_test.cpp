@@ -216,7 +216,7 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   CHECK(is_wrong("protocol/codec/frame.cpp", "#include \"server/net/session.hpp\""));
   CHECK(is_wrong("server/net/session.cpp", "#include \"client/net/link.hpp\""));
   CHECK(is_wrong("client/net/link.cpp", "#include \"server/net/session.hpp\""));
-  CHECK(is_wrong("common/core/ids.cpp", "#include \"common/os/steady_clock.hpp\""));
+  CHECK(is_wrong("common/core/hash.cpp", "#include \"common/os/steady_clock.hpp\""));
   CHECK(is_wrong("protocol/codec/frame.cpp", "#include \"common/os/steady_clock.hpp\""));
   CHECK(is_wrong("common/os/open_files.cpp", "#include \"protocol/limits.hpp\""));
   CHECK(is_wrong("common/os/open_files.cpp", "#include \"server/app/server.hpp\""));
@@ -244,8 +244,8 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
 }
 
 TEST_CASE("right includes pass", "[house]") {
-  CHECK_FALSE(is_wrong("common/core/ids.cpp", "#include \"common/core/ids.hpp\""));
-  CHECK_FALSE(is_wrong("common/core/ids.cpp", "#include <vector>"));
+  CHECK_FALSE(is_wrong("common/core/hash.cpp", "#include \"common/core/ids.hpp\""));
+  CHECK_FALSE(is_wrong("common/core/hash.cpp", "#include <vector>"));
   CHECK_FALSE(
       is_wrong("common/edits/apply/edit_stack.cpp", "#include \"common/runs/dirty_layers.hpp\""));
   CHECK_FALSE(
@@ -261,5 +261,5 @@ TEST_CASE("right includes pass", "[house]") {
   CHECK_FALSE(is_wrong("client/replica/replica.cpp", "#include \"protocol/codec/frame.hpp\""));
   CHECK_FALSE(is_wrong("tests/simulation/client/session/replica_test.cpp",
                        "#include \"client/replica/replica.hpp\""));
-  CHECK_FALSE(is_wrong("common/core/ids.cpp", "// #include <chrono>"));
+  CHECK_FALSE(is_wrong("common/core/hash.cpp", "// #include <chrono>"));
 }

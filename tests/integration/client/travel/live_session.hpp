@@ -14,7 +14,7 @@
 
 namespace runstone::test {
 
-class LiveSession final : private LinkEvents {
+class LiveSession final : private LinkCallbacks {
  public:
   LiveSession(std::uint16_t port, const View& view)
       : session_(config(view)), link_(io_, {.host = "127.0.0.1", .port = port}, *this) {
@@ -73,7 +73,7 @@ class LiveSession final : private LinkEvents {
     session_.connected(random_nonce(), steady_now_us());
     flush();
   }
-  void on_received(NetReceived received) override {
+  void on_received(LinkReceived received) override {
     const TimeUs now_us = steady_now_us();
     session_.receive(std::move(received.message),
                      {received.received_us, received.unpacked_us, now_us});

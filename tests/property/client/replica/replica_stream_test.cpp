@@ -24,7 +24,7 @@ using Logged = std::pair<OperationId, EditDescriptor>;
 
 struct Rules {
   bool crashes = true;
-  bool audits = true;
+  bool digest_checks = true;
   bool hide_gaps =
       false;  // sabotage: a dropped commit is not admitted in the next one's previous sequences
 };
@@ -318,12 +318,12 @@ class Simulation {
       peer.control.push_back([&peer, seq = durable_, epoch = world_.epoch()] {
         peer.replica.receive(Durable{epoch, seq});
       });
-      if (!rules_.audits) continue;
-      DigestCheck audit;
+      if (!rules_.digest_checks) continue;
+      DigestCheck check;
       for (const ChunkCoord at : peer.subscribed) {
-        audit.entries.push_back({{0, at}, world_.chunk(at).version, world_.chunk(at).digest});
+        check.entries.push_back({{0, at}, world_.chunk(at).version, world_.chunk(at).digest});
       }
-      peer.control.push_back([this, &peer, audit] { peer.replica.receive(audit, now_); });
+      peer.control.push_back([this, &peer, check] { peer.replica.receive(check, now_); });
     }
   }
 
@@ -409,7 +409,7 @@ TEST_CASE("a server that hides a dropped commit is caught by the comparison",
   int caught = 0;
   for (std::uint64_t round = 0; round < 8; ++round) {
     Simulation simulation(mix64(Catch::rngSeed() + round),
-                          {.crashes = false, .audits = false, .hide_gaps = true});
+                          {.crashes = false, .digest_checks = false, .hide_gaps = true});
     simulation.run(400);
     if (!simulation.mismatch().empty()) ++caught;
   }

@@ -292,7 +292,7 @@ class MeshStream {
     std::vector<ChunkChange> changes = replica_.drain_changes().chunks;
     for (ChunkChange& chunk : changes) {
       if (chunk.removed) drawn_.erase(chunk.key);
-      if (sabotage_.own_layers) chunk.layers.dirty = {};
+      if (sabotage_.own_layers) chunk.layers.here = {};
       if (sabotage_.beyond_layers) chunk.layers.beyond = {};
     }
     planner_.take(changes);
@@ -324,7 +324,7 @@ class MeshStream {
     for (std::size_t d = 0; d < neighbours.size(); ++d) neighbours[d] = job.neighbours[d].get();
     if (!same(*result.mesh, whole_mesh(*job.chunk, neighbours))) ++counts_.wrong;
     ++(result.layers_only ? counts_.layers : counts_.whole);
-    if (result.layers_only && job.changed.beyond != VisibleLayers{}.beyond) ++counts_.beyond;
+    if (result.layers_only && job.changed.beyond != ChangedLayers{}.beyond) ++counts_.beyond;
     if (planner_.finish(result.key, result.number, result.mesh)) {
       drawn_.insert_or_assign(result.key, std::pair(job, result.mesh));
     } else {

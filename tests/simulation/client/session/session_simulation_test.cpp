@@ -66,7 +66,7 @@ class Simulation {
     come_to_rest();
     if (server_.dropped == 0) return;
     // A lost commit that no other edit follows is found by the next digest check of its chunk.
-    time_.run_until(time_.now() + kAuditRoundUs);
+    time_.run_until(time_.now() + kDigestCheckRoundUs);
     come_to_rest();
   }
 
@@ -106,7 +106,7 @@ class Simulation {
 
  private:
   /// Time in which all 145 chunks of the largest view are checked, at 8 a second.
-  static constexpr TimeUs kAuditRoundUs = 30'000'000;
+  static constexpr TimeUs kDigestCheckRoundUs = 30'000'000;
 
   void come_to_rest() {
     const TimeUs give_up = time_.now() + 300'000'000;

@@ -106,9 +106,10 @@ class SimClient {
   }
   /// Answers cache lookups after a while, sometimes later than a view waits.
   void step_cache() {
-    while (auto question = session_.take_cache_lookup()) {
-      time_.after(rng_.between(100, 300'000), [this, life = life_, q = *std::move(question)] {
-        if (life == life_) session_.receive_cached(cache_->find(q.world, q.keys), time_.now());
+    while (auto lookup = session_.take_cache_lookup()) {
+      time_.after(rng_.between(100, 300'000), [this, life = life_, q = *std::move(lookup)] {
+        if (life == life_)
+          session_.receive_cache_result(cache_->find(q.world, q.keys), time_.now());
       });
     }
     const auto world = session_.cached_world();

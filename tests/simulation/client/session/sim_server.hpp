@@ -262,8 +262,8 @@ class SimServer final : public WorldEnvironment {
       world_->snapshots_saved(now());
     });
   }
-  void log(WorldLogLevel level, const std::string& line) override {
-    if (level == WorldLogLevel::error) throw SimFault("server logs an error: " + line);
+  void report(OperatorLogLevel level, const std::string& line) override {
+    if (level == OperatorLogLevel::error) throw SimFault("server logs an error: " + line);
   }
 
   VirtualTime& time_;

@@ -56,32 +56,32 @@ struct Peer {
 };
 
 struct Fixture {
-  NetConfig config() const {
-    NetConfig out;
+  LinkConfig config() const {
+    LinkConfig out;
     out.host = "127.0.0.1";
     out.port = peer.port();
     out.pause_ms_first = 1;
     out.pause_ms_max = 10;
     return out;
   }
-  void start(NetConfig net) {
+  void start(LinkConfig net) {
     client = std::make_unique<NetClient>(std::move(net), [this] { wake.notify(); });
   }
   /// Returns the next event. Fails the test if none comes.
-  NetEvent next() {
+  LinkEvent next() {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (events.empty()) {
       REQUIRE(std::chrono::steady_clock::now() < until);
-      for (NetEvent& event : client->take_events()) events.push_back(std::move(event));
+      for (LinkEvent& event : client->take_events()) events.push_back(std::move(event));
       if (events.empty()) wake.wait(std::chrono::milliseconds(50));
     }
-    NetEvent event = std::move(events.front());
+    LinkEvent event = std::move(events.front());
     events.erase(events.begin());
     return event;
   }
   template <class T>
   T next_as() {
-    NetEvent event = next();
+    LinkEvent event = next();
     REQUIRE(std::holds_alternative<T>(event));
     return std::get<T>(std::move(event));
   }
@@ -94,7 +94,7 @@ struct Fixture {
   }
   Peer peer;
   WakeUp wake;
-  std::vector<NetEvent> events;
+  std::vector<LinkEvent> events;
   std::unique_ptr<NetClient> client;
 };
 
@@ -103,7 +103,7 @@ struct Fixture {
 TEST_CASE_METHOD(Fixture, "messages go both ways, whole and in order", "[client_net]") {
   start(config());
   peer.accept();
-  const auto up = next_as<NetConnected>();
+  const auto up = next_as<LinkConnected>();
   CHECK(up.connection == 1);
   Hello hello;
   hello.name = "ada";
@@ -117,7 +117,7 @@ TEST_CASE_METHOD(Fixture, "messages go both ways, whole and in order", "[client_
   CHECK(std::get<Ping>(*got).sent_us == 123);
 
   peer.send(welcome());
-  const auto first = next_as<NetReceived>();
+  const auto first = next_as<LinkReceived>();
   CHECK(std::get<Welcome>(first.message).chunk_edge == 16);
   CHECK(first.connection == 1);
   CHECK(first.received_us <= first.unpacked_us);
@@ -132,7 +132,7 @@ TEST_CASE_METHOD(Fixture, "messages go both ways, whole and in order", "[client_
   peer.writer.append(join_entries(1, {&entry, 1}), out);
   asio::write(peer.socket, asio::buffer(out.data(), 5));
   asio::write(peer.socket, asio::buffer(out.data() + 5, out.size() - 5));
-  const auto second = next_as<NetReceived>();
+  const auto second = next_as<LinkReceived>();
   const auto& chunks = std::get<Chunks>(second.message).chunks;
   REQUIRE(chunks.size() == 1);
   CHECK(key_of(chunks[0]) == ChunkKey{0, {1, 2, 3}});
@@ -147,11 +147,11 @@ TEST_CASE_METHOD(Fixture,
                  "[client_net]") {
   start(config());
   peer.accept();
-  CHECK(next_as<NetConnected>().connection == 1);
+  CHECK(next_as<LinkConnected>().connection == 1);
   peer.socket.close();
-  CHECK(next_as<NetDisconnected>().connection == 1);
+  CHECK(next_as<LinkDisconnected>().connection == 1);
   peer.accept();
-  CHECK(next_as<NetConnected>().connection == 2);
+  CHECK(next_as<LinkConnected>().connection == 2);
   client->send(1, encode_message(Ping{1}));
   client->send(2, encode_message(Ping{2}));
   const auto got = peer.receive();
@@ -163,56 +163,56 @@ TEST_CASE_METHOD(Fixture, "bytes that are no frames end the connection with a re
                  "[client_net]") {
   start(config());
   peer.accept();
-  next_as<NetConnected>();
+  next_as<LinkConnected>();
   const std::string nonsense(64, 'x');
   asio::write(peer.socket, asio::buffer(nonsense));
-  CHECK_THAT(next_as<NetDisconnected>().why, Catch::Contains("bad bytes"));
+  CHECK_THAT(next_as<LinkDisconnected>().why, Catch::Contains("bad bytes"));
 }
 
 TEST_CASE_METHOD(Fixture, "a snapshot of the wrong size ends the connection", "[client_net]") {
   start(config());
   peer.accept();
-  next_as<NetConnected>();
+  next_as<LinkConnected>();
   peer.send(welcome());
-  next_as<NetReceived>();
+  next_as<LinkReceived>();
   Chunk chunk;
   chunk.voxels = uniform_chunk(Extent::cube(32), 3);
   Bytes out;
   const ChunkEntry entry = encode_snapshot({0, {}}, chunk, ChunkEncoding::raw);
   peer.writer.append(join_entries(1, {&entry, 1}), out);
   asio::write(peer.socket, asio::buffer(out));
-  CHECK_THAT(next_as<NetDisconnected>().why, Catch::Contains("bad bytes"));
+  CHECK_THAT(next_as<LinkDisconnected>().why, Catch::Contains("bad bytes"));
 }
 
 TEST_CASE_METHOD(Fixture, "each failed attempt is an event, and attempts go on", "[client_net]") {
-  NetConfig net = config();
+  LinkConfig net = config();
   peer.acceptor.close();
   start(net);
-  for (int i = 0; i < 3; ++i) CHECK(next_as<NetDisconnected>().connection == 0);
+  for (int i = 0; i < 3; ++i) CHECK(next_as<LinkDisconnected>().connection == 0);
   net.host = "name.invalid";
   start(net);
   events.clear();
-  CHECK_THAT(next_as<NetDisconnected>().why, Catch::Contains("cannot resolve"));
+  CHECK_THAT(next_as<LinkDisconnected>().why, Catch::Contains("cannot resolve"));
 }
 
 TEST_CASE_METHOD(Fixture, "closing sends what is queued first", "[client_net]") {
   start(config());
   peer.accept();
-  const auto up = next_as<NetConnected>();
+  const auto up = next_as<LinkConnected>();
   client->send(up.connection, encode_message(Goodbye{GoodbyeReason::closing, "bye"}));
   client->close(up.connection);
   const auto got = peer.receive();
   REQUIRE(got);
   CHECK(std::get<Goodbye>(*got).text == "bye");
   CHECK_FALSE(peer.receive());
-  CHECK(next_as<NetDisconnected>().connection == 1);
+  CHECK(next_as<LinkDisconnected>().connection == 1);
 }
 
 TEST_CASE_METHOD(Fixture, "stopping sends what is queued and does not connect again",
                  "[client_net]") {
   start(config());
   peer.accept();
-  const auto up = next_as<NetConnected>();
+  const auto up = next_as<LinkConnected>();
   client->send(up.connection, encode_message(Ping{9}));
   client->stop(5'000);
   const auto got = peer.receive();
@@ -224,23 +224,23 @@ TEST_CASE_METHOD(Fixture, "stopping sends what is queued and does not connect ag
 
 TEST_CASE_METHOD(Fixture, "reading stops while events are not taken, and no message is lost",
                  "[client_net]") {
-  NetConfig net = config();
+  LinkConfig net = config();
   net.events_max = 16;
   start(net);
   peer.accept();
-  next_as<NetConnected>();
+  next_as<LinkConnected>();
   constexpr TimeUs kMessages = 40'000;
   std::thread sender([&] {
     for (TimeUs i = 0; i < kMessages; ++i) peer.send(Pong{i, i});
   });
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  for (NetEvent& event : client->take_events()) events.push_back(std::move(event));
+  for (LinkEvent& event : client->take_events()) events.push_back(std::move(event));
   // One read may exceed the bound by the messages in 64 KiB.
   CHECK(events.size() < 5'000);
   bool in_order = true;
   for (TimeUs i = 0; i < kMessages; ++i) {
-    const NetEvent event = next();
-    const auto* received = std::get_if<NetReceived>(&event);
+    const LinkEvent event = next();
+    const auto* received = std::get_if<LinkReceived>(&event);
     in_order = in_order && received != nullptr && std::get<Pong>(received->message).sent_us == i;
   }
   sender.join();

@@ -16,7 +16,7 @@ ChunkPtr chunk_at(Sequence seq) {
 struct OutboxFixture {
   TrackedChunk& current(std::int32_t x, Sequence seq) {
     TrackedChunk& chunk = *table.track({0, {x, 0, 0}}).first;
-    table.take_snapshot(chunk, chunk_at(seq));
+    table.set_current(chunk, chunk_at(seq));
     return chunk;
   }
   ReplicaChunks table;
@@ -31,7 +31,7 @@ TEST_CASE_METHOD(OutboxFixture, "a chunk is handed to the cache once per version
   CHECK(outbox.take(&table, 1).size() == 1);
   CHECK(outbox.take(&table, 9).size() == 1);
   CHECK(outbox.take(&table, 9).empty());
-  table.take_snapshot(chunk, chunk_at(2));
+  table.set_current(chunk, chunk_at(2));
   const auto again = outbox.take(&table, 9);
   REQUIRE(again.size() == 1);
   CHECK(again[0].first == chunk.key);

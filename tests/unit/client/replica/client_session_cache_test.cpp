@@ -66,14 +66,15 @@ TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long",
   session = ClientSession(caching);
   auto out = open();
   CHECK(take<View>(out).empty());
-  auto question = session.take_cache_lookup();
-  REQUIRE(question.has_value());
-  CHECK(question->keys == view_keys(session));
-  CHECK(question->world.id == server.world_id);
+  auto lookup = session.take_cache_lookup();
+  REQUIRE(lookup.has_value());
+  CHECK(lookup->keys == view_keys(session));
+  CHECK(lookup->world.id == server.world_id);
   CHECK_FALSE(session.take_cache_lookup().has_value());
   const ChunkKey key{0, {0, -1, 0}};
   SECTION("its answer is shown and claimed, and the view follows") {
-    session.receive_cached({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
+    session.receive_cache_result({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}},
+                                 now);
     CHECK(session.replica().shown(key) != nullptr);
     out = sent();
     REQUIRE(take<CachedChunks>(out).size() == 1);
@@ -102,7 +103,8 @@ TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long",
     session.tick(now);
     out = sent();
     CHECK(take<View>(out).size() == 1);
-    session.receive_cached({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
+    session.receive_cache_result({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}},
+                                 now);
     out = sent();
     CHECK(take<CachedChunks>(out).size() == 1);
   }
@@ -111,11 +113,12 @@ TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long",
     server.world_id = {9};
     out = open();
     REQUIRE(session.take_cache_lookup().has_value());
-    session.receive_cached({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
+    session.receive_cache_result({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}},
+                                 now);
     CHECK(session.replica().shown(key) == nullptr);
     out = sent();
     CHECK(take<View>(out).empty());
-    session.receive_cached({}, now);
+    session.receive_cache_result({}, now);
     out = sent();
     CHECK(take<View>(out).size() == 1);
   }
@@ -131,7 +134,7 @@ TEST_CASE_METHOD(SessionBench,
   session.set_view({1, {5, 0, 0}, 1, 1});
   CHECK(sent().empty());  // the server knows of no view yet
   REQUIRE(session.take_cache_lookup().has_value());
-  session.receive_cached({}, now);
+  session.receive_cache_result({}, now);
   auto out = sent();
   CHECK(take<View>(out) == std::vector{View{1, {5, 0, 0}, 1, 1}});
   const ChunkKey key{0, {5, 0, 0}};

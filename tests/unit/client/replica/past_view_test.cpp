@@ -12,7 +12,7 @@ struct PastViewFixture {
     expected = table.track({0, {1, 0, 0}}).first;
     unavailable = table.track({0, {2, 0, 0}}).first;
     table.answer(*current);
-    table.withhold(*unavailable);
+    table.set_unavailable(*unavailable);
     for (TrackedChunk* chunk : {current, expected}) {
       chunk->add_pending(4, {SetVoxel{{1, 1, 1}}, {}, 2});
       chunk->inbox.push_back({});
@@ -50,7 +50,7 @@ TEST_CASE_METHOD(PastViewFixture, "from moment to moment a current chunk stays c
                  "[replica]") {
   view.show(PastMoment{5, 1000}, table);
   table.answer(*current);
-  table.withhold(*unavailable);
+  table.set_unavailable(*unavailable);
   view.show(PastMoment{3, 900}, table);
   CHECK(current->is_current());
   CHECK(expected->state() == ChunkState::expected);

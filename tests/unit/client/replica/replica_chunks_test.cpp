@@ -60,13 +60,13 @@ TEST_CASE("a snapshot ends a request, and an unavailable chunk holds nothing", "
   table.answer(chunk);
   CHECK(table.awaiting().contains(kKey));
   CHECK(table.vouched_count() == 1);
-  table.take_snapshot(chunk, some_chunk());
+  table.set_current(chunk, some_chunk());
   CHECK(chunk.is_current());
   CHECK(table.awaiting().empty());
   CHECK(table.confirmed_count() == 1);
 
   chunk.inbox.push_back({});
-  table.withhold(chunk);
+  table.set_unavailable(chunk);
   CHECK(chunk.is_unavailable());
   CHECK(chunk.confirmed() == nullptr);
   CHECK(chunk.inbox.empty());
@@ -92,10 +92,10 @@ TEST_CASE("counts by state equal those of a walk after any transitions", "[repli
         if (!chunk.is_unavailable()) table.request(chunk);
         break;
       case 2:
-        table.take_snapshot(chunk, some_chunk());
+        table.set_current(chunk, some_chunk());
         break;
       case 3:
-        table.withhold(chunk);
+        table.set_unavailable(chunk);
         break;
       case 4:
         table.expect(chunk);

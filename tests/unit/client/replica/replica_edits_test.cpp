@@ -82,7 +82,7 @@ TEST_CASE_METHOD(ReplicaBench, "a reject removes its prediction and no other", "
   CHECK(changes.rejects[0].seq == first);
   CHECK(changes.rejects[0].reason == RejectReason::rate_limited);
   REQUIRE(changes.chunks.size() == 1);
-  CHECK(changes.chunks[0].layers.dirty.layer[0].count() == 1);
+  CHECK(changes.chunks[0].layers.here.layer[0].count() == 1);
   CHECK(replica.local_edits().all().size() == 1);
 }
 

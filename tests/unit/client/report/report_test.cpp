@@ -80,12 +80,12 @@ TEST_CASE("edits that this client refused are counted apart, and are in no perce
           "[client_app]") {
   const ClientSession session(SessionConfig{});
   ClientReport report = sample();
-  CHECK(json::parse(to_json(report, session))["latency_us"]["own_refused"] == 0);
+  CHECK(json::parse(to_json(report, session))["latency_us"]["local_refused"] == 0);
   CHECK_THAT(to_table(report, session), !Catch::Contains("refused"));
   report.edits_refused = 2;
   const json latency = json::parse(to_json(report, session))["latency_us"];
-  CHECK(latency["own_refused"] == 2);
-  CHECK(latency["own_confirmed"]["edits"] == 0);
+  CHECK(latency["local_refused"] == 2);
+  CHECK(latency["local_confirmed"]["edits"] == 0);
   CHECK_THAT(to_table(report, session), Catch::Contains("edits refused by this client: 2\n"));
 }
 
@@ -99,6 +99,6 @@ TEST_CASE("the table has chunks, drift and dense expansions on lines of their ow
       Catch::Contains("meshes of changed layers only: 10, each 5.0 us; 1.5 MiB of meshes kept\n"));
   CHECK_THAT(table,
              Catch::Contains("dense expansions: " + std::to_string(dense_expansions()) + "\n"));
-  CHECK_THAT(table, Catch::Contains("drift: 0 of 0 audited\n"));
+  CHECK_THAT(table, Catch::Contains("drift: 0 of 0 digests checked\n"));
   CHECK_THAT(table, Catch::Matches("(.|\n)*remote +meshed +10 +0\\.10 +0\\.10 +inf +inf\n(.|\n)*"));
 }

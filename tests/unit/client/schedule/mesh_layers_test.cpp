@@ -31,10 +31,10 @@ TEST_CASE_METHOD(PlannerBench,
   commit({5, 6, 9}, 2);
   const MeshJob job = only();
   CHECK(job.before == loaded);
-  CHECK(job.changed.dirty == layers_of({{5, 6, 7}, {5, 6, 9}}));
-  CHECK(job.changed.beyond == VisibleLayers{}.beyond);
+  CHECK(job.changed.here == layers_of({{5, 6, 7}, {5, 6, 9}}));
+  CHECK(job.changed.beyond == ChangedLayers{}.beyond);
   commit({1, 1, 1}, 2);
-  CHECK(only().changed.dirty ==
+  CHECK(only().changed.here ==
         layers_of({{1, 1, 1}}));  // these layers are not in the previous mesh any more
 }
 
@@ -47,8 +47,8 @@ TEST_CASE_METHOD(PlannerBench, "an edit at the border is a change of the neighbo
   const MeshPtr before = meshes[kRight.at];
   REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
   CHECK(last.before == before);
-  CHECK_FALSE(last.changed.dirty.any());
-  VisibleLayers expected;
+  CHECK_FALSE(last.changed.here.any());
+  ChangedLayers expected;
   expected.beyond[kFromLeft] = layers_of({{15, 6, 7}});
   CHECK(last.changed == expected);
 }
@@ -78,7 +78,7 @@ TEST_CASE_METHOD(PlannerBench, "a snapshot that repairs a chunk changes the laye
   load(kHere.at);
   const MeshJob job = only();
   CHECK(job.before != nullptr);
-  CHECK(job.changed.dirty == layers_of({{4, 5, 6}}));
+  CHECK(job.changed.here == layers_of({{4, 5, 6}}));
 }
 
 TEST_CASE_METHOD(PlannerBench, "a chunk in another axis order is meshed as a whole", "[schedule]") {

@@ -88,7 +88,7 @@ TEST_CASE("a job with a previous mesh meshes the changed layers and leaves that 
   MeshJob second = job_of(2, chunk_with({{5, 5, 5}, {6, 5, 5}, {0, 9, 9}}));
   second.neighbours[0] = chunk_with({{15, 9, 9}});  // hides a face of the voxel beside it
   second.before = before;
-  second.changed.dirty = changed_layers(*old_chunk, *second.chunk);
+  second.changed.here = changed_layers(*old_chunk, *second.chunk);
   second.changed.beyond[0] = changed_layers(*old_side, *second.neighbours[0]);
   MeshJob whole = second;
   whole.number = 3;

@@ -1,126 +1,14 @@
-#include "client/script/script_runner.hpp"
+#include "tests/unit/client/script/script_bench.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
-#include <map>
 #include <numbers>
 
-#include "common/edits/clipboard/clipboard_builder.hpp"
-
 using namespace runstone;
+using runstone::test::FakeScriptHost;
+using runstone::test::ScriptBench;
 
-namespace {
-
-/// A host with a world of single voxels. It answers at once.
-struct FakeHost final : ScriptHost {
-  struct Submitted {
-    EditDescriptor edit;
-    TimeUs due_us, now_us;
-  };
-  bool open = true, is_loaded = true, is_durable = true, draws = true, takes = true;
-  std::optional<bool> picture = true;
-  std::uint64_t pongs = 0;
-  WorldPos at{10, 20, 30};
-  double yaw = 0, pitch = 0;
-  std::map<VoxelPos, Material> voxels;
-  std::optional<RayHit> hit;
-  std::vector<Submitted> edits;
-  mutable std::vector<VoxelBox> copied;
-  std::vector<std::string> files;
-  std::vector<HistoryRequest> travels;
-  bool is_travelling = false;
-  std::string refusal;
-
-  bool ready() const override { return open; }
-  WorldPos eye() const override { return at; }
-  void move_to(const WorldPos& eye) override { at = eye; }
-  void look(double y, double p) override { yaw = y, pitch = p; }
-  Result<Material, std::string> material(std::string_view name) const override {
-    if (name == "air" || name == "0") return kEmpty;
-    if (name == "stone") return Material{5};
-    if (name == "sand") return Material{2};
-    return Unexpected<std::string>{"the world has no material \"" + std::string(name) + "\""};
-  }
-  std::optional<Material> shown_at(VoxelPos pos) const override {
-    if (pos.x > 1000) return std::nullopt;
-    const auto it = voxels.find(pos);
-    return it == voxels.end() ? kEmpty : it->second;
-  }
-  Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
-    copied.push_back(box);
-    if (box.min.x > 1000) return runstone::fail(ErrorCode::not_found, "it is far");
-    const auto side = [](std::int32_t low, std::int32_t high) {
-      return static_cast<std::uint8_t>(high - low);
-    };
-    ClipboardBuilder cells(
-        {side(box.min.x, box.max.x), side(box.min.y, box.max.y), side(box.min.z, box.max.z)});
-    cells.append(1, Material{5});
-    while (cells.filled() < static_cast<std::uint32_t>(box.max.x - box.min.x) *
-                                static_cast<std::uint32_t>(box.max.y - box.min.y) *
-                                static_cast<std::uint32_t>(box.max.z - box.min.z)) {
-      cells.append(1, solid ? std::nullopt : std::optional<Material>(kEmpty));
-    }
-    return cells.finish();
-  }
-  std::optional<RayHit> pick() const override { return hit; }
-  std::optional<std::int32_t> surface(std::int32_t x, std::int32_t) const override {
-    if (x > 1000) return std::nullopt;
-    return 7;
-  }
-  Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
-    edits.push_back({edit, due_us, now_us});
-    if (!takes) return runstone::fail(ErrorCode::bad_value, "the past cannot be edited");
-    return {};
-  }
-  bool loaded() const override { return is_loaded; }
-  bool durable() const override { return is_durable; }
-  std::uint64_t sync_mark() const override { return pongs; }
-  bool synced(std::uint64_t mark) const override { return pongs >= mark + 2; }
-  void travel(const HistoryRequest& travel) override { travels.push_back(travel); }
-  bool travelling() const override { return is_travelling; }
-  std::vector<std::string> commands;
-  bool is_commanding = false, is_command_ok = true;
-  std::string command(const std::string& text) override {
-    commands.push_back(text);
-    return {};
-  }
-  bool commanding() const override { return is_commanding; }
-  bool show_answer() override { return is_command_ok; }
-  std::string travel_refusal() const override { return refusal; }
-  TimeUs utc_now_us() const override { return 5'000'000; }
-  bool screenshot(const std::string& file) override {
-    files.push_back(file);
-    return draws;
-  }
-  std::optional<bool> screenshot_written() const override { return picture; }
-  bool digests(const std::string& file) override {
-    files.push_back(file);
-    return file != "bad";
-  }
-};
-
-struct Fixture {
-  void load(std::string_view text) {
-    auto parsed = parse_script(text, "s.txt");
-    INFO((parsed ? "" : parsed.error().message()));
-    REQUIRE(parsed.has_value());
-    script = *parsed;
-    runner.emplace(script, host);
-  }
-  void run(std::string_view text) {
-    load(text);
-    runner->step(0);
-    REQUIRE(runner->finished());
-  }
-  FakeHost host;
-  Script script;
-  std::optional<ScriptRunner> runner;
-};
-
-}  // namespace
-
-TEST_CASE_METHOD(Fixture, "positions may be absolute, from the player or from the surface",
+TEST_CASE_METHOD(ScriptBench, "positions may be absolute, from the player or from the surface",
                  "[bots]") {
   run("set 1 2 3 stone\nset ~ ~-1 ~+2 stone\nset -4 ^+1 5 stone\nset -0.5 1.9 2.5 sand");
   REQUIRE(host.edits.size() == 4);
@@ -131,7 +19,7 @@ TEST_CASE_METHOD(Fixture, "positions may be absolute, from the player or from th
   CHECK(runner->failures().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "box corners may come in any order and are both included", "[bots]") {
+TEST_CASE_METHOD(ScriptBench, "box corners may come in any order and are both included", "[bots]") {
   run("box 5 2 3 1 4 3 stone empty\nsphere 1 2 3 4 air only:sand");
   REQUIRE(host.edits.size() == 2);
   CHECK(host.edits[0].edit ==
@@ -140,7 +28,7 @@ TEST_CASE_METHOD(Fixture, "box corners may come in any order and are both includ
         EditDescriptor{FillSphere{{1, 2, 3}, 4}, {MaskKind::only_material, 2}, 0});
 }
 
-TEST_CASE_METHOD(Fixture, "a stroke has the points of its command", "[bots]") {
+TEST_CASE_METHOD(ScriptBench, "a stroke has the points of its command", "[bots]") {
   run("stroke 2 stone 1 2 3 1.5 9.25 -0.5 solid");
   REQUIRE(host.edits.size() == 1);
   CHECK(host.edits[0].edit ==
@@ -150,7 +38,7 @@ TEST_CASE_METHOD(Fixture, "a stroke has the points of its command", "[bots]") {
   CHECK(runner->failures()[0].find("stroke repeats a point") != std::string::npos);
 }
 
-TEST_CASE_METHOD(Fixture, "a paste has the copied voxels and the orientation of the command",
+TEST_CASE_METHOD(ScriptBench, "a paste has the copied voxels and the orientation of the command",
                  "[bots]") {
   run("copy a 5 2 ~ 1 4 3 solid\ncopy b 0 0 0 1 0 0\ncopy a 0 0 0 0 0 0\n"
       "paste b ~ 7 -2 rotate 1 mirror x rotate -1 only:sand\npaste a 1 2 3\n");
@@ -169,8 +57,8 @@ TEST_CASE_METHOD(Fixture, "a paste has the copied voxels and the orientation of 
   CHECK((*host.copy({{0, 0, 0}, {2, 1, 1}}, true))->touched() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a copy that fails and a paste of an unknown clipboard end the script",
-                 "[bots]") {
+TEST_CASE_METHOD(ScriptBench,
+                 "a copy that fails and a paste of an unknown clipboard end the script", "[bots]") {
   run("copy a 1001 0 0 1002 0 0\nset 1 2 3 stone");
   REQUIRE(runner->failures().size() == 1);
   CHECK(runner->failures()[0] == "s.txt:1: cannot copy \"a\": it is far");
@@ -180,7 +68,7 @@ TEST_CASE_METHOD(Fixture, "a copy that fails and a paste of an unknown clipboard
   CHECK(host.edits.empty());
 }
 
-TEST_CASE_METHOD(Fixture, "look takes degrees, and lookat takes a place", "[bots]") {
+TEST_CASE_METHOD(ScriptBench, "look takes degrees, and lookat takes a place", "[bots]") {
   run("look 90 -45");
   CHECK(host.yaw == Approx(std::numbers::pi / 2));
   CHECK(host.pitch == Approx(-std::numbers::pi / 4));
@@ -189,7 +77,7 @@ TEST_CASE_METHOD(Fixture, "look takes degrees, and lookat takes a place", "[bots
   CHECK(host.pitch == Approx(std::numbers::pi / 4));
 }
 
-TEST_CASE_METHOD(Fixture, "a walk takes the time of its speed and ends at its destination",
+TEST_CASE_METHOD(ScriptBench, "a walk takes the time of its speed and ends at its destination",
                  "[bots]") {
   load("walk 14 20 30 2\nquit");
   runner->step(1'000'000);
@@ -205,7 +93,8 @@ TEST_CASE_METHOD(Fixture, "a walk takes the time of its speed and ends at its de
 }
 
 TEST_CASE_METHOD(
-    Fixture, "roaming goes to and fro while the script goes on, and a burst stays where it began",
+    ScriptBench,
+    "roaming goes to and fro while the script goes on, and a burst stays where it began",
     "[bots]") {
   load("roam ~10 ~ ~ 10\nburst 4 1 0 1 stone\nmove 0 0 0\nwait 1");
   runner->step(1'000'000);
@@ -230,7 +119,7 @@ TEST_CASE_METHOD(
   CHECK(runner->finished());
 }
 
-TEST_CASE_METHOD(Fixture, "digging and placing go through the picked voxel", "[bots]") {
+TEST_CASE_METHOD(ScriptBench, "digging and placing go through the picked voxel", "[bots]") {
   host.hit = RayHit{{4, 5, 6}, 3, Direction::pos_y, 2};
   run("dig\nplace sand");
   REQUIRE(host.edits.size() == 2);
@@ -242,7 +131,7 @@ TEST_CASE_METHOD(Fixture, "digging and placing go through the picked voxel", "[b
   CHECK(runner->failures().size() == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "waiting for seconds and for states blocks until then", "[bots]") {
+TEST_CASE_METHOD(ScriptBench, "waiting for seconds and for states blocks until then", "[bots]") {
   load("wait 1.5\nwait loaded\nwait durable\nwait synced");
   host.is_loaded = host.is_durable = false;
   runner->step(100);
@@ -263,7 +152,7 @@ TEST_CASE_METHOD(Fixture, "waiting for seconds and for states blocks until then"
   CHECK(runner->failures().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a state that is not reached is a failure, and the script goes on",
+TEST_CASE_METHOD(ScriptBench, "a state that is not reached is a failure, and the script goes on",
                  "[bots]") {
   load("wait loaded 2\nquit");
   host.is_loaded = false;
@@ -273,7 +162,7 @@ TEST_CASE_METHOD(Fixture, "a state that is not reached is a failure, and the scr
   CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: not loaded in time"});
 }
 
-TEST_CASE_METHOD(Fixture, "nothing runs before the world is open", "[bots]") {
+TEST_CASE_METHOD(ScriptBench, "nothing runs before the world is open", "[bots]") {
   host.open = false;
   load("set 1 2 3 stone");
   runner->step(0);
@@ -283,7 +172,7 @@ TEST_CASE_METHOD(Fixture, "nothing runs before the world is open", "[bots]") {
   CHECK(host.edits.size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "failed expectations are recorded by line, and the script goes on",
+TEST_CASE_METHOD(ScriptBench, "failed expectations are recorded by line, and the script goes on",
                  "[bots]") {
   host.voxels[{1, 2, 3}] = 5;
   run("expect 1 2 3 stone\nexpect 1 2 4 stone\nexpect 2000 2 3 stone\nset 1 1 1 sand");
@@ -293,7 +182,7 @@ TEST_CASE_METHOD(Fixture, "failed expectations are recorded by line, and the scr
   CHECK(host.edits.size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a command that cannot run ends the script", "[bots]") {
+TEST_CASE_METHOD(ScriptBench, "a command that cannot run ends the script", "[bots]") {
   run("set 1 2 3 unobtainium\nset 1 2 3 stone");
   CHECK(host.edits.empty());
   CHECK(runner->failures() ==
@@ -305,7 +194,7 @@ TEST_CASE_METHOD(Fixture, "a command that cannot run ends the script", "[bots]")
   CHECK(runner->failures().size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "an edit that the client refuses is a failure with its reason",
+TEST_CASE_METHOD(ScriptBench, "an edit that the client refuses is a failure with its reason",
                  "[bots]") {
   host.takes = false;
   run("set 1 2 3 stone\nexpect 1 2 3 air");
@@ -314,7 +203,7 @@ TEST_CASE_METHOD(Fixture, "an edit that the client refuses is a failure with its
         std::vector<std::string>{"s.txt:1: edit refused: the past cannot be edited"});
 }
 
-TEST_CASE_METHOD(Fixture, "a repeat runs its body N times, also when it is nested or empty",
+TEST_CASE_METHOD(ScriptBench, "a repeat runs its body N times, also when it is nested or empty",
                  "[bots]") {
   run("repeat 3\n"
       "set 1 1 1 sand\n"
@@ -332,14 +221,14 @@ TEST_CASE_METHOD(Fixture, "a repeat runs its body N times, also when it is neste
                       [](const auto& e) { return e.edit.material == 5; }) == 6);
 }
 
-TEST_CASE_METHOD(Fixture, "a step runs a bounded number of commands", "[bots]") {
+TEST_CASE_METHOD(ScriptBench, "a step runs a bounded number of commands", "[bots]") {
   load("repeat 1000\nlook 0 0\nend");
   int turns = 0;
   for (; !runner->finished(); ++turns) runner->step(turns);
   CHECK(turns > 5);
 }
 
-TEST_CASE_METHOD(Fixture, "the edits of a burst are due by its rate, whatever the host does",
+TEST_CASE_METHOD(ScriptBench, "the edits of a burst are due by its rate, whatever the host does",
                  "[bots]") {
   load("burst 5 100 3 42 stone");
   runner->step(1'000'000);
@@ -372,7 +261,7 @@ TEST_CASE_METHOD(Fixture, "the edits of a burst are due by its rate, whatever th
   for (std::size_t i = 0; i < 5; ++i) CHECK(host.edits[i].edit == first[i].edit);
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(ScriptBench,
                  "a script waits for a screenshot, which fails if the client draws nothing",
                  "[bots]") {
   load("screenshot a.png\nquit");
@@ -390,7 +279,7 @@ TEST_CASE_METHOD(Fixture,
                                  "s.txt:3: bad cannot be written"});
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(ScriptBench,
                  "a screenshot that cannot be written is a failure, and the script goes on",
                  "[bots]") {
   load("look 0 0\nscreenshot nosuch/a.png\nset 1 1 1 sand");
@@ -408,7 +297,7 @@ TEST_CASE("a command waits for its answer; a refused command is a failure, and t
           "[bots]") {
   const auto script = *parse_script(
       "command rollback preview author #3  # all\nset 1 2 3 stone\nundo\nset 1 2 3 sand\n", "t");
-  FakeHost host;
+  FakeScriptHost host;
   host.is_commanding = true;
   ScriptRunner runner(script, host);
   runner.step(1'000'000);
@@ -420,7 +309,7 @@ TEST_CASE("a command waits for its answer; a refused command is a failure, and t
   CHECK(host.edits.size() == 2);
   CHECK(runner.failures().empty());
 
-  FakeHost refusing;
+  FakeScriptHost refusing;
   refusing.is_command_ok = false;
   ScriptRunner again(script, refusing);
   again.step(1'000'000);
@@ -438,7 +327,7 @@ TEST_CASE("a command of too many bytes, or none, is a mistake of the script", "[
 
 TEST_CASE("travel waits until the moment is here; a refused travel ends the script", "[bots]") {
   const auto script = *parse_script("travel -2\nset 1 2 3 stone\ntravel 7\nset 1 2 3 sand\n", "t");
-  FakeHost host;
+  FakeScriptHost host;
   host.is_travelling = true;
   ScriptRunner runner(script, host);
   runner.step(1'000'000);

@@ -30,15 +30,6 @@ TEST_CASE("bounded draws stay in range and reach both ends", "[core][hash]") {
   CHECK(rng.between(-7, -7) == -7);
 }
 
-TEST_CASE("trace ids follow from the operation id alone and differ in each field", "[core][hash]") {
-  const OperationId op{1, 2, 3};
-  CHECK(trace_id(op) == trace_id(OperationId{1, 2, 3}));
-  CHECK(trace_id(op) != trace_id(OperationId{2, 2, 3}));
-  CHECK(trace_id(op) != trace_id(OperationId{1, 3, 3}));
-  CHECK(trace_id(op) != trace_id(OperationId{1, 2, 4}));
-  CHECK(trace_id({2, 1, 3}) != trace_id({1, 2, 3}));
-}
-
 TEST_CASE("versions compare by epoch first", "[core][ids]") {
   CHECK(Version{1, 900} < Version{2, 1});
   CHECK(Version{2, 1} < Version{2, 2});

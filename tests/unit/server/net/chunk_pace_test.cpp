@@ -102,10 +102,10 @@ struct Run {
       at(down.push(packet + 52, now_us), Event::Kind::arrives, packet);
     }
   }
-  /// The writer of a session: sends fragments while there is room.
+  /// The writer of a session: sends fragments while it may.
   void write() {
     while (has_terrain) {
-      if (pace.room(now_us) == 0) {
+      if (!pace.may_send(now_us)) {
         const TimeUs next_us = pace.next_us(now_us);
         if (wakes_us <= now_us || next_us < wakes_us)
           at(wakes_us = std::max(next_us, now_us + 60), Event::Kind::wake);
@@ -263,8 +263,8 @@ TEST_CASE("an acknowledgement of all bytes at once overflows no number", "[net][
   ChunkPace pace;
   std::uint64_t total = 0;
   for (TimeUs now_us = 0; now_us < 2'000'000; now_us += 7) {
-    const std::size_t bytes = pace.room(now_us);
-    if (bytes == 0) continue;
+    if (!pace.may_send(now_us)) continue;
+    const std::size_t bytes = pace.fragment_bytes();
     pace.sent(bytes + kFrameHeaderBytes, now_us);
     total += bytes + kFrameHeaderBytes;
     REQUIRE(pace.acked(total, now_us).has_value());

@@ -14,7 +14,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   config.view_interval_ms = 20;
   config.worker_threads = 3;
   config.idle_s = 7;
-  config.audit_ms = 250;
+  config.digest_check_ms = 250;
   config.memory_mib = 16;
   config.snapshot_s = 9;
   const WorldConfig world = world_config_of(config, sample_meta());

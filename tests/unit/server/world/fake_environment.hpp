@@ -45,7 +45,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::deque<ChunkKey> loads;
   struct HistoryLoad {
     SessionId session = 0;
-    std::uint32_t request = 0;
+    HistoryNumber history{};
     Sequence at = 0;
     ChunkKey key;
   };
@@ -109,15 +109,17 @@ class FakeEnvironment : public WorldEnvironment {
   void open_history(SessionId session, const HistoryRequest& request) override {
     history_requests.emplace_back(session, request);
   }
-  void load_history_chunk(SessionId session, std::uint32_t request, Sequence at,
+  void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                           const ChunkKey& key) override {
-    history_loads.push_back({session, request, at, key});
+    history_loads.push_back({session, history, at, key});
   }
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                       Sequence checkpoint) override {
     saves.push_back({std::move(chunks), checkpoint});
   }
-  void log(WorldLogLevel /*level*/, const std::string& line) override { lines.push_back(line); }
+  void report(OperatorLogLevel /*level*/, const std::string& line) override {
+    lines.push_back(line);
+  }
 
   /// Returns the messages of one kind sent to a session, oldest first.
   template <class Kind>

@@ -29,7 +29,7 @@ struct HistoryBench : WorldBench {
       Chunk chunk = dotted_chunk(kEdge);
       const Sequence seq = load.at / step * step;
       chunk.version = {seq == 0 ? 0U : 1U, seq};
-      server.history_chunk_loaded(load.session, load.request, load.key,
+      server.history_chunk_loaded(load.session, load.history, load.key,
                                   std::make_shared<const Chunk>(chunk), now());
     }
   }
@@ -166,7 +166,7 @@ TEST_CASE(
   bench.open_one();
   const auto load = bench.environment.history_loads.front();
   bench.environment.history_loads.pop_front();
-  bench.server.history_chunk_loaded(1, load.request, load.key,
+  bench.server.history_chunk_loaded(1, load.history, load.key,
                                     Unexpected<std::string>{"row damaged"}, bench.now());
   const auto unavailable = bench.environment.messages<ChunkUnavailable>(1, kEdge);
   REQUIRE(unavailable.size() == 1);

@@ -1,4 +1,4 @@
-#include "client/app/network_session.hpp"
+#include "client/app/threaded_session.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -46,44 +46,44 @@ SessionConfig session_config(const ClientOptions& options, bool has_cache) {
 
 }  // namespace
 
-NetworkSession::NetworkSession(const ClientOptions& options, std::function<void()> wake)
+ThreadedSession::ThreadedSession(const ClientOptions& options, std::function<void()> wake)
     : options_(options),
       wake_(std::move(wake)),
       cache_(make_cache(options_, wake_)),
       session_(session_config(options_, cache_ != nullptr)),
       pins_saved_(session_.pinned().size()) {}
 
-NetworkSession::~NetworkSession() = default;
+ThreadedSession::~ThreadedSession() = default;
 
-void NetworkSession::start(TimeUs now_us) {
+void ThreadedSession::start(TimeUs now_us) {
   lost_us_ = now_us;
-  NetConfig net;
+  LinkConfig net;
   net.host = options_.server.host;
   net.port = options_.server.port;
   net_ = std::make_unique<NetClient>(std::move(net), wake_);
 }
 
-void NetworkSession::receive() {
+void ThreadedSession::receive() {
   if (events_.empty()) {
-    for (NetEvent& event : net_->take_events()) events_.push_back(std::move(event));
+    for (LinkEvent& event : net_->take_events()) events_.push_back(std::move(event));
   }
   for (const TimeUs until_us = steady_now_us() + kReceiveUsMax;
        !events_.empty() && steady_now_us() < until_us;) {
-    NetEvent event = std::move(events_.front());
+    LinkEvent event = std::move(events_.front());
     events_.pop_front();
-    if (const auto* connected = std::get_if<NetConnected>(&event)) on_connected(*connected);
-    if (const auto* gone = std::get_if<NetDisconnected>(&event)) on_disconnected(*gone);
-    if (auto* received = std::get_if<NetReceived>(&event)) on_received(*received);
+    if (const auto* connected = std::get_if<LinkConnected>(&event)) on_connected(*connected);
+    if (const auto* gone = std::get_if<LinkDisconnected>(&event)) on_disconnected(*gone);
+    if (auto* received = std::get_if<LinkReceived>(&event)) on_received(*received);
   }
 }
 
-void NetworkSession::on_connected(const NetConnected& event) {
+void ThreadedSession::on_connected(const LinkConnected& event) {
   connection_ = event.connection;
   session_.connected(random_nonce(), steady_now_us());
   flush();
 }
 
-void NetworkSession::on_received(NetReceived& event) {
+void ThreadedSession::on_received(LinkReceived& event) {
   if (event.connection != connection_) return;
   if (const auto* chunks = std::get_if<Chunks>(&event.message)) count_snapshots(*chunks, event);
   session_.receive(std::move(event.message),
@@ -91,7 +91,7 @@ void NetworkSession::on_received(NetReceived& event) {
   if (session_.connect_count() != connects_handled_) on_world_opened();
 }
 
-void NetworkSession::count_snapshots(const Chunks& chunks, const NetReceived& event) {
+void ThreadedSession::count_snapshots(const Chunks& chunks, const LinkReceived& event) {
   const auto entries = static_cast<std::int64_t>(chunks.chunks.size());
   const std::uint64_t count_before = snapshots_.count;
   for (const ChunkAnswer& answer : chunks.chunks) {
@@ -105,7 +105,7 @@ void NetworkSession::count_snapshots(const Chunks& chunks, const NetReceived& ev
   if (snapshots_.count != count_before) snapshots_.wire_bytes += event.bytes;
 }
 
-void NetworkSession::on_disconnected(const NetDisconnected& event) {
+void ThreadedSession::on_disconnected(const LinkDisconnected& event) {
   if (event.connection != 0 && event.connection != connection_) return;
   connection_ = 0;
   step_cache(steady_now_us());
@@ -122,7 +122,7 @@ void NetworkSession::on_disconnected(const NetDisconnected& event) {
   }
 }
 
-void NetworkSession::on_world_opened() {
+void ThreadedSession::on_world_opened() {
   connects_handled_ = session_.connect_count();
   world_opened_ = true;
   lost_us_.reset();
@@ -135,18 +135,19 @@ void NetworkSession::on_world_opened() {
   }
 }
 
-bool NetworkSession::take_world_opened() { return std::exchange(world_opened_, false); }
+bool ThreadedSession::take_world_opened() { return std::exchange(world_opened_, false); }
 
-void NetworkSession::flush() {
+void ThreadedSession::flush() {
   for (const Message& message : session_.take_outgoing())
     net_->send(connection_, encode_message(message));
   if (session_.wants_close() && connection_ != 0) net_->close(connection_);
 }
 
-void NetworkSession::step_cache(TimeUs now_us) {
+void ThreadedSession::step_cache(TimeUs now_us) {
   if (!cache_) return;
-  for (auto& found : cache_->take_answers()) session_.receive_cached(std::move(found), now_us);
-  while (auto question = session_.take_cache_lookup()) cache_->ask(*std::move(question));
+  for (auto& found : cache_->drain_results())
+    session_.receive_cache_result(std::move(found), now_us);
+  while (auto lookup = session_.take_cache_lookup()) cache_->look_up(*std::move(lookup));
   if (now_us - kept_us_ >= kKeepUs) {
     kept_us_ = now_us;
     keep_chunks(cache_->room());
@@ -155,13 +156,13 @@ void NetworkSession::step_cache(TimeUs now_us) {
     spdlog::warn("{}", warning);
 }
 
-void NetworkSession::keep_chunks(std::size_t count_max) {
+void ThreadedSession::keep_chunks(std::size_t count_max) {
   if (!cache_) return;
   if (const auto world = session_.cached_world())
     cache_->keep(*world, session_.replica().take_for_cache(count_max));
 }
 
-void NetworkSession::finish() {
+void ThreadedSession::finish() {
   step_cache(steady_now_us());
   keep_chunks(SIZE_MAX);
   if (cache_) cache_->stop();
@@ -170,21 +171,21 @@ void NetworkSession::finish() {
   net_->stop(kGoodbyeMs);
 }
 
-std::optional<std::string> NetworkSession::refusal() const {
+std::optional<std::string> ThreadedSession::refusal() const {
   const auto& end = session_.end();
   if (!end || !end->final) return std::nullopt;
   return end->text;
 }
 
-std::optional<std::string> NetworkSession::timeout(TimeUs now_us) const {
+std::optional<std::string> ThreadedSession::timeout(TimeUs now_us) const {
   if (!lost_us_ || static_cast<double>(now_us - *lost_us_) <= options_.reconnect_seconds * 1e6)
     return std::nullopt;
   return fmt::format("no server at {}: {}", to_string(options_.server), last_failure_);
 }
 
-void NetworkSession::add_to(ClientReport& report) const {
+void ThreadedSession::add_to(ClientReport& report) const {
   report.snapshots = snapshots_;
-  const NetStats& net = net_->stats();
+  const LinkStats& net = net_->stats();
   report.net.bytes_received = net.bytes_received;
   report.net.bytes_sent = net.bytes_sent;
   const Traffic received = net.received.read();

@@ -1,4 +1,4 @@
-// NetworkSession: the session of runstone-client with the threads that serve it: the network
+// ThreadedSession: the session of runstone-client with the threads that serve it: the network
 // thread, which carries its messages, and the cache thread, which keeps chunks on disk between
 // runs.
 // Thread: the main thread only. No call waits for a peer or for the disk, except finish().
@@ -18,15 +18,15 @@
 
 namespace runstone {
 
-class NetworkSession {
+class ThreadedSession {
  public:
   /// `wake` is called from the other threads when there is something to handle. Throws
   /// std::runtime_error if the key file cannot be read or made. A cache that cannot be opened is a
   /// warning in the log.
-  NetworkSession(const ClientOptions& options, std::function<void()> wake);
-  ~NetworkSession();
-  NetworkSession(const NetworkSession&) = delete;
-  NetworkSession& operator=(const NetworkSession&) = delete;
+  ThreadedSession(const ClientOptions& options, std::function<void()> wake);
+  ~ThreadedSession();
+  ThreadedSession(const ThreadedSession&) = delete;
+  ThreadedSession& operator=(const ThreadedSession&) = delete;
 
   ClientSession& session() { return session_; }
   const ClientSession& session() const { return session_; }
@@ -64,10 +64,10 @@ class NetworkSession {
   static constexpr std::int64_t kGoodbyeMs = 1'000;
 
  private:
-  void on_connected(const NetConnected& event);
-  void on_received(NetReceived& event);
-  void count_snapshots(const Chunks& chunks, const NetReceived& event);
-  void on_disconnected(const NetDisconnected& event);
+  void on_connected(const LinkConnected& event);
+  void on_received(LinkReceived& event);
+  void count_snapshots(const Chunks& chunks, const LinkReceived& event);
+  void on_disconnected(const LinkDisconnected& event);
   void on_world_opened();
   void keep_chunks(std::size_t count_max);
 
@@ -77,7 +77,7 @@ class NetworkSession {
   ClientSession session_;
   std::size_t pins_saved_ = 0;
   SnapshotStats snapshots_;
-  std::deque<NetEvent> events_;      // taken from the network thread, not handled yet
+  std::deque<LinkEvent> events_;     // taken from the network thread, not handled yet
   ConnectionNumber connection_ = 0;  // 0: none
   std::uint64_t connects_handled_ = 0;
   bool world_opened_ = false;          // until take_world_opened()

@@ -1,0 +1,122 @@
+// ScriptBench: a script runner, and a host that plays its client.
+#pragma once
+#include <catch2/catch.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client/script/script_runner.hpp"
+#include "common/edits/clipboard/clipboard_builder.hpp"
+
+namespace runstone::test {
+
+/// A host with a world of single voxels. It answers at once.
+struct FakeScriptHost final : ScriptHost {
+  struct Submitted {
+    EditDescriptor edit;
+    TimeUs due_us, now_us;
+  };
+  bool open = true, is_loaded = true, is_durable = true, draws = true, takes = true;
+  std::optional<bool> picture = true;
+  std::uint64_t pongs = 0;
+  WorldPos at{10, 20, 30};
+  double yaw = 0, pitch = 0;
+  std::map<VoxelPos, Material> voxels;
+  std::optional<RayHit> hit;
+  std::vector<Submitted> edits;
+  mutable std::vector<VoxelBox> copied;
+  std::vector<std::string> files;
+  std::vector<HistoryRequest> travels;
+  bool is_travelling = false;
+  std::string refusal;
+
+  bool ready() const override { return open; }
+  WorldPos eye() const override { return at; }
+  void move_to(const WorldPos& eye) override { at = eye; }
+  void look(double y, double p) override { yaw = y, pitch = p; }
+  Result<Material, std::string> material(std::string_view name) const override {
+    if (name == "air" || name == "0") return kEmpty;
+    if (name == "stone") return Material{5};
+    if (name == "sand") return Material{2};
+    return Unexpected<std::string>{"the world has no material \"" + std::string(name) + "\""};
+  }
+  std::optional<Material> shown_at(VoxelPos pos) const override {
+    if (pos.x > 1000) return std::nullopt;
+    const auto it = voxels.find(pos);
+    return it == voxels.end() ? kEmpty : it->second;
+  }
+  Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
+    copied.push_back(box);
+    if (box.min.x > 1000) return runstone::fail(ErrorCode::not_found, "it is far");
+    const auto side = [](std::int32_t low, std::int32_t high) {
+      return static_cast<std::uint8_t>(high - low);
+    };
+    ClipboardBuilder cells(
+        {side(box.min.x, box.max.x), side(box.min.y, box.max.y), side(box.min.z, box.max.z)});
+    cells.append(1, Material{5});
+    while (cells.filled() < static_cast<std::uint32_t>(box.max.x - box.min.x) *
+                                static_cast<std::uint32_t>(box.max.y - box.min.y) *
+                                static_cast<std::uint32_t>(box.max.z - box.min.z)) {
+      cells.append(1, solid ? std::nullopt : std::optional<Material>(kEmpty));
+    }
+    return cells.finish();
+  }
+  std::optional<RayHit> pick() const override { return hit; }
+  std::optional<std::int32_t> surface(std::int32_t x, std::int32_t) const override {
+    if (x > 1000) return std::nullopt;
+    return 7;
+  }
+  Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
+    edits.push_back({edit, due_us, now_us});
+    if (!takes) return runstone::fail(ErrorCode::bad_value, "the past cannot be edited");
+    return {};
+  }
+  bool loaded() const override { return is_loaded; }
+  bool durable() const override { return is_durable; }
+  std::uint64_t sync_mark() const override { return pongs; }
+  bool synced(std::uint64_t mark) const override { return pongs >= mark + 2; }
+  void travel(const HistoryRequest& travel) override { travels.push_back(travel); }
+  bool travelling() const override { return is_travelling; }
+  std::vector<std::string> commands;
+  bool is_commanding = false, is_command_ok = true;
+  std::string command(const std::string& text) override {
+    commands.push_back(text);
+    return {};
+  }
+  bool commanding() const override { return is_commanding; }
+  bool show_answer() override { return is_command_ok; }
+  std::string travel_refusal() const override { return refusal; }
+  TimeUs utc_now_us() const override { return 5'000'000; }
+  bool screenshot(const std::string& file) override {
+    files.push_back(file);
+    return draws;
+  }
+  std::optional<bool> screenshot_written() const override { return picture; }
+  bool digests(const std::string& file) override {
+    files.push_back(file);
+    return file != "bad";
+  }
+};
+
+struct ScriptBench {
+  void load(std::string_view text) {
+    auto parsed = parse_script(text, "s.txt");
+    INFO((parsed ? "" : parsed.error().message()));
+    REQUIRE(parsed.has_value());
+    script = *parsed;
+    runner.emplace(script, host);
+  }
+  void run(std::string_view text) {
+    load(text);
+    runner->step(0);
+    REQUIRE(runner->finished());
+  }
+  FakeScriptHost host;
+  Script script;
+  std::optional<ScriptRunner> runner;
+};
+
+}  // namespace runstone::test
