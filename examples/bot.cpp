@@ -12,7 +12,7 @@
 #include "client/net/key_file.hpp"
 #include "client/net/net_client.hpp"
 #include "client/net/wake_up.hpp"
-#include "client/replica/client_session.hpp"
+#include "client/session/client_session.hpp"
 #include "common/os/steady_clock.hpp"
 
 using namespace runstone;

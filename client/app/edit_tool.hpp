@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "client/app/player.hpp"
-#include "client/replica/client_session.hpp"
 #include "client/replica/ray_pick.hpp"
 #include "client/schedule/latency_recorder.hpp"
+#include "client/session/client_session.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 

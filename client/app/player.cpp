@@ -50,6 +50,7 @@ Camera Player::camera(double view_voxels) const {
 ChunkCoord Player::chunk(std::int32_t edge) const {
   const auto down = [](double v) {
     constexpr double kLimit = kWorldLimit - 1;
+    if (std::isnan(v)) return 0;
     return static_cast<std::int32_t>(std::floor(std::clamp(v, -kLimit, kLimit)));
   };
   return chunk_of({down(eye_.x), down(eye_.y), down(eye_.z)}, edge);

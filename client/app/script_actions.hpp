@@ -9,10 +9,10 @@
 #include "client/app/player.hpp"
 #include "client/app/view_follower.hpp"
 #include "client/display/mesh_pipeline.hpp"
-#include "client/replica/client_session.hpp"
 #include "client/replica/copy_box.hpp"
 #include "client/report/report.hpp"
 #include "client/script/script_host.hpp"
+#include "client/session/client_session.hpp"
 
 namespace runstone {
 

@@ -13,8 +13,8 @@
 #include "client/app/options.hpp"
 #include "client/cache/cache_thread.hpp"
 #include "client/net/net_client.hpp"
-#include "client/replica/client_session.hpp"
 #include "client/report/report.hpp"
+#include "client/session/client_session.hpp"
 
 namespace runstone {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "client/app/player.hpp"
-#include "client/replica/client_session.hpp"
 #include "client/schedule/view_pace.hpp"
+#include "client/session/client_session.hpp"
 
 namespace runstone {
 

@@ -11,8 +11,8 @@
 #include "client/bots/behaviour.hpp"
 #include "client/bots/edit_ledger.hpp"
 #include "client/bots/edit_schedule.hpp"
-#include "client/replica/client_handshake.hpp"
 #include "client/schedule/histogram.hpp"
+#include "client/session/client_handshake.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {

@@ -18,8 +18,8 @@
 #include "client/bots/fleet_statistics.hpp"
 #include "client/bots/version_tracker.hpp"
 #include "client/replica/local_edits.hpp"
-#include "client/replica/server_connection.hpp"
 #include "client/schedule/histogram.hpp"
+#include "client/session/server_connection.hpp"
 #include "protocol/codec/commit_walk.hpp"
 
 namespace runstone {

@@ -9,8 +9,8 @@
 
 #include "client/bots/play_schedule.hpp"
 #include "client/bots/recorded_log.hpp"
-#include "client/replica/client_session.hpp"
 #include "client/schedule/histogram.hpp"
+#include "client/session/client_session.hpp"
 
 namespace runstone {
 

@@ -5,7 +5,7 @@
 
 #include "client/bots/bot.hpp"
 #include "client/bots/fleet_statistics.hpp"
-#include "client/replica/client_session.hpp"
+#include "client/session/client_session.hpp"
 
 namespace runstone {
 

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "client/display/draw_thread.hpp"
-#include "client/replica/client_session.hpp"
 #include "client/report/report.hpp"
 #include "client/schedule/join_recorder.hpp"
 #include "client/schedule/latency_recorder.hpp"
 #include "client/schedule/mesh_planner.hpp"
 #include "client/schedule/mesh_pool.hpp"
+#include "client/session/client_session.hpp"
 #include "common/materials/material_table.hpp"
 
 namespace runstone {

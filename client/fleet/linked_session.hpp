@@ -9,7 +9,7 @@
 
 #include "client/bots/headless_session.hpp"
 #include "client/net/link.hpp"
-#include "client/replica/client_session.hpp"
+#include "client/session/client_session.hpp"
 
 namespace runstone {
 

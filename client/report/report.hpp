@@ -4,10 +4,10 @@
 #include <string>
 
 #include "client/cache/chunk_cache.hpp"
-#include "client/replica/client_session.hpp"
 #include "client/schedule/histogram.hpp"
 #include "client/schedule/join_recorder.hpp"
 #include "client/schedule/latency_recorder.hpp"
+#include "client/session/client_session.hpp"
 
 namespace runstone {
 

@@ -21,9 +21,9 @@
 #include <utility>
 #include <vector>
 
-#include "client/replica/clock_offset.hpp"
 #include "client/replica/replica_changes.hpp"
 #include "client/schedule/histogram.hpp"
+#include "client/session/clock_offset.hpp"
 #include "common/core/ids.hpp"
 
 namespace runstone {

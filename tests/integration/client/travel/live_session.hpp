@@ -9,7 +9,7 @@
 
 #include "client/net/key_file.hpp"
 #include "client/net/link.hpp"
-#include "client/replica/client_session.hpp"
+#include "client/session/client_session.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone::test {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "client/replica/client_session.hpp"
+#include "client/session/client_session.hpp"
 #include "common/runs/run_builder.hpp"
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/message_table.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "client/cache/chunk_cache.hpp"
-#include "client/replica/client_session.hpp"
+#include "client/session/client_session.hpp"
 #include "tests/simulation/client/session/sim_server.hpp"
 
 namespace runstone::test {

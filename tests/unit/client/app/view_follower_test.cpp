@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/unit/client/replica/session_bench.hpp"
+#include "tests/unit/client/session/session_bench.hpp"
 
 using namespace runstone;
 using namespace runstone::test::session_bench;

@@ -1,4 +1,4 @@
-#include "client/replica/server_connection.hpp"
+#include "client/session/server_connection.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "client/replica/clock_offset.hpp"
+#include "client/session/clock_offset.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "client/replica/client_handshake.hpp"
+#include "client/session/client_handshake.hpp"
 
 namespace runstone {
 

@@ -1,10 +1,10 @@
-#include "client/replica/clock_offset.hpp"
+#include "client/session/clock_offset.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace runstone;
 
-TEST_CASE("the shortest round trip gives the offset and its error", "[replica]") {
+TEST_CASE("the shortest round trip gives the offset and its error", "[session]") {
   ClockOffset clock;
   CHECK_FALSE(clock.known());
   CHECK_FALSE(clock.to_local(5).has_value());
@@ -24,7 +24,7 @@ TEST_CASE("the shortest round trip gives the offset and its error", "[replica]")
   CHECK_FALSE(clock.known());
 }
 
-TEST_CASE("old samples are dropped, so that drift is followed", "[replica]") {
+TEST_CASE("old samples are dropped, so that drift is followed", "[session]") {
   ClockOffset clock;
   clock.add(0, 1000, 10);
   for (TimeUs i = 1; i <= static_cast<TimeUs>(ClockOffset::kSamples); ++i)
@@ -33,7 +33,7 @@ TEST_CASE("old samples are dropped, so that drift is followed", "[replica]") {
   CHECK(clock.error_us() == 10);
 }
 
-TEST_CASE("the true offset lies within the error however the trip is split", "[replica]") {
+TEST_CASE("the true offset lies within the error however the trip is split", "[session]") {
   for (TimeUs there = 0; there <= 100; there += 10) {
     ClockOffset clock;
     const TimeUs truth = 7777;

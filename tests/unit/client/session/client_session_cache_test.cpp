@@ -1,5 +1,5 @@
 // What a session holds from before: claims, caches and missing edits.
-#include "tests/unit/client/replica/session_bench.hpp"
+#include "tests/unit/client/session/session_bench.hpp"
 
 using namespace runstone;
 using namespace runstone::test::session_bench;
@@ -24,7 +24,7 @@ std::vector<ChunkKey> view_keys(const ClientSession& session) {
 TEST_CASE_METHOD(
     SessionBench,
     "chunks held over a reconnection are claimed before the view, and loaded if not modified",
-    "[replica]") {
+    "[session]") {
   static_cast<void>(open());
   for (const ChunkKey& key : view_keys(session)) receive(chunks_of(server.world.snapshot(key.at)));
   REQUIRE(session.loaded());
@@ -48,7 +48,7 @@ TEST_CASE_METHOD(
 }
 
 TEST_CASE_METHOD(SessionBench, "chunks that a restarted server may have lost are not claimed",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   for (const ChunkKey& key : view_keys(session)) receive(chunks_of(server.world.snapshot(key.at)));
   receive(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));  // never durable
@@ -60,7 +60,7 @@ TEST_CASE_METHOD(SessionBench, "chunks that a restarted server may have lost are
   CHECK(held[0].chunks.size() == 14);
 }
 
-TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long", "[session]") {
   SessionConfig caching = config();
   caching.has_cache = true;
   session = ClientSession(caching);
@@ -126,7 +126,7 @@ TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long",
 
 TEST_CASE_METHOD(SessionBench,
                  "a view that waits for the cache is sent before the view moves again",
-                 "[replica]") {
+                 "[session]") {
   SessionConfig caching = config();
   caching.has_cache = true;
   session = ClientSession(caching);
@@ -153,7 +153,7 @@ TEST_CASE_METHOD(SessionBench,
 }
 
 TEST_CASE_METHOD(SessionBench, "missing edits complete a cached chunk from any sequence",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   const ChunkKey key{0, {0, 0, 0}};
   receive(chunks_of(server.world.snapshot(key.at)));

@@ -1,4 +1,4 @@
-#include "client/replica/client_session.hpp"
+#include "client/session/client_session.hpp"
 
 #include <algorithm>
 #include <type_traits>

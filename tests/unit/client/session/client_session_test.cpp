@@ -1,14 +1,14 @@
-#include "client/replica/client_session.hpp"
+#include "client/session/client_session.hpp"
 
 #include "common/edits/clipboard/clipboard_builder.hpp"
-#include "tests/unit/client/replica/session_bench.hpp"
+#include "tests/unit/client/session/session_bench.hpp"
 
 using namespace runstone;
 using namespace runstone::test::session_bench;
 using runstone::test::keys;
 
 TEST_CASE_METHOD(SessionBench, "a session opens with the handshake and then sends its view",
-                 "[replica]") {
+                 "[session]") {
   auto out = open();
   CHECK(server.hello.name == "ada");
   CHECK(server.hello.instance == 42);
@@ -33,7 +33,7 @@ TEST_CASE_METHOD(SessionBench, "a session opens with the handshake and then send
 }
 
 TEST_CASE_METHOD(SessionBench, "a view at the border of the world is loaded without chunks beyond",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   const std::int32_t top = kWorldLimit / kEdge - 1;
   session.set_view({2, {0, top, 0}, 0, 1});
@@ -46,7 +46,7 @@ TEST_CASE_METHOD(SessionBench, "a view at the border of the world is loaded with
 }
 
 TEST_CASE_METHOD(SessionBench, "a view is loaded when each chunk arrived or is unavailable",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   const ChunkKey damaged{0, {0, -1, 1}};
   for (int x = -1; x <= 1; ++x) {
@@ -69,7 +69,7 @@ TEST_CASE_METHOD(SessionBench, "a view is loaded when each chunk arrived or is u
 
 TEST_CASE_METHOD(SessionBench,
                  "a session refuses edits beyond the heights and the volume in the welcome",
-                 "[replica]") {
+                 "[session]") {
   greet();
   Welcome welcome = server.make_welcome();
   welcome.heights = {-4, 4};
@@ -85,7 +85,7 @@ TEST_CASE_METHOD(SessionBench,
 }
 
 TEST_CASE_METHOD(SessionBench, "a welcome with a feature that hello did not offer is rejected",
-                 "[replica]") {
+                 "[session]") {
   SessionConfig offering = config();
   offering.features = 0b110;
   session = ClientSession(offering);
@@ -104,7 +104,7 @@ TEST_CASE_METHOD(SessionBench, "a welcome with a feature that hello did not offe
   CHECK(session.end()->reason == GoodbyeReason::malformed_message);
 }
 
-TEST_CASE_METHOD(SessionBench, "a server that cannot prove its key is refused", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a server that cannot prove its key is refused", "[session]") {
   greet();
   Welcome welcome = server.make_welcome();
   welcome.epoch += 1;  // not what was signed
@@ -119,7 +119,7 @@ TEST_CASE_METHOD(SessionBench, "a server that cannot prove its key is refused", 
   CHECK(take<Goodbye>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(SessionBench, "a server key other than the pinned one is refused", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a server key other than the pinned one is refused", "[session]") {
   SessionConfig pinned = config();
   pinned.pinned[server.world_id] = keys(8).public_key;
   session = ClientSession(pinned);
@@ -130,7 +130,7 @@ TEST_CASE_METHOD(SessionBench, "a server key other than the pinned one is refuse
   CHECK(session.end()->final);
 }
 
-TEST_CASE_METHOD(SessionBench, "messages in the wrong state end the session", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "messages in the wrong state end the session", "[session]") {
   const auto refused = [&](Message message) {
     session = ClientSession(config());
     greet();
@@ -148,7 +148,7 @@ TEST_CASE_METHOD(SessionBench, "messages in the wrong state end the session", "[
 
 TEST_CASE_METHOD(SessionBench,
                  "edits wait for the clock offset and carry the server's time of the click",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   const auto seq = session.submit(set({1, 2, 3}, 4), now - 300, now);
   REQUIRE(seq.has_value());
@@ -170,7 +170,7 @@ TEST_CASE_METHOD(SessionBench,
 
 TEST_CASE_METHOD(SessionBench,
                  "without a pong edits are sent after kOffsetWaitUsMax, with an unknown time",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
   now += kOffsetWaitUsMax;
@@ -181,7 +181,7 @@ TEST_CASE_METHOD(SessionBench,
   CHECK(edits[0].submitted_us == 0);
 }
 
-TEST_CASE_METHOD(SessionBench, "an unknown material is refused before it is shown", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "an unknown material is refused before it is shown", "[session]") {
   static_cast<void>(open());
   const auto last = static_cast<Material>(default_material_table().size());
   CHECK_FALSE(session.submit(set({1, 2, 3}, last), now, now).has_value());
@@ -206,7 +206,7 @@ TEST_CASE_METHOD(SessionBench, "an unknown material is refused before it is show
 
 TEST_CASE_METHOD(SessionBench,
                  "after a reconnection pending edits are sent again in order, before newer ones",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   pong();
   for (int i = 0; i < 3; ++i) REQUIRE(session.submit(set({i, 2, 3}, 4), now, now).has_value());
@@ -225,7 +225,7 @@ TEST_CASE_METHOD(SessionBench,
   CHECK(session.connect_count() == 2);
 }
 
-TEST_CASE_METHOD(SessionBench, "a restarted server has another clock", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a restarted server has another clock", "[session]") {
   static_cast<void>(open());
   pong();
   CHECK(session.clock().known());
@@ -239,7 +239,7 @@ TEST_CASE_METHOD(SessionBench, "a restarted server has another clock", "[replica
 }
 
 TEST_CASE_METHOD(SessionBench, "another world at the same address starts with an empty replica",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   receive(chunks_of(server.world.snapshot({0, 0, 0})));
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
@@ -251,7 +251,7 @@ TEST_CASE_METHOD(SessionBench, "another world at the same address starts with an
   CHECK(take<EditRequest>(out).empty());
 }
 
-TEST_CASE_METHOD(SessionBench, "a chunk with a gap is requested with the next tick", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a chunk with a gap is requested with the next tick", "[session]") {
   static_cast<void>(open());
   receive(chunks_of(server.world.snapshot({0, 0, 0})));
   static_cast<void>(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));
@@ -265,7 +265,7 @@ TEST_CASE_METHOD(SessionBench, "a chunk with a gap is requested with the next ti
 
 TEST_CASE_METHOD(SessionBench,
                  "an edit rejected as bad_edit is not offered again, not even after a reconnection",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   pong();
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
@@ -288,7 +288,7 @@ TEST_CASE_METHOD(SessionBench,
 }
 
 TEST_CASE_METHOD(SessionBench, "an edit without an answer is sent again once per kAnswerUsMax",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   pong();
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
@@ -309,7 +309,7 @@ TEST_CASE_METHOD(SessionBench, "an edit without an answer is sent again once per
 
 TEST_CASE_METHOD(SessionBench,
                  "the requested view is limited by the server and sent when it changes",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   session.set_view({1, {1, 0, 0}, 60, 60});
   auto out = sent();
@@ -322,7 +322,7 @@ TEST_CASE_METHOD(SessionBench,
 }
 
 TEST_CASE_METHOD(SessionBench, "an answer to a view before the chunk left and came back is ignored",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   session.set_view({1, {9, 0, 0}, 1, 1});
   session.set_view({1, {0, 0, 0}, 1, 1});
@@ -339,7 +339,7 @@ TEST_CASE_METHOD(SessionBench, "an answer to a view before the chunk left and ca
 }
 
 TEST_CASE_METHOD(SessionBench, "view states show a moment of the past and the live world again",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   receive(ViewState{0, 1, ViewPhase::complete, false, 0, 0, ""});
   CHECK_FALSE(session.wants_close());
@@ -367,7 +367,7 @@ TEST_CASE_METHOD(SessionBench, "view states show a moment of the past and the li
 }
 
 TEST_CASE_METHOD(SessionBench, "poses are sent when they change, at most twenty a second",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   Pose pose;
   pose.at = {1, 2, 3};
@@ -391,7 +391,7 @@ TEST_CASE_METHOD(SessionBench, "poses are sent when they change, at most twenty 
 }
 
 TEST_CASE_METHOD(SessionBench, "other players come from the player list and their poses",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   receive(PlayerList{{{6, "ada"}, {7, "bob"}}, false, {}});
   REQUIRE(session.others().size() == 1);
@@ -417,7 +417,7 @@ TEST_CASE_METHOD(SessionBench, "other players come from the player list and thei
 
 TEST_CASE_METHOD(SessionBench,
                  "a silent server and a goodbye end the connection; silence is not final",
-                 "[replica]") {
+                 "[session]") {
   static_cast<void>(open());
   session.tick(now + kServerSilenceUsMax + 1);
   CHECK(session.wants_close());

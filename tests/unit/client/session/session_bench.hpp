@@ -2,7 +2,7 @@
 #pragma once
 #include <catch2/catch.hpp>
 
-#include "client/replica/client_session.hpp"
+#include "client/session/client_session.hpp"
 #include "tests/support/authority_model.hpp"
 #include "tests/support/chunks_message.hpp"
 #include "tests/support/test_keys.hpp"

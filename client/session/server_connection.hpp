@@ -14,10 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "client/replica/client_handshake.hpp"
-#include "client/replica/clock_offset.hpp"
 #include "client/replica/local_edits.hpp"
 #include "client/replica/replica_changes.hpp"
+#include "client/session/client_handshake.hpp"
+#include "client/session/clock_offset.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"

@@ -1,4 +1,4 @@
-#include "client/replica/server_connection.hpp"
+#include "client/session/server_connection.hpp"
 #include "tests/support/test_keys.hpp"
 
 #include <catch2/catch.hpp>
@@ -73,7 +73,7 @@ Pose pose_at(double x) {
 
 }  // namespace
 
-TEST_CASE_METHOD(ConnectionFixture, "a connection opens with the handshake", "[replica]") {
+TEST_CASE_METHOD(ConnectionFixture, "a connection opens with the handshake", "[session]") {
   CHECK(connection.state() == SessionState::offline);
   CHECK_FALSE(connection.accepts_input());
   greet();
@@ -102,7 +102,7 @@ TEST_CASE_METHOD(ConnectionFixture, "a connection opens with the handshake", "[r
 
 TEST_CASE_METHOD(ConnectionFixture,
                  "handshake messages in the wrong state end the connection with one goodbye",
-                 "[replica]") {
+                 "[session]") {
   SECTION("ready before welcome") {
     greet();
     CHECK(receive(SessionAccepted{6, 0}) == Dispatch::handled);
@@ -138,7 +138,7 @@ TEST_CASE_METHOD(ConnectionFixture,
   CHECK(goodbyes[0].reason == GoodbyeReason::unexpected_message);
 }
 
-TEST_CASE_METHOD(ConnectionFixture, "messages for the session are left as they are", "[replica]") {
+TEST_CASE_METHOD(ConnectionFixture, "messages for the session are left as they are", "[session]") {
   greet();
   receive(welcome());
   Message message = Durable{1, 7};
@@ -156,7 +156,7 @@ TEST_CASE_METHOD(ConnectionFixture, "messages for the session are left as they a
 
 TEST_CASE_METHOD(ConnectionFixture,
                  "a goodbye of the server is not answered, and some reasons are final",
-                 "[replica]") {
+                 "[session]") {
   greet();
   GoodbyeReason reason = GoodbyeReason::closing;
   bool is_final = false;
@@ -182,7 +182,7 @@ TEST_CASE_METHOD(ConnectionFixture,
 
 TEST_CASE_METHOD(ConnectionFixture,
                  "a server that is silent too long ends the connection in every state",
-                 "[replica]") {
+                 "[session]") {
   bool is_opened = false;
   SECTION("while greeting") { greet(); }
   SECTION("once open") {
@@ -210,7 +210,7 @@ TEST_CASE_METHOD(ConnectionFixture,
 }
 
 TEST_CASE_METHOD(ConnectionFixture, "pings are sent at once and then at the given interval",
-                 "[replica]") {
+                 "[session]") {
   open();
   CHECK(goes_on());
   CHECK(take<Ping>() == std::vector{Ping{now}});
@@ -228,7 +228,7 @@ TEST_CASE_METHOD(ConnectionFixture, "pings are sent at once and then at the give
 }
 
 TEST_CASE_METHOD(ConnectionFixture,
-                 "a pong gives the server's clock, in which edits carry their time", "[replica]") {
+                 "a pong gives the server's clock, in which edits carry their time", "[session]") {
   open();
   LocalEdit own;
   own.edit = {SetVoxel{{1, 2, 3}}, {}, 4};
@@ -242,7 +242,7 @@ TEST_CASE_METHOD(ConnectionFixture,
 }
 
 TEST_CASE_METHOD(ConnectionFixture, "poses are sent when they change, one per kMoveEveryUs",
-                 "[replica]") {
+                 "[session]") {
   open();
   CHECK(goes_on());
   CHECK(take<Move>() ==
@@ -265,7 +265,7 @@ TEST_CASE_METHOD(ConnectionFixture, "poses are sent when they change, one per kM
   CHECK(take<Move>() == std::vector{Move{pose_at(2)}});
 }
 
-TEST_CASE_METHOD(ConnectionFixture, "a connection knows when its next tick is due", "[replica]") {
+TEST_CASE_METHOD(ConnectionFixture, "a connection knows when its next tick is due", "[session]") {
   CHECK(connection.tick_due_us(kPingEveryUs) == std::numeric_limits<TimeUs>::max());
   greet();
   CHECK(connection.tick_due_us(kPingEveryUs) == now + kServerSilenceUsMax + 1);
@@ -283,7 +283,7 @@ TEST_CASE_METHOD(ConnectionFixture, "a connection knows when its next tick is du
 }
 
 TEST_CASE_METHOD(ConnectionFixture, "a view is sent within the server's limits when it changes",
-                 "[replica]") {
+                 "[session]") {
   CHECK(connection.view() == View{1, {0, 0, 0}, 9, 2});
   open();
   CHECK(connection.view() == View{1, {0, 0, 0}, 4, 2});
@@ -303,7 +303,7 @@ TEST_CASE_METHOD(ConnectionFixture, "a view is sent within the server's limits w
 }
 
 TEST_CASE_METHOD(ConnectionFixture, "each view that is sent has the next number of its connection",
-                 "[replica]") {
+                 "[session]") {
   open();
   CHECK(connection.view().number == 1);  // that of the view to be sent
   connection.send_view();
@@ -328,7 +328,7 @@ TEST_CASE_METHOD(ConnectionFixture, "each view that is sent has the next number 
 }
 
 TEST_CASE_METHOD(ConnectionFixture, "chunk requests are split by the limit of keys per message",
-                 "[replica]") {
+                 "[session]") {
   open();
   connection.request_chunks({});
   CHECK(connection.take_outgoing().empty());
@@ -349,7 +349,7 @@ TEST_CASE_METHOD(ConnectionFixture, "chunk requests are split by the limit of ke
 
 TEST_CASE_METHOD(ConnectionFixture,
                  "a pin outlives a restart of the server, and another world gets its own pin",
-                 "[replica]") {
+                 "[session]") {
   open();
   receive(Pong{now - 200, now});
   REQUIRE(connection.clock().known());

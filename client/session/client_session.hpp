@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "client/replica/cache_lookup.hpp"
-#include "client/replica/history_requests.hpp"
 #include "client/replica/replica.hpp"
-#include "client/replica/server_connection.hpp"
+#include "client/session/history_requests.hpp"
+#include "client/session/server_connection.hpp"
 #include "common/core/result.hpp"
 #include "protocol/codec/messages.hpp"
 

@@ -1,4 +1,4 @@
-#include "client/replica/history_requests.hpp"
+#include "client/session/history_requests.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -12,7 +12,7 @@ ViewState state(std::uint32_t request, ViewPhase phase, bool past, std::string t
 
 }  // namespace
 
-TEST_CASE("a request for the past loads until it is complete", "[replica]") {
+TEST_CASE("a request for the past loads until it is complete", "[session]") {
   HistoryRequests requests;
   CHECK_FALSE(requests.is_loading());
   CHECK(requests.next({.to = HistoryTarget::sequence, .seq = 5}).request == 1);
@@ -23,7 +23,7 @@ TEST_CASE("a request for the past loads until it is complete", "[replica]") {
   CHECK_FALSE(requests.is_loading());
 }
 
-TEST_CASE("a request for the live world loads until it is complete", "[replica]") {
+TEST_CASE("a request for the live world loads until it is complete", "[session]") {
   HistoryRequests requests;
   requests.next({});
   requests.receive(state(0, ViewPhase::complete, false));  // of the view before the request
@@ -34,7 +34,7 @@ TEST_CASE("a request for the live world loads until it is complete", "[replica]"
 }
 
 TEST_CASE("answers to older requests change nothing, and a refusal is kept until the next request",
-          "[replica]") {
+          "[session]") {
   HistoryRequests requests;
   requests.next({});
   CHECK(requests.next({}).request == 2);
