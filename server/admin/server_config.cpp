@@ -102,7 +102,8 @@ const std::vector<Field>& fields() {
   };
   static const std::vector<Field> all = {
       {"world", "folder of the world", TextField{&C::world}},
-      {"listen", "HOST:PORT or [V6]:PORT; port 0 takes a free one", TextField{&C::listen}},
+      {"listen", "HOST, HOST:PORT, [V6]:PORT or :PORT; port 0 takes a free one",
+       TextField{&C::listen}},
       {"log_level", names_of(kLogLevels), choice_field<&C::log_level, kLogLevels>()},
       number("io_threads", &C::io_threads, 1, 64, "threads for sockets and the world strand"),
       number("worker_threads", &C::worker_threads, 1, 64,

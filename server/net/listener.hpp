@@ -29,8 +29,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
   Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge,
            NetEvents& events);
 
-  /// Binds and listens. `address` is "HOST:PORT" or "[V6]:PORT"; port 0 takes a free one. The error
-  /// is one line that names the address.
+  /// Binds and listens. `address` is of a form that parse_listen_address() reads; port 0 takes a
+  /// free one. The error is one line that names the address.
   Result<void, std::string> listen(const std::string& address);
   std::uint16_t port() const { return port_; }
   /// Starts to accept connections.
