@@ -1,17 +1,19 @@
-# What `cmake --install` puts into a prefix: the libraries for embedders, their headers below include/runstone, a
-# package file for find_package(runstone) and one pkg-config file per library. docs/library.md describes their use.
+# What `cmake --install` puts into a prefix: the libraries for embedders, their headers below
+# include/runstone, a package file for find_package(runstone) and one pkg-config file per library.
+# docs/library.md describes their use.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(runstone_includes ${CMAKE_INSTALL_INCLUDEDIR}/runstone)
 set(runstone_package ${CMAKE_INSTALL_LIBDIR}/cmake/runstone)
-# From lib/pkgconfig up to the prefix: the files hold no absolute path, so that the prefix can be moved.
+# From lib/pkgconfig up to the prefix: the files hold no absolute path, so that the prefix can be
+# moved.
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY
            ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig OUTPUT_VARIABLE runstone_prefix_from_pc)
 
 # runstone_installed(runs REQUIRES core DESCRIPTION "...")
-# makes runstone::runs of the module common/runs, installed or not. REQUIRES are the pkg-config names it needs,
-# where a name without a dash is one of these libraries.
+# makes runstone::runs of the module common/runs, installed or not. REQUIRES are the pkg-config
+# names it needs, where a name without a dash is one of these libraries.
 function(runstone_installed library)
   cmake_parse_arguments(ARG "" "DESCRIPTION" "REQUIRES" ${ARGN})
   set(target runstone_common_${library})

@@ -1,14 +1,18 @@
 # runstone_module(common/runs DEPS common/core LIBS PRIVATE zstd::libzstd_shared)
-# makes one static library from every source below the folder. Includes start at the repository root;
-# DEPS are the other modules whose headers it may include (tests/unit/house/include_arrows_test checks it).
+# makes one static library from every source below the folder. Includes start at the repository
+# root; DEPS are the other modules whose headers it may include (tests/unit/house checks it).
 # EXCLUDE is a regular expression of paths that are left out.
 # A module inside another one's folder is declared first and keeps its sources to itself.
-# With CMAKE_UNITY_BUILD, as in the presets release, asan and fuzz, the sources of a module are compiled together,
-# because their headers cost most of the time. SINGLE keeps them apart: in the libraries for embedders, so that neither what is
-# measured nor the time to compile one changed file depends on the preset.
-# Command lines (options.cpp, *_options.cpp and what the regular expression COMMAND_LINE names) are one more unit. The
-# release preset compiles it with -O1: a command line is read once, and CLI11 is slow to optimise. No other code may be
-# in it: the linker keeps one copy of an inline function, which may be that of this unit.
+#
+# With CMAKE_UNITY_BUILD, as in the presets release, asan and fuzz, the sources of a module are
+# compiled together, because their headers cost most of the time. SINGLE keeps them apart: in the
+# libraries for embedders, so that neither what is measured nor the time to compile one changed file
+# depends on the preset.
+#
+# Command lines (options.cpp, *_options.cpp and what the regular expression COMMAND_LINE names) are
+# one more unit. The release preset compiles it with -O1: a command line is read once, and CLI11 is
+# slow to optimise. No other code may be in it: the linker keeps one copy of an inline function,
+# which may be that of this unit.
 function(runstone_target_name folder out)
   string(REPLACE "/" "_" name ${folder})
   set(${out} runstone_${name} PARENT_SCOPE)

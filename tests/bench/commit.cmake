@@ -1,5 +1,5 @@
-# Writes OUT, a header that names the commit the sources in SOURCE stand at, "-dirty" if what the benchmarks are made of
-# differs from it; leaves the file alone if nothing moved.
+# Writes OUT, a header that names the commit the sources in SOURCE stand at, "-dirty" if what the
+# benchmarks are made of differs from it; leaves the file alone if nothing moved.
 execute_process(COMMAND git rev-parse --short HEAD WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE commit
                 OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 if(failed)

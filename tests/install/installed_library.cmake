@@ -1,5 +1,5 @@
-# Installs the libraries of a build into a prefix, moves the prefix, and builds the examples against it in a clean
-# folder: once by find_package(), once by pkg-config.
+# Installs the libraries of a build into a prefix, moves the prefix, and builds the examples against
+# it in a clean folder: once by find_package(), once by pkg-config.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 

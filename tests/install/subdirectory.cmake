@@ -1,5 +1,5 @@
-# Configures a C++17 project that takes Runstone with add_subdirectory(), and builds and runs its program. Every
-# package but Highway is hidden from it.
+# Configures a C++17 project that takes Runstone with add_subdirectory(), and builds and runs its
+# program. Every package but Highway is hidden from it.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 

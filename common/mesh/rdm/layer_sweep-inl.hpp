@@ -161,8 +161,7 @@ class Sweep {
     }
     // Rows behind the last row of the layer have no faces. The first of them would close open
     // strips.
-    const Row valid = bits_below<Row>(count);
-    for (RowSet& set : rows) set &= valid;
+    for (RowSet& set : rows) set &= bits_below<Row>(count);
     return rows;
   }
 
