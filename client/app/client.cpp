@@ -16,6 +16,7 @@
 #include "client/display/body_marker.hpp"
 #include "client/report/exit_code.hpp"
 #include "common/core/key_text.hpp"
+#include "common/os/output_file.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
@@ -273,14 +274,14 @@ int Client::finish(int code) {
       std::fprintf(stderr, "%s\n", failure.c_str());
   }
   const ClientReport measured = report();
-  if (!options_.report.empty() && !write_text(options_.report, to_json(measured, session_))) {
-    std::fprintf(stderr, "runstone-client: cannot write %s\n", options_.report.c_str());
+  const auto require = [&code](const Result<void, std::string>& written) {
+    if (written) return;
+    std::fprintf(stderr, "runstone-client: %s\n", written.error().c_str());
     code = std::max(code, kExitFailed);
-  }
-  if (!options_.digests.empty() && !write_digests(options_.digests, session_)) {
-    std::fprintf(stderr, "runstone-client: cannot write %s\n", options_.digests.c_str());
-    code = std::max(code, kExitFailed);
-  }
+  };
+  if (!options_.report.empty())
+    require(write_output_file(options_.report, to_json(measured, session_)));
+  if (!options_.digests.empty()) require(write_digests(options_.digests, session_));
   if (session_.connect_count() != 0) std::fputs(to_table(measured, session_).c_str(), stdout);
   spdlog::info("exit code={}", code);
   return code;

@@ -51,7 +51,9 @@ class ScriptActions final : public ScriptHost {
   TimeUs utc_now_us() const override;
   bool screenshot(const std::string& file) override;
   std::optional<bool> screenshot_written() const override;
-  bool digests(const std::string& file) override { return write_digests(file, session_); }
+  bool digests(const std::string& file) override {
+    return write_digests(file, session_).has_value();
+  }
 
   /// The longest time for which loaded() waits for a moment without unfinished meshes once all
   /// chunks in view have arrived. While others edit all the time there may be no such moment.

@@ -11,6 +11,7 @@
 #include "client/fleet/recorded_file.hpp"
 #include "client/report/exit_code.hpp"
 #include "client/report/report.hpp"
+#include "common/os/output_file.hpp"
 #include "common/os/stop_signals.hpp"
 
 namespace {
@@ -22,8 +23,10 @@ int finish(const Report& report, const runstone::BotOptions& options, int code) 
   using namespace runstone;
   std::fputs(to_table(report).c_str(), stdout);
   if (!report.failure.empty()) std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
-  if (options.report.empty() || write_text(options.report, to_json(report))) return code;
-  std::fprintf(stderr, "runstone-bot: %s: cannot be written\n", options.report.c_str());
+  if (options.report.empty()) return code;
+  const auto written = write_output_file(options.report, to_json(report));
+  if (written) return code;
+  std::fprintf(stderr, "runstone-bot: %s\n", written.error().c_str());
   return kExitFailed;
 }
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "common/core/hex.hpp"
+#include "common/os/output_file.hpp"
 #include "common/runs/dense.hpp"
 
 namespace runstone {
@@ -242,7 +242,7 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
   return out;
 }
 
-bool write_digests(const std::string& file, const ClientSession& session) {
+Result<void, std::string> write_digests(const std::string& file, const ClientSession& session) {
   const Replica& replica = session.replica();
   Json chunks = Json::array();
   for (const ChunkKey& key : replica.confirmed_keys()) {
@@ -259,14 +259,7 @@ bool write_digests(const std::string& file, const ClientSession& session) {
   out["world_id"] = session.welcome() ? Json(to_hex(session.welcome()->world_id)) : Json(nullptr);
   out["seq"] = replica.newest();
   out["chunks"] = std::move(chunks);
-  return write_text(file, out.dump(1) + "\n");
-}
-
-bool write_text(const std::string& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  return !out.fail();
+  return write_output_file(file, out.dump(1) + "\n");
 }
 
 }  // namespace runstone

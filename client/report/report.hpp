@@ -64,11 +64,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session);
 std::string to_table(const ClientReport& report, const ClientSession& session);
 
 /// Writes {"world_id", "seq", "chunks": [{"lod", "x", "y", "z", "epoch", "seq", "digest"}]} with
-/// all confirmed chunks. The digests are recomputed from the runs. Returns false if the file cannot
-/// be written.
-bool write_digests(const std::string& file, const ClientSession& session);
-
-/// Replaces the file. Returns false if it cannot be written.
-bool write_text(const std::string& file, const std::string& text);
+/// all confirmed chunks, as write_output_file() does. The digests are recomputed from the runs.
+Result<void, std::string> write_digests(const std::string& file, const ClientSession& session);
 
 }  // namespace runstone

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "common/os/output_file.hpp"
 #include "protocol/limits.hpp"
 #include "server/admin/server_config.hpp"
 
@@ -16,9 +17,11 @@ void add_flags(CLI::App& app, ServerOptions& out) {
   app.add_option("--config", out.config_file,
                  "TOML file of settings; environment and flags win over it");
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");
-  app.add_option("--port-file", out.port_file, "write the port here once the server listens");
+  app.add_option("--port-file", out.port_file, "write the port here once the server listens")
+      ->check(output_refusal);
   app.add_option("--digests", out.digests_file,
-                 "write the digests of all edited chunks here on stop");
+                 "write the digests of all edited chunks here on stop")
+      ->check(output_refusal);
   app.add_flag("--console", out.console,
                "read commands from standard input even if it is no terminal");
   app.add_flag("--create", out.create, "make a new world if the folder --world holds none");

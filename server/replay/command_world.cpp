@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/core/hex.hpp"
-#include "server/replay/digest_list.hpp"
+#include "common/os/output_file.hpp"
 #include "server/store/world_folder.hpp"
 
 namespace runstone {
@@ -40,9 +40,7 @@ void print_world(std::ostream& out, const Store& store) {
 
 Result<void, std::string> write_report(const std::string& file, const std::string& json) {
   if (file.empty()) return {};
-  const auto written = write_text_file(file, json + "\n");
-  if (!written) return Unexpected<std::string>{written.error().message()};
-  return {};
+  return write_output_file(file, json + "\n");
 }
 
 }  // namespace runstone

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
 
 #include "common/core/hex.hpp"
 #include "common/core/m61.hpp"
+#include "common/os/output_file.hpp"
 
 namespace runstone {
 
@@ -147,22 +146,8 @@ Result<DigestList, TextError> parse_digests_json(std::string_view text, std::str
   return list;
 }
 
-Result<void, TextError> write_text_file(const std::string& file, std::string_view text) {
-  const std::string fresh = file + ".new";
-  {
-    std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.close();
-    if (!out) return text_failure(file, "", "cannot be written");
-  }
-  std::error_code error;
-  std::filesystem::rename(fresh, file, error);
-  if (error) return text_failure(file, "", "cannot be written: " + error.message());
-  return {};
-}
-
-Result<void, TextError> write_digests_json(const std::string& file, const DigestList& list) {
-  return write_text_file(file, to_json(list));
+Result<void, std::string> write_digests_json(const std::string& file, const DigestList& list) {
+  return write_output_file(file, to_json(list));
 }
 
 Result<DigestList, TextError> read_digests_json(const std::string& file) {

@@ -27,11 +27,8 @@ std::string to_json(const DigestList& list);
 /// such a list cannot be compared with a world. `file` is only for messages.
 Result<DigestList, TextError> parse_digests_json(std::string_view json, std::string_view file);
 
-/// Writes the file completely or not at all: a finished file replaces the old one.
-Result<void, TextError> write_digests_json(const std::string& file, const DigestList& list);
+/// Writes the list as write_output_file() does.
+Result<void, std::string> write_digests_json(const std::string& file, const DigestList& list);
 Result<DigestList, TextError> read_digests_json(const std::string& file);
-
-/// Writes a text file completely or not at all: a finished file replaces the old one.
-Result<void, TextError> write_text_file(const std::string& file, std::string_view text);
 
 }  // namespace runstone

@@ -12,7 +12,7 @@ namespace runstone {
 
 void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
   command_line.common(options.common, "folder of the world; a server may be running it");
-  command_line.text("FILE", options.file, "the .rlog file to write; an old one is replaced");
+  command_line.output_file("FILE", options.file, "the .rlog file to write; an old one is replaced");
   command_line.moment("--at", options.at, "last edit to export");
 }
 

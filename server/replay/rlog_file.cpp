@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/os/output_file.hpp"
 #include "common/rlog/rlog_reader.hpp"
 #include "server/store/world_folder.hpp"
 
@@ -254,6 +255,8 @@ Result<std::unique_ptr<Store>, std::string> world_for(const std::string& folder,
 
 Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::string& file,
                                             Sequence at, RlogOptions options) {
+  if (const std::string refusal = output_refusal(file); !refusal.empty())
+    return failure(file + ": " + refusal);
   const std::string unfinished = file + ".exporting";
   const auto written = [&]() -> Result<RlogExport, std::string> {
     const File out(unfinished, O_WRONLY | O_CREAT | O_TRUNC);

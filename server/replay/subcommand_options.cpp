@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
+#include "common/os/output_file.hpp"
+
 namespace runstone {
 namespace {
 
@@ -16,7 +18,7 @@ void set_presence(CLI::Option* option, const std::string& name,
 
 void SubcommandOptions::common(CommonOptions& out, const std::string& world_help) {
   text("--world", out.world, world_help, Presence::required);
-  text("--json", out.json, "write the report as JSON to this file");
+  output_file("--json", out.json, "write the report as JSON to this file");
   flag("--progress", out.progress, "print progress even if standard error is no terminal");
 }
 
@@ -33,6 +35,13 @@ void SubcommandOptions::existing_file(const std::string& name, std::string& out,
                                       const std::string& help) {
   CLI::Option* option = app_.add_option(name, out, help);
   option->check(CLI::ExistingFile);
+  set_presence(option, name, Presence::optional);
+}
+
+void SubcommandOptions::output_file(const std::string& name, std::string& out,
+                                    const std::string& help) {
+  CLI::Option* option = app_.add_option(name, out, help);
+  option->check(output_refusal);
   set_presence(option, name, Presence::optional);
 }
 

@@ -39,6 +39,8 @@ class SubcommandOptions {
   void text(const std::string& name, std::string& out, const std::string& help,
             Presence presence = Presence::optional);
   void existing_file(const std::string& name, std::string& out, const std::string& help);
+  /// Declares a file to write. It may not be what output_refusal() refuses.
+  void output_file(const std::string& name, std::string& out, const std::string& help);
   /// Declares one or more values behind one name.
   void texts(const std::string& name, std::vector<std::string>& out, const std::string& help);
   void number(const std::string& name, std::uint64_t& out, std::uint64_t min, std::uint64_t max,

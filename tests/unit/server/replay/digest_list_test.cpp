@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "common/os/output_file.hpp"
 #include "tests/support/temp_folder.hpp"
 
 using namespace runstone;
@@ -112,10 +113,10 @@ TEST_CASE("a digest list file is replaced as a whole, and unknown keys in it are
   CHECK(same(*read_digests_json(file), sample_list()));
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
   REQUIRE(
-      write_text_file(file, with("{\"world_id\"", "{\"more\":[1,{}],\"world_id\"")).has_value());
+      write_output_file(file, with("{\"world_id\"", "{\"more\":[1,{}],\"world_id\"")).has_value());
   CHECK(same(*read_digests_json(file), sample_list()));
   CHECK(read_digests_json(folder / "missing.json").error().message() ==
         folder / "missing.json: cannot be read");
-  CHECK(write_digests_json(folder / "no/list.json", {}).error().message() ==
+  CHECK(write_digests_json(folder / "no/list.json", {}).error() ==
         folder / "no/list.json: cannot be written");
 }
