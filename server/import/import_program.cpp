@@ -98,6 +98,12 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
   survey_sink.chunk = [](const ChunkKey&, RunChunk&&) { return true; };
   const auto survey = import_luanti(request.luanti, {request.edge, request.keep_all}, survey_sink);
   if (!survey) return failure(survey.error().message());
+  if (survey->blocks == 0 && !survey->damaged.empty()) {
+    const DamagedBlock& first = survey->damaged.front();
+    return failure(request.luanti + ": each of its " + std::to_string(survey->damaged.size()) +
+                   " blocks is damaged, the first at pos " + std::to_string(first.pos) + ": " +
+                   first.error.what);
+  }
 
   const std::string unfinished = request.world + ".importing";
   fs::remove_all(unfinished, error);  // of an interrupted import

@@ -196,6 +196,13 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
   const auto there = sql::file_exists(file, options.vfs);
   if (!there) return failed(there.error());
   if (*there) return store_failure(StoreError::Kind::exists, file, "is there already");
+  const auto wal = sql::file_exists(file + "-wal", options.vfs);
+  if (!wal) return failed(wal.error());
+  if (*wal) {
+    return store_failure(StoreError::Kind::exists, file,
+                         "is missing, but its edits in world.sqlite-wal are there: put it back "
+                         "beside them, or move them away to begin anew");
+  }
   if (options.vfs.empty()) {  // the files of another VFS need not be on the disk
     if (const auto made = make_file(file); !made) return failed(made.error());
   }

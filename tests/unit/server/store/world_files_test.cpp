@@ -111,6 +111,18 @@ TEST_CASE("a world is created once and only from meta that can be read back", "[
   CHECK(open_world(folder.path(), StoreAccess::read_write).has_value());
 }
 
+TEST_CASE("a WAL without its world is not replaced by a new world", "[store]") {
+  const TempFolder folder;
+  const std::string wal = folder / "world.sqlite-wal";
+  std::ofstream(wal) << "edits";
+  const auto made = create_world(folder.path(), sample_meta());
+  REQUIRE_FALSE(made.has_value());
+  CHECK(made.error().kind == StoreError::Kind::exists);
+  CHECK(made.error().what.find("world.sqlite-wal") != std::string::npos);
+  CHECK(std::filesystem::file_size(wal) == 5);
+  CHECK_FALSE(std::filesystem::exists(folder / "world.sqlite"));
+}
+
 TEST_CASE("a folder that cannot be written is reported", "[store]") {
   // Root cannot make a folder there either, so the test holds in containers too.
   const auto made = create_world("/proc/runstone-world", sample_meta());
