@@ -6,6 +6,7 @@
 #include <asio/write.hpp>
 #include <ostream>
 
+#include "common/core/text.hpp"
 #include "server/admin/control_socket.hpp"
 
 namespace runstone {
@@ -30,9 +31,12 @@ std::string control_line(const std::vector<std::string>& words) {
 }
 
 Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out) {
+  std::string line = control_line(request.words);
+  if (!is_printable_utf8(line))
+    return Unexpected<std::string>{"control: the command is not one line of UTF-8 text"};
+  line += '\n';
   const auto path = control_path(request.world);
   if (!path) return Unexpected<std::string>{path.error()};
-  const std::string line = control_line(request.words) + '\n';
   asio::io_context io;
   asio::local::stream_protocol::socket socket(io);
   asio::error_code error;

@@ -19,8 +19,8 @@ struct ControlRequest {
 std::string control_line(const std::vector<std::string>& words);
 
 /// Sends the command and prints each line of the answer to `out` as it arrives. Returns true if the
-/// command succeeded. The error is one line: no server runs that world. Blocks until the answer is
-/// complete.
+/// command succeeded. The error is one line: the command has control characters such as a newline,
+/// or no server runs that world. Blocks until the answer is complete.
 Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out);
 
 }  // namespace runstone

@@ -219,6 +219,8 @@ TEST_CASE("control reports that no server runs the world, or that its path is to
           "[integration][rollback]") {
   const TempFolder folder;
   std::ostringstream out;
+  const auto two_lines = control_server({folder / "none", {"status\nstop"}}, out);
+  CHECK(two_lines.error() == "control: the command is not one line of UTF-8 text");
   const auto nobody = control_server({folder / "none", {"status"}}, out);
   REQUIRE_FALSE(nobody.has_value());
   CHECK(nobody.error().find("no server of this user runs that world") != std::string::npos);
