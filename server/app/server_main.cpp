@@ -14,10 +14,13 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "common/os/open_files.hpp"
+#include "common/os/output_file.hpp"
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
 #include "server/app/new_world.hpp"
@@ -114,8 +117,8 @@ int run(const ServerOptions& options) {
   }
   start_logging(config->log_level);
   if (!options.port_file.empty()) {  // before the world is opened
-    if (const auto written = write_text_file(options.port_file, ""); !written) {
-      return cannot_start(written.error().message());
+    if (const auto written = write_output_file(options.port_file, ""); !written) {
+      return cannot_start(written.error());
     }
   }
   allow_files_for(*config);
@@ -137,8 +140,8 @@ int run(const ServerOptions& options) {
   }
   if (!options.port_file.empty()) {
     const auto written =
-        write_text_file(options.port_file, std::to_string((*server)->port()) + "\n");
-    if (!written) return cannot_start(written.error().message());
+        write_output_file(options.port_file, std::to_string((*server)->port()) + "\n");
+    if (!written) return cannot_start(written.error());
   }
   signals.wait_for_the_end(**server);
   if (console) console->close();
@@ -149,10 +152,18 @@ int run(const ServerOptions& options) {
   if (!options.digests_file.empty()) {
     const auto written = write_digests_json(options.digests_file, report.digests);
     is_written = written.has_value();
-    if (!is_written) logger("app").error("{}", written.error().message());
+    if (!is_written) logger("app").error("{}", written.error());
   }
   std::cout << stop_line(report) << " dense expansions: " << dense_expansions() << "\n";
   return report.is_clean && report.error.empty() && is_written ? kStopped : kFailed;
+}
+
+/// Ends the process in any thread, as a power failure would: durable edits stay. It may not allocate.
+[[noreturn]] void end_without_memory() {
+  constexpr std::string_view kLine =
+      "runstone-server: out of memory: the process ends; durable edits are safe\n";
+  static_cast<void>(!::write(STDERR_FILENO, kLine.data(), kLine.size()));
+  std::_Exit(kFailed);
 }
 
 int server_program(int argc, char** argv) {
@@ -178,6 +189,7 @@ int server_program(int argc, char** argv) {
 }  // namespace runstone
 
 int main(int argc, char** argv) {
+  std::set_new_handler(runstone::end_without_memory);
   try {
     const int code = runstone::server_program(argc, argv);
     spdlog::shutdown();  // writes the queued lines
