@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <thread>
 
+#include "common/core/text.hpp"
+#include "common/os/output_file.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/limits.hpp"
 
@@ -33,7 +35,8 @@ void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
                  "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort));
   app.add_option("--name", out.name, "name shown to others, 1 to 32 bytes")
       ->check([](const std::string& name) {
-        return name.empty() || name.size() > kPlayerNameBytesMax ? "a name has 1 to 32 bytes" : "";
+        if (name.empty() || name.size() > kPlayerNameBytesMax) return "a name has 1 to 32 bytes";
+        return is_plain_name(name) ? "" : "a name has no quotes, backslashes or unseen characters";
       });
   app.add_option("--key", out.key_file,
                  "file of the identity; created if missing. Default: a new identity each time");
@@ -64,9 +67,11 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
                  "size of the window or picture, WIDTHxHEIGHT; default 1280x720");
   app.add_option("--script", out.script, "run this script, then end (docs/client.md)")
       ->check(CLI::ExistingFile);
-  app.add_option("--report", out.report, "write latencies and counts as JSON at the end");
+  app.add_option("--report", out.report, "write latencies and counts as JSON at the end")
+      ->check(output_refusal);
   app.add_option("--digests", out.digests,
-                 "write the digests of all confirmed chunks as JSON at the end");
+                 "write the digests of all confirmed chunks as JSON at the end")
+      ->check(output_refusal);
   app.add_option("--screenshot-dir", out.screenshot_dir, "folder for screenshots")
       ->check(CLI::ExistingDirectory);
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")

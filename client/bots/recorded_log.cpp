@@ -31,8 +31,8 @@ void note_materials(const EditDescriptor& edit, std::vector<bool>& used) {
 
 std::string session_name(const std::string& recorded, AuthorId author) {
   if (author == 0) return "server";
-  if (recorded.empty() || !is_printable_utf8(recorded)) return "author " + std::to_string(author);
-  return std::string(cut_utf8(recorded, kPlayerNameBytesMax));
+  const std::string_view name = cut_utf8(recorded, kPlayerNameBytesMax);
+  return is_plain_name(name) ? std::string(name) : "author " + std::to_string(author);
 }
 
 Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {

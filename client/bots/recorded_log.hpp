@@ -38,7 +38,7 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source);
 Result<void, std::string> check_materials(const RecordedLog& log, const MaterialTable& live);
 
 /// Returns the recorded name of the player, cut to kPlayerNameBytesMax. Returns a name like "author
-/// 7" if it is empty or not text.
+/// 7" if that is no name (is_plain_name()).
 std::string session_name(const std::string& recorded, AuthorId author);
 
 }  // namespace runstone

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/core/text.hpp"
+#include "common/os/output_file.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -69,9 +71,9 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
       ->check(CLI::Range(0.1, 100'000.0));
   app.add_option("--name", out.name, "name of one bot; of several, NAME-1, NAME-2, ...")
       ->check([](const std::string& name) {
-        return name.empty() || name.size() + 6 > kPlayerNameBytesMax
-                   ? "a bot's name has 1 to 26 bytes"
-                   : "";
+        if (name.empty() || name.size() + 6 > kPlayerNameBytesMax)
+          return "a bot's name has 1 to 26 bytes";
+        return is_plain_name(name) ? "" : "a name has no quotes, backslashes or unseen characters";
       });
   app.add_option(
          "--key-dir", out.key_dir,
@@ -91,7 +93,8 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
          "--patience", out.load_seconds,
          "seconds to wait for the world at the start and for the disk at the end; default 60")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--report", out.report, "write counts and latencies as JSON at the end");
+  app.add_option("--report", out.report, "write counts and latencies as JSON at the end")
+      ->check(output_refusal);
   app.add_flag("--verbose", out.verbose, "log every step");
   CLI::Option* play = app.add_option(
       "--play", out.play,

@@ -1,6 +1,38 @@
 #include "common/core/text.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
 namespace runstone {
+namespace {
+
+struct CharacterRange {
+  std::uint32_t first, last;
+};
+
+/// Default_Ignorable_Code_Point and Bidi_Control of Unicode 15 (DerivedCoreProperties.txt,
+/// PropList.txt), line and paragraph separators, and blanks that are not U+0020.
+constexpr std::array<CharacterRange, 24> kUnseen = {
+    {{0x00a0, 0x00a0},   {0x00ad, 0x00ad},   {0x034f, 0x034f},   {0x061c, 0x061c},
+     {0x115f, 0x1160},   {0x1680, 0x1680},   {0x17b4, 0x17b5},   {0x180b, 0x180f},
+     {0x2000, 0x200f},   {0x2028, 0x202f},   {0x205f, 0x206f},   {0x2800, 0x2800},
+     {0x3000, 0x3000},   {0x3164, 0x3164},   {0xfe00, 0xfe0f},   {0xfeff, 0xfeff},
+     {0xffa0, 0xffa0},   {0xfff0, 0xfffb},   {0xfffe, 0xffff},   {0x1bca0, 0x1bca3},
+     {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff}, {0xf0000, 0xfffff}, {0x100000, 0x10ffff}}};
+
+/// Reads the character at `at` of well-formed UTF-8 and moves `at` behind it.
+std::uint32_t next_character(std::string_view text, std::size_t& at) {
+  const auto lead = static_cast<unsigned char>(text[at++]);
+  if (lead < 0x80) return lead;
+  const unsigned more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : 1;
+  std::uint32_t character = lead & (0x3fU >> more);
+  for (unsigned i = 0; i < more; ++i)
+    character = character << 6 | (static_cast<unsigned char>(text[at++]) & 0x3fU);
+  return character;
+}
+
+}  // namespace
 
 bool is_printable_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
@@ -33,6 +65,19 @@ bool is_printable_utf8(std::string_view text) {
       high = 0xbf;
     }
     i += length;
+  }
+  return true;
+}
+
+bool is_plain_name(std::string_view text) {
+  if (text.empty() || text.front() == ' ' || text.back() == ' ' || !is_printable_utf8(text))
+    return false;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::uint32_t character = next_character(text, at);
+    const bool is_unseen = std::ranges::any_of(kUnseen, [&](const CharacterRange& range) {
+      return character >= range.first && character <= range.last;
+    });
+    if (is_unseen || character == '"' || character == '\\') return false;
   }
   return true;
 }

@@ -11,6 +11,14 @@ namespace runstone {
 /// O(bytes).
 bool is_printable_utf8(std::string_view text);
 
+/// Returns true if the text may be a name that people read and type: is_printable_utf8(), not empty,
+/// without blanks at its ends, and without
+///   - quotes (") and backslashes, because names stand in quotes in commands and log lines;
+///   - characters that are invisible or change the direction of the text around them (Unicode's
+///     default ignorable and bidirectional controls), because two names must not look the same.
+/// Cost: O(bytes).
+bool is_plain_name(std::string_view text);
+
 /// Returns the longest prefix of well-formed `text` that has at most `bytes_max` bytes and cuts no
 /// character.
 std::string_view cut_utf8(std::string_view text, std::size_t bytes_max);

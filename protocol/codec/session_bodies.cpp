@@ -42,8 +42,8 @@ Result<Message> BodyReader::read(const wire::Hello& t) const {
   m.features = t.features();
   if (!take_exact(t.key(), m.key)) return bad("hello.key is not 32 bytes");
   if (!take_exact(t.nonce(), m.nonce)) return bad("hello.nonce is not 32 bytes");
-  if (!take_text(t.name(), 1, kPlayerNameBytesMax, m.name))
-    return bad("hello.name is not 1 .. 32 bytes of text");
+  if (!take_text(t.name(), 1, kPlayerNameBytesMax, m.name) || !is_plain_name(m.name))
+    return bad("hello.name is not a name of 1 .. 32 bytes");
   // Unknown bits are accepted: they stand for encodings of later versions.
   if ((m.encodings & kEncodingsKnown) == 0) return bad("hello.encodings names none that is known");
   return m;
@@ -136,8 +136,9 @@ Result<Message> BodyReader::read(const wire::PlayerList& t) const {
   for (std::uint32_t i = 0; i < *count; ++i) {
     const wire::PlayerName& p = *t.players()->Get(i);
     m.players[i].author = p.author();
-    if (!take_text(p.name(), 1, kPlayerNameBytesMax, m.players[i].name)) {
-      return bad("player name is not 1 .. 32 bytes of text");
+    if (!take_text(p.name(), 1, kPlayerNameBytesMax, m.players[i].name) ||
+        !is_plain_name(m.players[i].name)) {
+      return bad("player name is not a name of 1 .. 32 bytes");
     }
   }
   m.is_change = t.change();

@@ -35,6 +35,13 @@ std::string any_text(SplitMix64& rng, std::size_t bytes_min, std::size_t bytes_m
   return out;
 }
 
+std::string any_name(SplitMix64& rng) {
+  std::string out = any_text(rng, 1, kPlayerNameBytesMax);
+  if (out.front() == ' ') out.front() = 'x';
+  if (out.back() == ' ') out.back() = 'x';
+  return out;
+}
+
 ChunkCoord any_coord(SplitMix64& rng) {
   constexpr std::int32_t kReach = kWorldLimit / kMessageEdge;
   return {rng.between(-kReach, kReach - 1), rng.between(-40, 40), rng.between(-kReach, kReach - 1)};
@@ -107,7 +114,7 @@ Hello any_hello(SplitMix64& rng) {
   draw(rng, m.key);
   m.instance = any64(rng);
   draw(rng, m.nonce);
-  m.name = any_text(rng, 1, kPlayerNameBytesMax);
+  m.name = any_name(rng);
   m.encodings = static_cast<std::uint8_t>(rng.below(32) * 8 + 1 + rng.below(7));
   m.features = any64(rng);
   return m;
@@ -318,7 +325,7 @@ PlayerPoses any_poses(SplitMix64& rng) {
 PlayerList any_player_list(SplitMix64& rng) {
   PlayerList m;
   m.players.resize(rng.below(20));
-  for (PlayerName& p : m.players) p = {rng.below(1000), any_text(rng, 1, kPlayerNameBytesMax)};
+  for (PlayerName& p : m.players) p = {rng.below(1000), any_name(rng)};
   m.is_change = rng.below(2) == 0;
   if (m.is_change) m.left.resize(rng.below(20));
   for (AuthorId& author : m.left) author = rng.below(1000);

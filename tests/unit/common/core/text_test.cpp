@@ -38,6 +38,28 @@ TEST_CASE("text from outside is well-formed UTF-8 without control characters", "
   CHECK_FALSE(is_printable_utf8(std::string_view("\0", 1)));
 }
 
+TEST_CASE("a name can be seen, typed and quoted", "[core]") {
+  for (const char* good : {"ada", "the mole", "O'Neill", "\xc3\x85sa", "\xe6\x9d\x8e",
+                           "\xd9\x85\xd8\xad\xd9\x85\xd8\xaf", "\xf0\x9f\xa7\xb1 builder"}) {
+    CAPTURE(good);
+    CHECK(is_plain_name(good));
+  }
+  for (const char* bad : {"", " ada", "ada ", "a\"b", "a\\b", "a\nb",
+                          "\xc3",         // cut
+                          "ada\xc2\xa0",  // U+00A0, a blank that does not break
+                          "ad\xe2\x80\x8b"
+                          "a",  // U+200B, no width
+                          "\xe2\x80\xae"
+                          "nimda",                  // U+202E, right to left from here
+                          "a\xe2\x81\xa6z",         // U+2066
+                          "a\xef\xbb\xbfz",         // U+FEFF
+                          "\xe3\x85\xa4",           // U+3164, an empty letter
+                          "a\xf3\xa0\x81\x81z"}) {  // U+E0041, a tag
+    CAPTURE(bad);
+    CHECK_FALSE(is_plain_name(bad));
+  }
+}
+
 TEST_CASE("text is cut between characters", "[core]") {
   const std::string_view text =
       "a\xc3\xa9\xe2\x82\xac\xf0\x9f\xa7\xb1";  // characters of 1, 2, 3 and 4 bytes
