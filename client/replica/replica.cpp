@@ -266,7 +266,7 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
   std::map<ChunkKey, TrackedChunk*> touched;
   for (std::size_t i = 0; i < commit.edits.size(); ++i) {
     const OrderedEdit& ordered = commit.edits[i];
-    const Version version{commit.epoch, commit.first + i};
+    const Version version{commit.epoch, ordered.seq};
     const auto chunks = touched_chunks(ordered.edit, parameters_->chunk_edge);
     if (chunks.size() != ordered.previous.size()) {
       return fail(ErrorCode::bad_value, "previous sequences do not fit the edit", i);

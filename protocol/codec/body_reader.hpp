@@ -67,9 +67,9 @@ struct BodyReader {
   Result<Message> read(const wire::Reject& t) const;
   Result<Message> read(const wire::Durable& t) const;
 
-  using TakeEdit = std::function<Result<void>(Sequence)>;
+  using TakeEdit = std::function<Result<void>()>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then
-  /// calls `take` with its sequence. `take` may move from both. Before Welcome, `touched` stays
+  /// calls `take`, which may move from both. Before Welcome, `touched` stays
   /// empty.
   Result<void> read_edits(const wire::Commit& t, OrderedEdit& edit,
                           std::vector<ChunkCoord>& touched, const TakeEdit& take) const;

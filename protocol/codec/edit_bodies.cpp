@@ -1,7 +1,7 @@
 #include <utility>
 
 #include "protocol/codec/body_reader.hpp"
-#include "protocol/codec/ordered_edits.hpp"
+#include "protocol/codec/ordered_edit_reader.hpp"
 
 namespace runstone {
 
@@ -24,10 +24,9 @@ Result<Message> BodyReader::read(const wire::EditRequest& t) const {
 Result<Message> BodyReader::read(const wire::Commit& t) const {
   Commit m;
   m.epoch = t.epoch();
-  m.first = t.first();
   OrderedEdit edit;
   std::vector<ChunkCoord> touched;
-  const auto ok = read_edits(t, edit, touched, [&m, &edit](Sequence) -> Result<void> {
+  const auto ok = read_edits(t, edit, touched, [&m, &edit]() -> Result<void> {
     m.edits.push_back(std::move(edit));
     return {};
   });
@@ -38,16 +37,13 @@ Result<Message> BodyReader::read(const wire::Commit& t) const {
 Result<void> BodyReader::read_edits(const wire::Commit& t, OrderedEdit& edit,
                                     std::vector<ChunkCoord>& touched, const TakeEdit& take) const {
   if (t.epoch() == 0) return bad("commit epoch is 0");
-  if (t.first() == 0 || t.first() > kSequenceMax - kCommitEditsMax)
-    return bad("commit sequence is out of range");
   const ByteView bytes = view_of(t.edits());
   if (bytes.empty()) return bad("commit has no edits");
-  OrderedEditReader edits(bytes, t.first(), chunk_edge);
+  OrderedEditReader edits(bytes, chunk_edge);
   for (std::size_t count = 0; !edits.at_end(); ++count) {
     if (count == kCommitEditsMax) return bad("commit has more than 4096 edits");
-    const auto seq = edits.next(edit, touched);
-    if (!seq) return Unexpected<Error>{seq.error()};
-    if (const auto ok = take(*seq); !ok) return ok;
+    if (const auto ok = edits.next(edit, touched); !ok) return ok;
+    if (const auto ok = take(); !ok) return ok;
   }
   return {};
 }

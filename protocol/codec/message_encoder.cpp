@@ -6,10 +6,10 @@
 #include "common/core/text.hpp"
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/chunk_lists.hpp"
+#include "protocol/codec/commit_encoder.hpp"
 #include "protocol/codec/key_list.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
-#include "protocol/codec/ordered_edits.hpp"
 #include "protocol/codec/uniform_list.hpp"
 #include "protocol/schema/runstone_generated.h"
 
@@ -111,8 +111,8 @@ struct BodyBuilder {
     return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, edit));
   }
   Offset<wire::Commit> operator()(const Commit& m) {
-    RUNSTONE_ASSERT(m.epoch != 0 && m.first != 0);
-    return wire::CreateCommit(b, m.epoch, m.first, bytes_of(b, encode_ordered_edits(m)));
+    const CommitEncoder encoder(m);
+    return commit(encoder, encoder.all());
   }
   Offset<wire::Reject> operator()(const Reject& m) {
     return wire::CreateReject(b, m.client_seq, static_cast<std::uint8_t>(m.reason), text(m.detail),
@@ -175,6 +175,10 @@ struct BodyBuilder {
     RUNSTONE_ASSERT(view != 0);
     return wire::CreateChunks(b, view, bytes_of(b, list_of(entries)));
   }
+  Offset<wire::Commit> commit(const CommitEncoder& edits, std::span<const std::uint32_t> which) {
+    RUNSTONE_ASSERT(edits.epoch() != 0);
+    return wire::CreateCommit(b, edits.epoch(), bytes_of(b, edits.list(which)));
+  }
   /// Returns the line with "?" for each byte that is not printable: a line may name a file, and
   /// file names hold any bytes.
   static std::string shown_line(const std::string& line) {
@@ -221,6 +225,11 @@ EncodedMessage encode_message(const Message& message) {
 EncodedMessage join_entries(std::uint32_t view, std::span<const ChunkEntry> entries) {
   FlatBufferBuilder& b = cleared_builder();
   return finish(b, kKindOf<Chunks>, BodyBuilder{b}.chunks(view, entries));
+}
+
+EncodedMessage encode_message(const CommitEncoder& commit, std::span<const std::uint32_t> edits) {
+  FlatBufferBuilder& b = cleared_builder();
+  return finish(b, kKindOf<Commit>, BodyBuilder{b}.commit(commit, edits));
 }
 
 }  // namespace runstone

@@ -256,6 +256,7 @@ struct EditRequest {
   }
 };
 struct OrderedEdit {
+  Sequence seq = 0;
   OperationId op;
   Cause cause = Cause::player;
   TimeUs submitted_us = 0, ordered_us = 0;  // on the server's steady clock
@@ -265,10 +266,10 @@ struct OrderedEdit {
   Sequence subject = 0;  // the earlier edit that a rollback, undo or redo answers; 0: none
   friend bool operator==(const OrderedEdit&, const OrderedEdit&) = default;
 };
+/// Edits that were ordered together, or those of them that a session gets.
 struct Commit {
   Epoch epoch = 0;
-  Sequence first = 0;
-  std::vector<OrderedEdit> edits;
+  std::vector<OrderedEdit> edits;  // their sequences ascend
   friend bool operator==(const Commit&, const Commit&) = default;
 };
 

@@ -52,33 +52,36 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
   last_time_us_ = std::max(last_time_us_, now.utc_us);
   OrderedBatch batch;
   batch.commit.epoch = epoch_;
-  batch.commit.first = head_ + 1;
   std::size_t bytes = 0;
   while (!queue_.empty() && batch.records.size() < kCommitEditsMax && bytes < kCommitBytesTarget) {
     const EditOffer offer = queue_.front();
     queue_.pop_front();
     const Version version{epoch_, ++head_};
     OrderedEdit ordered;
+    ordered.seq = version.seq;
     ordered.op = offer.op;
     ordered.cause = offer.cause;
     ordered.submitted_us = offer.submitted_us;
     ordered.ordered_us = now.steady_us;
     ordered.edit = offer.edit;
     ordered.subject = offer.subject;
+    std::vector<ChunkKey>& touched = batch.touched.emplace_back();
     for (const ChunkCoord at : touched_chunks(offer.edit, limits_.chunk_edge)) {
       const ChunkKey key{0, at};
       ordered.previous.push_back(chunks_.push(key, version, offer.edit));
-      batch.touched.push_back(key);
+      touched.push_back(key);
     }
+    batch.all_touched.insert(batch.all_touched.end(), touched.begin(), touched.end());
     bytes += kOrderedEditBytesMax + encode(offer.edit).size() +
              kPreviousBytesMax * ordered.previous.size();
     batch.commit.edits.push_back(std::move(ordered));
     batch.records.push_back(
         {version, offer.op, last_time_us_, offer.cause, offer.edit, offer.subject});
   }
-  std::sort(batch.touched.begin(), batch.touched.end());
-  batch.touched.erase(std::unique(batch.touched.begin(), batch.touched.end()), batch.touched.end());
-  for (const ChunkKey& key : batch.touched) chunks_.publish(key);
+  std::vector<ChunkKey>& all = batch.all_touched;
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  for (const ChunkKey& key : all) chunks_.publish(key);
   return batch;
 }
 

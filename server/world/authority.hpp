@@ -37,11 +37,12 @@ struct EditOffer {
   Sequence subject = 0;  // the edit that this rollback, undo or redo is about; 0: none
 };
 
-/// One commit: the message, the records for the log, and the chunks it touched, ascending.
+/// One commit: its edits, their records for the log, and the chunks that each of them touched.
 struct OrderedBatch {
   Commit commit;
   std::vector<EditRecord> records;
-  std::vector<ChunkKey> touched;
+  std::vector<std::vector<ChunkKey>> touched;  // of each edit, ascending
+  std::vector<ChunkKey> all_touched;           // of all edits, ascending, each once
 };
 
 class Authority {

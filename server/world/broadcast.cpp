@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
+#include <map>
 #include <span>
 
 #include "common/core/assert.hpp"
+#include "protocol/codec/commit_encoder.hpp"
+#include "server/interest/audiences.hpp"
 #include "server/world/delivery.hpp"
 
 namespace runstone {
@@ -32,40 +34,70 @@ void add_sessions(std::span<const SessionId> more, std::vector<SessionId>& sessi
   sessions.swap(scratch);
 }
 
-/// Returns the receivers of a commit, ascending. Sessions of its authors now await durability up to
-/// it.
-std::vector<SessionId> receivers_of(WorldState& world, const OrderedBatch& batch) {
-  std::set<std::pair<AuthorId, ClientInstance>> authors;
-  for (const OrderedEdit& edit : batch.commit.edits)
-    authors.emplace(edit.op.author, edit.op.instance);
-  std::vector<SessionId> receivers, author_sessions, scratch;
-  for (const ChunkKey& key : batch.touched)
-    add_sessions(world.interest.subscribers(key), receivers, scratch);
-  for (auto& [id, session] : world.sessions) {
-    if (session.state == SessionStage::open &&
-        authors.contains({session.author, session.instance})) {
-      author_sessions.push_back(id);
-      session.awaits_durable = world.authority.head();
-    }
+using Authors = std::map<std::pair<AuthorId, ClientInstance>, SessionId>;
+
+/// Returns the open sessions of the clients that made the edits.
+Authors authors_of(const WorldState& world, const Commit& commit) {
+  Authors authors;
+  for (const OrderedEdit& edit : commit.edits) authors[{edit.op.author, edit.op.instance}] = 0;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.state != SessionStage::open) continue;
+    const auto found = authors.find({session.author, session.instance});
+    if (found != authors.end()) found->second = id;
   }
-  add_sessions(author_sessions, receivers, scratch);
+  std::erase_if(authors, [](const auto& author) { return author.second == 0; });
+  return authors;
+}
+
+/// Returns for each edit the sessions that see one of its chunks, and the session of its client,
+/// ascending.
+std::vector<std::vector<SessionId>> receivers_of(const WorldState& world, const Authors& authors,
+                                                 const OrderedBatch& batch) {
+  std::vector<std::vector<SessionId>> receivers(batch.commit.edits.size());
+  std::vector<SessionId> scratch;
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    for (const ChunkKey& key : batch.touched[i])
+      add_sessions(world.interest.subscribers(key), receivers[i], scratch);
+    const OperationId& op = batch.commit.edits[i].op;
+    const auto author = authors.find({op.author, op.instance});
+    if (author == authors.end()) continue;
+    const auto at = std::ranges::lower_bound(receivers[i], author->second);
+    if (at == receivers[i].end() || *at != author->second) receivers[i].insert(at, author->second);
+  }
   return receivers;
 }
 
-/// Handles a commit that did not fit the session's queue. The touched chunks become stale for the
-/// session. Each edit of its client gets a small answer, because a snapshot does not show whether
-/// an edit was applied.
-void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& batch,
-                     const Clocks& now) {
-  mark_stale(world, session, batch.touched, now);
-  for (std::size_t i = 0; i < batch.commit.edits.size(); ++i) {
+/// Handles a message with these edits of a commit that did not fit the session's queue. The touched
+/// chunks become stale for the session. Each edit of its client gets a small answer, because a
+/// snapshot does not show whether an edit was applied.
+void drop_edits_for(WorldState& world, SessionId session, const OrderedBatch& batch,
+                    const std::vector<std::uint32_t>& edits, const Clocks& now) {
+  for (const std::uint32_t i : edits) mark_stale(world, session, batch.touched[i], now);
+  for (const std::uint32_t i : edits) {
     const OrderedEdit& edit = batch.commit.edits[i];
     const WorldSession* mine = world.find(session);
     if (mine == nullptr) return;  // too many rejects were pending: the session is closed
     if (edit.op.author != mine->author || edit.op.instance != mine->instance) continue;
     send_reject(world, session,
                 {edit.op.seq, RejectReason::already_resolved,
-                 "applied; its commit did not fit the queue", batch.commit.first + i});
+                 "applied; its commit did not fit the queue", edit.seq});
+  }
+}
+
+void send_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now) {
+  const Authors authors = authors_of(world, batch.commit);
+  for (const auto& [author, session] : authors)
+    world.find(session)->awaits_durable = world.authority.head();
+  const std::vector<Audience> audiences = audiences_of(receivers_of(world, authors, batch));
+  if (audiences.empty()) return;
+  const CommitEncoder encoder(batch.commit);
+  for (const Audience& audience : audiences) {
+    const EncodedMessage encoded = encode_message(encoder, audience.edits);
+    const std::vector<SessionId> full = world.environment.send_to_all(audience.sessions, encoded);
+    world.counters.commit_bytes += encoded.bytes->size();
+    world.counters.commits_sent += audience.sessions.size() - full.size();
+    world.counters.queue_full += full.size();
+    for (const SessionId session : full) drop_edits_for(world, session, batch, audience.edits, now);
   }
 }
 
@@ -73,18 +105,12 @@ void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& b
 
 void commit_and_broadcast(WorldState& world, const Clocks& now) {
   while (auto batch = world.authority.commit(now)) {
-    const EncodedMessage encoded = encode_message(batch->commit);
     ++world.counters.commits;
-    world.counters.commit_bytes += encoded.bytes->size();
     world.counters.edits_ordered += batch->records.size();
     std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);
     world.environment.log_append(std::move(players), std::move(batch->records));
-    const std::vector<SessionId> receivers = receivers_of(world, *batch);
-    const std::vector<SessionId> full = world.environment.send_to_all(receivers, encoded);
-    world.counters.commits_sent += receivers.size() - full.size();
-    world.counters.queue_full += full.size();
-    for (const SessionId session : full) drop_commit_for(world, session, *batch, now);
-    for (const ChunkKey& key : batch->touched) {
+    send_batch(world, *batch, now);
+    for (const ChunkKey& key : batch->all_touched) {
       if (world.authority.chunks().stack_size(key) > world.config.stack_load_edits)
         request_load(world, key);
     }

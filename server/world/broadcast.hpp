@@ -1,13 +1,14 @@
-// Broadcast: sends commits and the durable watermark to sessions. Each message is serialised once,
-// and the same bytes go to every receiver.
+// Broadcast: sends commits and the durable watermark to sessions. A session gets the edits that
+// concern it and no others. Sessions that get the same edits share one message.
 #pragma once
 #include "server/world/world_state.hpp"
 
 namespace runstone {
 
-/// Orders the queued edits, appends them to the log, and sends each commit to the subscribers of
-/// the chunks it touched and to the authors of its edits. Cost of each commit: O(edits + subscribers
-/// of touched chunks + sessions), because the sessions of the authors are searched among all.
+/// Orders the queued edits, appends them to the log, and sends each edit to the subscribers of the
+/// chunks that it touched and to the session of its client. Cost of each commit: O(edits +
+/// subscribers of touched chunks + sessions), because the sessions of the authors are searched among
+/// all, and that of audiences_of().
 void commit_and_broadcast(WorldState& world, const Clocks& now);
 /// Sends the durable watermark to the sessions whose client has edits that are not yet
 /// acknowledged.

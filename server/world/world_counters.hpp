@@ -12,8 +12,8 @@ struct WorldCounters {
   std::uint64_t edits_ordered = 0;
   std::uint64_t edits_rejected = 0;
   std::uint64_t commits = 0;
-  std::uint64_t commit_bytes = 0;  // serialised once each
-  std::uint64_t commits_sent = 0;  // commit times receiver
+  std::uint64_t commit_bytes = 0;  // of the messages; sessions that get the same edits share one
+  std::uint64_t commits_sent = 0;  // commit times session that got edits of it
   std::uint64_t snapshots_sent = 0;
   // Messages that carry many uniform chunks each.
   std::uint64_t uniform_messages = 0;

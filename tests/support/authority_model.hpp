@@ -38,10 +38,10 @@ class AuthorityModel {
                 TimeUs now_us = 0) {
     Commit out;
     out.epoch = epoch_;
-    out.first = head_ + 1;
     for (const auto& [op, edit] : edits) {
       ++head_;
       OrderedEdit ordered;
+      ordered.seq = head_;
       ordered.op = op;
       ordered.submitted_us = ordered.ordered_us = now_us;
       ordered.edit = edit;

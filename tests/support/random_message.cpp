@@ -280,16 +280,17 @@ UniformChunks any_uniform(SplitMix64& rng) {
 Commit any_commit(SplitMix64& rng) {
   Commit m;
   m.epoch = 1 + rng.below(1'000'000);
-  m.first = 1 + (any64(rng) >> 1);
+  Sequence seq = any64(rng) >> 2;
   m.edits.resize(1 + rng.below(6));
   for (std::size_t i = 0; i < m.edits.size(); ++i) {
     OrderedEdit& e = m.edits[i];
+    seq += 1 + (rng.below(2) == 0 ? 0 : rng.below(1'000'000));
+    e.seq = seq;
     e.op = {rng.below(1000), rng.next(), any64(rng)};
     e.cause = static_cast<Cause>(rng.below(kCauseMax + 1u));
     e.submitted_us = any_time(rng);
     e.ordered_us = any_time(rng);
     e.edit = any_edit(rng);
-    const Sequence seq = m.first + i;
     if (rng.below(2) == 0) e.subject = any64(rng) % seq;
     for (std::size_t c = touched_chunks(e.edit, kMessageEdge).size(); c > 0; --c) {
       e.previous.push_back(rng.below(4) == 0 ? 0

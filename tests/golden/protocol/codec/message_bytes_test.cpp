@@ -85,15 +85,16 @@ Welcome signed_welcome() {
 Commit a_commit() {
   Commit m;
   m.epoch = 3;
-  m.first = 500;
-  m.edits.push_back({{2, 0x1122334455667788ULL, 9},
+  m.edits.push_back({500,
+                     {2, 0x1122334455667788ULL, 9},
                      Cause::player,
                      1'700'000,
                      1'700'250,
                      {SetVoxel{{1, -2, 3}}, {}, 300},
                      {499},
                      0});
-  m.edits.push_back({{0, 0, 0},
+  m.edits.push_back({503,
+                     {0, 0, 0},
                      Cause::rollback,
                      1'700'250,
                      1'700'250,

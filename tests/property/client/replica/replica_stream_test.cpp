@@ -241,7 +241,7 @@ class Simulation {
       const bool full = p.author != peer.author && rng_.below(10) == 0;
       if (full) {
         if (!rules_.hide_gaps) p.stale.insert(dropped.begin(), dropped.end());
-        for (const ChunkCoord at : dropped) hidden_[{p.author, at}] = commit.first;
+        for (const ChunkCoord at : dropped) hidden_[{p.author, at}] = commit.edits.front().seq;
         continue;
       }
       Commit copy = commit;

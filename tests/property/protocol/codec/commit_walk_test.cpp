@@ -15,11 +15,8 @@ Result<Message> walked(ByteView bytes) {
   CommitWalk walk;
   Commit commit;
   const auto is_valid = walk.read(bytes, kMessageEdge, [&](const WalkedEdit& edit) -> Result<void> {
-    if (commit.edits.empty()) {
-      commit.epoch = edit.version.epoch;
-      commit.first = edit.version.seq;
-    }
-    CHECK(edit.version == Version{commit.epoch, commit.first + commit.edits.size()});
+    if (commit.edits.empty()) commit.epoch = edit.version.epoch;
+    CHECK(edit.version == Version{commit.epoch, edit.ordered.seq});
     CHECK(std::vector<ChunkCoord>(edit.chunks.begin(), edit.chunks.end()) ==
           touched_chunks(edit.ordered.edit, kMessageEdge));
     commit.edits.push_back(edit.ordered);

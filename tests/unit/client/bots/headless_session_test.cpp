@@ -65,8 +65,9 @@ struct Bench {
     return *taken;
   }
   /// Returns an edit of the chunk in view.
-  static OrderedEdit edit(Sequence previous, OperationId op = {1, 1, 1}) {
+  static OrderedEdit edit(Sequence seq, Sequence previous, OperationId op = {1, 1, 1}) {
     OrderedEdit out;
+    out.seq = seq;
     out.op = op;
     out.edit = {SetVoxel{{1, 2, 3}}, {}, 1};
     out.previous = {previous};
@@ -95,10 +96,9 @@ TEST_CASE("a headless session verifies commits and times each edit", "[bots][hea
   clock_us = 2'000;
   const ClientSequence mine = bench.submit(1'900);
   clock_us = 2'500;
-  const Commit commit{
-      1,
-      3,
-      {Bench::edit(0, {2, 99, 5}), Bench::edit(3, bench.own(mine)), Bench::edit(4, {2, 98, 1})}};
+  const Commit commit{1,
+                      {Bench::edit(3, 0, {2, 99, 5}), Bench::edit(4, 3, bench.own(mine)),
+                       Bench::edit(5, 4, {2, 98, 1})}};
   REQUIRE(bench.takes(commit));
   CHECK(bench.violations().total() == 0);
   CHECK(bench.session->versions().version(kSessionChunk) == 5);
@@ -126,30 +126,30 @@ TEST_CASE("bytes of another class, and messages that are not commits, are not ta
 TEST_CASE("hostile commits end the connection", "[bots][headless]") {
   Bench bench;
   SECTION("of another epoch") {
-    CHECK_FALSE(bench.give_bytes(Commit{2, 1, {Bench::edit(0)}}).has_value());
+    CHECK_FALSE(bench.give_bytes(Commit{2, {Bench::edit(1, 0)}}).has_value());
   }
   SECTION("cut short") {
-    const EncodedMessage encoded = encode_message(Commit{1, 1, {Bench::edit(0)}});
+    const EncodedMessage encoded = encode_message(Commit{1, {Bench::edit(1, 0)}});
     Bytes bytes = *encoded.bytes;
     bytes.resize(bytes.size() / 2);
     CHECK_FALSE(bench.session->receive_bytes(encoded.kind, bytes, kSessionEdge, 0).has_value());
   }
   SECTION("with a list of previous sequences that does not fit") {
-    OrderedEdit edit = Bench::edit(0);
+    OrderedEdit edit = Bench::edit(1, 0);
     edit.edit = {FillBox{{{-1, 0, 0}, {1, 1, 1}}}, {}, 1};
-    CHECK_FALSE(bench.give_bytes(Commit{1, 1, {edit}}).has_value());
+    CHECK_FALSE(bench.give_bytes(Commit{1, {edit}}).has_value());
   }
 }
 
 TEST_CASE("a sequence that comes again is a violation", "[bots][headless]") {
   Bench bench;
-  REQUIRE(bench.give_bytes(Commit{1, 3, {Bench::edit(0), Bench::edit(3)}}));
-  REQUIRE(bench.takes(Commit{1, 9, {Bench::edit(4)}}) ==
+  REQUIRE(bench.give_bytes(Commit{1, {Bench::edit(3, 0), Bench::edit(4, 3)}}));
+  REQUIRE(bench.takes(Commit{1, {Bench::edit(9, 4)}}) ==
           true);  // sequences in between are of other chunks
   CHECK(bench.violations().total() == 0);
-  REQUIRE(bench.give_bytes(Commit{1, 9, {Bench::edit(4)}}));
+  REQUIRE(bench.give_bytes(Commit{1, {Bench::edit(9, 4)}}));
   CHECK(bench.violations().all().at("repeated sequence").count == 1);
-  REQUIRE(bench.takes(Commit{1, 8, {Bench::edit(4), Bench::edit(8)}}));
+  REQUIRE(bench.takes(Commit{1, {Bench::edit(8, 4), Bench::edit(9, 8)}}));
   CHECK(bench.violations().all().at("repeated sequence").count == 3);
 }
 
@@ -157,7 +157,7 @@ TEST_CASE("a gap in the versions of a chunk is found, and the chunk is requested
           "[bots][headless]") {
   clock_us = 1'000;
   Bench bench;
-  REQUIRE(bench.takes(Commit{1, 5, {Bench::edit(4)}}));
+  REQUIRE(bench.takes(Commit{1, {Bench::edit(5, 4)}}));
   CHECK_FALSE(bench.session->loaded());
   clock_us += kResendUsMax;
   bench.session->tick(clock_us);
@@ -171,14 +171,14 @@ TEST_CASE("a gap in the versions of a chunk is found, and the chunk is requested
 TEST_CASE("a second answer to a local edit, or to none, is a violation", "[bots][headless]") {
   Bench bench;
   const ClientSequence mine = bench.submit(0);
-  REQUIRE(bench.takes(Commit{1, 1, {Bench::edit(0, bench.own(mine))}}));
+  REQUIRE(bench.takes(Commit{1, {Bench::edit(1, 0, bench.own(mine))}}));
   CHECK(bench.violations().total() == 0);
   SECTION("not confirmed twice") {
-    REQUIRE(bench.takes(Commit{1, 2, {Bench::edit(1, bench.own(mine))}}));
+    REQUIRE(bench.takes(Commit{1, {Bench::edit(2, 1, bench.own(mine))}}));
   }
   SECTION("not rejected after that") { bench.give(Reject{mine, RejectReason::busy, "", 0}); }
   SECTION("not one that was never made") {
-    REQUIRE(bench.takes(Commit{1, 2, {Bench::edit(1, bench.own(mine + 5))}}));
+    REQUIRE(bench.takes(Commit{1, {Bench::edit(2, 1, bench.own(mine + 5))}}));
   }
   CHECK(bench.violations().all().at("answer twice").count == 1);
 }
@@ -190,7 +190,7 @@ TEST_CASE("a rejected edit is counted, and a commit of it is a violation", "[bot
   CHECK(bench.session->local_edits().counters().rejected == 1);
   CHECK(bench.session->local_edits().all().empty());
   CHECK(bench.violations().total() == 0);
-  REQUIRE(bench.takes(Commit{1, 1, {Bench::edit(0, bench.own(mine))}}));
+  REQUIRE(bench.takes(Commit{1, {Bench::edit(1, 0, bench.own(mine))}}));
   CHECK(bench.violations().all().contains("answer twice"));
 }
 
@@ -208,7 +208,7 @@ TEST_CASE("a durable watermark of another epoch, or a lower one, is a violation"
 TEST_CASE("a headless session offers edits again that the server has lost", "[bots][headless]") {
   Bench bench;
   const ClientSequence first = bench.submit(0), second = bench.submit(0), third = bench.submit(0);
-  REQUIRE(bench.takes(Commit{1, 1, {Bench::edit(0, bench.own(first))}}));
+  REQUIRE(bench.takes(Commit{1, {Bench::edit(1, 0, bench.own(first))}}));
   bench.session->disconnected();
   std::vector<ClientSequence> offered;
   bool sends_view = false;

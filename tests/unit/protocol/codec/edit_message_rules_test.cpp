@@ -11,21 +11,24 @@ const EditDescriptor kValidEdit{SetVoxel{{1, 2, 3}}, {}, 1};
 
 /// One edit of a commit, field by field as docs/protocol.md lists them.
 struct EditFields {
+  std::uint64_t seq = 10;      // relative to the edit before
+  std::int64_t ordered_us = 50;  // relative to the edit before
   std::uint64_t author = 1, instance = 1, client_seq = 1;
   std::uint8_t cause = 0;
   std::uint64_t subject = 0;
-  std::int64_t ordered_us = 50, delay_us = 20;  // relative to the edit before; from click to order
+  std::int64_t delay_us = 20;  // from click to order
   Bytes edit = encode(kValidEdit);
   std::optional<std::uint64_t> edit_bytes;  // if it differs from the size of the edit
   std::uint64_t count = 1;                  // of touched chunks
   Bytes previous{1};
   void put(ByteWriter& out) const {
+    out.varint(seq);
+    out.svarint(ordered_us);
     out.varint(author);
     out.u64(instance);
     out.varint(client_seq);
     out.u8(cause);
     out.varint(subject);
-    out.svarint(ordered_us);
     out.svarint(delay_us);
     out.varint(edit_bytes.value_or(edit.size()));
     out.bytes(edit);
@@ -36,7 +39,6 @@ struct EditFields {
 
 struct CommitFields {
   std::uint32_t epoch = 1;
-  std::uint64_t first = 10;
   EditFields edit;
   std::size_t edits = 1;
   Bytes behind;
@@ -48,14 +50,14 @@ struct CommitFields {
     return bytes;
   }
   Offset<wire::Commit> operator()(FlatBufferBuilder& b) const {
-    return wire::CreateCommit(b, epoch, first, b.CreateVector(list()));
+    return wire::CreateCommit(b, epoch, b.CreateVector(list()));
   }
 };
 
 /// Returns a commit of these list bytes.
 auto commit_of(const Bytes& list) {
   return
-      [&list](FlatBufferBuilder& b) { return wire::CreateCommit(b, 1, 10, b.CreateVector(list)); };
+      [&list](FlatBufferBuilder& b) { return wire::CreateCommit(b, 1, b.CreateVector(list)); };
 }
 
 }  // namespace
@@ -98,8 +100,9 @@ TEST_CASE("a commit is refused if its fields contradict each other", "[protocol]
   const auto max = static_cast<std::int64_t>(kWireTimeUsMax);
   refuses<Commit, CommitFields>({
       [](auto& c) { c.epoch = 0; },
-      [](auto& c) { c.first = 0; },
-      [](auto& c) { c.first = ~0ULL; },
+      [](auto& c) { c.edit.seq = 0; },
+      [](auto& c) { c.edit.seq = kSequenceMax + 1; },
+      [](auto& c) { c.edit.seq = ~0ULL; },
       [](auto& c) { c.edits = 0; },
       [](auto& c) { c.behind = {0}; },
       [](auto& c) { c.edit.author = 1ULL << 32; },
@@ -213,7 +216,7 @@ TEST_CASE("a truncated list of edits holds the whole edits before its end, or is
 }
 
 TEST_CASE("a commit without a list is refused", "[protocol]") {
-  CHECK_FALSE(passes<Commit>([](auto& b) { return wire::CreateCommit(b, 1, 10); }));
+  CHECK_FALSE(passes<Commit>([](auto& b) { return wire::CreateCommit(b, 1); }));
 }
 
 }  // namespace runstone::test

@@ -52,13 +52,13 @@ TEST_CASE("queued edits get consecutive sequences, and the previous sequence of 
   const auto batch = authority.commit(kNow);
   REQUIRE(batch.has_value());
   CHECK(batch->commit.epoch == 3);
-  CHECK(batch->commit.first == 41);
+  CHECK(batch->commit.edits.at(0).seq == 41);
   REQUIRE(batch->commit.edits.size() == 3);
   CHECK(batch->commit.edits[0].previous == std::vector<Sequence>{0});
   CHECK(batch->commit.edits[1].previous == std::vector<Sequence>{41, 0});
   CHECK(batch->commit.edits[2].previous == std::vector<Sequence>{42});
   CHECK(batch->commit.edits[1].ordered_us == 1000);
-  CHECK(batch->touched == std::vector<ChunkKey>{kOrigin, kEast});
+  CHECK(batch->all_touched == std::vector<ChunkKey>{kOrigin, kEast});
   CHECK(authority.head() == 43);
   CHECK_FALSE(authority.commit(kNow).has_value());
 
@@ -274,7 +274,7 @@ TEST_CASE("recovery puts records back on the stacks and skips those that a snaps
   CHECK(second.chunks().find(kOrigin)->version == Version{1, 5});
   (void)second.submit(offer(6, box(0, 1), 1), true);
   const auto batch = second.commit(kNow);
-  CHECK(batch->commit.first == 6);
+  CHECK(batch->commit.edits.at(0).seq == 6);
   CHECK(batch->commit.edits[0].previous == std::vector<Sequence>{5});
   CHECK(second.chunks().find(kOrigin)->version == Version{2, 6});
 }
@@ -322,7 +322,7 @@ TEST_CASE("a commit never exceeds its limits; the rest is in the next one", "[wo
   Sequence next = 1;
   std::size_t commits = 0;
   while (const auto batch = authority.commit(kNow)) {
-    CHECK(batch->commit.first == next);
+    CHECK(batch->commit.edits.at(0).seq == next);
     CHECK(batch->records.size() <= kCommitEditsMax);
     next += batch->records.size();
     ++commits;

@@ -24,7 +24,7 @@ TEST_CASE("a commit is sent to every session that sees its chunk, and to its aut
   for (const SessionId s : {1U, 2U, 4U}) {
     const auto commits = bench.commits(s);
     REQUIRE(commits.size() == 1);
-    CHECK(commits[0].first == 1);
+    CHECK(commits[0].edits.at(0).seq == 1);
     CHECK(commits[0].edits.at(0).op == OperationId{4, 1, 1});
     CHECK(commits[0].edits[0].previous == std::vector<Sequence>{0});
   }
@@ -39,6 +39,43 @@ TEST_CASE("a commit is sent to every session that sees its chunk, and to its aut
   REQUIRE(bench.environment.records.size() == 1);
   CHECK(bench.environment.players.size() == 1);  // only players who edit get a row
   CHECK(bench.environment.players[0].author == 4);
+}
+
+TEST_CASE("of a commit, a session gets the edits that it sees or made, and no others", "[world]") {
+  Bench bench;
+  const SetVoxel far_away{{50 * 16 + 1, 1, 1}};
+  for (SessionId s = 1; s <= 4; ++s) bench.join(s, static_cast<std::uint8_t>(s));
+  bench.view(1, kSmall);
+  bench.view(2, kSmall);
+  bench.view(3, {1, {50, 0, 0}, 1, 0});
+  bench.edit(4, 1, kAtOrigin);  // sequence 1
+  bench.edit(1, 1, far_away);   // 2
+  bench.edit(2, 1, kAtOrigin);  // 3
+  bench.server.commit(bench.now());
+  const auto sequences = [&](SessionId session) {
+    std::vector<Sequence> out;
+    for (const Commit& commit : bench.commits(session))
+      for (const OrderedEdit& edit : commit.edits) out.push_back(edit.seq);
+    return out;
+  };
+  CHECK(sequences(1) == std::vector<Sequence>{1, 2, 3});  // it made the one far away
+  CHECK(sequences(2) == std::vector<Sequence>{1, 3});
+  CHECK(sequences(3) == std::vector<Sequence>{2});
+  CHECK(sequences(4) == std::vector<Sequence>{1});
+}
+
+TEST_CASE("edits that nobody sees and whose author has left are ordered and sent to nobody",
+          "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.join(2, 2);
+  bench.edit(1, 1, kAtOrigin);
+  bench.server.disconnected(1);
+  const std::size_t before = bench.environment.sent.size();
+  bench.server.commit(bench.now());
+  CHECK(bench.server.head() == 1);
+  CHECK(bench.environment.sent.size() == before);
+  CHECK(bench.environment.records.size() == 1);
 }
 
 TEST_CASE("edits that are queued together are one commit, and a later snapshot contains it",

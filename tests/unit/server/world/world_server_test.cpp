@@ -200,7 +200,7 @@ TEST_CASE("a restarted world continues its log: versions, previous sequences and
   const auto commits = bench.commits(1);
   REQUIRE(commits.size() == 1);
   CHECK(commits[0].epoch == 2);
-  CHECK(commits[0].first == 3);
+  CHECK(commits[0].edits.at(0).seq == 3);
   CHECK(commits[0].edits[0].previous == std::vector<Sequence>{2});
 }
 

@@ -1,6 +1,6 @@
-// The byte list of a Commit: ordered edits, each with the chunks that it touches. The list can be
-// read without the geometry of an edit, because it counts the chunks. docs/protocol.md specifies
-// the bytes. Internal to the message codec.
+// OrderedEditReader: reads the byte list of a Commit: ordered edits, each with the chunks that it
+// touches. The list can be read without the geometry of an edit, because it counts the chunks.
+// docs/protocol.md specifies the bytes; CommitEncoder writes them. Internal to the message codec.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,29 +13,27 @@
 
 namespace runstone {
 
-/// Requires a commit within the ranges that decode_message() demands.
-Bytes encode_ordered_edits(const Commit& commit);
-
 /// Reads the edits of one list in order, and keeps none of them.
 class OrderedEditReader {
  public:
   /// Requires `bytes` to outlive the reader. `chunk_edge` is 0 before Welcome: then the edit's
   /// geometry is not compared with the list of previous sequences.
-  OrderedEditReader(ByteView bytes, Sequence first, std::int32_t chunk_edge)
-      : in_(bytes), seq_(first), chunk_edge_(chunk_edge) {}
+  OrderedEditReader(ByteView bytes, std::int32_t chunk_edge)
+      : in_(bytes), chunk_edge_(chunk_edge) {}
 
   bool at_end() const { return in_.at_end(); }
   /// Reads the next edit into `edit`, and the chunks that it touches into `touched`, which stays
-  /// empty if the chunk edge is not known. Returns the edit's sequence. The caller may move from
-  /// both. Requires that the list has not ended.
-  Result<Sequence> next(OrderedEdit& edit, std::vector<ChunkCoord>& touched);
+  /// empty if the chunk edge is not known. The caller may move from both. Requires that the list
+  /// has not ended.
+  Result<void> next(OrderedEdit& edit, std::vector<ChunkCoord>& touched);
 
  private:
+  void take_sequence_and_time(OrderedEdit& edit);
   void take_descriptor(OrderedEdit& edit);
   void take_previous(OrderedEdit& edit);
 
   ByteReader in_;
-  Sequence seq_;
+  Sequence seq_ = 0;       // of the edit before
   TimeUs ordered_us_ = 0;  // of the edit before
   std::int32_t chunk_edge_;
 };

@@ -1,4 +1,4 @@
-#include "protocol/codec/ordered_edits.hpp"
+#include "protocol/codec/ordered_edit_reader.hpp"
 
 #include "common/core/assert.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -6,42 +6,9 @@
 
 namespace runstone {
 
-// An edit:
-//   varint author | u64 instance | varint client sequence | u8 cause | varint subject |
-//   svarint ordered_us minus that of the edit before, of the first edit minus 0 |
-//   svarint ordered_us - submitted_us | varint bytes of the descriptor | descriptor |
-//   varint touched chunks | for each: varint sequence of the edit minus that of the chunk before it
-Bytes encode_ordered_edits(const Commit& commit) {
-  RUNSTONE_ASSERT(!commit.edits.empty() && commit.edits.size() <= kCommitEditsMax);
-  Bytes bytes;
-  ByteWriter out(bytes);
-  Sequence seq = commit.first;
-  TimeUs ordered_us = 0;
-  for (const OrderedEdit& e : commit.edits) {
-    RUNSTONE_ASSERT(e.subject < seq && e.previous.size() <= kTouchedChunksMax);
-    out.varint(e.op.author);
-    out.u64(e.op.instance);
-    out.varint(e.op.seq);
-    out.u8(static_cast<std::uint8_t>(e.cause));
-    out.varint(e.subject);
-    out.svarint(e.ordered_us - ordered_us);
-    out.svarint(e.ordered_us - e.submitted_us);
-    const Bytes descriptor = encode(e.edit);
-    out.varint(descriptor.size());
-    out.bytes(descriptor);
-    out.varint(e.previous.size());
-    for (const Sequence previous : e.previous) {
-      RUNSTONE_ASSERT(previous < seq);
-      out.varint(seq - previous);
-    }
-    ordered_us = e.ordered_us;
-    ++seq;
-  }
-  return bytes;
-}
-
-Result<Sequence> OrderedEditReader::next(OrderedEdit& edit, std::vector<ChunkCoord>& touched) {
+Result<void> OrderedEditReader::next(OrderedEdit& edit, std::vector<ChunkCoord>& touched) {
   RUNSTONE_ASSERT(!at_end());
+  take_sequence_and_time(edit);
   edit.op.author =
       static_cast<AuthorId>(in_.varint_max(0xffff'ffff, "author of an edit exceeds 32 bits"));
   edit.op.instance = in_.u64();
@@ -49,12 +16,7 @@ Result<Sequence> OrderedEditReader::next(OrderedEdit& edit, std::vector<ChunkCoo
   const std::uint8_t cause = in_.u8();
   if (in_.ok() && cause > kCauseMax) in_.reject(ErrorCode::bad_value, "commit cause is unknown");
   edit.cause = static_cast<Cause>(cause);
-  edit.subject = in_.varint_max(seq_ - 1, "commit subject is not an earlier edit");
-  const auto time = [this](TimeUs from) {
-    return from + in_.svarint_in(-kWireTimeUsMax - from, kWireTimeUsMax - from,
-                                 "commit time is out of range");
-  };
-  edit.ordered_us = ordered_us_ = time(ordered_us_);
+  edit.subject = in_.varint_max(edit.seq - 1, "commit subject is not an earlier edit");
   // The difference is subtracted: a click lies before the edit's order.
   edit.submitted_us = edit.ordered_us - in_.svarint_in(edit.ordered_us - kWireTimeUsMax,
                                                        edit.ordered_us + kWireTimeUsMax,
@@ -74,7 +36,17 @@ Result<Sequence> OrderedEditReader::next(OrderedEdit& edit, std::vector<ChunkCoo
       return fail(ErrorCode::bad_value,
                   "commit does not list one previous sequence per touched chunk");
   }
-  return seq_++;
+  return {};
+}
+
+void OrderedEditReader::take_sequence_and_time(OrderedEdit& edit) {
+  const std::uint64_t step =
+      in_.varint_max(kSequenceMax - seq_, "commit sequence is out of range");
+  if (in_.ok() && step == 0) in_.reject(ErrorCode::bad_value, "commit sequences do not ascend");
+  edit.seq = seq_ += step;
+  edit.ordered_us = ordered_us_ +=
+      in_.svarint_in(-kWireTimeUsMax - ordered_us_, kWireTimeUsMax - ordered_us_,
+                     "commit time is out of range");
 }
 
 void OrderedEditReader::take_descriptor(OrderedEdit& edit) {

@@ -1,0 +1,66 @@
+#include "protocol/codec/commit_encoder.hpp"
+
+#include <numeric>
+
+#include "common/core/assert.hpp"
+#include "protocol/limits.hpp"
+
+namespace runstone {
+namespace {
+
+/// Writes the fields of an entry that do not depend on the edit before.
+void put_independent_fields(const OrderedEdit& edit, ByteWriter& out) {
+  RUNSTONE_ASSERT(edit.subject < edit.seq && edit.previous.size() <= kTouchedChunksMax);
+  out.varint(edit.op.author);
+  out.u64(edit.op.instance);
+  out.varint(edit.op.seq);
+  out.u8(static_cast<std::uint8_t>(edit.cause));
+  out.varint(edit.subject);
+  out.svarint(edit.ordered_us - edit.submitted_us);
+  const Bytes descriptor = encode(edit.edit);
+  out.varint(descriptor.size());
+  out.bytes(descriptor);
+  out.varint(edit.previous.size());
+  for (const Sequence previous : edit.previous) {
+    RUNSTONE_ASSERT(previous < edit.seq);
+    out.varint(edit.seq - previous);
+  }
+}
+
+}  // namespace
+
+CommitEncoder::CommitEncoder(const Commit& commit)
+    : epoch_(commit.epoch), all_(commit.edits.size()) {
+  RUNSTONE_ASSERT(!commit.edits.empty() && commit.edits.size() <= kCommitEditsMax);
+  std::iota(all_.begin(), all_.end(), 0U);
+  entries_.reserve(commit.edits.size());
+  ByteWriter out(bytes_);
+  Sequence last = 0;
+  for (const OrderedEdit& edit : commit.edits) {
+    RUNSTONE_ASSERT(edit.seq > last && edit.seq <= kSequenceMax);
+    last = edit.seq;
+    const std::size_t begin = bytes_.size();
+    put_independent_fields(edit, out);
+    entries_.push_back({edit.seq, edit.ordered_us, begin, bytes_.size()});
+  }
+}
+
+Bytes CommitEncoder::list(std::span<const std::uint32_t> edits) const {
+  RUNSTONE_ASSERT(!edits.empty());
+  Bytes bytes;
+  ByteWriter out(bytes);
+  Sequence seq = 0;
+  TimeUs ordered_us = 0;
+  for (const std::uint32_t i : edits) {
+    const Entry& entry = entries_[i];
+    RUNSTONE_ASSERT(entry.seq > seq);
+    out.varint(entry.seq - seq);
+    out.svarint(entry.ordered_us - ordered_us);
+    out.bytes(ByteView(bytes_).subspan(entry.begin, entry.end - entry.begin));
+    seq = entry.seq;
+    ordered_us = entry.ordered_us;
+  }
+  return bytes;
+}
+
+}  // namespace runstone
