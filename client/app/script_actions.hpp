@@ -35,6 +35,9 @@ class ScriptActions final : public ScriptHost {
   }
   std::optional<RayHit> pick() const override { return tool_.pick(); }
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
+  TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {
+    return session_.edit_wait_us(edit, now_us);
+  }
   Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
     return tool_.submit(edit, due_us, now_us);
   }

@@ -68,9 +68,11 @@ void PlayBot::step(TimeUs now_us) {
 void PlayBot::submit_due(TimeUs now_us) {
   while (open_bytes_ < kOpenBytesMax &&
          session_.replica().local_edits().all().size() < kLocalEditsMax) {
-    const auto due = schedule_.next(now_us);
-    if (!due) return;
-    const EditDescriptor& edit = recorded_.edits[due->index].edit;
+    if (!held_) held_ = schedule_.next(now_us);
+    if (!held_) return;
+    const EditDescriptor& edit = recorded_.edits[held_->index].edit;
+    if (session_.edit_wait_us(edit, now_us) > 0) return;
+    const auto due = std::exchange(held_, std::nullopt);
     const auto sequence = session_.submit(edit, due->due_us, now_us);
     if (!sequence) {
       ++counts_.refused[sequence.error().what];

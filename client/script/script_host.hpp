@@ -39,6 +39,8 @@ class ScriptHost {
   /// Returns the y of the highest shown voxel of the column that is not empty, or nullopt if there
   /// is none.
   virtual std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const = 0;
+  /// Returns how long this edit must wait for the player's edit budget. Requires a valid edit.
+  virtual TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) = 0;
   /// Submits an edit that was due at `due_us`. Fails if the client refuses it.
   virtual Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) = 0;
 

@@ -129,6 +129,10 @@ std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
 ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit) {
   if (const auto ok = validate(edit); !ok)
     return give_up(std::string("not an edit: ") + ok.error().what);
+  if (const TimeUs wait_us = host_.edit_wait_us(edit, now_us_); wait_us > 0) {
+    due_us_ = now_us_ + wait_us;
+    return Progress::waits;
+  }
   if (const auto ok = host_.submit(edit, now_us_, now_us_); !ok)
     fail(std::string("edit refused: ") + ok.error().what);
   return Progress::done;

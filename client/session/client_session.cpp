@@ -65,7 +65,10 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
         } else if constexpr (std::is_same_v<T, Commit>) {
           const auto taken = replica_->receive(m, arrival);
           if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
-        } else if constexpr (std::is_same_v<T, Reject> || std::is_same_v<T, DigestCheck>) {
+        } else if constexpr (std::is_same_v<T, Reject>) {
+          if (m.reason == RejectReason::rate_limited) allowance_.refused(arrival.now_us);
+          replica_->receive(m, arrival.now_us);
+        } else if constexpr (std::is_same_v<T, DigestCheck>) {
           replica_->receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, Durable>) {
           replica_->receive(m);
@@ -87,6 +90,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
 void ClientSession::on_session_accepted(const SessionAccepted& accepted, TimeUs now_us) {
   const Welcome& world = *welcome();
   opened_us_ = now_us;
+  allowance_.set(world.edit_budget, world.chunk_edge);
   replica_->set_view(view());
   waiting_ = replica_->open({.chunk_edge = world.chunk_edge,
                              .author = accepted.author,
@@ -117,7 +121,11 @@ void ClientSession::tick(TimeUs now_us) {
 
 Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs submitted_us,
                                              TimeUs now_us) {
+  // The edit is paid only once the replica has checked it.
+  if (validate(edit) && allowance_.wait_us(edit, now_us) > 0)
+    return fail(ErrorCode::limit_exceeded, "your edit budget is used up for now");
   const auto seq = replica_->submit(edit, submitted_us, now_us);
+  if (seq) allowance_.pay(edit, now_us);
   if (seq && is_open()) {
     waiting_.push_back(*seq);
     send_waiting_edits(now_us);

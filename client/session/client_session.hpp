@@ -16,6 +16,7 @@
 
 #include "client/replica/cache_lookup.hpp"
 #include "client/replica/replica.hpp"
+#include "client/session/edit_allowance.hpp"
 #include "client/session/history_requests.hpp"
 #include "client/session/server_connection.hpp"
 #include "common/core/result.hpp"
@@ -65,8 +66,14 @@ class ClientSession {
   void close(GoodbyeReason reason, std::string text) { connection_.close(reason, std::move(text)); }
 
   /// Shows and sends an edit. `submitted_us`: the click or the scheduled time; latency is measured
-  /// from there.
+  /// from there. Fails as Replica::submit() does, and with limit_exceeded if edit_wait_us() is not
+  /// 0.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
+  /// Returns how long the player's edit budget needs until it suffices for this edit, as far as this
+  /// client knows.
+  TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) {
+    return allowance_.wait_us(edit, now_us);
+  }
   /// Requests a view; its number is ignored.
   void set_view(const View& view);
   /// Requests the view as it was at a moment of the past, read-only, or as it is now.
@@ -155,6 +162,7 @@ class ClientSession {
   bool is_commanding_ = false, is_command_ok_ = false;
   std::vector<std::string> command_lines_;  // kCommandLinesKept at most
 
+  EditAllowance allowance_;
   std::vector<ClientSequence> waiting_;  // local edits to send, ascending
   // Cache lookups of this connection.
   std::set<ChunkKey> looked_up_;       // keys that were or will be looked up

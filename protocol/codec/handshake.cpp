@@ -74,6 +74,8 @@ Bytes transcript_of(std::string_view label, const Hello& hello, const Welcome& w
   t.field(welcome.challenge);
   t.number(static_cast<std::uint8_t>(welcome.encoding), 1);
   t.number(welcome.edit_volume_max, 8);
+  t.number(welcome.edit_budget.per_second, 8);
+  t.number(welcome.edit_budget.burst, 8);
   t.number(welcome.view_radius_max, 1);
   t.number(welcome.features, 8);
   return t.take();

@@ -62,7 +62,8 @@ struct BodyBuilder {
     return wire::CreateWelcome(b, m.protocol, world_id, m.epoch, m.durable, m.head, m.chunk_edge,
                                m.heights.y_min, m.heights.y_max, &spawn, materials, server_key,
                                challenge, signature, static_cast<std::uint8_t>(m.encoding),
-                               m.edit_volume_max, m.view_radius_max, m.features);
+                               m.edit_volume_max, m.edit_budget.per_second, m.edit_budget.burst,
+                               m.view_radius_max, m.features);
   }
   Offset<wire::ClientAuth> operator()(const ClientAuth& m) {
     return wire::CreateClientAuth(b, bytes_of(b, m.signature));

@@ -55,6 +55,13 @@ struct Hello {
   std::uint64_t features = 0;                // as sent: unknown bits are possible
   friend bool operator==(const Hello&, const Hello&) = default;
 };
+/// How fast a player may edit. docs/protocol.md has the prices of edits.
+struct EditBudget {
+  std::uint64_t per_second = 0;  // units that come back; 0: no limit
+  std::uint64_t burst = 0;       // units at most, at least 1 if there is a limit
+  bool is_limited() const { return per_second != 0; }
+  friend bool operator==(const EditBudget&, const EditBudget&) = default;
+};
 struct Welcome {
   std::uint32_t protocol = kProtocolVersion;
   WorldId world_id{};
@@ -69,6 +76,7 @@ struct Welcome {
   Signature signature{};
   ChunkEncoding encoding = ChunkEncoding::raw;
   std::uint64_t edit_volume_max = 0;
+  EditBudget edit_budget;  // of the player's key, for all of its sessions together
   std::uint8_t view_radius_max = 0;
   std::uint64_t features = 0;  // in force for this session; a subset of Hello's
   friend bool operator==(const Welcome&, const Welcome&) = default;

@@ -60,6 +60,7 @@ Result<Message> BodyReader::read(const wire::Welcome& t) const {
   m.heights = {t.y_min(), t.y_max()};
   m.encoding = static_cast<ChunkEncoding>(t.encoding());
   m.edit_volume_max = t.edit_volume_max();
+  m.edit_budget = {t.edits_per_second(), t.edit_burst()};
   m.view_radius_max = t.view_radius_max();
   m.features = t.features();
   if (!take_exact(t.world_id(), m.world_id)) return bad("welcome.world_id is not 16 bytes");
@@ -74,6 +75,8 @@ Result<Message> BodyReader::read(const wire::Welcome& t) const {
   if (!edge_known) return bad("welcome.chunk_edge is not 16, 32, 64 or 128");
   if (!validate(m.heights)) return bad("welcome.y_min .. y_max");
   if (!encoding_known(t.encoding())) return bad("welcome.encoding is unknown");
+  if ((m.edit_budget.per_second == 0) != (m.edit_budget.burst == 0))
+    return bad("welcome.edits_per_second and edit_burst are not both 0 or both above");
   if (m.view_radius_max > kViewRadiusMax) return bad("welcome.view_radius_max exceeds 64");
   if (const auto ok = take_materials(t.materials(), m.materials); !ok)
     return Unexpected<Error>{ok.error()};

@@ -25,16 +25,6 @@ std::optional<RejectReason> check_server_edit(const EditDescriptor& edit,
   return check_edit(edit, wider);
 }
 
-std::uint64_t edit_tokens(const EditDescriptor& edit, std::uint16_t chunk_edge) {
-  constexpr std::size_t kTokenBytes = 1024;
-  const auto* paste = std::get_if<Paste>(&edit.shape);
-  const std::uint64_t chunks =
-      std::min<std::uint64_t>(touched_chunks_bound(edit, chunk_edge), kTouchedChunksMax);
-  const std::uint64_t kib =
-      paste == nullptr ? 0 : (paste->clipboard->byte_size() + kTokenBytes - 1) / kTokenBytes;
-  return chunks + kib;
-}
-
 bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach) {
   const VoxelBox box = bounding_box(edit);
   const auto outside = [](double at, std::int32_t low, std::int32_t high) {

@@ -29,10 +29,6 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
 /// applies.
 std::optional<RejectReason> check_server_edit(const EditDescriptor& edit, const EditLimits& limits);
 
-/// Returns the tokens that an edit takes from its session's rate limit: one for each chunk that it
-/// may touch, at most kTouchedChunksMax, and one for each KiB of a clipboard, rounded up.
-std::uint64_t edit_tokens(const EditDescriptor& edit, std::uint16_t chunk_edge);
-
 /// Returns true if the distance from `from` to the geometry's bounding box is at most `reach`
 /// voxels.
 bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach);

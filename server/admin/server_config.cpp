@@ -92,6 +92,43 @@ FormField operators_field() {
           }};
 }
 
+/// Reads a name of kBuilderBudgets, or "100/4000". Returns nullopt if it is neither.
+std::optional<EditBudget> parse_budget(const std::string& text) {
+  for (const NamedBudget& named : kBuilderBudgets) {
+    if (text == named.name) return named.budget;
+  }
+  EditBudget budget;
+  const char* end = text.data() + text.size();
+  const auto rate = std::from_chars(text.data(), end, budget.per_second);
+  if (rate.ec != std::errc{} || rate.ptr == end || *rate.ptr != '/') return std::nullopt;
+  const auto burst = std::from_chars(rate.ptr + 1, end, budget.burst);
+  const bool is_valid = burst.ec == std::errc{} && burst.ptr == end && budget.per_second >= 1 &&
+                        budget.per_second <= kBudgetPerSecondMax && budget.burst >= 1 &&
+                        budget.burst <= kBudgetBurstMax;
+  if (!is_valid) return std::nullopt;
+  return budget;
+}
+
+FormField builder_budget_field() {
+  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+            const auto budget = parse_budget(text);
+            if (!budget) {
+              return "must be " + names_of(kBuilderBudgets) + ", or like 100/4000: 1.." +
+                     std::to_string(kBudgetPerSecondMax) + " units a second / 1.." +
+                     std::to_string(kBudgetBurstMax) + " at once";
+            }
+            config.builder_budget = *budget;
+            return std::nullopt;
+          },
+          [](const ServerConfig& config) -> std::string {
+            for (const NamedBudget& named : kBuilderBudgets) {
+              if (named.budget == config.builder_budget) return named.name;
+            }
+            return std::to_string(config.builder_budget.per_second) + "/" +
+                   std::to_string(config.builder_budget.burst);
+          }};
+}
+
 const std::vector<Field>& fields() {
   using C = ServerConfig;
   const auto number = [](const char* name, std::uint64_t C::* member, std::uint64_t min,
@@ -109,6 +146,10 @@ const std::vector<Field>& fields() {
       number("worker_threads", &C::worker_threads, 1, 64,
              "threads that generate, load and encode chunks"),
       number("sessions_max", &C::sessions_max, 1, 65'536, "sessions"),
+      number("sessions_per_key", &C::sessions_per_key, 0, 65'536,
+             "sessions of one player, 0: no limit"),
+      number("sessions_per_address", &C::sessions_per_address, 0, 65'536,
+             "sessions from one address, 0: no limit"),
       number("handshakes_per_address", &C::handshakes_per_address, 1, 65'536,
              "connections from one address that have not authenticated"),
       number("view_radius_max", &C::view_radius_max, 0, 64, "chunks; larger views are cut to it"),
@@ -135,9 +176,11 @@ const std::vector<Field>& fields() {
       number("height_max", &C::height_max, 1, 1ULL << 29, "voxels above y = 0 where edits may be"),
       number("depth_max", &C::depth_max, 0, 1ULL << 29, "voxels below y = 0 where edits may be"),
       number("reach_max", &C::reach_max, 0, 1ULL << 30, "voxels from player to edit, 0: no limit"),
-      number("edits_per_second", &C::edits_per_second, 0, kNoMax,
-             "edits per session, 0: no limit; one for each chunk that an edit touches"),
-      number("edit_burst", &C::edit_burst, 1, 1'000'000, "edits per session at once"),
+      {"builder_budget",
+       names_of(kBuilderBudgets) + ", or units a second / units at once: how much a player edits",
+       builder_budget_field()},
+      number("budgets_per_address", &C::budgets_per_address, 0, 1'000'000,
+             "times builder_budget for all players of one address, 0: no limit"),
       number("memory_mib", &C::memory_mib, 16, 1'048'576,
              "MiB of chunks before unused ones leave memory"),
       number("snapshot_edits", &C::snapshot_edits, 1, 1'000'000'000,

@@ -7,6 +7,7 @@
 // set, so a ServerConfig is always valid. It is read once and passed on by const reference.
 // docs/server-reference.md describes the settings.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -24,6 +25,18 @@
 
 namespace runstone {
 
+/// The budgets that have a name. docs/server-reference.md has the prices of edits.
+struct NamedBudget {
+  const char* name;
+  EditBudget budget;
+};
+inline constexpr std::array<NamedBudget, 4> kBuilderBudgets = {{{"small", {25, 1'000}},
+                                                                {"normal", {100, 4'000}},
+                                                                {"large", {1'000, 40'000}},
+                                                                {"unlimited", {}}}};
+/// Limits of a budget that has no name.
+inline constexpr std::uint64_t kBudgetPerSecondMax = 1'000'000, kBudgetBurstMax = 100'000'000;
+
 struct ServerConfig {
   // Place.
   std::string world = "world";  // folder
@@ -35,6 +48,8 @@ struct ServerConfig {
   std::uint64_t worker_threads = 2;  // 1..64: generate, load, encode
   // Sessions.
   std::uint64_t sessions_max = 256;           // 1..65536
+  std::uint64_t sessions_per_key = 4;         // of one player, 0: no limit
+  std::uint64_t sessions_per_address = 64;    // 0: no limit
   std::uint64_t handshakes_per_address = 32;  // unauthenticated connections, 1..65536
   std::uint64_t view_radius_max = 16;         // chunks, 0..64
   std::uint64_t view_interval_ms = 50;        // least time between two views of a session, 0..10000
@@ -57,8 +72,8 @@ struct ServerConfig {
   std::uint64_t height_max = 1ULL << 29;      // voxels above y = 0 where edits may be, 1..2^29
   std::uint64_t depth_max = 1ULL << 29;       // voxels below y = 0 where edits may be, 0..2^29
   std::uint64_t reach_max = 0;                // voxels from the player to the edit, 0: no limit
-  std::uint64_t edits_per_second = 2'000;     // per session, 0: no limit
-  std::uint64_t edit_burst = 4'000;           // per session, 1..1000000
+  EditBudget builder_budget{100, 4'000};      // of a player; kBuilderBudgets has names
+  std::uint64_t budgets_per_address = 4;      // of one address, times builder_budget, 0: no limit
   // World and disk.
   std::uint64_t memory_mib = 512;            // MiB of chunks that no session sees, 16..1048576
   std::uint64_t snapshot_edits = 20'000;     // between two rounds of snapshots, 1..10^9

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "server/limits/token_bucket.hpp"
+#include "common/core/token_bucket.hpp"
 
 namespace runstone {
 

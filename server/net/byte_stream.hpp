@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/core/ids.hpp"
+#include "server/limits/address_block.hpp"
 
 namespace runstone {
 
@@ -45,6 +46,8 @@ class ByteStream {
   virtual void close() = 0;
   /// Returns the address for log lines, such as "127.0.0.1:40312".
   virtual std::string peer() const = 0;
+  /// Returns the address that pays for the connection.
+  virtual AddressBlock address() const { return {}; }
 };
 
 /// Makes a stream over TCP with TCP_NODELAY and TCP_NOTSENT_LOWAT = `notsent_bytes`, so that little

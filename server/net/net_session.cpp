@@ -45,6 +45,7 @@ NetSession::NetSession(SessionId id, asio::io_context& io, std::unique_ptr<ByteS
       strand_(asio::make_strand(io)),
       stream_(std::move(stream)),
       peer_(stream_->peer()),
+      address_(stream_->address()),
       queue_(limits.send),
       gate_(limits.bytes_per_second, budget),
       write_wake_(strand_),

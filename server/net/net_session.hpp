@@ -17,7 +17,7 @@
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/limits/token_bucket.hpp"
+#include "common/core/token_bucket.hpp"
 #include "server/net/byte_stream.hpp"
 #include "server/net/chunk_gate.hpp"
 #include "server/net/net_events.hpp"
@@ -63,6 +63,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
 
   SessionId id() const { return id_; }
   const std::string& peer() const { return peer_; }
+  AddressBlock address() const { return address_; }
 
   /// Reports on_connected() and starts both loops. Call it once.
   void start();
@@ -118,6 +119,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   Strand strand_;
   std::unique_ptr<ByteStream> stream_;
   std::string peer_;
+  const AddressBlock address_;
   std::atomic<ChunkEncoding> encoding_{ChunkEncoding::raw};
   std::atomic<std::size_t> unhandled_{0};  // bytes, see NetLimits
   std::atomic<bool> reader_paused_{false};

@@ -24,6 +24,8 @@ class TcpStream : public ByteStream {
       const bool v6 = end.address().is_v6();
       peer_ = (v6 ? "[" : "") + end.address().to_string() + (v6 ? "]:" : ":") +
               std::to_string(end.port());
+      address_ = v6 ? address_block_v6(end.address().to_v6().to_bytes())
+                    : address_block_v4(end.address().to_v4().to_uint());
     }
     socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
     // Both options only make edits faster. The server works without them.
@@ -77,11 +79,13 @@ class TcpStream : public ByteStream {
     socket_.close(ignored);
   }
   std::string peer() const override { return peer_; }
+  AddressBlock address() const override { return address_; }
 
  private:
   asio::ip::tcp::socket socket_;
   std::vector<asio::const_buffer> rest_;  // of the write under way
   std::string peer_ = "?";
+  AddressBlock address_{};
 };
 
 }  // namespace

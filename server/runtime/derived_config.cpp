@@ -23,13 +23,15 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.materials = meta.materials;
   world.server_keys = key_pair_of(meta.server_key_seed);
   world.sessions_max = config.sessions_max;
+  world.sessions_per_key = config.sessions_per_key;
+  world.sessions_per_address = config.sessions_per_address;
   world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
   world.view_interval_us = static_cast<TimeUs>(config.view_interval_ms) * kUsPerMs;
   world.loads_in_flight_max = kLoadsPerWorker * config.worker_threads;
   world.edit_volume_max = config.edit_volume_max;
   world.reach_max = static_cast<double>(config.reach_max);
-  world.edits_per_second = config.edits_per_second;
-  world.edit_burst = config.edit_burst;
+  world.edit_budget = config.builder_budget;
+  world.budgets_per_address = config.budgets_per_address;
   world.idle_us_max = static_cast<TimeUs>(config.idle_s) * kUsPerSecond;
   world.preferred_encoding = config.encoding;
   world.digest_check_interval_us = static_cast<TimeUs>(config.digest_check_ms) * kUsPerMs;

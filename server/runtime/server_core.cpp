@@ -147,8 +147,9 @@ void ServerCore::on_connected(SessionId session) {
   auto net = listener_->find(session);
   logger("net").debug("session={} peer={} connected", session, net->peer());
   strand_.post([this, session, net = std::move(net)]() mutable {
+    const AddressBlock from = net->address();
     sessions_.add(session, std::move(net));
-    world_->connected(session, read_clocks());
+    world_->connected(session, read_clocks(), from);
   });
 }
 

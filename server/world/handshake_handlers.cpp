@@ -1,6 +1,5 @@
 #include "server/world/handshake_handlers.hpp"
 
-#include <algorithm>
 #include <string>
 
 #include "server/world/presence.hpp"
@@ -32,20 +31,39 @@ Welcome welcome_of(const WorldState& world) {
   welcome.materials = config.materials;
   welcome.server_key = config.server_keys.public_key;
   welcome.edit_volume_max = config.edit_volume_max;
+  welcome.edit_budget = config.edit_budget;
   welcome.view_radius_max = config.view_radius_max;
   return welcome;
 }
 
-/// Closes the session if the server is full. Only open sessions count, so that sockets which never
-/// authenticate do not keep players out.
-bool close_if_full(WorldState& world, SessionId session) {
-  const auto open = static_cast<std::size_t>(
-      std::count_if(world.sessions.begin(), world.sessions.end(),
-                    [](const auto& s) { return s.second.state == SessionStage::open; }));
-  if (open < world.config.sessions_max) return false;
-  close_session(
-      world, session, GoodbyeReason::server_full,
-      "the server holds " + std::to_string(world.config.sessions_max) + " sessions at most");
+/// Returns why the server has no seat for the session, or an empty string. Only open sessions
+/// count, so that sockets which never authenticate do not keep players out, and not the session
+/// that this one replaces.
+std::string no_seat(const WorldState& world, const WorldSession& mine) {
+  std::size_t all = 0, of_key = 0, of_address = 0;
+  for (const auto& [id, theirs] : world.sessions) {
+    const bool is_replaced = theirs.key == mine.key && theirs.instance == mine.instance;
+    if (theirs.state != SessionStage::open || is_replaced) continue;
+    ++all;
+    if (theirs.key == mine.key) ++of_key;
+    if (theirs.address == mine.address) ++of_address;
+  }
+  const WorldConfig& config = world.config;
+  const auto text = [](const char* who, std::size_t count) {
+    return who + std::to_string(count) + " sessions at most";
+  };
+  if (all >= config.sessions_max) return text("the server holds ", config.sessions_max);
+  if (config.sessions_per_key != 0 && of_key >= config.sessions_per_key)
+    return text("a key has ", config.sessions_per_key);
+  if (config.sessions_per_address != 0 && of_address >= config.sessions_per_address)
+    return text("an address has ", config.sessions_per_address);
+  return "";
+}
+
+bool close_if_no_seat(WorldState& world, SessionId session) {
+  const std::string why = no_seat(world, *world.find(session));
+  if (why.empty()) return false;
+  close_session(world, session, GoodbyeReason::server_full, why);
   return true;
 }
 
@@ -59,14 +77,14 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
                       std::to_string(kProtocolVersion));
     return;
   }
-  if (close_if_full(world, session)) return;
+  mine.key = hello.key;
+  mine.instance = hello.instance;
+  if (close_if_no_seat(world, session)) return;
   Welcome welcome = welcome_of(world);
   welcome.encoding = choose_encoding(world.config, hello.encodings);
   welcome.features = world.config.features & hello.features;
   world.random(welcome.challenge);
   welcome.signature = sign(world.config.server_keys, server_transcript(hello, welcome));
-  mine.key = hello.key;
-  mine.instance = hello.instance;
   mine.name = hello.name;
   mine.auth_transcript = client_transcript(hello, welcome);
   mine.durable_sent = welcome.durable;
@@ -92,7 +110,7 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
                   "the same client connected again");
     break;  // there is at most one, and closing it invalidates the iterators
   }
-  if (close_if_full(world, session)) return;
+  if (close_if_no_seat(world, session)) return;
   mine.auth_transcript = {};
   mine.state = SessionStage::open;
   mine.author = world.players.enter(mine.key, mine.name);
@@ -102,7 +120,6 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
   }
   mine.pose.at = world.config.spawn;
   mine.pose_changed = true;
-  mine.edits = TokenBucket(world.config.edits_per_second, world.config.edit_burst);
   mine.last_message_us = now.steady_us;
   world.interest.open(session);
   world.environment.opened(session);

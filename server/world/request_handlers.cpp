@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "protocol/rules/edit_check.hpp"
+#include "protocol/rules/edit_price.hpp"
 #include "server/world/delivery.hpp"
 
 namespace runstone {
 namespace {
 
-/// Returns what is wrong with the descriptor, for the author of the client.
-std::string detail_of(RejectReason reason, const EditRequest& request) {
-  if (reason != RejectReason::bad_edit || !request.fault) return "";
-  return std::string(request.fault->what) + " (at byte " + std::to_string(request.fault->offset) +
-         ")";
+/// Describes what is wrong with a descriptor, for the author of the client.
+std::string text_of(const Error& fault) {
+  return std::string(fault.what) + " (at byte " + std::to_string(fault.offset) + ")";
 }
 
 }  // namespace
@@ -42,16 +42,21 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   const OperationId op{mine.author, mine.instance, request.client_seq};
   const double reach = world.config.reach_max;
   // An invalid descriptor touches nothing: it costs the least that an edit costs.
-  const std::uint64_t cost = request.fault ? 1 : edit_tokens(request.edit, world.config.chunk_edge);
-  const std::uint64_t tokens = std::min(cost, world.config.edit_burst);
+  const std::uint64_t price =
+      request.fault ? 1
+                    : edit_price(request.edit, world.config.chunk_edge, world.config.edit_budget);
   std::optional<RejectReason> refusal;
+  std::string detail;
   if (world.authority.resolved().knows(op)) {
     refusal = world.authority.resolved().answer_to(op);
-  } else if (!mine.edits.take(tokens, now.steady_us)) {
+  } else if (const auto unpaid =
+                 world.edit_ledger.charge({mine.key, mine.address}, price, now.steady_us)) {
     refusal = RejectReason::rate_limited;
+    detail = unpaid->text();
     world.authority.reject(op, *refusal);
   } else if (request.fault) {
     refusal = RejectReason::bad_edit;
+    detail = text_of(*request.fault);
     world.authority.reject(op, *refusal);
   } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {
     refusal = RejectReason::out_of_reach;
@@ -68,7 +73,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;
   mine.awaits_durable = std::max(mine.awaits_durable, applied_by);
   send_reject(world, session,
-              {request.client_seq, *refusal, detail_of(*refusal, request), applied_by});
+              {request.client_seq, *refusal, std::move(detail), applied_by});
 }
 
 void on_move(WorldState& world, SessionId session, const Move& move) {

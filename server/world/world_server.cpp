@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/core/key_text.hpp"
-#include "protocol/rules/edit_check.hpp"
+#include "protocol/rules/edit_price.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/cached_chunk_handlers.hpp"
 #include "server/world/command_handlers.hpp"
@@ -75,6 +75,16 @@ void retry_loads(WorldState& world, const Clocks& now) {
   }
 }
 
+/// Returns the payer of an author with an open session.
+std::optional<EditPayer> payer_of(const WorldState& world, AuthorId author) {
+  if (author == 0) return std::nullopt;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.state == SessionStage::open && session.author == author)
+      return EditPayer{session.key, session.address};
+  }
+  return std::nullopt;
+}
+
 /// Counts the end of a load that was under way.
 void count_load_end(WorldState& world, const ChunkKey& key) {
   if (world.authority.chunks().residency(key) == Residency::loading) world.loads.load_ended();
@@ -92,8 +102,9 @@ void WorldServer::replay_onto_stack(const EditRecord& record) {
   state_->authority.replay_onto_stack(record);
 }
 
-void WorldServer::connected(SessionId session, const Clocks& now) {
+void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock from) {
   WorldSession fresh;
+  fresh.address = from;
   fresh.connected_us = fresh.last_message_us = now.steady_us;
   const bool is_new = state_->sessions.emplace(session, std::move(fresh)).second;
   RUNSTONE_ASSERT(is_new);
@@ -147,11 +158,7 @@ WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector
   // sequences.
   if (world.authority.resolved().knows(offers.front().op) || offers.back().op.seq > kSequenceMax)
     return {State::taken};
-  std::vector<WorldSession*> payers;
-  for (auto& [id, session] : world.sessions) {
-    const bool pays = payer != 0 && session.state == SessionStage::open && session.author == payer;
-    if (pays) payers.push_back(&session);
-  }
+  const std::optional<EditPayer> paying = payer_of(world, payer);
   ServerEditsResult out;
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player);
@@ -159,12 +166,13 @@ WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector
       out.reason = "the log is full (log_queue_records)";
       break;
     }
-    const std::uint64_t tokens =
-        std::min(edit_tokens(offer.edit, world.config.chunk_edge), world.config.edit_burst);
-    const auto can_pay = [&](WorldSession* s) { return s->edits.take(tokens, now.steady_us); };
-    if (!payers.empty() && std::none_of(payers.begin(), payers.end(), can_pay)) {
-      out.reason = "the author's edits per second are used up (edits_per_second)";
-      break;
+    if (paying) {
+      const std::uint64_t price =
+          edit_price(offer.edit, world.config.chunk_edge, world.config.edit_budget);
+      if (const auto unpaid = world.edit_ledger.charge(*paying, price, now.steady_us)) {
+        out.reason = "the player's edit budget is used up (builder_budget)";
+        break;
+      }
     }
     const auto refusal = world.authority.submit(offer, true);
     RUNSTONE_ASSERT(!refusal);

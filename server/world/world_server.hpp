@@ -36,7 +36,8 @@ class WorldServer {
   void replay_onto_stack(const EditRecord& record);
 
   // Sessions.
-  void connected(SessionId session, const Clocks& now);
+  /// Adds a connection from this address.
+  void connected(SessionId session, const Clocks& now, AddressBlock from = {});
   /// Handles a verified message. Closes the session if its stage does not allow the message:
   /// not_authenticated before session accepted, unexpected_message otherwise. Ignores messages of
   /// closed sessions.
@@ -68,10 +69,9 @@ class WorldServer {
   };
   /// Orders the offers at once and in order, behind all queued edits, as far as the log has room.
   /// Requires that they pass check_server_edit(), that their client sequences ascend, that they
-  /// have one author and instance, and that their cause is not player. Each offer costs
-  /// edit_tokens() of the author `payer`, taken from the first session of that author that has
-  /// them; an edit that costs more than edit_burst costs edit_burst. Nobody pays if `payer` is 0 or
-  /// has no session.
+  /// have one author and instance, and that their cause is not player. Each offer costs its
+  /// edit_price(), paid as an edit of the author `payer` is, from the address of the author's first
+  /// session. Nobody pays if `payer` is 0 or has no session.
   ServerEditsResult order_server_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                        const Clocks& now);
 

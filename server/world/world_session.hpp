@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "common/core/bytes.hpp"
+#include "common/core/token_bucket.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/interest/cache_claims.hpp"
-#include "server/limits/token_bucket.hpp"
+#include "server/limits/address_block.hpp"
 #include "server/world/world_environment.hpp"
 
 namespace runstone {
@@ -42,6 +43,7 @@ struct WorldSession {
   std::uint64_t features = 0;  // in force, from welcome on
   TimeUs connected_us = 0;
   TimeUs last_message_us = 0;
+  AddressBlock address{};
   PublicKey key{};
   ClientInstance instance = 0;
   std::string name;
@@ -56,7 +58,6 @@ struct WorldSession {
       0;  // the client's last edit; the session gets the watermark at once until then
   // Rejects that did not fit the session's queue, in order. They are sent when it drains.
   std::vector<Reject> pending_rejects;
-  TokenBucket edits{0, 0};
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};
   std::optional<std::uint32_t> command;  // id of the command under way
   // Views (view_scheduler.hpp).

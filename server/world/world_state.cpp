@@ -31,6 +31,7 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
       checkpointer(config.snapshots, start.checkpoint),
       interest(CoordLimit::of(config.chunk_edge)),
       loads(config.loads_in_flight_max),
+      edit_ledger(config.edit_budget, config.budgets_per_address),
       durable(start.log.last),
       view_chunks_left(config.view_chunks_per_tick) {
   for (const auto& [key, version] : start.snapshots) authority.chunks().set_saved(key, version);

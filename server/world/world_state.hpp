@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/interest/interest.hpp"
+#include "server/limits/edit_ledger.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
 #include "server/world/load_queue.hpp"
@@ -31,6 +32,7 @@ struct WorldState {
   LoadQueue loads;
   LoadRetries load_retries;
   Players players;
+  EditLedger edit_ledger;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
   WorldCounters counters;

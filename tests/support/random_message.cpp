@@ -135,6 +135,7 @@ Welcome any_welcome(SplitMix64& rng) {
   draw(rng, m.signature);
   m.encoding = static_cast<ChunkEncoding>(1 + rng.below(3));
   m.edit_volume_max = any64(rng);
+  if (rng.below(2) == 0) m.edit_budget = {1 + (any64(rng) >> 1), 1 + (any64(rng) >> 1)};
   m.view_radius_max = static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1));
   m.features = any64(rng);
   return m;

@@ -139,9 +139,10 @@ void request_chunks(AttackThread& thread) {
   thread.flood(begin, request, rate_of(thread));
 }
 
-/// Floods edits of this shape at a place of the thread's own, far from everybody.
-template <class ShapeAt>
-void flood_edits(AttackThread& thread, const ShapeAt& shape_at) {
+/// Floods edits at a place of the thread's own, far from everybody. `edit_at` returns the edit at a
+/// voxel near that place.
+template <class EditAt>
+void flood_edits(AttackThread& thread, const EditAt& edit_at) {
   const VoxelPos home{1 << 20, 0, static_cast<std::int32_t>(thread.index() + 1) << 12};
   ClientSequence next = 0;
   const auto begin = [&](AttackClient& client) {
@@ -152,20 +153,70 @@ void flood_edits(AttackThread& thread, const ShapeAt& shape_at) {
   const auto edit = [&](AttackClient& client) {
     const VoxelPos at{home.x + thread.random().between(-64, 64), thread.random().between(-64, 64),
                       home.z + thread.random().between(-64, 64)};
-    const auto material = static_cast<Material>(thread.random().below(2));
-    client.queue(EditRequest{++next, 0, {shape_at(at), {}, material}});
+    client.queue(EditRequest{++next, 0, edit_at(at)});
   };
   thread.flood(begin, edit, rate_of(thread));
 }
 
 void edit_too_often(AttackThread& thread) {
-  flood_edits(thread, [](const VoxelPos& at) { return EditShape{SetVoxel{at}}; });
+  flood_edits(thread, [&thread](const VoxelPos& at) {
+    return EditDescriptor{SetVoxel{at}, {}, static_cast<Material>(thread.random().below(2))};
+  });
 }
 
 void edit_too_much(AttackThread& thread) {
   // 905,000 voxels, just below what one edit may have by default.
   constexpr std::uint16_t kRadius = 60;
-  flood_edits(thread, [](const VoxelPos& at) { return EditShape{FillSphere{at, kRadius}}; });
+  flood_edits(thread, [&thread](const VoxelPos& at) {
+    const auto material = static_cast<Material>(thread.random().below(2));
+    return EditDescriptor{FillSphere{at, kRadius}, {}, material};
+  });
+}
+
+void paste_much(AttackThread& thread) {
+  // 47,000 runs, a byte each: about the longest clipboard that an edit may have.
+  constexpr std::uint32_t kRuns = 47'000;
+  const Extent extent{128, 125, 3};
+  RunChunk cells{extent, AxisOrder::xyz, RunList(extent.volume())};
+  for (std::uint32_t end = 1; end <= kRuns; ++end) {
+    cells.runs.push_back(
+        {end == kRuns ? extent.volume() : end, static_cast<Material>(1 + end % 2)});
+  }
+  const auto clipboard = Clipboard::of({1, 2}, cells);
+  if (!clipboard) return;
+  flood_edits(thread, [&clipboard](const VoxelPos& at) {
+    return EditDescriptor{Paste{at, *clipboard, {}}, {}, kEmpty};
+  });
+}
+
+void edit_widely(AttackThread& thread) {
+  // 922,624 voxels in one layer, each time in other chunks.
+  constexpr std::int32_t kWidth = 1'024, kDepth = 901, kPlaces = 1'000;
+  flood_edits(thread, [&thread](const VoxelPos& at) {
+    VoxelBox box{at, at};
+    box.min.x += kWidth * thread.random().between(-kPlaces, kPlaces);
+    box.max = {box.min.x + kWidth, box.min.y + 1, box.min.z + kDepth};
+    return EditDescriptor{FillBox{box}, {}, 1};
+  });
+}
+
+void take_seats(AttackThread& thread) {
+  constexpr std::size_t kSeatsMax = 300;
+  constexpr int kWaitMs = 1'000, kPauseMs = 20;
+  std::vector<std::unique_ptr<AttackClient>> seats;
+  for (ClientInstance instance = 1; !thread.is_over(); ++instance) {
+    if (seats.size() < kSeatsMax) {
+      auto client = thread.connect();
+      if (client != nullptr && client->open_session(thread.index(), instance, kWaitMs)) {
+        seats.push_back(std::move(client));
+      } else if (client != nullptr) {
+        thread.end(*client);
+      }
+    }
+    for (const auto& seat : seats) seat->read();
+    thread.pause_ms(kPauseMs);
+  }
+  for (const auto& seat : seats) thread.end(*seat);
 }
 
 void travel_too_often(AttackThread& thread) {
@@ -299,7 +350,7 @@ void keep_the_machine_busy(AttackThread& thread) {
   }
 }
 
-constexpr std::array<Attack, 14> kAttacks = {{
+constexpr std::array<Attack, 17> kAttacks = {{
     {"elsewhere", "as many threads copy bytes in the kernel: no attack, only a busy machine",
      keep_the_machine_busy},
     {"never-reads", "a view of radius 64, without ever reading", never_read},
@@ -318,6 +369,10 @@ constexpr std::array<Attack, 14> kAttacks = {{
     {"chunk-requests", "64 chunks of a view a message, again and again", request_chunks},
     {"edits", "single voxels, 9,000 a second and as many as the socket takes", edit_too_often},
     {"large-edits", "the same with spheres of 905,000 voxels", edit_too_much},
+    {"pastes", "the same with clipboards of 47 KB", paste_much},
+    {"wide-edits", "the same with layers of 1,024 x 901 voxels, each in other chunks",
+     edit_widely},
+    {"seats", "as many sessions of one key as the server gives, which say nothing", take_seats},
     {"travel", "requests of the past, likewise", travel_too_often},
     {"commands", "command lines, likewise, half of them 1 KiB of nonsense", command_too_often},
 }};

@@ -32,6 +32,7 @@ struct AttackResult {
   std::array<double, 3> resident_mb{};
   std::array<double, 3> server_cores{};
   double attacker_cores = 0;
+  double written_mb = 0;  // to disk, during the attack
 };
 
 /// Returns the reasons in the log lines for ended sessions, such as "timed_out: no message for too
@@ -88,6 +89,7 @@ class AttackRun {
                              seconds, {"--replicas", "0"});
     if (!fleet) return Unexpected<std::string>{fleet.error()};
     const double cores_before = server_.program->core_seconds();
+    const auto written_before = static_cast<double>(server_.program->written_bytes());
     std::optional<RunningAttack> attack;
     std::optional<JoinProbe> probe;
     if (phase == during) {
@@ -106,6 +108,8 @@ class AttackRun {
       out.joins = probe->finish();
       out.outcome = attack->finish();
       out.attacker_cores = out.outcome.core_seconds / seconds;
+      out.written_mb =
+          (static_cast<double>(server_.program->written_bytes()) - written_before) / 1e6;
     }
     const auto seen = fleet->finish(testbed_);
     if (!seen) return Unexpected<std::string>{seen.error()};
@@ -140,6 +144,7 @@ void add_figures(const AttackResult& result, std::vector<Figure>& figures) {
   add("joins_open", result.joins.open);
   add("joins_slowest_ms", result.joins.slowest_ms);
   add("attacker_cores", result.attacker_cores);
+  add("during_written_mb", result.written_mb);
   add("attacker_connections", static_cast<double>(result.outcome.connections));
   add("attacker_sent_mb", static_cast<double>(result.outcome.bytes_sent) / 1e6);
   add("attacker_received_mb", static_cast<double>(result.outcome.bytes_received) / 1e6);
@@ -178,11 +183,12 @@ void write_rows(const AttackResult& result, std::string& latencies, std::string&
   }
   fmt::format_to(std::back_inserter(latencies),
                  "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | "
-                 "{:.0f}, {:.0f}, {:.0f} | {:.2f}, {:.2f} | {:.2f} |\n",
+                 "{:.0f}, {:.0f}, {:.0f} | {:.1f} | {:.2f}, {:.2f} | {:.2f} |\n",
                  result.name, times(seen[before]), times(seen[during]), times(seen[after]), samples,
                  never, disconnects, violations, result.joins.open, result.joins.tried,
                  number_text(result.joins.slowest_ms), result.resident_mb[before],
-                 result.resident_mb[during], result.resident_mb[after], result.server_cores[before],
+                 result.resident_mb[during], result.resident_mb[after], result.written_mb,
+                 result.server_cores[before],
                  result.server_cores[during], result.attacker_cores);
   fmt::format_to(std::back_inserter(answers), "| {} | {} | {}, {} | {} | {} |\n", result.name,
                  result.outcome.connections,
@@ -217,8 +223,9 @@ Done measure_attacks(Testbed& testbed, NetFindings& findings) {
       "it.\n\n"
       "| attack | before p50, p99, max ms | during | after | samples, never | "
       "bots disconnected, rules broken | newcomers accepted, slowest ms | "
-      "server MB before, peak, after | server cores before, during | attackers' cores |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n"
+      "server MB before, peak, after | MB written to disk during | "
+      "server cores before, during | attackers' cores |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n"
       "{}\n"
       "| attack | connections | MB sent, received | answers to the attackers | "
       "reasons in the server's log |\n"

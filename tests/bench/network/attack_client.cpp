@@ -63,11 +63,11 @@ AttackClient::AttackClient(std::uint16_t port, std::uint32_t from, int receive_b
       would_block(errno);
 }
 
-bool AttackClient::open_session(std::uint64_t identity, int wait_ms) {
+bool AttackClient::open_session(std::uint64_t identity, ClientInstance instance, int wait_ms) {
   const KeyPair keys = key_of(identity);
   Hello hello;
   hello.key = keys.public_key;
-  hello.instance = identity | 1;
+  hello.instance = instance;
   hello.name = "mallory";
   hello.features = kFeatureCommands;
   queue(hello);

@@ -40,8 +40,8 @@ std::unique_ptr<AttackClient> AttackThread::connect(std::uint32_t from, int rece
 }
 
 std::unique_ptr<AttackClient> AttackThread::join(int receive_bytes) {
-  auto client = connect(kLoopback, receive_bytes);
-  if (client == nullptr || client->open_session(random_.next(), kJoinMsMax)) return client;
+  auto client = connect(kAttackers, receive_bytes);
+  if (client == nullptr || client->open_session(random_.next(), 1, kJoinMsMax)) return client;
   end(*client);
   pause_ms(kAgainMs);
   return nullptr;

@@ -19,7 +19,8 @@ inline constexpr double kJustBelowFlooding = 9'000;
 
 class AttackThread {
  public:
-  static constexpr std::uint32_t kLoopback = 0x7F000001;  // 127.0.0.1
+  static constexpr std::uint32_t kLoopback = 0x7F000001;  // 127.0.0.1: of the honest clients
+  static constexpr std::uint32_t kAttackers = kLoopback + 1;  // 127.0.0.2
   static constexpr unsigned kConnectionsMax = 20'000;     // of each thread
 
   AttackThread(std::uint16_t port, unsigned index, double seconds, std::uint64_t seed);
@@ -31,7 +32,7 @@ class AttackThread {
   void pause_ms(int ms) const;
 
   /// Returns a new connection, or null if the attack is over or has used its connections.
-  std::unique_ptr<AttackClient> connect(std::uint32_t from = kLoopback, int receive_bytes = 0);
+  std::unique_ptr<AttackClient> connect(std::uint32_t from = kAttackers, int receive_bytes = 0);
   /// Returns a new connection with a session. Returns null after a pause if the server rejected it.
   std::unique_ptr<AttackClient> join(int receive_bytes = 0);
   /// Records the ending of a connection.

@@ -139,6 +139,15 @@ std::uint64_t Child::resident_bytes() const {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
+std::uint64_t Child::written_bytes() const {
+  std::ifstream file("/proc/" + std::to_string(pid_) + "/io");
+  std::uint64_t bytes = 0;
+  for (std::string name; file >> name >> bytes;) {
+    if (name == "write_bytes:") return bytes;
+  }
+  return 0;
+}
+
 std::string Child::explain(const std::string& what) const {
   constexpr std::size_t kLines = 8;
   std::ifstream file(log_);

@@ -33,6 +33,8 @@ class Child {
   /// Returns the processor time of the program and its threads so far, in seconds; 0 after its end.
   double core_seconds() const;
   std::uint64_t resident_bytes() const;
+  /// Returns the bytes that the program has caused to be written to disks so far.
+  std::uint64_t written_bytes() const;
   const std::string& log() const { return log_; }
   /// Returns "NAME did WHAT; the end of its output: ...".
   std::string explain(const std::string& what) const;

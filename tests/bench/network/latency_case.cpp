@@ -130,7 +130,7 @@ Result<CaseResult, std::string> run_case(Testbed& testbed, const test::LinkProfi
   auto link = testbed.make_link(profile);
   if (!link) return failed(link);
   auto server = testbed.start_server(**link, testbed.fresh("world"),
-                                     {"--generator", "terrain", "--seed", "7"});
+                                     without_player_limits({"--generator", "terrain", "--seed", "7"}));
   if (!server) return failed(server);
   std::unique_ptr<Child> bots;
   if (load.bots != 0) {

@@ -106,6 +106,13 @@ Result<std::string, std::string> Testbed::imported_world() {
   return imported_;
 }
 
+std::vector<std::string> without_player_limits(std::vector<std::string> flags) {
+  for (const char* word : {"--builder-budget", "unlimited", "--sessions-per-key", "0",
+                           "--sessions-per-address", "0"})
+    flags.emplace_back(word);
+  return flags;
+}
+
 Result<nlohmann::json, std::string> read_report(const std::string& file) {
   std::ifstream in(file);
   nlohmann::json out = nlohmann::json::parse(in, nullptr, false);

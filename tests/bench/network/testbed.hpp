@@ -70,6 +70,10 @@ class Testbed {
   std::string imported_;
 };
 
+/// Returns `flags` and those that take all limits off what players may cost, for experiments with
+/// many clients on one address that measure something else.
+std::vector<std::string> without_player_limits(std::vector<std::string> flags);
+
 /// Reads a report of one of the product's programs.
 Result<nlohmann::json, std::string> read_report(const std::string& file);
 /// Returns a number of a report: infinite for "inf" and "infinite", 0 for null or a missing value.

@@ -57,6 +57,7 @@ Welcome a_welcome() {
   m.challenge = counting<32>(0x40);
   m.encoding = ChunkEncoding::packed;
   m.edit_volume_max = 1'000'000;
+  m.edit_budget = {100, 4'000};
   m.view_radius_max = 16;
   m.features = 5;
   return m;

@@ -79,8 +79,8 @@ TEST_CASE("edits refused by a rate limit are offered again until all are applied
   const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
   REQUIRE(log.has_value());
   ServerConfig config = quiet_config(live.path());
-  config.edits_per_second = 200;
-  config.edit_burst = 50;
+  config.builder_budget = {200, 50};
+  config.budgets_per_address = 1;  // for all players of the log together
   auto server = start_server(config, flat_creation());
   const PlayReport report = play(server->port(), *log, 0);
   INFO(to_table(report) << report.failure);

@@ -30,7 +30,6 @@ EditRequest edit(ClientSequence seq) {
 
 ServerConfig crash_config(const std::string& world) {
   ServerConfig config = quiet_config(world);
-  config.edits_per_second = 0;
   return config;
 }
 

@@ -10,12 +10,15 @@
 
 namespace runstone::test {
 
+/// Returns a configuration without the limits of what players may cost.
 inline ServerConfig quiet_config(const std::string& world) {
   start_logging(LogLevel::error);
   ServerConfig config;
   config.world = world;
   config.listen = "127.0.0.1:0";
   config.log_level = LogLevel::error;
+  config.builder_budget = {};
+  config.sessions_per_key = config.sessions_per_address = 0;
   return config;
 }
 

@@ -51,7 +51,6 @@ TEST_CASE("a client that never reads loses chunks and commits, and the server go
   ServerConfig config = quiet_config(folder / "world");
   config.chunk_queue_kib = 64;
   config.edit_queue_kib = 64;
-  config.edits_per_second = 0;
   config.messages_per_second = 0;
   const auto server = start_server(config, flat_creation());
   RawClient silent(server->port());

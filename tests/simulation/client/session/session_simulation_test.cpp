@@ -122,7 +122,6 @@ class Simulation {
     config.heights = {-24, 30};  // random edits reach beyond both
     config.materials = default_material_table();
     config.server_keys = key_pair_of(KeySeed{7});
-    config.edits_per_second = 0;
     // Many rounds, so that crashes fall between snapshots and checkpoints.
     config.snapshots.edits_max = 300;
     config.snapshots.interval_us = 3'000'000;

@@ -69,6 +69,10 @@ struct FakeScriptHost final : ScriptHost {
     if (x > 1000) return std::nullopt;
     return 7;
   }
+  TimeUs budget_from_us = 0;  // edits must wait until then
+  TimeUs edit_wait_us(const EditDescriptor& /*edit*/, TimeUs now_us) override {
+    return std::max<TimeUs>(0, budget_from_us - now_us);
+  }
   Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
     edits.push_back({edit, due_us, now_us});
     if (!takes) return runstone::fail(ErrorCode::bad_value, "the past cannot be edited");

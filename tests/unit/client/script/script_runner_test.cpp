@@ -68,6 +68,17 @@ TEST_CASE_METHOD(ScriptBench,
   CHECK(host.edits.empty());
 }
 
+TEST_CASE_METHOD(ScriptBench, "an edit waits until the edit budget suffices", "[bots]") {
+  host.budget_from_us = 1'500'000;
+  load("set 1 2 3 stone\nset 1 2 4 stone");
+  runner->step(1'000'000);
+  CHECK(host.edits.empty());
+  CHECK(runner->due_us() == 1'500'000);
+  runner->step(1'500'000);
+  CHECK(host.edits.size() == 2);
+  CHECK(runner->finished());
+}
+
 TEST_CASE_METHOD(ScriptBench, "look takes degrees, and lookat takes a place", "[bots]") {
   run("look 90 -45");
   CHECK(host.yaw == Approx(std::numbers::pi / 2));

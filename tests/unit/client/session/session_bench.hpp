@@ -30,6 +30,7 @@ struct Server {
   Hello hello;
   Welcome welcome;
   ClientSequence resolved = 0;
+  EditBudget edit_budget;
   AuthorityModel world{kEdge, 3};
 
   Welcome make_welcome() {
@@ -43,6 +44,7 @@ struct Server {
     welcome.challenge = {7};
     welcome.view_radius_max = 8;
     welcome.edit_volume_max = 1000;
+    welcome.edit_budget = edit_budget;
     welcome.signature = sign(keys_of_server, server_transcript(hello, welcome));
     return welcome;
   }

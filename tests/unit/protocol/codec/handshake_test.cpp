@@ -94,6 +94,8 @@ TEST_CASE("a change of any field of Hello or Welcome on the way breaks both sign
             e.welcome.encoding == ChunkEncoding::raw ? ChunkEncoding::packed : ChunkEncoding::raw;
       },
       [](Exchange& e) { e.welcome.edit_volume_max ^= 1; },
+      [](Exchange& e) { e.welcome.edit_budget.per_second ^= 1; },
+      [](Exchange& e) { e.welcome.edit_budget.burst ^= 1; },
       [](Exchange& e) { e.welcome.view_radius_max ^= 1; },
       [](Exchange& e) { e.welcome.features ^= 1; },
   };

@@ -21,6 +21,29 @@ TEST_CASE("the printed configuration reads back to an equal one", "[admin]") {
   CHECK(to_toml(read) == to_toml(config));
 }
 
+TEST_CASE("a builder budget has a name, or a rate and a burst", "[admin]") {
+  ServerConfig config;
+  CHECK(to_toml(config).find("builder_budget = \"normal\"") != std::string::npos);
+  REQUIRE(set_config(config, "builder_budget", "large").has_value());
+  CHECK(config.builder_budget == EditBudget{1'000, 40'000});
+  REQUIRE(set_config(config, "builder_budget", "7/30").has_value());
+  CHECK(config.builder_budget == EditBudget{7, 30});
+  ServerConfig read;
+  REQUIRE(read_config_toml(read, to_toml(config), "printed").has_value());
+  CHECK(read == config);
+  REQUIRE(set_config(config, "builder_budget", "unlimited").has_value());
+  CHECK_FALSE(config.builder_budget.is_limited());
+  for (const char* bad : {"", "huge", "7", "7/", "/30", "0/30", "7/0", "-7/30", "7/30/1", "7/30 ",
+                          "1000001/30", "7/100000001", "99999999999999999999/1"}) {
+    CAPTURE(bad);
+    const auto set = set_config(config, "builder_budget", bad);
+    REQUIRE_FALSE(set.has_value());
+    CHECK(set.error().find("small, normal, large or unlimited") != std::string::npos);
+    CHECK_FALSE(config.builder_budget.is_limited());
+  }
+  CHECK_FALSE(set_config(config, "budgets_per_address", "-1").has_value());
+}
+
 TEST_CASE("every setting is printed on one line and has a help text", "[admin]") {
   std::size_t lines = 0;
   for (const char c : to_toml(ServerConfig{})) lines += c == '\n' ? 1 : 0;

@@ -129,17 +129,16 @@ TEST_CASE("the rest of a chunk is planned again if another player edits it betwe
   CHECK(b.job.progress().chunks_changed == 2);
 }
 
-TEST_CASE("a job with a payer writes as fast as the rate of the payer allows", "[rollback]") {
+TEST_CASE("a job with a payer writes as fast as the budget of the payer allows", "[rollback]") {
   WorldConfig slow = config();
-  slow.edits_per_second = 10;
-  slow.edit_burst = 4;
+  slow.edit_budget = {10, 4};
   JobBench b(1, slow);
   REQUIRE(b.author == 1);
   b.plan_all(5);
   b.step();
   CHECK(b.job.progress().edits == 4);
-  CHECK(b.job.progress().waits_for.find("edits_per_second") != std::string::npos);
-  b.bench.edit(kRestorer, 1, kAtOrigin);  // the bucket holds one edit
+  CHECK(b.job.progress().waits_for.find("builder_budget") != std::string::npos);
+  b.bench.edit(kRestorer, 1, kAtOrigin);  // nothing is left for a click
   REQUIRE(b.bench.environment.messages<Reject>(kRestorer, kEdge).size() == 1);
   CHECK(b.bench.environment.messages<Reject>(kRestorer, kEdge)[0].reason ==
         RejectReason::rate_limited);
@@ -148,10 +147,10 @@ TEST_CASE("a job with a payer writes as fast as the rate of the payer allows", "
     b.job.step(b.bench.server, b.bench.now());
     CHECK(b.job.progress().edits == 6);
   }
-  SECTION("a second session of the author pays too") {
+  SECTION("a second session of the author has no budget of its own") {
     b.bench.join(2, 1, 2);
     b.job.step(b.bench.server, b.bench.now());
-    CHECK(b.job.progress().edits == 8);
+    CHECK(b.job.progress().edits == 4);
   }
   SECTION("an author without a session pays nothing, and the job ends") {
     b.bench.server.disconnected(kRestorer);
@@ -160,10 +159,9 @@ TEST_CASE("a job with a payer writes as fast as the rate of the payer allows", "
   }
 }
 
-TEST_CASE("an edit that costs more than the bucket costs a full bucket", "[rollback]") {
+TEST_CASE("an edit that costs more than the budget costs the whole budget", "[rollback]") {
   WorldConfig slow = config();
-  slow.edits_per_second = 10;
-  slow.edit_burst = 1;
+  slow.edit_budget = {10, 1};
   JobBench b(1, slow);
   REQUIRE(b.job.next_work(b.bench.server).has_value());
   RestoredChunk chunk = b.planned(kHere, 1);

@@ -340,16 +340,15 @@ TEST_CASE("a rollback continues if the log has room for fewer edits than a slice
   CHECK(night.digests() == night.before);
 }
 
-TEST_CASE("undo and redo count against the player's edit rate, and report when they wait for it",
+TEST_CASE("undo and redo are paid from the player's edit budget, and report when they wait for it",
           "[rollback][undo]") {
   WorldConfig slow = config();
-  slow.edits_per_second = 10;
-  slow.edit_burst = 21;
+  slow.edit_budget = {10, 21};
   RollbackBench bench(slow);
   const AuthorId ana = bench.join(kBuilder);
   bench.join(kGriefer);
   bench.fill(kBuilder, kGrief,
-             1);  // 16 chunks cost a token each; the 16 pastes cost two tokens each
+             1);  // 16 chunks cost a unit each; the 16 pastes cost two units each
   bench.write_log();
   bench.service.undo(ana, bench.bench.now(), bench.reply());
   bench.tick();
@@ -359,7 +358,7 @@ TEST_CASE("undo and redo count against the player's edit rate, and report when t
   CHECK(written > 1);
   CHECK(written < 17);
   CHECK(bench.answers.back().text ==
-        "undo waits: the author's edits per second are used up (edits_per_second)");
+        "undo waits: the player's edit budget is used up (builder_budget)");
   CHECK_FALSE(bench.answers.back().is_done);
   bench.set(kBuilder, {0, 9, 0}, 1);
   CHECK(bench.bench.environment.messages<Reject>(kBuilder, kEdge).back().reason ==
@@ -368,10 +367,10 @@ TEST_CASE("undo and redo count against the player's edit rate, and report when t
   CHECK(bench.bench.environment.messages<Reject>(kGriefer, kEdge).empty());
   bench.service.undo(ana, bench.bench.now(), bench.reply());
   CHECK(bench.answers.back().text.find(
-            "one of yours is still under way, and waits: the author's edits") != std::string::npos);
+            "one of yours is still under way, and waits: the player's edit budget") != std::string::npos);
   bench.service.list(bench.reply());
   bench.work();
-  CHECK(bench.answers.back().text.find("(waits: the author's edits per second are used up") !=
+  CHECK(bench.answers.back().text.find("(waits: the player's edit budget is used up") !=
         std::string::npos);
   const std::size_t answers_before = bench.answers.size();
   const TimeUs began = bench.bench.time_us;
@@ -382,10 +381,9 @@ TEST_CASE("undo and redo count against the player's edit rate, and report when t
   CHECK(bench.at({-1, 0, 0}) == kEmpty);
 }
 
-TEST_CASE("a rollback counts against no edit rate", "[rollback]") {
+TEST_CASE("a rollback is paid by nobody", "[rollback]") {
   WorldConfig slow = config();
-  slow.edits_per_second = 1;
-  slow.edit_burst = 17;  // a fill of 16 chunks, and one more edit
+  slow.edit_budget = {1, 17};  // a fill of 16 chunks, and one more edit
   RollbackBench bench(slow);
   const AuthorId ana = bench.join(kBuilder);
   bench.fill(kBuilder, kGrief, 1);

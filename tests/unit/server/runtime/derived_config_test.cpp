@@ -17,6 +17,10 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   config.digest_check_ms = 250;
   config.memory_mib = 16;
   config.snapshot_s = 9;
+  config.builder_budget = {3, 8};
+  config.budgets_per_address = 5;
+  config.sessions_per_key = 6;
+  config.sessions_per_address = 7;
   const WorldConfig world = world_config_of(config, sample_meta());
   CHECK(world.world_id == sample_meta().world_id);
   CHECK(world.chunk_edge == kSampleEdge);
@@ -29,6 +33,10 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   CHECK(world.digest_check_interval_us == 250'000);
   CHECK(world.resident_bytes_max == 16U * 1024 * 1024);
   CHECK(world.snapshots.interval_us == 9'000'000);
+  CHECK(world.edit_budget == EditBudget{3, 8});
+  CHECK(world.budgets_per_address == 5);
+  CHECK(world.sessions_per_key == 6);
+  CHECK(world.sessions_per_address == 7);
 }
 
 TEST_CASE("the configured encoding is the preferred one", "[server]") {

@@ -27,7 +27,6 @@ inline WorldConfig config() {
   c.chunk_edge = kEdge;
   c.server_keys = key_pair_of(seed_of(200));
   c.view_radius_max = 4;
-  c.edits_per_second = 0;
   for (int i = 1; i < 5; ++i) {
     MaterialInfo info;
     info.name = "m" + std::to_string(i);
@@ -53,8 +52,9 @@ struct WorldBench {
   ClientAuth client_auth(std::uint8_t who, const Hello& h, const Welcome& w) const {
     return {sign(key_pair_of(seed_of(who)), client_transcript(h, w))};
   }
-  SessionAccepted join(SessionId session, std::uint8_t who, ClientInstance instance = 1) {
-    server.connected(session, now());
+  SessionAccepted join(SessionId session, std::uint8_t who, ClientInstance instance = 1,
+                       AddressBlock from = {}) {
+    server.connected(session, now(), from);
     const Hello h = hello(who, instance);
     server.received(session, h, now());
     const auto welcome = environment.messages<Welcome>(session, 0);

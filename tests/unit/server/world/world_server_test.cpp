@@ -36,10 +36,89 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   CHECK(bench.environment.records.size() == 2);
 }
 
+TEST_CASE("sessions of one key share its edit budget, and keys of one address share another",
+          "[world]") {
+  constexpr AddressBlock kHome = address_block_v4(1), kSchool = address_block_v4(2);
+  WorldConfig c = config();
+  c.edit_budget = {10, 2};
+  c.budgets_per_address = 2;
+  Bench bench(c);
+  bench.join(1, 1, 1, kHome);
+  bench.join(2, 1, 2, kSchool);  // the same key
+  bench.join(3, 3, 1, kHome);
+  bench.join(4, 4, 1, kHome);
+  bench.join(5, 5, 1, kSchool);
+  const auto is_refused = [&](SessionId session, ClientSequence seq) {
+    const auto before = bench.environment.messages<Reject>(session, kEdge).size();
+    bench.edit(session, seq, kAtOrigin);
+    const auto rejects = bench.environment.messages<Reject>(session, kEdge);
+    if (rejects.size() == before) return std::string();
+    CHECK(rejects.back().reason == RejectReason::rate_limited);
+    return rejects.back().detail;
+  };
+  CHECK(is_refused(1, 1).empty());
+  CHECK(is_refused(2, 1).empty());
+  CHECK(is_refused(2, 2) == "the edit budget of your key is used up: again in 0.1 s");
+  for (ClientSequence seq = 1; seq <= 2; ++seq) CHECK(is_refused(3, seq).empty());
+  CHECK(is_refused(4, 1).empty());  // the fourth unit of its address
+  CHECK(is_refused(4, 2) == "the edit budget of your address is used up: again in 0.1 s");
+  CHECK(is_refused(5, 1).empty());
+  // Connecting again gains nothing.
+  bench.server.disconnected(1);
+  bench.join(6, 1, 3, kSchool);
+  CHECK(is_refused(6, 1) == "the edit budget of your key is used up: again in 0.1 s");
+}
+
+TEST_CASE("a key and an address have a limited number of sessions", "[world]") {
+  constexpr AddressBlock kHome = address_block_v4(1), kSchool = address_block_v4(2);
+  WorldConfig c = config();
+  c.sessions_per_key = 2;
+  c.sessions_per_address = 3;
+  Bench bench(c);
+  const auto knock = [&](SessionId session, std::uint8_t who, ClientInstance instance,
+                         AddressBlock from) {
+    bench.server.connected(session, bench.now(), from);
+    bench.server.received(session, bench.hello(who, instance), bench.now());
+  };
+  bench.join(1, 1, 1, kHome);
+  bench.join(2, 1, 2, kSchool);
+  knock(3, 1, 3, kSchool);
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].session == 3);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::server_full);
+  CHECK(bench.environment.closed[0].text == "a key has 2 sessions at most");
+  bench.join(4, 1, 2, kSchool);  // replaces its own session 2
+  bench.join(5, 5, 1, kHome);
+  bench.join(6, 6, 1, kHome);
+  knock(7, 7, 1, kHome);
+  REQUIRE(bench.environment.closed.size() == 3);
+  CHECK(bench.environment.closed[2].session == 7);
+  CHECK(bench.environment.closed[2].text == "an address has 3 sessions at most");
+  bench.join(8, 7, 1, kSchool);
+}
+
+TEST_CASE("seats are counted again when a session has proved its key", "[world]") {
+  WorldConfig c = config();
+  c.sessions_per_key = 1;
+  Bench bench(c);
+  const Hello one = bench.hello(1, 1), two = bench.hello(1, 2);
+  for (const auto& [session, hello] : {std::pair{SessionId{1}, one}, std::pair{SessionId{2}, two}}) {
+    bench.server.connected(session, bench.now());
+    bench.server.received(session, hello, bench.now());
+  }
+  const auto prove = [&](SessionId session, const Hello& hello) {
+    const auto welcome = bench.environment.messages<Welcome>(session, 0).at(0);
+    bench.server.received(session, bench.client_auth(1, hello, welcome), bench.now());
+  };
+  prove(1, one);
+  prove(2, two);
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].session == 2);
+}
+
 TEST_CASE("a session that edits too fast is rejected, and accepted again later", "[world]") {
   WorldConfig c = config();
-  c.edits_per_second = 10;
-  c.edit_burst = 2;
+  c.edit_budget = {10, 2};
   Bench bench(c);
   bench.join(1, 1);
   for (ClientSequence seq = 1; seq <= 3; ++seq) bench.edit(1, seq, kAtOrigin);
@@ -226,11 +305,10 @@ TEST_CASE("a command in a session without the feature ends it, and the server do
   CHECK(bench.environment.closed.size() == 1);
 }
 
-TEST_CASE("an invalid descriptor is rejected as bad_edit, costs one token and is resolved",
+TEST_CASE("an invalid descriptor is rejected as bad_edit, costs one unit and is resolved",
           "[world]") {
   WorldConfig c = config();
-  c.edits_per_second = 1;
-  c.edit_burst = 2;
+  c.edit_budget = {1, 2};
   Bench bench(c);
   bench.join(1, 1);
   const auto offer = [&](ClientSequence seq) {
@@ -245,7 +323,7 @@ TEST_CASE("an invalid descriptor is rejected as bad_edit, costs one token and is
   CHECK(first.detail == "unknown edit kind (at byte 3)");
   CHECK(offer(1) == first);  // costs nothing: the operation is resolved
   CHECK(offer(2).reason == RejectReason::bad_edit);
-  CHECK(offer(3) == Reject{3, RejectReason::rate_limited, "", 0});
+  CHECK(offer(3).reason == RejectReason::rate_limited);
   CHECK_FALSE(bench.server.has_queued());
   CHECK(bench.server.resolved(1, 1) == 3);
   CHECK(bench.server.session_count() == 1);

@@ -1,0 +1,32 @@
+// EditAllowance: what is left of the player's edit budget, as far as this client knows. It predicts
+// the server's EditLedger, so that the client does not show edits that will be refused. The server
+// may still refuse one: other sessions of the same key use the same budget, and all players of an
+// address share another one.
+// Thread: one. Times are arguments (microseconds of the client's steady clock).
+#pragma once
+#include <cstdint>
+
+#include "common/core/token_bucket.hpp"
+#include "protocol/rules/edit_price.hpp"
+
+namespace runstone {
+
+class EditAllowance {
+ public:
+  /// Takes over what Welcome says. A budget that stays the same is not filled again, because the
+  /// server remembers it over a reconnection, too.
+  void set(const EditBudget& budget, std::uint16_t chunk_edge);
+  /// Returns how long the player must wait before this edit: 0 if it is paid by what is left.
+  TimeUs wait_us(const EditDescriptor& edit, TimeUs now_us);
+  /// Pays for an edit. Requires wait_us() == 0.
+  void pay(const EditDescriptor& edit, TimeUs now_us);
+  /// The server refused an edit because a budget is used up.
+  void refused(TimeUs now_us) { left_.drain(now_us); }
+
+ private:
+  EditBudget budget_;
+  std::uint16_t chunk_edge_ = 32;
+  TokenBucket left_{0, 0};
+};
+
+}  // namespace runstone

@@ -1,0 +1,73 @@
+// TokenBucket: limits a rate, with a burst. Each use takes tokens, and tokens are added with time.
+// It protects a server from clients that cost too much. A client keeps one too, so that it knows
+// beforehand what the server will refuse.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "common/core/ids.hpp"
+
+namespace runstone {
+
+class TokenBucket {
+ public:
+  /// Adds `per_second` tokens a second and keeps at most `burst`. The bucket starts full. A rate of
+  /// 0 means no limit. A burst of more than kBurstMax is kBurstMax.
+  TokenBucket(std::uint64_t per_second, std::uint64_t burst)
+      : per_second_(std::min(per_second, kPerSecondMax)),
+        full_(std::min(burst, kBurstMax) * kPart),
+        parts_(full_) {}
+
+  /// Takes `count` tokens. Returns false, and takes none, if there are fewer. `now_us` is of one
+  /// steady clock. A time before the last one adds no tokens.
+  bool take(std::uint64_t count, TimeUs now_us) {
+    if (wait_us(count, now_us) != 0) return false;
+    if (per_second_ != 0) parts_ -= count * kPart;
+    return true;
+  }
+  /// Returns how long it takes until there are `count` tokens if none are taken: 0 if they are
+  /// there, kNever if the bucket cannot hold them.
+  TimeUs wait_us(std::uint64_t count, TimeUs now_us) {
+    if (per_second_ == 0) return 0;
+    add_tokens(now_us);
+    if (count > full_ / kPart) return kNever;
+    const std::uint64_t needed = count * kPart;
+    if (needed <= parts_) return 0;
+    return static_cast<TimeUs>((needed - parts_ + per_second_ - 1) / per_second_);
+  }
+  bool is_full(TimeUs now_us) {
+    add_tokens(now_us);
+    return parts_ == full_;
+  }
+  /// Takes all tokens.
+  void drain(TimeUs now_us) {
+    add_tokens(now_us);
+    parts_ = 0;
+  }
+
+  static constexpr TimeUs kNever = std::numeric_limits<TimeUs>::max();
+  static constexpr std::uint64_t kPerSecondMax = 1'000'000'000, kBurstMax = 1'000'000'000'000;
+
+ private:
+  void add_tokens(TimeUs now_us) {
+    if (!started_) {
+      last_us_ = now_us;
+      started_ = true;
+    }
+    if (now_us <= last_us_) return;
+    // A part is a millionth of a token. One token a second is one part a microsecond, so nothing is
+    // rounded.
+    const auto idle_us = static_cast<std::uint64_t>(std::min<TimeUs>(now_us - last_us_, kIdleUsMax));
+    parts_ = std::min(full_, parts_ + idle_us * per_second_);
+    last_us_ = now_us;
+  }
+
+  static constexpr std::uint64_t kPart = 1'000'000;
+  static constexpr TimeUs kIdleUsMax = 3'600'000'000;  // keeps the product far from 2^64
+  std::uint64_t per_second_, full_, parts_;
+  TimeUs last_us_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace runstone

@@ -1,0 +1,22 @@
+#include "protocol/rules/edit_price.hpp"
+
+#include <algorithm>
+
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "protocol/limits.hpp"
+
+namespace runstone {
+
+std::uint64_t edit_price(const EditDescriptor& edit, std::uint16_t chunk_edge,
+                         const EditBudget& budget) {
+  const std::uint64_t chunks =
+      std::min<std::uint64_t>(touched_chunks_bound(edit, chunk_edge), kTouchedChunksMax);
+  std::uint64_t price = std::max<std::uint64_t>(1, chunks * EditPrices::kChunk);
+  if (const auto* paste = std::get_if<Paste>(&edit.shape)) {
+    const std::uint64_t bytes = paste->clipboard->byte_size() + EditPrices::kClipboardBytes - 1;
+    price += bytes / EditPrices::kClipboardBytes * EditPrices::kClipboardPart;
+  }
+  return budget.is_limited() ? std::min(price, budget.burst) : price;
+}
+
+}  // namespace runstone

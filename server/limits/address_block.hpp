@@ -1,0 +1,28 @@
+// AddressBlock: the network address that shares a budget: an IPv4 address, or the /64 prefix of an
+// IPv6 address, because a subscriber gets at least a /64 and can use every address in it.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace runstone {
+
+enum class AddressBlock : std::uint64_t {};
+
+/// Returns the block of an IPv4 address.
+constexpr AddressBlock address_block_v4(std::uint32_t address) {
+  // ::ffff:0:0/96 holds the IPv4 addresses within IPv6, so no prefix of a /64 has this form: its
+  // upper bits would be of the range 0000::/16, of which only ::1 is in use.
+  return AddressBlock{0x0000'ffff'0000'0000ULL | address};
+}
+/// Returns the block of an IPv6 address, in network order. An IPv4 address within IPv6
+/// (::ffff:a.b.c.d) has the block of the IPv4 address.
+constexpr AddressBlock address_block_v6(const std::array<unsigned char, 16>& address) {
+  std::uint64_t high = 0, low = 0;
+  for (std::size_t i = 0; i < 8; ++i) high = high << 8 | address[i];
+  for (std::size_t i = 8; i < 16; ++i) low = low << 8 | address[i];
+  if (high == 0 && low >> 32 == 0xffff) return address_block_v4(static_cast<std::uint32_t>(low));
+  return AddressBlock{high};
+}
+
+}  // namespace runstone

@@ -1,0 +1,48 @@
+#include "protocol/rules/edit_price.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "protocol/limits.hpp"
+
+namespace runstone {
+namespace {
+
+std::uint64_t price(const EditShape& shape, const EditBudget& budget = {}) {
+  return edit_price({shape, {}, std::holds_alternative<Paste>(shape) ? kEmpty : Material{1}}, 16,
+                    budget);
+}
+
+TEST_CASE("an edit costs a unit for each chunk that its box touches", "[rules]") {
+  CHECK(price(SetVoxel{{1, 1, 1}}) == 1);
+  CHECK(price(FillSphere{{0, 0, 0}, 3}) == 8);
+  CHECK(price(FillSphere{{8, 8, 8}, 60}) == 9 * 9 * 9);
+  FillStroke scribble;  // many points, all in one chunk
+  scribble.radius = 1;
+  for (std::int32_t i = 0; i < 100; ++i) scribble.points.push_back({4 + i % 2, 4 + i % 3, 4});
+  CHECK(price(scribble) == 1);
+  CHECK(price(FillBox{{{0, 0, 0}, {4096, 4096, 4096}}}) == kTouchedChunksMax);
+}
+
+TEST_CASE("a paste costs more for each started 256 bytes of its clipboard", "[rules]") {
+  const auto paste = [](std::uint32_t runs) {
+    ClipboardBuilder cells({128, 1, 128});
+    for (std::uint32_t i = 0; i < runs; ++i) cells.append(1, static_cast<Material>(1 + i % 2));
+    cells.append(128 * 128 - runs, std::nullopt);
+    return Paste{{0, 0, 0}, *cells.finish(), {}};
+  };
+  for (const std::uint32_t runs : {1u, 100u, 3'000u}) {
+    const Paste shape = paste(runs);
+    const EditDescriptor edit{shape, {}, kEmpty};
+    const std::uint64_t chunks = edit_price({FillBox{{{0, 0, 0}, {128, 1, 128}}}, {}, 1}, 16, {});
+    CHECK(price(shape) <= chunks + (shape.clipboard->byte_size() + 255) / 256);
+    CHECK(price(shape) > (shape.clipboard->byte_size() - 1) / 256);
+  }
+}
+
+TEST_CASE("an edit costs at most the whole budget", "[rules]") {
+  CHECK(price(FillSphere{{8, 8, 8}, 60}, {10, 100}) == 100);
+  CHECK(price(SetVoxel{{1, 1, 1}}, {10, 100}) == 1);
+}
+
+}  // namespace
+}  // namespace runstone
