@@ -60,7 +60,7 @@ class PlayBot {
   ClientSession session_;
   PlaySchedule schedule_;
   std::optional<PlaySchedule::DueEdit> held_;  // waits until the edit budget suffices
-  std::map<ClientSequence, Open> open_;  // edits without an answer
+  std::map<ClientSequence, Open> open_;        // edits without an answer
   std::size_t open_bytes_ = 0;
   PlayCounts counts_;
 };

@@ -58,7 +58,8 @@ class TokenBucket {
     if (now_us <= last_us_) return;
     // A part is a millionth of a token. One token a second is one part a microsecond, so nothing is
     // rounded.
-    const auto idle_us = static_cast<std::uint64_t>(std::min<TimeUs>(now_us - last_us_, kIdleUsMax));
+    const auto idle_us =
+        static_cast<std::uint64_t>(std::min<TimeUs>(now_us - last_us_, kIdleUsMax));
     parts_ = std::min(full_, parts_ + idle_us * per_second_);
     last_us_ = now_us;
   }

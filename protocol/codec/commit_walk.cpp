@@ -10,9 +10,8 @@ Result<void> CommitWalk::read(ByteView bytes, std::uint16_t chunk_edge, const On
   const auto commit = open_body<wire::Commit>(bytes);
   if (!commit) return Unexpected<Error>{commit.error()};
   const Epoch epoch = (*commit)->epoch();
-  return BodyReader{chunk_edge}.read_edits(**commit, edit_, chunks_, [&] {
-    return on_edit({{epoch, edit_.seq}, edit_, chunks_});
-  });
+  return BodyReader{chunk_edge}.read_edits(
+      **commit, edit_, chunks_, [&] { return on_edit({{epoch, edit_.seq}, edit_, chunks_}); });
 }
 
 }  // namespace runstone

@@ -40,13 +40,11 @@ Result<void> OrderedEditReader::next(OrderedEdit& edit, std::vector<ChunkCoord>&
 }
 
 void OrderedEditReader::take_sequence_and_time(OrderedEdit& edit) {
-  const std::uint64_t step =
-      in_.varint_max(kSequenceMax - seq_, "commit sequence is out of range");
+  const std::uint64_t step = in_.varint_max(kSequenceMax - seq_, "commit sequence is out of range");
   if (in_.ok() && step == 0) in_.reject(ErrorCode::bad_value, "commit sequences do not ascend");
   edit.seq = seq_ += step;
-  edit.ordered_us = ordered_us_ +=
-      in_.svarint_in(-kWireTimeUsMax - ordered_us_, kWireTimeUsMax - ordered_us_,
-                     "commit time is out of range");
+  edit.ordered_us = ordered_us_ += in_.svarint_in(
+      -kWireTimeUsMax - ordered_us_, kWireTimeUsMax - ordered_us_, "commit time is out of range");
 }
 
 void OrderedEditReader::take_descriptor(OrderedEdit& edit) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace runstone {
 namespace {
@@ -27,9 +28,9 @@ std::optional<EditLedger::Refusal> EditLedger::charge(const EditPayer& payer, st
                                                       TimeUs now_us) {
   if (!of_key_.is_limited()) return std::nullopt;
   if (size() > 2 * size_kept_ + kForgetStep) forget_full(now_us);
-  TokenBucket& key =
-      keys_.try_emplace(payer.key, of_key_.per_second, of_key_.burst).first->second;
-  if (const TimeUs wait_us = key.wait_us(price, now_us); wait_us > 0) return Refusal{"key", wait_us};
+  TokenBucket& key = keys_.try_emplace(payer.key, of_key_.per_second, of_key_.burst).first->second;
+  if (const TimeUs wait_us = key.wait_us(price, now_us); wait_us > 0)
+    return Refusal{"key", wait_us};
   if (of_address_.is_limited()) {
     TokenBucket& address =
         addresses_.try_emplace(payer.address, of_address_.per_second, of_address_.burst)
@@ -43,9 +44,12 @@ std::optional<EditLedger::Refusal> EditLedger::charge(const EditPayer& payer, st
 }
 
 void EditLedger::forget_full(TimeUs now_us) {
-  const auto is_full = [now_us](auto& entry) { return entry.second.is_full(now_us); };
-  std::erase_if(keys_, is_full);
-  std::erase_if(addresses_, is_full);
+  const auto forget = [now_us](auto& buckets) {
+    for (auto at = buckets.begin(); at != buckets.end();)
+      at = at->second.is_full(now_us) ? buckets.erase(at) : std::next(at);
+  };
+  forget(keys_);
+  forget(addresses_);
   size_kept_ = size();
 }
 

@@ -14,10 +14,10 @@
 #include <mutex>
 #include <string>
 
+#include "common/core/token_bucket.hpp"
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
-#include "common/core/token_bucket.hpp"
 #include "server/net/byte_stream.hpp"
 #include "server/net/chunk_gate.hpp"
 #include "server/net/net_events.hpp"

@@ -56,7 +56,6 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     world.authority.reject(op, *refusal);
   } else if (request.fault) {
     refusal = RejectReason::bad_edit;
-    detail = text_of(*request.fault);
     world.authority.reject(op, *refusal);
   } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {
     refusal = RejectReason::out_of_reach;
@@ -68,12 +67,12 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
                                      has_room);
   }
   if (!refusal) return;
+  if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
   ++world.counters.edits_rejected;
   const bool maybe_applied = *refusal == RejectReason::already_resolved;
   const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;
   mine.awaits_durable = std::max(mine.awaits_durable, applied_by);
-  send_reject(world, session,
-              {request.client_seq, *refusal, std::move(detail), applied_by});
+  send_reject(world, session, {request.client_seq, *refusal, std::move(detail), applied_by});
 }
 
 void on_move(WorldState& world, SessionId session, const Move& move) {

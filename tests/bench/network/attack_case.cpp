@@ -188,8 +188,7 @@ void write_rows(const AttackResult& result, std::string& latencies, std::string&
                  never, disconnects, violations, result.joins.open, result.joins.tried,
                  number_text(result.joins.slowest_ms), result.resident_mb[before],
                  result.resident_mb[during], result.resident_mb[after], result.written_mb,
-                 result.server_cores[before],
-                 result.server_cores[during], result.attacker_cores);
+                 result.server_cores[before], result.server_cores[during], result.attacker_cores);
   fmt::format_to(std::back_inserter(answers), "| {} | {} | {}, {} | {} | {} |\n", result.name,
                  result.outcome.connections,
                  number_text(static_cast<double>(result.outcome.bytes_sent) / 1e6),

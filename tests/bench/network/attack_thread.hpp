@@ -19,9 +19,9 @@ inline constexpr double kJustBelowFlooding = 9'000;
 
 class AttackThread {
  public:
-  static constexpr std::uint32_t kLoopback = 0x7F000001;  // 127.0.0.1: of the honest clients
+  static constexpr std::uint32_t kLoopback = 0x7F000001;      // 127.0.0.1: of the honest clients
   static constexpr std::uint32_t kAttackers = kLoopback + 1;  // 127.0.0.2
-  static constexpr unsigned kConnectionsMax = 20'000;     // of each thread
+  static constexpr unsigned kConnectionsMax = 20'000;         // of each thread
 
   AttackThread(std::uint16_t port, unsigned index, double seconds, std::uint64_t seed);
 

@@ -32,13 +32,11 @@ Result<FleetResult, std::string> run_fleet(Testbed& testbed, unsigned clients) {
   const double seconds = testbed.options().fleet_seconds;
   auto link = testbed.make_link(test::link_profiles().front());
   if (!link) return failed(link);
-  auto server =
-      testbed.start_server(**link, testbed.fresh("world"),
-                           without_player_limits(
-                               {"--generator", "terrain", "--seed", "7", "--sessions-max",
-                                fmt::to_string(clients + kSpareSessions),
-                                "--handshakes-per-address",
-                                fmt::to_string(clients + kSpareSessions)}));
+  auto server = testbed.start_server(
+      **link, testbed.fresh("world"),
+      without_player_limits({"--generator", "terrain", "--seed", "7", "--sessions-max",
+                             fmt::to_string(clients + kSpareSessions), "--handshakes-per-address",
+                             fmt::to_string(clients + kSpareSessions)}));
   if (!server) return failed(server);
   auto fleet = Fleet::join(testbed, **link, server->address, clients, seconds);
   if (!fleet) return failed(fleet);

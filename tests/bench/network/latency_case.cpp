@@ -129,8 +129,9 @@ Result<CaseResult, std::string> run_case(Testbed& testbed, const test::LinkProfi
   const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
   auto link = testbed.make_link(profile);
   if (!link) return failed(link);
-  auto server = testbed.start_server(**link, testbed.fresh("world"),
-                                     without_player_limits({"--generator", "terrain", "--seed", "7"}));
+  auto server =
+      testbed.start_server(**link, testbed.fresh("world"),
+                           without_player_limits({"--generator", "terrain", "--seed", "7"}));
   if (!server) return failed(server);
   std::unique_ptr<Child> bots;
   if (load.bots != 0) {

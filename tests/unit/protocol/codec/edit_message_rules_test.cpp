@@ -11,7 +11,7 @@ const EditDescriptor kValidEdit{SetVoxel{{1, 2, 3}}, {}, 1};
 
 /// One edit of a commit, field by field as docs/protocol.md lists them.
 struct EditFields {
-  std::uint64_t seq = 10;      // relative to the edit before
+  std::uint64_t seq = 10;        // relative to the edit before
   std::int64_t ordered_us = 50;  // relative to the edit before
   std::uint64_t author = 1, instance = 1, client_seq = 1;
   std::uint8_t cause = 0;
@@ -56,8 +56,7 @@ struct CommitFields {
 
 /// Returns a commit of these list bytes.
 auto commit_of(const Bytes& list) {
-  return
-      [&list](FlatBufferBuilder& b) { return wire::CreateCommit(b, 1, b.CreateVector(list)); };
+  return [&list](FlatBufferBuilder& b) { return wire::CreateCommit(b, 1, b.CreateVector(list)); };
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ struct WelcomeFields {
   std::int32_t y_min = -10, y_max = 10;
   WorldPos spawn;
   std::uint8_t encoding = 1, view_radius = 8;
+  std::uint64_t edits_per_second = 100, edit_burst = 4'000;
   struct Row {
     std::string name;
     std::uint32_t rgba;
@@ -46,7 +47,7 @@ struct WelcomeFields {
     const wire::Position at(spawn.x, spawn.y, spawn.z);
     return wire::CreateWelcome(b, kProtocolVersion, w, epoch, durable, head, edge, y_min, y_max,
                                has_spawn ? &at : nullptr, materials, k, c, s, encoding, 1000,
-                               view_radius);
+                               edits_per_second, edit_burst, view_radius);
   }
 };
 
@@ -104,6 +105,8 @@ TEST_CASE("welcome is refused with a field of the wrong size or range", "[protoc
                                    [](auto& w) { w.encoding = 0; },
                                    [](auto& w) { w.encoding = 4; },
                                    [](auto& w) { w.view_radius = 65; },
+                                   [](auto& w) { w.edits_per_second = 0; },
+                                   [](auto& w) { w.edit_burst = 0; },
                                    [](auto& w) { w.rows.clear(); },
                                    [](auto& w) { w.rows[0].name = "void"; },
                                    [](auto& w) { w.rows[0].visibility = 1; },

@@ -14,8 +14,7 @@ using Receivers = std::vector<std::vector<SessionId>>;
 TEST_CASE("edits with the same receivers are one audience", "[interest]") {
   CHECK(audiences_of({}).empty());
   CHECK(audiences_of({{}, {}}).empty());
-  CHECK(audiences_of({{3, 7}, {}, {3, 7}, {3, 7}}) ==
-        std::vector<Audience>{{{3, 7}, {0, 2, 3}}});
+  CHECK(audiences_of({{3, 7}, {}, {3, 7}, {3, 7}}) == std::vector<Audience>{{{3, 7}, {0, 2, 3}}});
 }
 
 TEST_CASE("sessions share an audience exactly if they get the same edits", "[interest]") {

@@ -8,8 +8,8 @@ namespace {
 using Address = std::array<unsigned char, 16>;
 
 TEST_CASE("an IPv4 address is a block, also within IPv6", "[server]") {
-  const AddressBlock mapped = address_block_v6(
-      Address{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 192, 0, 2, 7});
+  const AddressBlock mapped =
+      address_block_v6(Address{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 192, 0, 2, 7});
   CHECK(mapped == address_block_v4(0xc000'0207));
   CHECK(mapped != address_block_v4(0xc000'0208));
 }

@@ -367,7 +367,8 @@ TEST_CASE("undo and redo are paid from the player's edit budget, and report when
   CHECK(bench.bench.environment.messages<Reject>(kGriefer, kEdge).empty());
   bench.service.undo(ana, bench.bench.now(), bench.reply());
   CHECK(bench.answers.back().text.find(
-            "one of yours is still under way, and waits: the player's edit budget") != std::string::npos);
+            "one of yours is still under way, and waits: the player's edit budget") !=
+        std::string::npos);
   bench.service.list(bench.reply());
   bench.work();
   CHECK(bench.answers.back().text.find("(waits: the player's edit budget is used up") !=

@@ -102,7 +102,8 @@ TEST_CASE("seats are counted again when a session has proved its key", "[world]"
   c.sessions_per_key = 1;
   Bench bench(c);
   const Hello one = bench.hello(1, 1), two = bench.hello(1, 2);
-  for (const auto& [session, hello] : {std::pair{SessionId{1}, one}, std::pair{SessionId{2}, two}}) {
+  for (const auto& [session, hello] :
+       {std::pair{SessionId{1}, one}, std::pair{SessionId{2}, two}}) {
     bench.server.connected(session, bench.now());
     bench.server.received(session, hello, bench.now());
   }
