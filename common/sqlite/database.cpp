@@ -111,6 +111,10 @@ Result<std::string> Database::text(std::string_view sql) {
 
 std::int64_t Database::changes() const { return sqlite3_changes64(handle_.get()); }
 
+void Database::keep_wal_on_close(bool keep) {
+  sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
+}
+
 std::optional<std::array<std::uint8_t, 100>> Database::header() {
   // The bytes are read through SQLite's descriptor. Closing another descriptor of the file would
   // drop this process's locks on it (POSIX).

@@ -39,6 +39,10 @@ class Database {
   /// Returns the number of rows that the last INSERT, UPDATE or DELETE changed.
   std::int64_t changes() const;
 
+  /// If `keep` is true, closing the last connection leaves the WAL as it is. Otherwise closing
+  /// writes the WAL into the main file and deletes it.
+  void keep_wal_on_close(bool keep);
+
   /// Returns the first 100 bytes of the main file as they are on disk, or nullopt if it is shorter.
   std::optional<std::array<std::uint8_t, 100>> header();
   /// Returns the name of the main file as it was given to open().

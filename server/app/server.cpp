@@ -30,6 +30,14 @@ std::unique_ptr<asio::thread_pool> low_priority_workers(std::size_t count) {
   return workers;
 }
 
+/// Logs what --accept-losses accepted, before anything else can fail.
+void log_losses(const std::vector<std::string>& losses) {
+  for (const std::string& loss : losses) logger("store").warn("LOST, and accepted: {}", loss);
+  if (losses.empty()) {
+    logger("store").warn("nothing is lost: start the server without --accept-losses from now on");
+  }
+}
+
 }  // namespace
 
 // Members are destroyed in reverse order: the core before the objects that it refers to.
@@ -54,14 +62,16 @@ Server::~Server() {
 Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& config,
                                                            const WorldCreation& creation,
                                                            std::function<void()> on_failure,
-                                                           std::function<void()> on_stop) {
+                                                           std::function<void()> on_stop,
+                                                           bool accept_losses) {
   if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
   // A start that fails must neither make a new world nor raise the epoch, so the address is checked
   // first.
   if (const auto free = can_listen(config.listen); !free)
     return Unexpected<std::string>{free.error()};
-  auto world = open_or_create_world(config.world, creation);
+  auto world = open_or_create_world(config.world, creation, accept_losses);
   if (!world) return Unexpected<std::string>{world.error()};
+  if (accept_losses) log_losses(world->losses);
   auto parts = std::make_unique<Parts>();
   parts->config = config;
   parts->world = *std::move(world);

@@ -19,10 +19,12 @@ class Server {
   /// Opens or makes the world, binds the port, recovers, and runs. The error is one line for the
   /// operator; after an error nothing was overwritten. `on_failure` is called once, from another
   /// thread, if the log cannot be written any more; the caller then stops the server. `on_stop` is
-  /// called in the same way when an operator gives the command `stop`.
+  /// called in the same way when an operator gives the command `stop`. `accept_losses`: a world
+  /// that has lost edits, players or watermarks is repaired, and each loss is logged.
   static Result<std::unique_ptr<Server>, std::string> start(
       const ServerConfig& config, const WorldCreation& creation,
-      std::function<void()> on_failure = [] {}, std::function<void()> on_stop = [] {});
+      std::function<void()> on_failure = [] {}, std::function<void()> on_stop = [] {},
+      bool accept_losses = false);
   /// Calls stop() unless it was called.
   ~Server();
 

@@ -125,7 +125,7 @@ int run(const ServerOptions& options) {
   asio::io_context main_loop;
   Signals signals(main_loop);
   const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };
-  auto server = Server::start(*config, options.creation, end, end);
+  auto server = Server::start(*config, options.creation, end, end, options.accept_losses);
   if (!server) return cannot_start(server.error());
   std::shared_ptr<Console> console;
   if (options.console || ::isatty(STDIN_FILENO) == 1) {

@@ -25,6 +25,8 @@ void add_flags(CLI::App& app, ServerOptions& out) {
   app.add_flag("--console", out.console,
                "read commands from standard input even if it is no terminal");
   app.add_flag("--create", out.create, "make a new world if the folder --world holds none");
+  app.add_flag("--accept-losses", out.accept_losses,
+               "start a world that has lost edits, players or watermarks, and log what is lost");
   app.add_option("--generator", out.creation.generator,
                  "new world: empty, flat, terrain or scenario");
   app.add_option("--generator-parameters", out.creation.generator_parameters,

@@ -34,8 +34,13 @@ std::ostream& row(std::ostream& out, const char* name) {
   return out << std::left << std::setw(12) << name << std::right;
 }
 
+void print_loss(std::ostream& out, const Store& store) {
+  if (store.loss()) row(out, "LOST") << store.loss()->message() << '\n';
+}
+
 void print_world(std::ostream& out, const Store& store) {
   row(out, "world") << to_hex(store.meta().world_id) << "  " << store.file() << '\n';
+  print_loss(out, store);
 }
 
 Result<void, std::string> write_report(const std::string& file, const std::string& json) {

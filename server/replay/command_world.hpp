@@ -32,7 +32,9 @@ Result<Sequence, std::string> end_of_replay(Store& store, const std::optional<Na
 
 /// Begins a row of a report's table: writes the name in a column of twelve characters.
 std::ostream& row(std::ostream& out, const char* name);
-/// Writes the row "world": id and file.
+/// Writes the row "LOST" if the world lacks edits that were durable.
+void print_loss(std::ostream& out, const Store& store);
+/// Writes the row "world": id and file. Then print_loss().
 void print_world(std::ostream& out, const Store& store);
 
 /// Writes a report, given as JSON text, to `file`, or does nothing if `file` is empty. The error is

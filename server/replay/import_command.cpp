@@ -21,6 +21,9 @@ Result<int, std::string> run_import(const ImportOptions& options, std::ostream& 
   row(out, "edits") << done->added << " added, " << done->known << " known, " << done->compacted
                     << " compacted\n";
   row(out, "log") << "ends with sequence " << done->last << '\n';
+  const auto after = open_world(options.common.world, StoreAccess::read_only);
+  if (!after) return failure(after.error().message());
+  print_loss(out, **after);  // the file did not hold all that was lost
   const nlohmann::ordered_json json = {
       {"made_world", done->made_world}, {"added", done->added}, {"known", done->known},
       {"compacted", done->compacted},   {"last", done->last},   {"stopped", done->stopped}};

@@ -118,7 +118,7 @@ void declare_play(SubcommandOptions& command_line, PlayOptions& options) {
                     "path of runstone-bot; default: RUNSTONE_BOT, or runstone-bot beside this one");
 }
 
-Result<int, std::string> run_play(const PlayOptions& options, std::ostream& /*out*/) {
+Result<int, std::string> run_play(const PlayOptions& options, std::ostream& out) {
   const SignalRecorder signals;
   const TemporaryFolder folder;
   if (!folder.error().empty()) return failure(folder.error());
@@ -126,6 +126,7 @@ Result<int, std::string> run_play(const PlayOptions& options, std::ostream& /*ou
   {
     auto store = open_world(options.common.world, StoreAccess::read_only);
     if (!store) return failure(store.error().message());
+    print_loss(out, **store);
     const auto at = end_of_replay(**store, options.at);
     if (!at) return failure(at.error());
     const auto done = export_rlog(**store, file, *at);

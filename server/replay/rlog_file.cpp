@@ -222,7 +222,8 @@ Result<std::unique_ptr<Store>, std::string> world_for(const std::string& folder,
                                                       const std::string& file,
                                                       const RlogWorld& wanted) {
   if (has_world(folder)) {
-    auto store = open_world(folder, StoreAccess::read_write);
+    // The file may hold the very edits that the world has lost.
+    auto store = open_world(folder, StoreAccess::repair);
     if (!store) return failure(store.error().message());
     if ((*store)->meta().world_id != wanted.world_id)
       return failure(file + ": is of another world");

@@ -43,7 +43,7 @@ void print_table(std::ostream& out, const Store& store, const ReplayReport& repo
   row(out, "result") << (report.differences == 0
                              ? "equal"
                              : std::to_string(report.differences) + " differences")
-                     << '\n';
+                     << (store.loss() ? ", but edits are lost" : "") << '\n';
   if (report.first) row(out, "first") << report.first->message() << '\n';
 }
 
@@ -60,6 +60,7 @@ std::string report_json(const Store& store, const ReplayReport& report, double s
                                  {"not_compared", report.not_compared},
                                  {"differences", report.differences},
                                  {"first_difference", report.first ? report.first->message() : ""},
+                                 {"lost", store.loss() ? store.loss()->message() : ""},
                                  {"world_digest", to_hex(report.world_digest)},
                                  {"seconds", seconds},
                                  {"edits_per_second", rate_of(report, seconds)}};
@@ -114,7 +115,7 @@ Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& 
   print_table(out, store, *report, seconds, !options.quick);
   const auto written = write_report(options.common.json, report_json(store, *report, seconds));
   if (!written) return failure(written.error());
-  return report->differences == 0 ? kReplayEqual : kReplayDifferent;
+  return report->differences == 0 && !store.loss() ? kReplayEqual : kReplayDifferent;
 }
 
 }  // namespace runstone

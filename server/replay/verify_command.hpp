@@ -20,7 +20,8 @@ struct VerifyOptions {
 
 void declare_verify(SubcommandOptions& command_line, VerifyOptions& options);
 
-/// Prints what was compared, and the first difference. Returns kReplayEqual or kReplayDifferent.
+/// Prints what was compared, and the first difference. Returns kReplayEqual, or kReplayDifferent if
+/// there is a difference or the world lacks edits that were durable.
 Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& out);
 
 }  // namespace runstone

@@ -25,6 +25,7 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   auto players = store.players();
   if (!players) return failure(players.error());
   start.players = *std::move(players);
+  start.author_max = store.author_max();
   auto watermarks = store.high_waters();
   if (!watermarks) return failure(watermarks.error());
   start.resolved = *std::move(watermarks);

@@ -134,6 +134,26 @@ StoreResult<void> LogTable::insert(const EditRecord& record) {
                           .run());
 }
 
+StoreResult<std::vector<AuthorId>> LogTable::authors_without(
+    const std::vector<PlayerRow>& players) {
+  auto next = database_->prepare(
+      "SELECT author FROM edit_log INDEXED BY edit_log_author WHERE author > ?1 ORDER BY author "
+      "LIMIT 1");
+  if (!next) return failed(next.error());
+  std::vector<AuthorId> missing;
+  for (std::int64_t author = 0;;) {
+    const sql::ResetAtEnd reset_at_end(*next);
+    const auto found = next->bind(1, author).step();
+    if (!found) return failed(found.error());
+    if (!*found) return missing;
+    author = next->integer(0);
+    const bool has_row = std::any_of(players.begin(), players.end(), [&](const PlayerRow& player) {
+      return std::int64_t{player.author} == author;
+    });
+    if (!has_row) missing.push_back(static_cast<AuthorId>(author));
+  }
+}
+
 StoreResult<sql::Statement> LogTable::reader() { return store_result(database_->prepare(kSelect)); }
 
 StoreResult<EditRecord> LogTable::read_one(sql::Statement& reader, Sequence seq) {

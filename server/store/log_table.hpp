@@ -4,9 +4,11 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "common/sqlite/database.hpp"
 #include "server/store/log_reader.hpp"
+#include "server/world/player_rows.hpp"
 
 namespace runstone {
 
@@ -23,6 +25,10 @@ class LogTable {
   /// Reads as LogReader::read_log(). `each` may call it too.
   StoreResult<void> read(const LogRange& range, Sequence first, Sequence last,
                          const std::function<bool(const EditRecord&)>& each);
+
+  /// Returns the authors of edits in the log that `players` lacks, ascending. Cost: O(authors
+  /// (log rows + players)), because an index skips from author to author.
+  StoreResult<std::vector<AuthorId>> authors_without(const std::vector<PlayerRow>& players);
 
   /// Returns a statement for read_one(). It may be used for many records.
   StoreResult<sql::Statement> reader();

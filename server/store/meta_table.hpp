@@ -1,5 +1,5 @@
 // MetaTable: the values that are pinned when a world is created, and the few that change: epoch,
-// checkpoint, the head of the compacted log and the folds of the chunk tables.
+// checkpoint, the highest author number, head and end of the log, and the folds of tables.
 // Threads: the one that owns the store.
 #pragma once
 #include <cstdint>
@@ -20,9 +20,9 @@ MetaRows rows_of(const WorldMeta& meta);
 /// Returns the values in the pinned rows. The error names the first key that is missing or wrong.
 Result<WorldMeta, std::string> meta_of(const MetaRows& rows);
 
-/// The number of rows of a chunk table, and the sum of a hash of each row's key and version. `meta`
-/// holds one for each table. It detects a row that vanished or changed its key, although every
-/// remaining row is sound.
+/// The number of rows of a table, and the sum of a hash of each row. `meta` holds one for each of
+/// the tables base, snapshot, player and player_instance. It detects a row that vanished or changed
+/// its key, although every remaining row is sound. A change of one row costs O(1).
 struct RowFold {
   std::uint64_t count = 0, sum = 0;
   friend bool operator==(const RowFold&, const RowFold&) = default;

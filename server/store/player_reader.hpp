@@ -11,10 +11,14 @@ class PlayerReader {
  public:
   virtual ~PlayerReader() = default;
 
-  /// Returns all players, ascending by author.
+  /// Returns all players, ascending by author. Fails (corrupt) if a row is damaged or missing.
   virtual StoreResult<std::vector<PlayerRow>> players() = 0;
-  /// Returns the watermarks of all client instances. Compactions keep them.
+  /// Returns the watermarks of all client instances. Compactions keep them. Fails (corrupt) if a row
+  /// is damaged or missing.
   virtual StoreResult<std::vector<HighWater>> high_waters() = 0;
+  /// Returns the highest author number that was ever stored, or 0. It is not lower if rows of
+  /// players are lost, so that no number is given to two players.
+  virtual AuthorId author_max() const = 0;
 };
 
 }  // namespace runstone

@@ -25,11 +25,23 @@ std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_
       .value();
 }
 
+void add_row(RowFold& fold, std::int64_t checksum) {
+  ++fold.count;
+  fold.sum += static_cast<std::uint64_t>(checksum);
+}
+
+void remove_row(RowFold& fold, std::int64_t checksum) {
+  --fold.count;
+  fold.sum -= static_cast<std::uint64_t>(checksum);
+}
+
 }  // namespace
 
 StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {
   auto players = database.prepare("SELECT author, key, name, checksum FROM player ORDER BY author");
   if (!players) return failed(players.error());
+  auto player = database.prepare("SELECT checksum FROM player WHERE author = ?1");
+  if (!player) return failed(player.error());
   const std::string mark_row =
       "SELECT author, instance, decided, last_us, checksum FROM player_instance";
   auto marks = database.prepare(mark_row + " ORDER BY author, instance");
@@ -46,17 +58,17 @@ StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {
       "DO UPDATE SET decided = excluded.decided, last_us = excluded.last_us, "
       "checksum = excluded.checksum");
   if (!raise) return failed(raise.error());
-  return PlayerTable(database.file(), *std::move(players), *std::move(marks), *std::move(mark),
-                     *std::move(put), *std::move(raise));
+  return PlayerTable(database.file(), *std::move(players), *std::move(player), *std::move(marks),
+                     *std::move(mark), *std::move(put), *std::move(raise));
 }
 
-StoreResult<std::vector<PlayerRow>> PlayerTable::players() {
+StoreResult<FoldedRows<PlayerRow>> PlayerTable::players() {
   const sql::ResetAtEnd reset_at_end(players_);
-  std::vector<PlayerRow> rows;
+  FoldedRows<PlayerRow> all;
   for (;;) {
     const auto more = players_.step();
     if (!more) return failed(more.error());
-    if (!*more) return rows;
+    if (!*more) return all;
     const std::int64_t author = players_.integer(0);
     const ByteView key = players_.blob(1);
     PlayerRow row;
@@ -69,20 +81,22 @@ StoreResult<std::vector<PlayerRow>> PlayerTable::players() {
     }
     row.author = static_cast<AuthorId>(author);
     std::copy(key.begin(), key.end(), row.key.begin());
-    rows.push_back(std::move(row));
+    all.rows.push_back(std::move(row));
+    add_row(all.fold, players_.integer(3));
   }
 }
 
-StoreResult<std::vector<HighWater>> PlayerTable::high_waters() {
+StoreResult<FoldedRows<HighWater>> PlayerTable::high_waters() {
   const sql::ResetAtEnd reset_at_end(marks_);
-  std::vector<HighWater> rows;
+  FoldedRows<HighWater> all;
   for (;;) {
     const auto more = marks_.step();
     if (!more) return failed(more.error());
-    if (!*more) return rows;
+    if (!*more) return all;
     const auto mark = mark_of(marks_);
     if (!mark) return failed(mark.error());
-    rows.push_back(*mark);
+    all.rows.push_back(*mark);
+    add_row(all.fold, marks_.integer(4));
   }
 }
 
@@ -103,15 +117,23 @@ StoreResult<HighWater> PlayerTable::mark_of(const sql::Statement& row) const {
                    static_cast<ClientSequence>(resolved), last_us};
 }
 
-StoreResult<void> PlayerTable::put(const PlayerRow& player) {
+StoreResult<void> PlayerTable::put(const PlayerRow& player, RowFold& fold) {
+  {
+    const sql::ResetAtEnd reset_at_end(player_);
+    const auto found = player_.bind(1, std::int64_t{player.author}).step();
+    if (!found) return failed(found.error());
+    if (*found) remove_row(fold, player_.integer(0));
+  }
+  const std::int64_t checksum = checksum_of(player.author, player.key, player.name);
+  add_row(fold, checksum);
   return store_result(put_.bind(1, std::int64_t{player.author})
                           .bind(2, ByteView(player.key))
                           .bind(3, std::string_view(player.name))
-                          .bind(4, checksum_of(player.author, player.key, player.name))
+                          .bind(4, checksum)
                           .run());
 }
 
-StoreResult<void> PlayerTable::raise(HighWater mark) {
+StoreResult<void> PlayerTable::raise(HighWater mark, RowFold& fold) {
   const auto instance = static_cast<std::int64_t>(mark.instance);
   {
     const sql::ResetAtEnd reset_at_end(mark_);
@@ -122,14 +144,17 @@ StoreResult<void> PlayerTable::raise(HighWater mark) {
       if (!stored) return failed(stored.error());
       mark.resolved = std::max(mark.resolved, stored->resolved);
       mark.last_us = std::max(mark.last_us, stored->last_us);
+      remove_row(fold, mark_.integer(4));
     }
   }
   const auto resolved = static_cast<std::int64_t>(mark.resolved);
+  const std::int64_t checksum = checksum_of(mark.author, instance, resolved, mark.last_us);
+  add_row(fold, checksum);
   return store_result(raise_.bind(1, std::int64_t{mark.author})
                           .bind(2, instance)
                           .bind(3, resolved)
                           .bind(4, mark.last_us)
-                          .bind(5, checksum_of(mark.author, instance, resolved, mark.last_us))
+                          .bind(5, checksum)
                           .run());
 }
 

@@ -6,32 +6,43 @@
 #include <vector>
 
 #include "common/sqlite/database.hpp"
+#include "server/store/meta_table.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/player_rows.hpp"
 
 namespace runstone {
+
+/// All rows of a table, and their fold: the sum of their checksums.
+template <class Row>
+struct FoldedRows {
+  std::vector<Row> rows;
+  RowFold fold;
+};
 
 class PlayerTable {
  public:
   static StoreResult<PlayerTable> open(sql::Database& database);
 
   /// Returns all players, ascending by author. Each row is verified.
-  StoreResult<std::vector<PlayerRow>> players();
+  StoreResult<FoldedRows<PlayerRow>> players();
   /// Returns all watermarks, ascending by author, then by instance as a signed number. Each row is
   /// verified.
-  StoreResult<std::vector<HighWater>> high_waters();
+  StoreResult<FoldedRows<HighWater>> high_waters();
 
-  /// Writes a new author, or the new name of a known one, in the caller's transaction.
-  StoreResult<void> put(const PlayerRow& player);
-  /// Raises a watermark and its time, in the caller's transaction. It never lowers them. Fails
-  /// (corrupt) if the row is damaged, and leaves it as it is.
-  StoreResult<void> raise(HighWater mark);
+  /// Writes a new author, or the new name of a known one, in the caller's transaction, and updates
+  /// the fold of `player`.
+  StoreResult<void> put(const PlayerRow& player, RowFold& fold);
+  /// Raises a watermark and its time, in the caller's transaction, and updates the fold of
+  /// `player_instance`. It never lowers them. Fails (corrupt) if the row is damaged, and leaves it
+  /// as it is.
+  StoreResult<void> raise(HighWater mark, RowFold& fold);
 
  private:
-  PlayerTable(std::string file, sql::Statement players, sql::Statement marks, sql::Statement mark,
-              sql::Statement put, sql::Statement raise)
+  PlayerTable(std::string file, sql::Statement players, sql::Statement player, sql::Statement marks,
+              sql::Statement mark, sql::Statement put, sql::Statement raise)
       : file_(std::move(file)),
         players_(std::move(players)),
+        player_(std::move(player)),
         marks_(std::move(marks)),
         mark_(std::move(mark)),
         put_(std::move(put)),
@@ -40,7 +51,7 @@ class PlayerTable {
   StoreResult<HighWater> mark_of(const sql::Statement& row) const;
 
   std::string file_;
-  sql::Statement players_, marks_, mark_, put_, raise_;
+  sql::Statement players_, player_, marks_, mark_, put_, raise_;
 };
 
 }  // namespace runstone

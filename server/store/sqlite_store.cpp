@@ -13,7 +13,7 @@
 namespace runstone {
 
 SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
-                         Tables tables)
+                         Tables tables, WorldMeta meta, std::unique_ptr<DurableMark> mark)
     : lock_(std::move(lock)),
       database_(std::move(database)),
       meta_table_(std::move(tables.meta)),
@@ -23,7 +23,9 @@ SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock,
       base_(std::move(tables.base)),
       snapshots_(std::move(tables.snapshots)),
       keyframes_(std::move(tables.keyframes)),
-      access_(access) {}
+      access_(access),
+      meta_(std::move(meta)),
+      mark_(std::move(mark)) {}
 
 Unexpected<StoreError> SqliteStore::refuse(std::string where, std::string what) const {
   return {{StoreError::Kind::bad_request, file(), std::move(where), std::move(what)}};
@@ -46,12 +48,21 @@ StoreResult<void> SqliteStore::write(const std::function<StoreResult<void>()>& b
   return committed;
 }
 
+void SqliteStore::committed(const DurableState& state) {
+  state_ = state;
+  static_cast<void>(mark_->write(state).has_value());
+}
+
 StoreResult<Epoch> SqliteStore::raise_epoch() {
-  const Epoch next = epoch_ + 1;
-  const auto written = write([&] { return meta_table_.put("epoch", std::int64_t{next}); });
+  DurableState next = state_;
+  ++next.epoch;
+  const auto written = write([&] { return meta_table_.put("epoch", std::int64_t{next.epoch}); });
   if (!written) return failed(written.error());
-  epoch_ = next;
-  return epoch_;
+  state_ = next;
+  // A world whose mark cannot be written is not started.
+  if (auto marked = mark_->write(next); !marked) return failed(marked.error());
+  if (auto synced = mark_->sync(); !synced) return failed(synced.error());
+  return next.epoch;
 }
 
 StoreResult<LogRange> SqliteStore::log_range() {
@@ -76,12 +87,6 @@ StoreResult<Sequence> SqliteStore::checkpoint() {
                                  log + " the checkpoint seq=" + std::to_string(*checkpoint)}};
 }
 
-StoreResult<std::vector<PlayerRow>> SqliteStore::players() { return player_table_.players(); }
-
-StoreResult<std::vector<HighWater>> SqliteStore::high_waters() {
-  return player_table_.high_waters();
-}
-
 StoreResult<LogEnd> SqliteStore::log_head() { return meta_table_.log_head(); }
 
 StoreResult<bool> SqliteStore::has_base() {
@@ -100,8 +105,8 @@ StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> recor
     const std::string where = "edit_log seq=" + std::to_string(record.version.seq);
     if (record.version.seq != expected)
       return refuse(where, "the log continues at " + std::to_string(expected));
-    if (history ? record.version.epoch < epoch : record.version.epoch != epoch_) {
-      return refuse(where, "the epoch is " + std::to_string(history ? epoch : epoch_));
+    if (history ? record.version.epoch < epoch : record.version.epoch != state_.epoch) {
+      return refuse(where, "the epoch is " + std::to_string(history ? epoch : state_.epoch));
     }
     epoch = record.version.epoch;
     if (record.log != 0) return refuse(where, "belongs to another log");
@@ -113,43 +118,48 @@ StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> recor
 
 StoreResult<void> SqliteStore::append(std::span<const PlayerRow> players,
                                       std::span<const EditRecord> records) {
-  return write([&]() -> StoreResult<void> {
+  DurableState next;
+  auto written = write([&]() -> StoreResult<void> {
     if (auto continues = check_continues(records, false); !continues) return continues;
-    return insert(players, records);
+    return insert(players, records, next);
   });
+  if (written) committed(next);
+  return written;
 }
 
 StoreResult<void> SqliteStore::append_history(std::span<const PlayerRow> players,
                                               std::span<const EditRecord> records) {
-  const Epoch epoch = records.empty() ? epoch_ : std::max(epoch_, records.back().version.epoch);
+  DurableState next;
   auto written = write([&]() -> StoreResult<void> {
     if (auto continues = check_continues(records, true); !continues) return continues;
-    if (auto raised = meta_table_.put("epoch", std::int64_t{epoch}); !raised) return raised;
-    return insert(players, records);
+    if (auto inserted = insert(players, records, next); !inserted) return inserted;
+    if (!records.empty()) next.epoch = std::max(next.epoch, records.back().version.epoch);
+    return meta_table_.put("epoch", std::int64_t{next.epoch});
   });
-  if (written) epoch_ = epoch;
+  if (written) committed(next);
   return written;
 }
 
 StoreResult<void> SqliteStore::insert(std::span<const PlayerRow> players,
-                                      std::span<const EditRecord> records) {
-  for (const PlayerRow& player : players) {
-    if (player.author == 0) return refuse("player author=0", "is the server itself");
-    if (auto put = player_table_.put(player); !put) return put;
-  }
-  std::map<std::pair<AuthorId, ClientInstance>, HighWater> marks;
+                                      std::span<const EditRecord> records, DurableState& next) {
+  next = state_;
+  if (auto put = put_players(players); !put) return put;
+  for (const PlayerRow& player : players)
+    next.author_max = std::max(next.author_max, player.author);
+  Watermarks marks;
   for (const EditRecord& record : records) {
     if (auto inserted = log_.insert(record); !inserted) return inserted;
     if (auto added = segments_.add(record); !added) return added;
-    const auto [author, instance, seq] = record.op;
-    HighWater& mark =
-        marks.try_emplace({author, instance}, HighWater{author, instance, seq, record.time_us})
-            .first->second;
-    mark.resolved = std::max(mark.resolved, seq);
-    mark.last_us = std::max(mark.last_us, record.time_us);
+    raise(marks, record);
+    next.author_max = std::max(next.author_max, record.op.author);
+    next.seq = record.version.seq;
   }
-  for (const auto& [client, mark] : marks) {
-    if (auto raised = player_table_.raise(mark); !raised) return raised;
+  if (auto raised = raise_watermarks(marks); !raised) return raised;
+  if (auto put = meta_table_.put("log_last", static_cast<std::int64_t>(next.seq)); !put) return put;
+  const auto author_max = meta_table_.counter("author_max");
+  if (!author_max) return failed(author_max.error());
+  if (*author_max != next.author_max) {
+    if (auto put = meta_table_.put("author_max", std::int64_t{next.author_max}); !put) return put;
   }
   return segments_.flush();
 }
@@ -166,7 +176,7 @@ StoreResult<void> SqliteStore::save_chunks(ChunkTable& table, ChunkSpan chunks) 
 
 StoreResult<void> SqliteStore::save_snapshots(ChunkSpan chunks,
                                               std::optional<Sequence> checkpoint) {
-  return write([&]() -> StoreResult<void> {
+  auto written = write([&]() -> StoreResult<void> {
     const auto range = log_range();
     if (!range) return failed(range.error());
     const Version durable = range->last.version;
@@ -183,6 +193,9 @@ StoreResult<void> SqliteStore::save_snapshots(ChunkSpan chunks,
     if (*checkpoint < *before) return refuse("meta key=checkpoint", "may not move back");
     return meta_table_.put("checkpoint", static_cast<std::int64_t>(*checkpoint));
   });
+  // A mark that cannot be synced may lag after a power failure.
+  if (written && checkpoint) static_cast<void>(mark_->sync().has_value());
+  return written;
 }
 
 StoreResult<void> SqliteStore::save_base(ChunkSpan chunks) {

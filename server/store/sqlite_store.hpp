@@ -1,12 +1,17 @@
 // SqliteStore: a world in one SQLite database (WAL, synchronous FULL). It enforces the rules of
 // Store; the tables know only their rows. docs/edit-log.md, "The database", describes the file.
 #pragma once
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/os/file_lock.hpp"
 #include "common/sqlite/database.hpp"
 #include "server/store/chunk_table.hpp"
+#include "server/store/durable_mark.hpp"
 #include "server/store/keyframe_table.hpp"
 #include "server/store/log_table.hpp"
 #include "server/store/meta_table.hpp"
@@ -67,8 +72,10 @@ class SqliteStore final : public Store {
   // PlayerReader
   StoreResult<std::vector<PlayerRow>> players() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
+  AuthorId author_max() const override { return state_.author_max; }
 
   // WorldReader
+  const std::optional<StoreError>& loss() const override { return loss_; }
   StoreResult<void> check() override;
 
   // WorldSink
@@ -89,7 +96,8 @@ class SqliteStore final : public Store {
 
   // Store
   StoreResult<Epoch> raise_epoch() override;
-  Epoch epoch() const override { return epoch_; }
+  Epoch epoch() const override { return state_.epoch; }
+  StoreResult<std::vector<std::string>> accept_losses() override;
 
  private:
   /// The tables of an open database.
@@ -103,7 +111,12 @@ class SqliteStore final : public Store {
     static StoreResult<Tables> open(sql::Database& database);
   };
   SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
-              Tables tables);
+              Tables tables, WorldMeta meta, std::unique_ptr<DurableMark> mark);
+  /// Reads the durable mark, then the numbers of the database, and compares them. Sets loss_. Fails
+  /// if the database cannot be repaired, unless it is open for reading only.
+  StoreResult<void> read_state();
+  /// Follows a commit that changed the state. A mark that cannot be written lags.
+  void committed(const DurableState& state);
   /// Calls `body` in one transaction and commits. After a failed commit the state of the disk is
   /// unknown, so every later write is refused.
   StoreResult<void> write(const std::function<StoreResult<void>()>& body);
@@ -120,16 +133,29 @@ class SqliteStore final : public Store {
   /// Fails (bad_request) if the records do not continue the log. Their epoch must be the current
   /// one; in a history, epochs must not fall.
   StoreResult<void> check_continues(std::span<const EditRecord> records, bool history);
-  /// Inserts players, records and watermarks in the caller's transaction.
-  StoreResult<void> insert(std::span<const PlayerRow> players, std::span<const EditRecord> records);
+  using Watermarks = std::map<std::pair<AuthorId, ClientInstance>, HighWater>;
+  static void raise(Watermarks& marks, const EditRecord& record);
+  /// Inserts players, records and watermarks in the caller's transaction. Sets `next` to the state
+  /// that follows.
+  StoreResult<void> insert(std::span<const PlayerRow> players, std::span<const EditRecord> records,
+                           DurableState& next);
+  StoreResult<void> put_players(std::span<const PlayerRow> players);
+  StoreResult<void> raise_watermarks(const Watermarks& marks);
+  /// Adds to `lost` what the tables of players and watermarks lack, and counts the rest anew.
+  StoreResult<void> accept_lost_rows(std::vector<std::string>& lost);
+  /// Fails (corrupt) if the rows of a table are not those that `meta` counts. `more` completes the
+  /// error.
+  StoreResult<void> check_fold(const std::string& table, const RowFold& found,
+                               const std::string& more = "");
+  StoreResult<void> check_players(const FoldedRows<PlayerRow>& players);
   StoreResult<void> check_chunks(ChunkTable& table);
   StoreResult<void> check_marks_cover_log();
   StoreResult<void> check_segments_cover_log();
   StoreResult<void> check_keyframes();
   Unexpected<StoreError> refuse(std::string where, std::string what) const;
 
-  // The order matters: statements are destroyed before their database, and the database is closed
-  // before the lock is released.
+  // The order matters: statements are destroyed before their database, and mark and database are
+  // closed before the lock is released.
   FileLock lock_;
   std::unique_ptr<sql::Database> database_;
   MetaTable meta_table_;
@@ -140,7 +166,10 @@ class SqliteStore final : public Store {
   KeyframeTable keyframes_;
   StoreAccess access_;
   WorldMeta meta_;
-  Epoch epoch_ = 0;
+  std::unique_ptr<DurableMark> mark_;
+  /// The greatest numbers of database and mark.
+  DurableState state_;
+  std::optional<StoreError> loss_;
   bool broken_ = false;
 };
 

@@ -4,12 +4,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
 #include "common/sqlite/transaction.hpp"
+#include "server/store/loss_advice.hpp"
 #include "server/store/sqlite_result.hpp"
 #include "server/store/sqlite_store.hpp"
 #include "server/store/world_schema.hpp"
@@ -111,14 +113,45 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
   MetaRows rows = rows_of(meta);
   rows["epoch"] = std::int64_t{0};
   rows["checkpoint"] = std::int64_t{0};
+  rows["author_max"] = std::int64_t{0};
+  rows["log_last"] = std::int64_t{0};
   for (const auto& [key, value] : rows) {
     if (auto put = table->put(key, value); !put) return put;
   }
-  for (const char* key : {"base_fold", "snapshot_fold"}) {
+  for (const char* key : {"base_fold", "snapshot_fold", "player_fold", "player_instance_fold"}) {
     if (auto put = table->put_fold(key, {}); !put) return put;
   }
   if (auto put = table->put_log_head({}); !put) return put;
   return store_result(transaction->commit());
+}
+
+/// Returns the error about a log that ends elsewhere than `meta` says. SQLite may have copied a whole
+/// WAL into the main file before a frame of it is damaged. The frames before the damage then hide
+/// newer pages of the main file. The page of `meta` is among them, because every commit of edits
+/// writes it; the last page of the log may not be.
+StoreError mixture(const std::string& file, Sequence found, Sequence expected) {
+  return {StoreError::Kind::corrupt, file, "edit_log",
+          "ends at seq=" + std::to_string(found) +
+              ", but meta says seq=" + std::to_string(expected) +
+              ": world.sqlite-wal is damaged and hides newer pages of world.sqlite, or another "
+              "program changed the log. Put the world's folder back from a backup"};
+}
+
+/// Returns the error about a world that was durable up to `durable` and holds `found`.
+StoreError loss_of(const std::string& file, const DurableState& found,
+                   const DurableState& durable) {
+  std::string what = "ends at seq=" + std::to_string(found.seq) + ", but ";
+  if (found.seq < durable.seq) {
+    what += "seq=" + std::to_string(durable.seq) +
+            " was durable: the edits seq=" + std::to_string(found.seq + 1) +
+            " to seq=" + std::to_string(durable.seq) + " are lost";
+  } else {
+    what += "epoch=" + std::to_string(durable.epoch) +
+            " was durable: the database has epoch=" + std::to_string(found.epoch) +
+            ", so its newest changes are lost";
+  }
+  what += ", because world.sqlite-wal was lost or damaged, or an older world.sqlite was put back. ";
+  return {StoreError::Kind::corrupt, file, "edit_log", what + kLossAdvice};
 }
 
 }  // namespace
@@ -152,6 +185,8 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   auto opened = sql::Database::open(file, mode, options.vfs);
   if (!opened) return failed(opened.error());
   auto database = std::make_unique<sql::Database>(*std::move(opened));
+  // A world with a loss is left as it is: closing the database would delete what is left of the WAL.
+  database->keep_wal_on_close(true);
   if (const auto set = set_pragmas(*database, access, options.sync); !set)
     return failed(set.error());
   // check_marks() may have read the marks of an interrupted creation, which opening the database
@@ -172,14 +207,47 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, file, "meta key=" + meta.error(),
                                    "is missing or has an impossible value"}};
   }
-  const auto epoch = tables->meta.counter("epoch");
-  if (!epoch) return failed(epoch.error());
-
-  std::unique_ptr<SqliteStore> store(
-      new SqliteStore(std::move(database), std::move(lock), access, *std::move(tables)));
-  store->meta_ = *std::move(meta);
-  store->epoch_ = static_cast<Epoch>(*epoch);
+  auto mark = std::make_unique<DurableMark>(folder, meta->world_id, options.vfs);
+  std::unique_ptr<SqliteStore> store(new SqliteStore(std::move(database), std::move(lock), access,
+                                                     *std::move(tables), *std::move(meta),
+                                                     std::move(mark)));
+  if (const auto read = store->read_state(); !read) return failed(read.error());
+  if (store->loss_ && access == StoreAccess::read_write) return failed(*store->loss_);
+  store->database_->keep_wal_on_close(false);
   return store;
+}
+
+StoreResult<void> SqliteStore::read_state() {
+  // The mark is read before the numbers that it is compared with, because a running server raises
+  // the numbers first.
+  const auto marked = mark_->read();
+  std::optional<Sequence> end;  // every use of a log without an end fails and names the damage
+  auto read = at_one_moment<void>([&]() -> StoreResult<void> {
+    const auto epoch = meta_table_.counter("epoch");
+    if (!epoch) return failed(epoch.error());
+    const auto author_max = meta_table_.counter("author_max");
+    if (!author_max) return failed(author_max.error());
+    const auto log_last = meta_table_.counter("log_last");
+    if (!log_last) return failed(log_last.error());
+    state_ = {static_cast<Epoch>(*epoch), *log_last, static_cast<AuthorId>(*author_max)};
+    if (const auto range = log_range()) end = range->last.version.seq;
+    return {};
+  });
+  if (!read) return read;
+  if (end && *end != state_.seq) {
+    loss_ = mixture(file(), *end, state_.seq);
+    if (access_ != StoreAccess::read_only) return failed(*loss_);
+  } else if (!marked) {
+    loss_ = marked.error();
+    loss_->what += std::string(". ") + kLossAdvice;
+  } else if (*marked) {
+    const DurableState found = state_, durable = **marked;
+    state_.epoch = std::max(found.epoch, durable.epoch);
+    state_.author_max = std::max(found.author_max, durable.author_max);
+    if (found.seq < durable.seq || found.epoch < durable.epoch)
+      loss_ = loss_of(file(), found, durable);
+  }
+  return {};
 }
 
 StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder,
@@ -226,7 +294,7 @@ StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder,
   if (!*there) return store_failure(StoreError::Kind::not_a_world, file, "is not there");
   if (const auto marked = check_marks(file, options.vfs); !marked) return failed(marked.error());
   FileLock lock;
-  if (access == StoreAccess::read_write) {
+  if (access != StoreAccess::read_only) {
     auto taken = take_lock(folder, file);
     if (!taken) return failed(taken.error());
     lock = *std::move(taken);

@@ -16,6 +16,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "server/store/world_reader.hpp"
 #include "server/store/world_sink.hpp"
@@ -57,8 +58,16 @@ class Store : public WorldReader, public WorldSink, public ImportSink, public Ma
   /// Raises the epoch by one and returns it. It is durable on return. A server calls it once per
   /// start.
   virtual StoreResult<Epoch> raise_epoch() = 0;
-  /// Returns the epoch of the last start, or 0 if the world was never started.
+  /// Returns the epoch of the last start, or 0 if the world was never started. It is not lower if
+  /// that start is lost.
   virtual Epoch epoch() const = 0;
+  /// Makes a world usable that has lost edits, players or watermarks. Requires StoreAccess::repair.
+  /// Returns a line for each loss; there are none if nothing is lost.
+  ///   - Lost edits: the world stays as the rest of the log makes it. The next raise_epoch() ends
+  ///     the loss.
+  ///   - Lost players: the rest is counted anew. Their numbers are not given again.
+  ///   - Lost watermarks: those of edits in the log are made again, and all are counted anew.
+  virtual StoreResult<std::vector<std::string>> accept_losses() = 0;
 };
 
 /// Creates a world in a folder, which is made if it does not exist, and opens it for writing. Fails
@@ -66,9 +75,13 @@ class Store : public WorldReader, public WorldSink, public ImportSink, public Ma
 StoreResult<std::unique_ptr<Store>> create_world(const std::string& folder, const WorldMeta& meta,
                                                  const std::string& vfs = "");
 
-enum class StoreAccess { read_only, read_write };
+enum class StoreAccess {
+  read_only,
+  read_write,  // fails with the error of loss() if the world has one, and changes no file
+  repair       // writes, also if the world has a loss
+};
 /// Opens an existing world. Fails (locked) if another program has it open for writing, and `access`
-/// is read_write. `vfs` is the name of an SQLite VFS, for tests; an empty name means the default
+/// is not read_only. `vfs` is the name of an SQLite VFS, for tests; an empty name means the default
 /// one.
 StoreResult<std::unique_ptr<Store>> open_world(const std::string& folder, StoreAccess access,
                                                const std::string& vfs = "");

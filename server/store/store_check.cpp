@@ -37,10 +37,10 @@ StoreResult<void> SqliteStore::check_marks_cover_log() {
   // The log is read before the watermarks, because a running server increases both.
   const auto last = last_sequence();
   if (!last) return failed(last.error());
-  const auto rows = player_table_.high_waters();
-  if (!rows) return failed(rows.error());
-  std::map<std::pair<AuthorId, ClientInstance>, HighWater> marks;
-  for (const HighWater& row : *rows) marks[{row.author, row.instance}] = row;
+  const auto all = player_table_.high_waters();
+  if (!all) return failed(all.error());
+  Watermarks marks;
+  for (const HighWater& row : all->rows) marks[{row.author, row.instance}] = row;
   std::optional<OperationId> uncovered;
   auto read = read_log(1, *last, [&](const EditRecord& record) {
     const auto mark = marks.find({record.op.author, record.op.instance});
@@ -121,9 +121,11 @@ StoreResult<void> SqliteStore::check() {
   if (*verdict != "ok")
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "database", *verdict}};
   if (const auto rows = meta_table_.read_all(); !rows) return failed(rows.error());
-  if (const auto rows = player_table_.players(); !rows) return failed(rows.error());
+  if (const auto rows = players(); !rows) return failed(rows.error());
   if (const auto seq = checkpoint(); !seq) return failed(seq.error());
+  // A watermark that the log proves to be missing is named before the rows are counted.
   if (auto marks = check_marks_cover_log(); !marks) return marks;
+  if (const auto rows = high_waters(); !rows) return failed(rows.error());
   if (auto segments = check_segments_cover_log(); !segments) return segments;
   if (auto chunks = check_chunks(base_); !chunks) return chunks;
   if (auto chunks = check_chunks(snapshots_); !chunks) return chunks;

@@ -67,7 +67,8 @@ Result<std::unique_ptr<Generator>, std::string> generator_of(const WorldInfo& wo
 }
 
 Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
-                                                      const WorldCreation& creation) {
+                                                      const WorldCreation& creation,
+                                                      bool accept_losses) {
   OpenedWorld opened;
   opened.is_new = !has_world(folder);
   const auto file = std::filesystem::path(folder) / "world.sqlite";
@@ -84,9 +85,14 @@ Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
     if (!store) return failure(store.error().message());
     opened.store = *std::move(store);
   } else {
-    auto store = open_world(folder, StoreAccess::read_write);
+    auto store = open_world(folder, accept_losses ? StoreAccess::repair : StoreAccess::read_write);
     if (!store) return failure(store.error().message());
     opened.store = *std::move(store);
+    if (accept_losses) {
+      auto losses = opened.store->accept_losses();
+      if (!losses) return failure(losses.error().message());
+      opened.losses = *std::move(losses);
+    }
   }
   using std::filesystem::perms;
   const perms others = perms::group_read | perms::others_read;

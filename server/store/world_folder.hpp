@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/core/result.hpp"
 #include "common/generate/generator.hpp"
@@ -26,6 +27,7 @@ struct OpenedWorld {
   std::unique_ptr<Generator> generator;
   bool is_new = false;
   bool is_readable_by_others = false;  // the file, which holds the world's secret key
+  std::vector<std::string> losses;     // that were accepted, one line each
 };
 
 /// Returns true if the folder holds a world.
@@ -37,10 +39,12 @@ void draw_identity(WorldMeta& meta);
 /// Opens the world for writing. Creates it first if the folder holds none. Fails if
 ///   - this build lacks the generator;
 ///   - the world has a newer format, or its rows are damaged;
+///   - the world lacks edits that were durable, unless `accept_losses` is set;
 ///   - another server has the world open;
 ///   - the folder cannot be written.
 Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
-                                                      const WorldCreation& creation);
+                                                      const WorldCreation& creation,
+                                                      bool accept_losses = false);
 /// Returns the generator that a world pins.
 Result<std::unique_ptr<Generator>, std::string> generator_of(const WorldInfo& world);
 

@@ -1,6 +1,8 @@
 // WorldReader: everything that can be read of a world. A function that needs less takes one of the
 // smaller interfaces.
 #pragma once
+#include <optional>
+
 #include "server/store/chunk_reader.hpp"
 #include "server/store/keyframe_reader.hpp"
 #include "server/store/log_reader.hpp"
@@ -13,8 +15,11 @@ class WorldReader : public LogReader,
                     public KeyframeReader,
                     public PlayerReader {
  public:
+  /// Returns the error if the world, when it was opened, lacked edits that had been durable, or if
+  /// that cannot be known. Returns nullopt if the log is whole.
+  virtual const std::optional<StoreError>& loss() const = 0;
   /// Reads and verifies every row of every table, and runs the database's own check. It is slow,
-  /// and meant for audits.
+  /// and meant for audits. A loss() is no error of a row.
   virtual StoreResult<void> check() = 0;
 };
 

@@ -28,6 +28,9 @@ class Players {
     known_[stored.author] = {stored, stored.name};
     next_ = std::max(next_, stored.author + 1);
   }
+  /// Gives no number up to `author_max` to a new key. The rows of such numbers may be lost. Call it
+  /// before the first enter().
+  void begin_above(AuthorId author_max) { next_ = std::max(next_, author_max + 1); }
   /// Returns the key's author, a new one for a new key, and sets its name.
   AuthorId enter(const PublicKey& key, const std::string& name) {
     const auto found = by_key_.find(key);

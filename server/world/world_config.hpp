@@ -62,6 +62,7 @@ struct WorldStart {
   Sequence checkpoint = 0;
   std::vector<std::pair<ChunkKey, Version>> snapshots;
   std::vector<PlayerRow> players;
+  AuthorId author_max = 0;  // the highest author number ever stored
   std::vector<HighWater> resolved;
 };
 

@@ -36,6 +36,7 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
       view_chunks_left(config.view_chunks_per_tick) {
   for (const auto& [key, version] : start.snapshots) authority.chunks().set_saved(key, version);
   for (const PlayerRow& player : start.players) players.restore(player);
+  players.begin_above(start.author_max);
   for (const HighWater& watermark : start.resolved)
     authority.resolved().raise({watermark.author, watermark.instance, watermark.resolved});
 }

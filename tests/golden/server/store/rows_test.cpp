@@ -1,8 +1,11 @@
 // The bytes of world format 1: columns, row checksums and marks. A change here means a new
 // kWorldFormat.
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
 #include <string>
 
+#include "common/core/hex.hpp"
 #include "server/store/sqlite_store.hpp"
 #include "tests/support/compact_by_hand.hpp"
 #include "tests/support/raw_sql.hpp"
@@ -106,8 +109,9 @@ TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
                 "min_y || ' ' || min_z || ' ' || max_x || ' ' || max_y || ' ' || max_z "
                 "FROM log_box") == "1 2 1 -4 5 6 7 8 9");
   CHECK(raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
-        "base_fold checkpoint chunk_edge epoch generator generator_parameters generator_version "
-        "log_head materials seed server_key_seed snapshot_fold spawn world_id");
+        "author_max base_fold checkpoint chunk_edge epoch generator generator_parameters "
+        "generator_version log_head log_last materials player_fold player_instance_fold seed "
+        "server_key_seed snapshot_fold spawn world_id");
 }
 
 TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
@@ -153,6 +157,36 @@ TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
   CHECK(value("hex(value)", "meta WHERE key = 'base_fold'") == "0100000000000000BED44F992268158D");
   CHECK(value("hex(value)", "meta WHERE key = 'snapshot_fold'") ==
         "0100000000000000D2455B47B79BD394");
+  CHECK(value("value", "meta WHERE key = 'author_max'") == "1");
+  CHECK(value("value", "meta WHERE key = 'log_last'") == "2");
+  // The sum over one row is the checksum of this row.
+  CHECK(value("hex(value)", "meta WHERE key = 'player_fold'") ==
+        "01000000000000001747DFC9F83DB689");
+  CHECK(value("hex(value)", "meta WHERE key = 'player_instance_fold'") ==
+        "0100000000000000785F9C1512C7903C");
+}
+
+TEST_CASE("the mark of the durable log has the bytes of format 1", "[store][golden]") {
+  const TempFolder folder;
+  make_world(folder);
+  std::ifstream in(folder / "world.durable", std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const Bytes bytes(text.begin(), text.end());
+  REQUIRE(bytes.size() == 4096 + 40);
+  const ByteView all(bytes);
+  // world id, u64 sequence, u32 epoch, u32 highest author number, checksum
+  CHECK(to_hex(all.first(40)) ==
+        "0102030405060708090a0b0c0d0e0f10"
+        "0000000000000000"
+        "01000000"
+        "00000000"
+        "b0b8d79b2f382501");
+  CHECK(to_hex(all.subspan(4096, 40)) ==
+        "0102030405060708090a0b0c0d0e0f10"
+        "0200000000000000"
+        "01000000"
+        "01000000"
+        "de63444f483b92df");
 }
 
 TEST_CASE("the head of a compacted log has the bytes of format 1", "[store][golden]") {

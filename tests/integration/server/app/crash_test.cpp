@@ -6,10 +6,13 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
 #include <thread>
 
 #include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
+#include "tests/support/crash_image.hpp"
 
 namespace runstone::test {
 namespace {
@@ -92,6 +95,20 @@ TEST_CASE("after kill -9 durable edits are kept, and the others, offered again, 
       durable = message->seq;
     }
     process.kill();
+  }
+  {
+    // After kill -9 the durable mark covers everything that was acknowledged.
+    const TempFolder without_wal;
+    copy_crash_image(folder / "world", without_wal.path());
+    std::filesystem::remove(without_wal / "world.sqlite-wal");
+    const auto lost = open_world(without_wal.path(), StoreAccess::read_only);
+    REQUIRE(lost.has_value());
+    REQUIRE((*lost)->loss().has_value());
+    const std::string text = (*lost)->loss()->what;
+    const std::string before = "but seq=";
+    CAPTURE(text);
+    REQUIRE(text.find(before) != std::string::npos);
+    CHECK(std::stoull(text.substr(text.find(before) + before.size())) >= durable);
   }
   const auto server = start_server(crash_config(folder / "world"), flat_creation());
   RawClient client(server->port());

@@ -31,8 +31,10 @@ inline WorldCreation flat_creation() {
 
 /// Requires the start to succeed.
 inline std::unique_ptr<Server> start_server(const ServerConfig& config,
-                                            const WorldCreation& creation) {
-  auto server = Server::start(config, creation);
+                                            const WorldCreation& creation,
+                                            bool accept_losses = false) {
+  const auto ignore = [] {};
+  auto server = Server::start(config, creation, ignore, ignore, accept_losses);
   INFO((server ? std::string() : server.error()));
   REQUIRE(server.has_value());
   return *std::move(server);

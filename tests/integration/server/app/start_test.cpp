@@ -11,6 +11,7 @@
 #include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/support/compact_by_hand.hpp"
+#include "tests/support/crash_image.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/text_contains.hpp"
 
@@ -207,6 +208,72 @@ TEST_CASE("a damaged last log row stops the start even if no edit is above the c
   run_sql(config.world + "/world.sqlite",
           "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 3");
   CHECK(contains(start_error(config, flat_creation()), "edit_log seq=3"));
+}
+
+TEST_CASE("a server does not start over lost edits unless they are accepted", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  ServerConfig killed = quiet_config(folder / "killed");
+  {
+    const auto server = start_server(config, flat_creation());
+    RawClient ana(server->port()), ben(server->port());
+    REQUIRE(ana.join(1).has_value());
+    REQUIRE(ben.join(2)->author == 2);
+    ben.send(EditRequest{1, 0, {SetVoxel{{1, 2, 1}}, {}, 2}});
+    REQUIRE(ben.sees_durable(4));
+    copy_crash_image(config.world, killed.world);
+  }
+  std::filesystem::remove(killed.world + "/world.sqlite-wal");
+  const std::string error = start_error(killed, flat_creation());
+  INFO(error);
+  CHECK(contains(error, "world.sqlite: edit_log: ends at seq=3, but seq=4 was durable"));
+  CHECK(contains(error, "--accept-losses"));
+  CHECK(start_error(killed, flat_creation()) == error);
+  {
+    const auto server = start_server(killed, flat_creation(), true);
+    RawClient cid(server->port());
+    const auto accepted = cid.join(3);
+    REQUIRE(accepted.has_value());
+    CHECK(cid.welcome.epoch == 3);
+    CHECK(cid.welcome.durable == 3);
+    CHECK(accepted->author == 3);  // 2 was Ben's
+    cid.send(EditRequest{1, 0, {SetVoxel{{1, 2, 1}}, {}, 3}});
+    REQUIRE(cid.sees_durable(4));
+    CHECK(server->stop().is_clean);
+  }
+  CHECK(start_server(killed, flat_creation())->stop().is_clean);
+}
+
+TEST_CASE("a player whose row is lost keeps a newcomer from the number", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  run_sql(config.world + "/world.sqlite", "DELETE FROM player");
+  const std::string error = start_error(config, flat_creation());
+  CHECK(contains(error, "player: rows vanished"));
+  CHECK(contains(error, "0 rows, meta counts 1, none for author=1"));
+  {
+    const auto server = start_server(config, flat_creation(), true);
+    RawClient client(server->port());
+    const auto accepted = client.join(2);
+    REQUIRE(accepted.has_value());
+    CHECK(accepted->author == 2);
+  }
+  CHECK(start_server(config, flat_creation())->stop().is_clean);
+}
+
+TEST_CASE("a lost watermark does not let an edit be applied twice", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  run_sql(config.world + "/world.sqlite", "DELETE FROM player_instance");
+  CHECK(contains(start_error(config, flat_creation()), "player_instance: rows vanished"));
+  const auto server = start_server(config, flat_creation(), true);
+  RawClient client(server->port());
+  const auto accepted = client.join(1);
+  REQUIRE(accepted.has_value());
+  CHECK(accepted->resolved == 3);
 }
 
 TEST_CASE("a world of a newer version does not start", "[integration]") {

@@ -10,6 +10,7 @@
 
 #include "server/replay/replay_program.hpp"
 #include "tests/support/compact_by_hand.hpp"
+#include "tests/support/crash_image.hpp"
 #include "tests/support/rlog_bytes.hpp"
 #include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"
@@ -250,6 +251,34 @@ TEST_CASE("the log of a world with base chunks can be imported into a copy of it
   export_small_blocks(world, file);
   CHECK(read_rlog(bytes_of(file)).records.size() == 20);
   CHECK(run_replay({"import", file, "--world", folder / "copy"}).code == 0);
+}
+
+TEST_CASE("an import gives back the edits that a world has lost", "[store][rlog]") {
+  const TempFolder folder;
+  const std::string live = folder / "live", world = folder / "world", file = folder / "log.rlog";
+  make_logged_world(live, 20);
+  {
+    SplitMix64 rng(9);
+    const auto store = opened(live, StoreAccess::read_write);
+    REQUIRE(*store->raise_epoch() == 3);
+    REQUIRE(store->append({}, sample_records(rng, 3, 41, 10)).has_value());
+    copy_crash_image(live, world);
+  }
+  std::filesystem::remove(world + "/world.sqlite-wal");
+  REQUIRE(run_replay({"export", "--world", live, "--at", "45", file}).code == 0);
+  const ReplayOutcome part = run_replay({"import", "--world", world, file});
+  CHECK(part.code == 0);
+  CHECK(part.out.find("edits       5 added, 40 known") != std::string::npos);
+  CHECK(part.out.find("LOST        ") != std::string::npos);
+  CHECK(part.out.find("the edits seq=46 to seq=50 are lost") != std::string::npos);
+  CHECK_FALSE(open_world(world, StoreAccess::read_write).has_value());
+
+  REQUIRE(run_replay({"export", "--world", live, file}).code == 0);
+  const ReplayOutcome rest = run_replay({"import", "--world", world, file});
+  CHECK(rest.code == 0);
+  CHECK(rest.out.find("LOST") == std::string::npos);
+  CHECK(digest_of_world(world) == digest_of_world(live));
+  CHECK(*opened(world, StoreAccess::read_write)->raise_epoch() == 4);
 }
 
 TEST_CASE("files that cannot be read or written are named", "[store][rlog]") {

@@ -2,6 +2,7 @@
 #include "server/replay/verify_command.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -10,6 +11,7 @@
 
 #include "common/runs/run_chunk.hpp"
 #include "server/replay/digest_list.hpp"
+#include "tests/support/crash_image.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"
@@ -182,6 +184,31 @@ TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is ov
   CHECK(run_replay({"verify", "--quick", "--world", world, "--at", "1"}).code == 0);
   CHECK(file_text(file) == damaged);
   CHECK(file_text(json) == report);
+}
+
+TEST_CASE("a world that lacks durable edits exits with 1 and says which", "[store][replay]") {
+  const TempFolder folder;
+  const std::string live = folder / "live", world = folder / "world", json = folder / "out.json";
+  make_small_world(live, [](const ChunkKey&, RunChunk&) {});
+  {
+    SplitMix64 rng(2);
+    const auto store = *open_world(live, StoreAccess::read_write);
+    REQUIRE(store->append({}, sample_records(rng, 1, 3, 4)).has_value());
+    copy_crash_image(live, world);
+  }
+  REQUIRE(run_replay({"verify", "--world", world}).code == 0);
+  std::filesystem::remove(world + "/world.sqlite-wal");
+  const ReplayOutcome outcome = run_replay({"verify", "--world", world, "--json", json});
+  INFO(outcome.out << outcome.err);
+  CHECK(outcome.code == 1);
+  CHECK(outcome.out.find("LOST        " + world +
+                         "/world.sqlite: edit_log: ends at seq=2, but seq=6 was durable: the edits "
+                         "seq=3 to seq=6 are lost") != std::string::npos);
+  CHECK(outcome.out.find("result      equal, but edits are lost\n") != std::string::npos);
+  CHECK(file_text(json).find("\"lost\":\"" + world) != std::string::npos);
+  const ReplayOutcome exported = run_replay({"export", "--world", world, folder / "rest.rlog"});
+  CHECK(exported.code == 0);
+  CHECK(exported.out.find("LOST        ") != std::string::npos);
 }
 
 TEST_CASE("verify cannot read a world whose generator this program lacks", "[store][replay]") {

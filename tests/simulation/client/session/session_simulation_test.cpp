@@ -355,7 +355,7 @@ void ten_replicas(std::uint64_t seed, int steps) {
 }
 
 TEST_CASE("ten replicas agree after cut links, lost commits and power failures", "[simulation]") {
-  ten_replicas(5, 3'000);
+  ten_replicas(7, 3'000);
 }
 
 // Minutes: docs/testing.md gives the command.

@@ -54,6 +54,11 @@ TEST_CASE("a mistyped subcommand is the argument that the error names", "[server
         "--help lists the flags\n");
 }
 
+TEST_CASE("losses are accepted on request", "[server_options]") {
+  CHECK_FALSE(parse({"--world", "a"}).options->accept_losses);
+  CHECK(parse({"--world", "a", "--accept-losses"}).options->accept_losses);
+}
+
 TEST_CASE("a new world is made on request", "[server_options]") {
   CHECK_FALSE(parse({"--world", "a"}).options->create);
   CHECK(parse({"--world", "a", "--create"}).options->create);

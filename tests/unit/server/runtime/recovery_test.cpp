@@ -38,6 +38,7 @@ TEST_CASE("a start reads the state of the store and replays its log", "[server]"
   CHECK(start->log.last_time_us == records.back().time_us);
   CHECK(start->checkpoint == 0);
   CHECK(start->players.size() == 2);
+  CHECK(start->author_max == 2);
   CHECK_FALSE(start->resolved.empty());
   CHECK((*store)->epoch() == 1);  // reading raises no epoch
 
@@ -67,6 +68,20 @@ TEST_CASE("the replay begins above the checkpoint", "[server]") {
   const auto replayed = replay_log(**store, *start, world);
   REQUIRE(replayed.has_value());
   CHECK(*replayed == 2);
+}
+
+TEST_CASE("a start fails if a player or a watermark is missing", "[server]") {
+  for (const std::string table : {"player", "player_instance"}) {
+    const TempFolder folder;
+    make_world(folder / "world");
+    REQUIRE(raw_sql(folder / "world/world.sqlite",
+                    "DELETE FROM " + table + " WHERE author = 1; SELECT changes() > 0") == "1");
+    auto store = open_world(folder / "world", StoreAccess::read_write);
+    REQUIRE(store.has_value());
+    const auto start = read_world_start(**store);
+    REQUIRE_FALSE(start.has_value());
+    CHECK(start.error().find(table + ": rows vanished") != std::string::npos);
+  }
 }
 
 TEST_CASE("a start fails on a damaged last record and names it", "[server]") {

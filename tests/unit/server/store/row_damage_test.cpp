@@ -98,7 +98,7 @@ TEST_CASE("a missing or moved edit is named", "[store][damage]") {
   CHECK(damage(folder, "UPDATE edit_log SET seq = 99 WHERE seq = 7") == "edit_log seq=7");
   CHECK(damage(folder, "UPDATE edit_log SET seq = 21 WHERE seq = 20") == "edit_log seq=20");
   CHECK(damage(folder, "DELETE FROM edit_log WHERE seq > 12 AND seq > 19") ==
-        "fine");  // a log without its last edits is a log
+        "fine");  // a log without its last edits is a log; world.durable reveals the loss
 }
 
 TEST_CASE("a log that ends before its snapshots or its checkpoint is noticed", "[store][damage]") {
@@ -175,6 +175,7 @@ TEST_CASE("a changed column of a player is named", "[store][damage]") {
   CHECK(damage(folder, "UPDATE player SET key = zeroblob(32) WHERE author = 2") ==
         "player author=2");
   CHECK(damage(folder, "UPDATE player SET checksum = 0 WHERE author = 2") == "player author=2");
+  CHECK(damage(folder, "DELETE FROM player WHERE author = 2") == "player");
   const std::string last =
       " WHERE author = 2 AND instance = (SELECT max(instance) FROM player_instance)";
   const std::string name =
@@ -205,9 +206,10 @@ TEST_CASE("a changed, missing or retyped row of meta is named and the world does
           "[store][damage]") {
   const TempFolder folder;
   make_world(folder.path());
-  for (const char* key : {"world_id", "chunk_edge", "generator", "generator_version", "seed",
-                          "generator_parameters", "materials", "server_key_seed", "spawn", "epoch",
-                          "checkpoint", "log_head", "base_fold", "snapshot_fold"}) {
+  for (const char* key :
+       {"world_id", "chunk_edge", "generator", "generator_version", "seed", "generator_parameters",
+        "materials", "server_key_seed", "spawn", "epoch", "checkpoint", "log_head", "base_fold",
+        "snapshot_fold", "author_max", "log_last", "player_fold", "player_instance_fold"}) {
     CAPTURE(key);
     const std::string where = std::string(" WHERE key = '") + key + "'";
     const std::string place = std::string("meta key=") + key;

@@ -29,6 +29,16 @@ TEST_CASE("a player who leaves without an edit is a visitor until the key comes 
   CHECK(players.visitors().empty());
 }
 
+TEST_CASE("a number whose row is lost is not given again", "[server][players]") {
+  Players players;
+  players.restore({2, player_key(2), "ben"});
+  players.begin_above(5);
+  CHECK(players.enter(player_key(2), "ben") == 2);
+  CHECK(players.enter(player_key(1), "ana") == 6);
+  players.begin_above(1);
+  CHECK(players.enter(player_key(3), "cid") == 7);
+}
+
 TEST_CASE("the number of remembered visitors is bounded", "[server][players]") {
   Players players;
   for (std::size_t i = 0; i <= Players::kVisitorsMax; ++i) {

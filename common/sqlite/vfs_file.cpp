@@ -1,0 +1,79 @@
+#include "common/sqlite/vfs_file.hpp"
+
+#include <sqlite3.h>
+
+#include <utility>
+#include <vector>
+
+namespace runstone::sql {
+
+/// SQLite's data of an open file.
+struct VfsFile::Handle {
+  Handle(const std::string& file, int bytes)
+      : name(file + '\0'),  // a VFS may expect two zero bytes at the end of a name
+        memory(static_cast<std::size_t>(bytes) / sizeof(std::max_align_t) + 1) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() {
+    if (get()->pMethods != nullptr) get()->pMethods->xClose(get());
+  }
+  sqlite3_file* get() { return reinterpret_cast<sqlite3_file*>(memory.data()); }
+
+  std::string name;  // the VFS keeps a pointer to it
+  std::vector<std::max_align_t> memory;
+};
+
+namespace {
+
+Unexpected<Error> file_failure(const std::string& name, const char* verb, int code) {
+  const bool is_full = (code & 0xff) == SQLITE_FULL;
+  return {Error{is_full ? Error::Kind::full : Error::Kind::io, name.c_str(),
+                std::string("cannot be ") + verb + ": " + sqlite3_errstr(code)}};
+}
+
+}  // namespace
+
+VfsFile::VfsFile(std::unique_ptr<Handle> handle) : handle_(std::move(handle)) {}
+VfsFile::VfsFile(VfsFile&&) noexcept = default;
+VfsFile& VfsFile::operator=(VfsFile&&) noexcept = default;
+VfsFile::~VfsFile() = default;
+
+Result<VfsFile> VfsFile::open(const std::string& file, Mode mode, const std::string& vfs) {
+  sqlite3_vfs* system = sqlite3_vfs_find(vfs.empty() ? nullptr : vfs.c_str());
+  if (system == nullptr)
+    return Unexpected<Error>{{Error::Kind::io, file, "no SQLite VFS is called " + vfs}};
+  // Of the types of files that a VFS knows, a super-journal fits: it takes no lock, and the first
+  // sync of a new one also syncs its name.
+  const int flags =
+      SQLITE_OPEN_SUPER_JOURNAL |
+      (mode == Mode::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  auto handle = std::make_unique<Handle>(file, system->szOsFile);
+  const int code = system->xOpen(system, handle->name.c_str(), handle->get(), flags, nullptr);
+  if (code != SQLITE_OK) return file_failure(handle->name, "opened", code);
+  return VfsFile(std::move(handle));
+}
+
+Result<void> VfsFile::read(std::uint64_t offset, std::span<std::uint8_t> out) {
+  const int code = handle_->get()->pMethods->xRead(
+      handle_->get(), out.data(), static_cast<int>(out.size()), static_cast<sqlite3_int64>(offset));
+  // A short read fills the rest with zeros.
+  if (code != SQLITE_OK && code != SQLITE_IOERR_SHORT_READ)
+    return file_failure(handle_->name, "read", code);
+  return {};
+}
+
+Result<void> VfsFile::write(std::uint64_t offset, ByteView bytes) {
+  const int code =
+      handle_->get()->pMethods->xWrite(handle_->get(), bytes.data(), static_cast<int>(bytes.size()),
+                                       static_cast<sqlite3_int64>(offset));
+  if (code != SQLITE_OK) return file_failure(handle_->name, "written", code);
+  return {};
+}
+
+Result<void> VfsFile::sync() {
+  const int code = handle_->get()->pMethods->xSync(handle_->get(), SQLITE_SYNC_NORMAL);
+  if (code != SQLITE_OK) return file_failure(handle_->name, "synced", code);
+  return {};
+}
+
+}  // namespace runstone::sql

@@ -1,0 +1,9 @@
+// The advice at the end of an error about something that a world has lost.
+#pragma once
+
+namespace runstone {
+
+inline constexpr const char* kLossAdvice =
+    "Put the world's folder back from a backup, or start the server once with --accept-losses";
+
+}  // namespace runstone

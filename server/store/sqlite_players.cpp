@@ -1,0 +1,121 @@
+// The part of SqliteStore that reads, writes and repairs players and watermarks. `meta` holds a
+// fold of each of both tables, which detects rows that are lost.
+#include <algorithm>
+#include <utility>
+
+#include "server/store/loss_advice.hpp"
+#include "server/store/sqlite_result.hpp"
+#include "server/store/sqlite_store.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr const char* kPlayers = "player";
+constexpr const char* kWatermarks = "player_instance";
+
+std::string fold_key_of(const std::string& table) { return table + "_fold"; }
+
+}  // namespace
+
+StoreResult<void> SqliteStore::check_fold(const std::string& table, const RowFold& found,
+                                          const std::string& more) {
+  const auto expected = meta_table_.fold(fold_key_of(table));
+  if (!expected) return failed(expected.error());
+  if (found == *expected) return {};
+  return Unexpected<StoreError>{
+      {StoreError::Kind::corrupt, file(), table,
+       "rows vanished, appeared or changed: " + std::to_string(found.count) +
+           " rows, meta counts " + std::to_string(expected->count) + more + ". " + kLossAdvice}};
+}
+
+StoreResult<void> SqliteStore::check_players(const FoldedRows<PlayerRow>& players) {
+  if (auto sound = check_fold(kPlayers, players.fold); sound) return sound;
+  const auto missing = log_.authors_without(players.rows);
+  if (!missing) return failed(missing.error());
+  std::string more;
+  for (const AuthorId author : *missing) more += ", none for author=" + std::to_string(author);
+  return check_fold(kPlayers, players.fold, more);
+}
+
+StoreResult<std::vector<PlayerRow>> SqliteStore::players() {
+  return at_one_moment<std::vector<PlayerRow>>([&]() -> StoreResult<std::vector<PlayerRow>> {
+    auto players = player_table_.players();
+    if (!players) return failed(players.error());
+    if (auto sound = check_players(*players); !sound) return failed(sound.error());
+    return std::move(players->rows);
+  });
+}
+
+StoreResult<std::vector<HighWater>> SqliteStore::high_waters() {
+  return at_one_moment<std::vector<HighWater>>([&]() -> StoreResult<std::vector<HighWater>> {
+    auto marks = player_table_.high_waters();
+    if (!marks) return failed(marks.error());
+    if (auto sound = check_fold(kWatermarks, marks->fold); !sound) return failed(sound.error());
+    return std::move(marks->rows);
+  });
+}
+
+StoreResult<void> SqliteStore::put_players(std::span<const PlayerRow> players) {
+  if (players.empty()) return {};
+  auto fold = meta_table_.fold(fold_key_of(kPlayers));
+  if (!fold) return failed(fold.error());
+  for (const PlayerRow& player : players) {
+    if (player.author == 0) return refuse("player author=0", "is the server itself");
+    if (auto put = player_table_.put(player, *fold); !put) return put;
+  }
+  return meta_table_.put_fold(fold_key_of(kPlayers), *fold);
+}
+
+void SqliteStore::raise(Watermarks& marks, const EditRecord& record) {
+  const auto [author, instance, seq] = record.op;
+  HighWater& mark =
+      marks.try_emplace({author, instance}, HighWater{author, instance, seq, record.time_us})
+          .first->second;
+  mark.resolved = std::max(mark.resolved, seq);
+  mark.last_us = std::max(mark.last_us, record.time_us);
+}
+
+StoreResult<void> SqliteStore::raise_watermarks(const Watermarks& marks) {
+  if (marks.empty()) return {};
+  auto fold = meta_table_.fold(fold_key_of(kWatermarks));
+  if (!fold) return failed(fold.error());
+  for (const auto& [client, mark] : marks) {
+    if (auto raised = player_table_.raise(mark, *fold); !raised) return raised;
+  }
+  return meta_table_.put_fold(fold_key_of(kWatermarks), *fold);
+}
+
+StoreResult<void> SqliteStore::accept_lost_rows(std::vector<std::string>& lost) {
+  const auto players = player_table_.players();
+  if (!players) return failed(players.error());
+  if (const auto sound = check_players(*players); !sound) {
+    lost.push_back(sound.error().message());
+    if (auto put = meta_table_.put_fold(fold_key_of(kPlayers), players->fold); !put) return put;
+  }
+  const auto found = player_table_.high_waters();
+  if (!found) return failed(found.error());
+  const auto sound = check_fold(kWatermarks, found->fold);
+  if (sound) return {};
+  lost.push_back(sound.error().message());
+  if (auto put = meta_table_.put_fold(fold_key_of(kWatermarks), found->fold); !put) return put;
+  Watermarks marks;
+  const auto read = read_log(1, kSequenceMax, [&](const EditRecord& record) {
+    raise(marks, record);
+    return true;
+  });
+  return read ? raise_watermarks(marks) : read;
+}
+
+StoreResult<std::vector<std::string>> SqliteStore::accept_losses() {
+  std::vector<std::string> lost;
+  if (loss_) lost.push_back(loss_->message());
+  const auto written = write([&]() -> StoreResult<void> {
+    if (auto put = meta_table_.put("epoch", std::int64_t{state_.epoch}); !put) return put;
+    if (auto put = meta_table_.put("author_max", std::int64_t{state_.author_max}); !put) return put;
+    return accept_lost_rows(lost);
+  });
+  if (!written) return failed(written.error());
+  return lost;
+}
+
+}  // namespace runstone
