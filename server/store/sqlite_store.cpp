@@ -18,6 +18,7 @@ SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock,
       database_(std::move(database)),
       meta_table_(std::move(tables.meta)),
       player_table_(std::move(tables.players)),
+      names_(std::move(tables.names)),
       log_(std::move(tables.log)),
       segments_(std::move(tables.segments)),
       base_(std::move(tables.base)),
@@ -78,6 +79,8 @@ StoreResult<Sequence> SqliteStore::checkpoint() {
 
 StoreResult<std::vector<PlayerRow>> SqliteStore::players() { return player_table_.players(); }
 
+StoreResult<std::vector<UsedName>> SqliteStore::player_names() { return names_.names(); }
+
 StoreResult<std::vector<HighWater>> SqliteStore::high_waters() {
   return player_table_.high_waters();
 }
@@ -136,6 +139,7 @@ StoreResult<void> SqliteStore::insert(std::span<const PlayerRow> players,
   for (const PlayerRow& player : players) {
     if (player.author == 0) return refuse("player author=0", "is the server itself");
     if (auto put = player_table_.put(player); !put) return put;
+    if (auto added = names_.add({player.author, player.name}); !added) return added;
   }
   std::map<std::pair<AuthorId, ClientInstance>, HighWater> marks;
   for (const EditRecord& record : records) {

@@ -10,6 +10,7 @@
 #include "server/store/keyframe_table.hpp"
 #include "server/store/log_table.hpp"
 #include "server/store/meta_table.hpp"
+#include "server/store/name_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/segment_table.hpp"
 #include "server/store/sqlite_result.hpp"
@@ -66,6 +67,7 @@ class SqliteStore final : public Store {
 
   // PlayerReader
   StoreResult<std::vector<PlayerRow>> players() override;
+  StoreResult<std::vector<UsedName>> player_names() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
 
   // WorldReader
@@ -96,6 +98,7 @@ class SqliteStore final : public Store {
   struct Tables {
     MetaTable meta;
     PlayerTable players;
+    NameTable names;
     LogTable log;
     SegmentTable segments;
     ChunkTable base, snapshots;
@@ -134,6 +137,7 @@ class SqliteStore final : public Store {
   std::unique_ptr<sql::Database> database_;
   MetaTable meta_table_;
   PlayerTable player_table_;
+  NameTable names_;
   LogTable log_;
   SegmentTable segments_;
   ChunkTable base_, snapshots_;

@@ -122,6 +122,7 @@ StoreResult<void> SqliteStore::check() {
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "database", *verdict}};
   if (const auto rows = meta_table_.read_all(); !rows) return failed(rows.error());
   if (const auto rows = player_table_.players(); !rows) return failed(rows.error());
+  if (const auto rows = names_.names(); !rows) return failed(rows.error());
   if (const auto seq = checkpoint(); !seq) return failed(seq.error());
   if (auto marks = check_marks_cover_log(); !marks) return marks;
   if (auto segments = check_segments_cover_log(); !segments) return segments;
