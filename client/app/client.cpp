@@ -26,6 +26,8 @@ namespace {
 constexpr TimeUs kRestUs = 10'000;
 /// The longest pause of the loop with a window. A key or a click waits no longer than this.
 constexpr TimeUs kRestUsWindow = 2'000;
+/// A view whose chunks have been here for this long is taken as meshed.
+constexpr TimeUs kMeshedUs = 2'000'000;
 constexpr TimeUs kTitleUs = 500'000;
 /// The log is divided into this many steps of `[` and `]`.
 constexpr Sequence kScrubSteps = 100;
@@ -55,6 +57,11 @@ std::string moment_text(const std::optional<PastMoment>& past) {
                      fmt::gmtime(seconds));
 }
 
+std::string memory_text(const MemoryBudget& budget) {
+  if (!budget.binds()) return {};
+  return fmt::format("  view {} of {} chunks (memory)", budget.radii().h, budget.wanted().h);
+}
+
 }  // namespace
 
 Client::Client(ClientOptions options, const Script* script)
@@ -66,7 +73,8 @@ Client::Client(ClientOptions options, const Script* script)
                 make_draw_thread(options_, window_.get(), [this] { wake_.notify(); }),
                 window_ != nullptr, options_.workers, [this] { wake_.notify(); }),
       tool_(session_, player_, pipeline_.recorder()),
-      view_(session_, player_, options_.view_radius, options_.view_radius_v),
+      budget_(options_.memory_mib << 20, {options_.view_radius, options_.view_radius_v}),
+      view_(session_, player_, budget_.radii()),
       actions_(session_, player_, pipeline_, tool_, view_, options_.screenshot_dir) {
   spdlog::info("renderer={}", pipeline_.renderer_name());
   if (script != nullptr) runner_.emplace(*script, actions_);
@@ -94,6 +102,7 @@ int Client::run_turns(const volatile std::sig_atomic_t& stop) {
     if (network_.take_world_opened()) on_world_opened();
     drain_changes();  // before the script asks whether all of it is drawn
     const TimeUs now_us = steady_now_us();
+    limit_memory(now_us);
     poll_window(now_us);
     pipeline_.take_drawn();
     view_.update_completeness(now_us);
@@ -101,7 +110,7 @@ int Client::run_turns(const volatile std::sig_atomic_t& stop) {
     flush();  // local edits go first, because following the player may take long
     follow_player(now_us);
     session_.tick(now_us);
-    network_.step_cache(now_us);
+    network_.step_cache(now_us, budget_.room(memory_use()));
     flush();
     draw(now_us);
     if (stop != 0) end_requested_ = true;
@@ -115,6 +124,9 @@ void Client::on_world_opened() {
   const Welcome& welcome = *session_.welcome();
   player_.enter(welcome.world_id, welcome.spawn);
   pipeline_.set_materials(welcome.materials);
+  budget_.set_wanted({std::min(options_.view_radius, welcome.view_radius_max),
+                      std::min(options_.view_radius_v, welcome.view_radius_max)});
+  if (view_.radii() != budget_.radii()) view_.set_radii(budget_.radii());
 }
 
 void Client::flush() {
@@ -169,6 +181,32 @@ void Client::follow_player(TimeUs now_us) {
   pipeline_.set_eye(player_.chunk(session_.replica().chunk_edge()));
 }
 
+MemoryUse Client::memory_use() const {
+  return {session_.replica().chunk_bytes(), session_.replica().local_edits().bytes(),
+          pipeline_.mesh_bytes(), pipeline_.gpu_bytes()};
+}
+
+void Client::limit_memory(TimeUs now_us) {
+  const MemoryUse use = memory_use();
+  const ViewRadii before = budget_.radii();
+  const auto complete_since_us = view_.complete_since_us();
+  const bool is_meshed = complete_since_us && now_us - *complete_since_us >= kMeshedUs;
+  if (budget_.step(use, is_meshed, now_us)) {
+    const ViewRadii radii = budget_.radii();
+    const bool has_shrunk = radii.h + radii.v < before.h + before.v;
+    spdlog::log(has_shrunk ? spdlog::level::warn : spdlog::level::info,
+                "memory: {} of {} MiB in use; the view {} to radius {} of {} chunks, {} of {} "
+                "vertically",
+                use.total() >> 20, budget_.bytes_max() >> 20, has_shrunk ? "shrinks" : "grows",
+                radii.h, budget_.wanted().h, radii.v, budget_.wanted().v);
+    view_.set_radii(radii);
+    pipeline_.view_changed();
+    drain_changes();
+  }
+  const MemoryUse kept = memory_use();
+  pipeline_.set_mesh_bytes_max(budget_.room(kept) + kept.meshes + kept.gpu);
+}
+
 void Client::drain_changes() {
   const ReplicaChanges changes = session_.replica().drain_changes();
   pipeline_.take(changes, session_.clock(), steady_now_us());
@@ -208,7 +246,7 @@ std::vector<Marker> Client::markers() const {
 
 void Client::draw(TimeUs now_us) {
   const double edge = std::max(16, session_.replica().chunk_edge());
-  const Camera camera = player_.camera((options_.view_radius + 1.5) * edge);
+  const Camera camera = player_.camera((view_.radii().h + 1.5) * edge);
   const std::array<int, 2> size =
       window_ ? window_->framebuffer_size() : std::array{options_.width, options_.height};
   pipeline_.draw(now_us, camera, size, [this] { return markers(); });
@@ -222,10 +260,11 @@ void Client::update_title(TimeUs now_us) {
   const MaterialTable& materials = pipeline_.materials();
   const std::uint64_t frames = pipeline_.frames_presented();
   window_->set_title(fmt::format(
-      "Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}{}",
+      "Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}{}{}",
       static_cast<double>(frames - titled_frames_) * 1e6 / static_cast<double>(now_us - titled_us_),
       materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z,
-      moment_text(session_.replica().past()), network_.is_connected() ? "" : "  (connecting)"));
+      moment_text(session_.replica().past()), memory_text(budget_),
+      network_.is_connected() ? "" : "  (connecting)"));
   titled_us_ = now_us;
   titled_frames_ = frames;
 }
@@ -262,6 +301,9 @@ ClientReport Client::report() const {
   out.latency = pipeline_.recorder().report();
   out.join = pipeline_.join();
   out.edits_refused = tool_.refused();
+  out.memory = memory_use();
+  out.budget = {budget_.bytes_max(), budget_.peak_bytes(), budget_.shrinks(),
+                budget_.growths(),   budget_.radii(),      budget_.wanted()};
   network_.add_to(out);
   pipeline_.add_to(out);
   return out;

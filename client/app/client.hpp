@@ -21,6 +21,7 @@
 #include "client/net/wake_up.hpp"
 #include "client/platform/window.hpp"
 #include "client/report/report.hpp"
+#include "client/schedule/memory_budget.hpp"
 #include "client/script/script_runner.hpp"
 
 namespace runstone {
@@ -46,6 +47,10 @@ class Client {
   /// Moves the view by `steps` in time. The step after the newest edit is the live world.
   void scrub(int steps);
   void follow_player(TimeUs now_us);
+  MemoryUse memory_use() const;
+  /// Keeps the memory within the budget: shrinks the view, or lets it grow again, and bounds the
+  /// meshes.
+  void limit_memory(TimeUs now_us);
   /// Sends what is queued, and meshes what changed.
   void flush();
   void drain_changes();
@@ -69,6 +74,7 @@ class Client {
   MeshPipeline pipeline_;
   Player player_;
   EditTool tool_;
+  MemoryBudget budget_;
   ViewFollower view_;
   ScriptActions actions_;
   std::optional<ScriptRunner> runner_;

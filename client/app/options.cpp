@@ -76,6 +76,10 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
       ->check(CLI::ExistingDirectory);
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
       ->check(CLI::Range(0U, 64U));
+  app.add_option("--memory-mib", out.memory_mib,
+                 "memory for chunks, edits and meshes in MiB; default 1024. Beyond it the view "
+                 "shrinks")
+      ->check(CLI::Range(std::uint64_t{64}, std::uint64_t{65'536}));
   app.add_flag("--verbose", out.verbose, "log every step");
 }
 

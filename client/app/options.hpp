@@ -24,11 +24,12 @@ struct ClientOptions {
   std::uint8_t encodings = 7;      // as in Hello
   std::string screenshot_dir = ".";
   bool exit_on_goodbye = false;
-  double reconnect_seconds = 30;  // the client ends after this time without an open world
-  unsigned workers = 0;           // mesh threads, at least 1 after parsing
-  bool cache = true;              // keep chunks on disk between runs
-  std::string cache_dir;          // empty: $XDG_CACHE_HOME/runstone
-  std::uint64_t cache_mib = 256;  // at most, on disk
+  double reconnect_seconds = 30;    // the client ends after this time without an open world
+  unsigned workers = 0;             // mesh threads, at least 1 after parsing
+  bool cache = true;                // keep chunks on disk between runs
+  std::string cache_dir;            // empty: $XDG_CACHE_HOME/runstone
+  std::uint64_t cache_mib = 256;    // at most, on disk
+  std::uint64_t memory_mib = 1024;  // of chunks, edits and meshes (MemoryBudget)
   bool verbose = false;
   bool list_materials = false;  // print the materials of the world instead of playing
   bool draw = false;  // take draw orders from standard input instead of playing (docs/client.md)

@@ -108,8 +108,8 @@ void ThreadedSession::count_snapshots(const Chunks& chunks, const LinkReceived& 
 void ThreadedSession::on_disconnected(const LinkDisconnected& event) {
   if (event.connection != 0 && event.connection != connection_) return;
   connection_ = 0;
-  step_cache(steady_now_us());
-  keep_chunks(SIZE_MAX);
+  step_cache(steady_now_us(), 0);
+  keep_all_chunks();
   session_.disconnected();
   last_failure_ = event.why;
   if (session_.end() && !session_.end()->text.empty())
@@ -143,28 +143,39 @@ void ThreadedSession::flush() {
   if (session_.wants_close() && connection_ != 0) net_->close(connection_);
 }
 
-void ThreadedSession::step_cache(TimeUs now_us) {
+void ThreadedSession::step_cache(TimeUs now_us, std::size_t room_bytes) {
   if (!cache_) return;
   for (auto& found : cache_->drain_results())
     session_.receive_cache_result(std::move(found), now_us);
-  while (auto lookup = session_.take_cache_lookup()) cache_->look_up(*std::move(lookup));
+  while (auto lookup = session_.take_cache_lookup()) {
+    lookup->bytes_max = room_bytes;
+    cache_->look_up(*std::move(lookup));
+  }
   if (now_us - kept_us_ >= kKeepUs) {
     kept_us_ = now_us;
-    keep_chunks(cache_->room());
+    static_cast<void>(keep_chunks(cache_->room()));
   }
   if (const std::string warning = cache_->take_warning(); !warning.empty())
     spdlog::warn("{}", warning);
 }
 
-void ThreadedSession::keep_chunks(std::size_t count_max) {
-  if (!cache_) return;
-  if (const auto world = session_.cached_world())
-    cache_->keep(*world, session_.replica().take_for_cache(count_max));
+bool ThreadedSession::keep_chunks(std::size_t count_max) {
+  const auto world = session_.cached_world();
+  if (!cache_ || !world) return false;
+  std::vector<KeyedChunk> batch = session_.replica().take_for_cache(count_max);
+  if (batch.empty()) return false;
+  cache_->keep(*world, std::move(batch));
+  return true;
+}
+
+void ThreadedSession::keep_all_chunks() {
+  while (keep_chunks(SIZE_MAX)) {
+  }
 }
 
 void ThreadedSession::finish() {
-  step_cache(steady_now_us());
-  keep_chunks(SIZE_MAX);
+  step_cache(steady_now_us(), 0);
+  keep_all_chunks();
   if (cache_) cache_->stop();
   session_.close(GoodbyeReason::closing, "");
   flush();

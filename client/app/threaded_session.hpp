@@ -43,8 +43,8 @@ class ThreadedSession {
   /// Queues the session's outgoing messages on the network thread.
   void flush();
   /// Passes lookups and their results between session and cache, and gives the cache the chunks to
-  /// keep, at most every kKeepUs.
-  void step_cache(TimeUs now_us);
+  /// keep, at most every kKeepUs. A lookup finds chunks that take `room_bytes` at most.
+  void step_cache(TimeUs now_us, std::size_t room_bytes);
   /// Writes the last chunks to the cache, sends a goodbye and stops both threads. Waits for the
   /// disk, and for the network at most kGoodbyeMs.
   void finish();
@@ -69,7 +69,9 @@ class ThreadedSession {
   void count_snapshots(const Chunks& chunks, const LinkReceived& event);
   void on_disconnected(const LinkDisconnected& event);
   void on_world_opened();
-  void keep_chunks(std::size_t count_max);
+  /// Gives the cache a batch of chunks. Returns false if there was none.
+  bool keep_chunks(std::size_t count_max);
+  void keep_all_chunks();
 
   const ClientOptions options_;
   const std::function<void()> wake_;

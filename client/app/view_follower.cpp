@@ -12,10 +12,19 @@ bool ViewFollower::follow(TimeUs now_us) {
   view.cone = kSightCone;
   if (!pace_.step(session_.view(), view, now_us)) return false;
   const bool moves = !session_.view().same_chunks(view);
-  view.radius_h = radius_h_;
-  view.radius_v = radius_v_;
-  session_.set_view(view);
+  set_view(view);
   return moves;
+}
+
+void ViewFollower::set_radii(ViewRadii radii) {
+  radii_ = radii;
+  set_view(session_.view());
+}
+
+void ViewFollower::set_view(View view) {
+  view.radius_h = radii_.h;
+  view.radius_v = radii_.v;
+  session_.set_view(view);
 }
 
 bool ViewFollower::has_followed() const {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "client/app/player.hpp"
+#include "client/schedule/memory_budget.hpp"
 #include "client/schedule/view_pace.hpp"
 #include "client/session/client_session.hpp"
 
@@ -11,14 +12,16 @@ namespace runstone {
 
 class ViewFollower {
  public:
-  /// Radii in chunks. Session and player must outlive the follower.
-  ViewFollower(ClientSession& session, const Player& player, std::uint8_t radius_h,
-               std::uint8_t radius_v)
-      : session_(session), player_(player), radius_h_(radius_h), radius_v_(radius_v) {}
+  /// Session and player must outlive the follower.
+  ViewFollower(ClientSession& session, const Player& player, ViewRadii radii)
+      : session_(session), player_(player), radii_(radii) {}
 
   /// Gives the session the player's pose and, if ViewPace allows it, a view around the player.
   /// Returns true if the view covers other chunks than before.
   bool follow(TimeUs now_us);
+  /// Gives the session a view with other radii, at once.
+  void set_radii(ViewRadii radii);
+  ViewRadii radii() const { return radii_; }
   /// Returns true if the view is centred on the player's chunk.
   bool has_followed() const;
   /// Returns true if the view is centred on the player's chunk and all of its chunks are here.
@@ -30,9 +33,12 @@ class ViewFollower {
   std::optional<TimeUs> complete_since_us() const { return complete_since_us_; }
 
  private:
+  /// Requests the view with the radii of this follower.
+  void set_view(View view);
+
   ClientSession& session_;
   const Player& player_;
-  const std::uint8_t radius_h_, radius_v_;
+  ViewRadii radii_;
   ViewPace pace_;
   std::optional<TimeUs> complete_since_us_;
 };

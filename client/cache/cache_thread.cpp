@@ -20,15 +20,18 @@ void CacheThread::look_up(CacheLookup lookup) {
 
 std::size_t CacheThread::room() const {
   const std::lock_guard lock(mutex_);
-  return kKeepMax - std::min(kKeepMax, waiting_);
+  return waiting_bytes_ >= kKeepBytesMax ? 0 : kKeepMax - std::min(kKeepMax, waiting_);
 }
 
 void CacheThread::keep(const CachedWorld& world, std::vector<KeyedChunk> chunks) {
   if (chunks.empty()) return;
+  std::size_t bytes = 0;
+  for (const auto& [key, chunk] : chunks) bytes += chunk->voxels.runs.byte_capacity();
   {
     const std::lock_guard lock(mutex_);
     waiting_ += chunks.size();
-    batches_.push_back({world, std::move(chunks)});
+    waiting_bytes_ += bytes;
+    batches_.push_back({world, std::move(chunks), bytes});
   }
   has_work_.notify_one();
 }
@@ -65,7 +68,7 @@ void CacheThread::run() {
       const CacheLookup lookup = std::move(lookups_.front());
       lookups_.pop_front();
       lock.unlock();
-      auto found = cache_->find(lookup.world, lookup.keys);
+      auto found = cache_->find(lookup);
       lock.lock();
       results_.push_back(std::move(found));
       lock.unlock();
@@ -78,6 +81,7 @@ void CacheThread::run() {
       cache_->keep(batch.world, batch.chunks);
       lock.lock();
       waiting_ -= batch.chunks.size();
+      waiting_bytes_ -= batch.bytes;
     } else {
       return;
     }

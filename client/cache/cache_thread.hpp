@@ -18,8 +18,10 @@ namespace runstone {
 
 class CacheThread {
  public:
-  /// The greatest number of chunks that wait to be written. Further ones stay with the replica.
+  /// The greatest number of chunks that wait to be written, and about their greatest memory.
+  /// Further ones stay with the replica.
   static constexpr std::size_t kKeepMax = 4'096;
+  static constexpr std::size_t kKeepBytesMax = std::size_t{64} << 20;
 
   /// `wake` is called after each result.
   CacheThread(std::unique_ptr<ChunkCache> cache, std::function<void()> wake);
@@ -27,7 +29,7 @@ class CacheThread {
   ~CacheThread();
 
   void look_up(CacheLookup lookup);
-  /// Returns the number of chunks that keep() accepts now.
+  /// Returns the number of chunks that keep() should get now.
   std::size_t room() const;
   void keep(const CachedWorld& world, std::vector<KeyedChunk> chunks);
   /// Returns the results of lookups since the last call, in order: the chunks that were found.
@@ -43,6 +45,7 @@ class CacheThread {
   struct Batch {
     CachedWorld world;
     std::vector<KeyedChunk> chunks;
+    std::size_t bytes = 0;
   };
   void run();
 
@@ -53,7 +56,8 @@ class CacheThread {
   std::condition_variable has_work_;
   std::deque<CacheLookup> lookups_;
   std::deque<Batch> batches_;
-  std::size_t waiting_ = 0;  // chunks in batches_ and in the one being written
+  // In batches_ and in the one being written.
+  std::size_t waiting_ = 0, waiting_bytes_ = 0;
   std::vector<std::vector<KeyedChunk>> results_;
   CacheCounters counters_;
   std::string warning_;

@@ -265,14 +265,18 @@ std::optional<KeyedChunk> ChunkCache::read(const CachedWorld& world, std::int64_
   return KeyedChunk{key, std::move(chunk)};
 }
 
-std::vector<KeyedChunk> ChunkCache::find(const CachedWorld& world, std::span<const ChunkKey> keys) {
+std::vector<KeyedChunk> ChunkCache::find(const CacheLookup& lookup) {
   std::vector<KeyedChunk> found;
+  std::size_t found_bytes = 0;
   if (has_ended_) return found;
   database_->run("BEGIN IMMEDIATE");
-  const std::int64_t row = enter(world);
-  for (const ChunkKey& key : keys) {
-    if (!database_->ok()) break;
-    if (auto chunk = read(world, row, key)) found.push_back(*std::move(chunk));
+  const std::int64_t row = enter(lookup.world);
+  for (const ChunkKey& key : lookup.keys) {
+    if (!database_->ok() || found_bytes >= lookup.bytes_max) break;
+    auto chunk = read(lookup.world, row, key);
+    if (!chunk) continue;
+    found_bytes += sizeof(Chunk) + chunk->second->voxels.runs.byte_capacity();
+    found.push_back(*std::move(chunk));
   }
   database_->run("COMMIT");
   handle_failure();

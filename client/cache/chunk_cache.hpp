@@ -48,8 +48,9 @@ class ChunkCache {
   static Result<std::unique_ptr<ChunkCache>, std::string> open(const std::string& folder,
                                                                std::uint64_t bytes_max);
 
-  /// Returns the chunks of `keys` that are in the cache, in the order of `keys`.
-  std::vector<KeyedChunk> find(const CachedWorld& world, std::span<const ChunkKey> keys);
+  /// Returns the chunks of the lookup that are in the cache, in the order of its keys. Stops when
+  /// they take `bytes_max`; one chunk may exceed it.
+  std::vector<KeyedChunk> find(const CacheLookup& lookup);
   /// Writes chunks and the state of their world in one transaction.
   void keep(const CachedWorld& world, std::span<const KeyedChunk> chunks);
 

@@ -24,6 +24,7 @@ void MeshPipeline::set_materials(const MaterialTable& materials) {
   if (draw_thread_) draw_thread_->set_materials(materials_);
   planner_.forget_meshes();
   pool_.reset();
+  open_job_bytes_.clear();
   pool_ = std::make_unique<MeshPool>(VisibilityTable(visibilities(materials_)), workers_,
                                      steady_now_ns, wake_);
 }
@@ -36,6 +37,7 @@ void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock,
   for (const ChunkChange& chunk : changes.chunks) {
     if (!chunk.removed) continue;
     draw_thread_->remove(chunk.key);
+    gpu_bytes_.erase(chunk.key);
     changed_ = true;
   }
 }
@@ -75,10 +77,12 @@ void MeshPipeline::take_results() {
 
 void MeshPipeline::take_result(MeshResult result) {
   (result.layers_only ? layers_ns_ : whole_ns_).add(result.mesh_ns);
+  open_job_bytes_.erase(result.number);
   if (!planner_.finish(result.key, result.number, result.mesh)) return;
   recorder_.meshed(result.key, result.serial, result.meshed_us);
   join_.done(result.key, result.meshed_us);
   if (!draw_thread_) return;
+  gpu_bytes_.set(result.key, result.mesh->quad_count() * sizeof(Quad));
   draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
   changed_ = uploads_waiting_ = true;
   edits_waiting_ = edits_waiting_ || recorder_.open_edits() != 0;
@@ -93,11 +97,17 @@ void MeshPipeline::mesh_layers() {
 }
 
 void MeshPipeline::push_jobs() {
-  while (pool_->in_flight() < pool_->capacity()) {
+  while (pool_->in_flight() < pool_->capacity() && has_room_for_jobs()) {
     auto job = planner_.next();
     if (!job) return;
+    open_job_bytes_.set(job->number, (draw_thread_ ? 2 : 1) * mesh_bytes_about(*job));
     pool_->push(std::move(*job));
   }
+}
+
+bool MeshPipeline::has_room_for_jobs() const {
+  return pool_->in_flight() == 0 ||
+         mesh_bytes() + gpu_bytes() + open_job_bytes_.total() < mesh_bytes_max_;
 }
 
 void MeshPipeline::draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "client/display/draw_thread.hpp"
 #include "client/report/report.hpp"
+#include "client/schedule/byte_ledger.hpp"
 #include "client/schedule/join_recorder.hpp"
 #include "client/schedule/latency_recorder.hpp"
 #include "client/schedule/mesh_planner.hpp"
@@ -37,6 +39,13 @@ class MeshPipeline {
   /// Call it when the replica's view covers other chunks.
   void view_changed() { planner_.view_changed(); }
   void set_eye(ChunkCoord eye) { planner_.set_eye(eye); }
+  /// Sets the memory that meshes may take, those on the GPU included. Beyond it one job is made at
+  /// a time, so that the nearest chunk is meshed all the same.
+  void set_mesh_bytes_max(std::size_t bytes) { mesh_bytes_max_ = bytes; }
+  /// Returns the memory of the newest meshes of all chunks.
+  std::size_t mesh_bytes() const { return planner_.kept_bytes(); }
+  /// Returns the memory of the quads that were queued for upload and not removed since.
+  std::size_t gpu_bytes() const { return gpu_bytes_.total(); }
   /// Call it when the camera or a marker moved.
   void moved() { changed_ = true; }
 
@@ -96,6 +105,7 @@ class MeshPipeline {
   /// takes longer than the job.
   void mesh_layers();
   void push_jobs();
+  bool has_room_for_jobs() const;
   void take_frame(const FrameDone& frame);
 
   const bool watched_;
@@ -104,6 +114,9 @@ class MeshPipeline {
   LatencyRecorder recorder_;
   JoinRecorder join_;
   MeshPlanner planner_;
+  std::size_t mesh_bytes_max_ = std::numeric_limits<std::size_t>::max();
+  ByteLedger<std::uint64_t> open_job_bytes_;  // expected, by job number
+  ByteLedger<ChunkKey> gpu_bytes_;
   MaterialTable materials_;
   Histogram whole_ns_, layers_ns_;
   FrameStats frames_;

@@ -20,6 +20,9 @@ namespace {
 
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 64 * 1024;
+/// Bytes that are decoded between two calls of is_full(). A chunk of a few dozen bytes can decode
+/// to 12 MiB, so only a few of them may be decoded at once.
+constexpr std::size_t kDecodeBytes = 256;
 constexpr std::size_t kWriteBytes = 64 * 1024;
 using std::chrono::milliseconds;
 
@@ -147,17 +150,22 @@ asio::awaitable<void> read_messages(State& state) {
       break;
     }
     state.stats.bytes_received.fetch_add(count, std::memory_order_relaxed);
-    const auto fed = state.take_message(reader, ByteView(buffer.data(), count), steady_now_us());
+    const TimeUs received_us = steady_now_us();
+    Result<void> fed;
+    for (std::size_t at = 0; at < count && fed && !state.stopping; at += kDecodeBytes) {
+      const std::size_t bytes = std::min(kDecodeBytes, count - at);
+      fed = state.take_message(reader, ByteView(buffer.data() + at, bytes), received_us);
+      while (!state.stopping && state.callbacks.is_full()) {
+        state.pause.expires_after(milliseconds(1));
+        co_await state.pause.async_wait(kTuple);
+      }
+    }
     if (!fed) {
       state.why_closed = std::string("bad bytes from the server: ") + fed.error().what;
       break;
     }
     state.chunk_bytes = reader.frame_bytes(FrameClass::chunks);
     state.send_receive_ack();
-    while (!state.stopping && state.callbacks.is_full()) {
-      state.pause.expires_after(milliseconds(1));
-      co_await state.pause.async_wait(kTuple);
-    }
   }
   state.up = false;
   state.close_socket();

@@ -35,7 +35,9 @@ struct LinkReceived {
 struct LinkConfig {
   std::string host;
   std::uint16_t port = 0;
-  std::size_t events_max = 4096;  // of NetClient: events that were not taken yet
+  // Of NetClient: events that were not taken yet, and the memory of their messages.
+  std::size_t events_max = 4096;
+  std::size_t event_bytes_max = std::size_t{16} << 20;
   std::int64_t connect_ms_max = 5'000;
   /// The pause between attempts starts with `first` and doubles up to `max`. A random quarter is
   /// added or subtracted.

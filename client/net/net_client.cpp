@@ -7,36 +7,61 @@
 #include <utility>
 
 namespace runstone {
+namespace {
+
+/// A message without chunks takes at most about so many times its bytes on the wire.
+constexpr std::size_t kUnpackFactor = 16;
+
+/// Returns about the memory that a message takes. Chunks of a few bytes can have many runs.
+std::size_t memory_of(const LinkReceived& received) {
+  const auto* chunks = std::get_if<Chunks>(&received.message);
+  if (chunks == nullptr) return sizeof(LinkReceived) + kUnpackFactor * received.bytes;
+  std::size_t bytes = sizeof(LinkReceived) + received.bytes;
+  for (const ChunkAnswer& answer : chunks->chunks) {
+    bytes += sizeof(ChunkAnswer);
+    if (const auto* snapshot = std::get_if<ChunkSnapshot>(&answer))
+      bytes += snapshot->chunk.voxels.runs.byte_capacity();
+  }
+  return bytes;
+}
+
+}  // namespace
 
 struct NetClient::State final : private LinkCallbacks {
   State(LinkConfig config, std::function<void()> net_wake)
       : events_max(config.events_max),
+        event_bytes_max(config.event_bytes_max),
         wake(std::move(net_wake)),
         link(io, std::move(config), *this) {}
 
-  void push(LinkEvent event) {
+  void push(LinkEvent event, std::size_t bytes = 0) {
     {
       const std::lock_guard lock(mutex);
       events.push_back(std::move(event));
+      event_bytes += bytes;
     }
     wake();
   }
   void on_connected(ConnectionNumber connection) override { push(LinkConnected{connection}); }
-  void on_received(LinkReceived received) override { push(std::move(received)); }
+  void on_received(LinkReceived received) override {
+    const std::size_t bytes = memory_of(received);
+    push(std::move(received), bytes);
+  }
   void on_disconnected(ConnectionNumber connection, std::string why) override {
     push(LinkDisconnected{connection, std::move(why)});
   }
   bool is_full() override {
     const std::lock_guard lock(mutex);
-    return events.size() >= events_max;
+    return events.size() >= events_max || event_bytes >= event_bytes_max;
   }
 
-  const std::size_t events_max;
+  const std::size_t events_max, event_bytes_max;
   const std::function<void()> wake;
   asio::io_context io{1};
   Link link;  // used by the thread only
   std::mutex mutex;
-  std::vector<LinkEvent> events;  // guarded by mutex
+  std::vector<LinkEvent> events;  // guarded by mutex, as is the next one
+  std::size_t event_bytes = 0;    // about the memory of the events
   std::thread thread;
 };
 
@@ -50,6 +75,7 @@ NetClient::~NetClient() { stop(0); }
 
 std::vector<LinkEvent> NetClient::take_events() {
   const std::lock_guard lock(state_->mutex);
+  state_->event_bytes = 0;
   return std::exchange(state_->events, {});
 }
 

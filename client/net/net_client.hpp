@@ -1,7 +1,8 @@
 // NetClient: a thread with one link to the server, for a program whose main thread must never wait.
 // Bounds:
-//   - `events_max` events that were not taken; beyond it the link stops reading and TCP holds the
-//     server back;
+//   - `events_max` events that were not taken, and `event_bytes_max` of memory that their messages
+//     take, whichever comes first; beyond it the link stops reading and TCP holds the server back.
+//     The messages in kDecodeBytes (link.cpp) more may be decoded;
 //   - kSendBytesMax bytes to send; beyond it the link closes the connection.
 #pragma once
 #include <cstdint>

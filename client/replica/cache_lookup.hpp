@@ -2,6 +2,7 @@
 // them.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct CachedWorld {
 struct CacheLookup {
   CachedWorld world;
   std::vector<ChunkKey> keys;  // ascending
+  /// The memory of the chunks that may be found. Further ones count as missing.
+  std::size_t bytes_max = std::numeric_limits<std::size_t>::max();
 };
 
 using KeyedChunk = std::pair<ChunkKey, ChunkPtr>;

@@ -3,9 +3,19 @@
 #include <algorithm>
 
 namespace runstone {
+namespace {
+
+std::size_t outbox_bytes_of(const Chunk& chunk) {
+  return sizeof(Chunk) + chunk.voxels.runs.byte_capacity();
+}
+
+}  // namespace
 
 void CacheOutbox::add(const TrackedChunk& chunk) {
   if (!is_enabled_ || !chunk.is_for_cache() || left_.size() >= kCacheOutboxMax) return;
+  const std::size_t bytes = outbox_bytes_of(*chunk.confirmed());
+  if (bytes_ + bytes > kCacheOutboxBytesMax) return;
+  bytes_ += bytes;
   left_.emplace_back(chunk.key, chunk.confirmed());
 }
 
@@ -14,10 +24,13 @@ std::vector<KeyedChunk> CacheOutbox::take(ReplicaChunks* chunks, std::size_t cou
   const auto end = left_.begin() + static_cast<std::ptrdiff_t>(count);
   std::vector<KeyedChunk> out(left_.begin(), end);
   left_.erase(left_.begin(), end);
+  for (const auto& [key, chunk] : out) bytes_ -= outbox_bytes_of(*chunk);
   if (chunks == nullptr) return out;
+  std::size_t bytes = 0;
   for (auto& [key, chunk] : *chunks) {
-    if (out.size() >= count_max) break;
+    if (out.size() >= count_max || bytes >= kCacheBatchBytesMax) break;
     if (!chunk.is_for_cache()) continue;
+    bytes += outbox_bytes_of(*chunk.confirmed());
     chunk.cached = chunk.confirmed()->version;
     out.emplace_back(key, chunk.confirmed());
   }

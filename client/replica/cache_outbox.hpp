@@ -1,6 +1,6 @@
 // CacheOutbox: confirmed chunks on their way to a cache. Only chunks that the server has vouched
-// for on this connection, in the live world, are handed over. Bound: kCacheOutboxMax chunks that
-// left the view; more are dropped. One thread.
+// for on this connection, in the live world, are handed over. Bound: kCacheOutboxMax chunks and
+// kCacheOutboxBytesMax bytes that left the view; more are dropped. One thread.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -11,6 +11,9 @@
 namespace runstone {
 
 inline constexpr std::size_t kCacheOutboxMax = 32'768;
+inline constexpr std::size_t kCacheOutboxBytesMax = std::size_t{64} << 20;
+/// About the most memory of the chunks in view that one call of take() returns.
+inline constexpr std::size_t kCacheBatchBytesMax = std::size_t{64} << 20;
 
 class CacheOutbox {
  public:
@@ -19,14 +22,18 @@ class CacheOutbox {
   /// The chunk leaves the view.
   void add(const TrackedChunk& chunk);
   /// Returns at most `count_max` chunks: first those that left the view, then those in `chunks`
-  /// that changed since they were last taken. `chunks` is null while the past is shown. Cost:
-  /// O(chunks).
+  /// that changed since they were last taken, until these take kCacheBatchBytesMax. `chunks` is
+  /// null while the past is shown. Cost: O(chunks).
   std::vector<KeyedChunk> take(ReplicaChunks* chunks, std::size_t count_max);
-  void clear() { left_.clear(); }
+  void clear() {
+    left_.clear();
+    bytes_ = 0;
+  }
 
  private:
   bool is_enabled_ = false;
   std::vector<KeyedChunk> left_;
+  std::size_t bytes_ = 0;  // of left_
 };
 
 }  // namespace runstone

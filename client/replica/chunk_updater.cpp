@@ -124,10 +124,12 @@ void ChunkUpdater::add_to_inbox(TrackedChunk& chunk, TrackedChunk::InboxEdit edi
   chunk.inbox.push_back(std::move(edit));
   if (!may_wait) return;
   ++counters_.chunk_edits_buffered;
-  if (chunk.inbox.size() <= kInboxEditsMax) return;
-  // chunk.latest remembers what the next snapshot must contain.
-  chunk.inbox.clear();
-  ++counters_.buffer_overflows;
+  if (chunk.inbox.size() > kInboxEditsMax) {
+    // chunk.latest remembers what the next snapshot must contain.
+    chunk.inbox.clear();
+    ++counters_.buffer_overflows;
+  }
+  chunks_.recount(chunk);
 }
 
 void ChunkUpdater::advance(TrackedChunk& chunk, bool from_snapshot, TimeUs now_us) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/replica/edit_bytes.hpp"
+
 namespace runstone {
 
 Result<ClientSequence> LocalEdits::submit(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
@@ -14,6 +16,7 @@ Result<ClientSequence> LocalEdits::submit(const EditDescriptor& edit, std::vecto
   local.edit = edit;
   local.chunks = std::move(chunks);
   local.submitted_us = submitted_us;
+  bytes_ += bytes_of(local);
   edits_.emplace_hint(edits_.end(), ++last_, std::move(local));
   ++counters_.submitted;
   return last_;
@@ -37,8 +40,8 @@ std::optional<LocalEdits::Rejection> LocalEdits::reject(const Reject& reject,
   const auto it = edits_.find(reject.client_seq);
   if (it == edits_.end() || !it->second.needs_answer()) return std::nullopt;
   if (reject.reason != RejectReason::already_resolved) {
-    Rejection out{std::move(it->second), false};
-    edits_.erase(it);
+    Rejection out{it->second, false};
+    erase(it);
     ++counters_.rejected;
     return out;
   }
@@ -75,11 +78,20 @@ LocalEdits::Retired LocalEdits::retire(Sequence durable) {
       continue;
     }
     (local.state == LocalEditState::unseen ? out.unseen : out.durable).push_back(it->first);
-    it = edits_.erase(it);
+    it = erase(it);
   }
   counters_.durable += out.durable.size();
   counters_.unseen += out.unseen.size();
   return out;
+}
+
+std::size_t LocalEdits::bytes_of(const LocalEdit& local) {
+  return sizeof(LocalEdit) + edit_bytes(local.edit) + local.chunks.size() * sizeof(ChunkKey);
+}
+
+LocalEdits::Map::iterator LocalEdits::erase(Map::iterator it) {
+  bytes_ -= bytes_of(it->second);
+  return edits_.erase(it);
 }
 
 const LocalEdit* LocalEdits::find(ClientSequence seq) const {

@@ -98,7 +98,12 @@ class LocalEdits {
   };
   /// Removes the edits that the server has resolved at or below the durable sequence.
   Retired retire(Sequence durable);
-  void clear() { edits_.clear(); }
+  void clear() {
+    edits_.clear();
+    bytes_ = 0;
+  }
+  /// Returns the memory of the edits that are kept.
+  std::size_t bytes() const { return bytes_; }
 
   const LocalEdit* find(ClientSequence seq) const;
   const Map& all() const { return edits_; }
@@ -111,7 +116,11 @@ class LocalEdits {
   const LocalEditCounters& counters() const { return counters_; }
 
  private:
+  static std::size_t bytes_of(const LocalEdit& local);
+  Map::iterator erase(Map::iterator it);
+
   Map edits_;
+  std::size_t bytes_ = 0;  // of edits_
   ClientSequence last_ = 0;
   LocalEditCounters counters_;
 };

@@ -15,6 +15,7 @@ void PastView::show(const std::optional<PastMoment>& moment, ReplicaChunks& chun
     chunk.pending.clear();
     chunk.inbox.clear();
     chunk.latest = 0;
+    chunks.recount(chunk);
   }
 }
 

@@ -43,6 +43,7 @@ void Replica::expect_all_chunks(const SharedHistory& history) {
     chunk.inbox.clear();
     chunk.latest = 0;
     chunk.behind_of = {};
+    chunks_.recount(chunk);
     if (!chunk.confirmed() || history.trusts(chunk.confirmed()->version)) continue;
     // The server that ordered this version may not have kept it. What is shown stays until the new
     // snapshot.
@@ -81,6 +82,7 @@ TrackedChunk& Replica::track(const ChunkKey& key) {
         chunk->add_pending(seq, local.edit);
       }
     }
+    chunks_.recount(*chunk);
   }
   return *chunk;
 }
@@ -120,6 +122,7 @@ Result<ClientSequence> Replica::submit(const EditDescriptor& edit, TimeUs submit
     TrackedChunk* chunk = chunks_.find(key);
     if (chunk == nullptr) continue;
     chunk->add_pending(*seq, edit);
+    chunks_.recount(*chunk);
     updater_.predict(*chunk, edit, change);
   }
   return seq;
@@ -144,7 +147,10 @@ Result<void> Replica::check(const EditDescriptor& edit) const {
 void Replica::add_pending_to_chunks(ClientSequence seq) {
   const LocalEdit& local = *local_edits_.find(seq);
   for (const ChunkKey& key : local.chunks) {
-    if (TrackedChunk* chunk = chunks_.find(key)) chunk->add_pending(seq, local.edit);
+    TrackedChunk* chunk = chunks_.find(key);
+    if (chunk == nullptr) continue;
+    chunk->add_pending(seq, local.edit);
+    chunks_.recount(*chunk);
   }
 }
 

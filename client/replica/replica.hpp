@@ -27,7 +27,8 @@
 // Pure: no clock and no socket. Times are arguments, in microseconds of the client's steady clock.
 // One thread; the chunks that are returned are immutable and may be read from any thread. Bounds:
 // chunks by the view; local edits by kLocalEditsMax; commits held back by kInboxEditsMax per chunk;
-// claims by kClaimsMax; the cache by kCacheOutboxMax.
+// claims by kClaimsMax; the cache by kCacheOutboxMax and kCacheOutboxBytesMax. MemoryBudget
+// (client/schedule) reduces the view if the chunks take too many bytes.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -166,6 +167,8 @@ class Replica {
   /// and it is not unavailable.
   bool is_expected(const ChunkKey& key) const;
   const LocalEdits& local_edits() const { return local_edits_; }
+  /// Returns the memory of all chunks: confirmed and shown runs, and edits that wait beside them.
+  std::size_t chunk_bytes() const { return chunks_.bytes(); }
   Sequence durable() const { return durable_; }
   /// Newest sequence seen in a message of the server.
   Sequence newest() const { return newest_; }

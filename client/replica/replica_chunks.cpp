@@ -14,7 +14,10 @@ const TrackedChunk* ReplicaChunks::find(const ChunkKey& key) const {
 
 std::pair<TrackedChunk*, bool> ReplicaChunks::track(const ChunkKey& key) {
   const auto [it, is_new] = chunks_.try_emplace(key, key);
-  if (is_new) ++counts_[static_cast<std::size_t>(ChunkState::expected)];
+  if (is_new) {
+    ++counts_[static_cast<std::size_t>(ChunkState::expected)];
+    recount(it->second);
+  }
   return {&it->second, is_new};
 }
 
@@ -22,6 +25,7 @@ void ReplicaChunks::clear() {
   chunks_.clear();
   counts_.fill(0);
   confirmed_count_ = 0;
+  bytes_ = 0;
   awaiting_.clear();
 }
 
@@ -31,8 +35,8 @@ void ReplicaChunks::set_current(TrackedChunk& chunk, ChunkPtr confirmed) {
 }
 
 void ReplicaChunks::set_unavailable(TrackedChunk& chunk) {
-  set_confirmed(chunk, nullptr);
   chunk.inbox.clear();
+  set_confirmed(chunk, nullptr);
   set_state(chunk, ChunkState::unavailable);
 }
 
@@ -40,6 +44,13 @@ void ReplicaChunks::set_confirmed(TrackedChunk& chunk, ChunkPtr confirmed) {
   if (chunk.confirmed_) --confirmed_count_;
   if (confirmed) ++confirmed_count_;
   chunk.confirmed_ = std::move(confirmed);
+  recount(chunk);
+}
+
+void ReplicaChunks::recount(TrackedChunk& chunk) {
+  bytes_ -= chunk.counted_bytes_;
+  chunk.counted_bytes_ = chunk.bytes();
+  bytes_ += chunk.counted_bytes_;
 }
 
 void ReplicaChunks::set_state(TrackedChunk& chunk, ChunkState state) {
@@ -59,6 +70,7 @@ ReplicaChunks::Map::iterator ReplicaChunks::erase(Map::iterator it) {
   set_state(it->second, ChunkState::expected);
   --counts_[static_cast<std::size_t>(ChunkState::expected)];
   set_confirmed(it->second, nullptr);
+  bytes_ -= it->second.counted_bytes_;
   return chunks_.erase(it);
 }
 

@@ -1,5 +1,6 @@
 // ReplicaChunks: the chunks that a replica tracks, by key. It performs the transitions of their
-// states (chunk_state.hpp) and counts chunks by state, so that no count walks the view. One thread.
+// states (chunk_state.hpp) and counts chunks by state, and their bytes, so that no count walks the
+// view. One thread.
 // Cost: O(log chunks) unless stated.
 #pragma once
 #include <array>
@@ -44,6 +45,12 @@ class ReplicaChunks {
   /// Replaces the confirmed chunk, in any state; null drops it.
   void set_confirmed(TrackedChunk& chunk, ChunkPtr confirmed);
 
+  /// Counts the bytes of the chunk again. Call it when its shown runs, its inbox or its pending
+  /// edits have changed.
+  void recount(TrackedChunk& chunk);
+  /// Returns the memory of all chunks.
+  std::size_t bytes() const { return bytes_; }
+
   /// Cost: O(1), as the counts below.
   std::size_t count(ChunkState state) const { return counts_[static_cast<std::size_t>(state)]; }
   std::size_t vouched_count() const {
@@ -66,6 +73,7 @@ class ReplicaChunks {
   Map chunks_;
   std::array<std::size_t, kChunkStateCount> counts_{};
   std::size_t confirmed_count_ = 0;
+  std::size_t bytes_ = 0;
   std::set<ChunkKey> awaiting_;
 };
 

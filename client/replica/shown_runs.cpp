@@ -13,6 +13,7 @@ void ShownRuns::show(TrackedChunk& chunk, ShownPtr next, std::span<EditChange* c
                             : chunk.shown == next ? DirtyLayers{}
                                                   : changed_layers(*chunk.shown, *next);
   chunk.shown = std::move(next);
+  chunks_.recount(chunk);
   if (!dirty.any()) return;
   chunk.serial = ++last_serial_;
 
@@ -35,6 +36,7 @@ void ShownRuns::show(TrackedChunk& chunk, ShownPtr next, std::span<EditChange* c
 void ShownRuns::hide(TrackedChunk& chunk) {
   const ShownPtr was_shown = std::exchange(chunk.shown, nullptr);
   chunk.serial = 0;
+  chunks_.recount(chunk);
   changes_.removed(chunk.key);
   for (int i = 0; was_shown && i < kDirectionCount; ++i) {
     const auto d = static_cast<Direction>(i);

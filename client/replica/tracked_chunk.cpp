@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "client/replica/edit_bytes.hpp"
+
 namespace runstone {
 
 void TrackedChunk::add_pending(ClientSequence seq, const EditDescriptor& edit) {
@@ -60,6 +62,17 @@ ShownPtr TrackedChunk::predicted(ApplyScratch& scratch) const {
   Digest unused;
   apply_stack(*next, unused, origin(*next), stack, scratch);
   return next;
+}
+
+std::size_t TrackedChunk::bytes() const {
+  std::size_t bytes = sizeof(TrackedChunk);
+  if (confirmed_) bytes += sizeof(Chunk) + confirmed_->voxels.runs.byte_capacity();
+  const bool is_shared = confirmed_ && shown.get() == &confirmed_->voxels;
+  if (shown && !is_shared) bytes += sizeof(RunChunk) + shown->runs.byte_capacity();
+  for (const PendingEdit& local : pending) bytes += sizeof(PendingEdit) + edit_bytes(local.edit);
+  for (const InboxEdit& held_back : inbox)
+    bytes += sizeof(InboxEdit) + sizeof(OrderedInfo) + edit_bytes(held_back.info->edit);
+  return bytes;
 }
 
 VoxelPos TrackedChunk::origin(const RunChunk& voxels) const {

@@ -99,6 +99,10 @@ class TrackedChunk {
   /// a copy with the pending edits applied. Requires confirmed().
   ShownPtr predicted(ApplyScratch& scratch) const;
 
+  /// Returns the memory of the chunk: its runs, and what is kept beside them. Runs that are
+  /// confirmed and shown count once. Cost: O(edits in the inbox + pending edits).
+  std::size_t bytes() const;
+
   /// Returns the world position of the first voxel of `voxels`, which are runs of this chunk.
   VoxelPos origin(const RunChunk& voxels) const;
 
@@ -106,6 +110,7 @@ class TrackedChunk {
   friend class ReplicaChunks;
   ChunkState state_ = ChunkState::expected;
   ChunkPtr confirmed_;
+  std::size_t counted_bytes_ = 0;  // of bytes(), in ReplicaChunks::bytes()
 };
 
 }  // namespace runstone

@@ -101,6 +101,20 @@ Json replica_json(const Replica& replica) {
               {"dropped_by_epoch", c.dropped_by_epoch}};
 }
 
+Json memory_json(const MemoryUse& use, const BudgetReport& budget) {
+  return Json{{"budget_bytes", budget.bytes_max},
+              {"peak_bytes", budget.peak_bytes},
+              {"bytes", use.total()},
+              {"chunk_bytes", use.chunks},
+              {"edit_bytes", use.edits},
+              {"mesh_bytes", use.meshes},
+              {"gpu_bytes", use.gpu},
+              {"view_shrinks", budget.shrinks},
+              {"view_growths", budget.growths},
+              {"view_radius", budget.radii.h},
+              {"view_radius_wanted", budget.wanted.h}};
+}
+
 Json cache_json(const std::optional<CacheCounters>& c) {
   if (!c) return nullptr;
   return Json{{"hits", c->hits},
@@ -197,6 +211,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
                      {"kept_bytes", meshes.kept_bytes},
                      {"whole_ns", histogram_summary(meshes.whole_ns)},
                      {"layers_ns", histogram_summary(meshes.layers_ns)}};
+  out["memory"] = memory_json(report.memory, report.budget);
   out["cache"] = cache_json(report.cache);
   out["frames"] = Json{{"presented", report.frames.presented},
                        {"draw_us", histogram_summary(report.frames.draw_us)}};
@@ -232,6 +247,14 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
   if (report.edits_refused != 0)
     fmt::format_to(into, "edits refused by this client: {}\n", report.edits_refused);
   add_chunk_lines(out, report, session.replica().chunk_edge());
+  const BudgetReport& budget = report.budget;
+  if (budget.shrinks != 0) {
+    fmt::format_to(into,
+                   "memory: the budget of {} MiB made the view shrink {} times and grow {} times; "
+                   "its radius is {} of {} chunks\n",
+                   budget.bytes_max >> 20, budget.shrinks, budget.growths, budget.radii.h,
+                   budget.wanted.h);
+  }
   if (report.frames.presented != 0) {
     fmt::format_to(into, "frames: {}, each {} ms (p50)\n", report.frames.presented,
                    cell(report.frames.draw_us.percentile(0.5)));

@@ -7,6 +7,7 @@
 #include "client/schedule/histogram.hpp"
 #include "client/schedule/join_recorder.hpp"
 #include "client/schedule/latency_recorder.hpp"
+#include "client/schedule/memory_budget.hpp"
 #include "client/session/client_session.hpp"
 
 namespace runstone {
@@ -42,6 +43,13 @@ struct NetCounts {
   std::uint64_t messages_received = 0, connections = 0;
 };
 
+/// What MemoryBudget did.
+struct BudgetReport {
+  std::size_t bytes_max = 0, peak_bytes = 0;
+  std::uint64_t shrinks = 0, growths = 0;  // of the view, in steps
+  ViewRadii radii, wanted;                 // at the end
+};
+
 struct ClientReport {
   std::string renderer;  // name of the OpenGL context, or "none"
   double seconds = 0;
@@ -52,6 +60,8 @@ struct ClientReport {
   MeshStats meshes;
   FrameStats frames;
   NetCounts net;
+  MemoryUse memory;  // at the end
+  BudgetReport budget;
   std::optional<CacheCounters> cache;  // nullopt without a cache
 };
 

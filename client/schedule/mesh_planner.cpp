@@ -16,6 +16,11 @@ std::int64_t distance_squared(ChunkCoord a, ChunkCoord b) {
 
 }  // namespace
 
+std::size_t mesh_bytes(const MeshPtr& mesh) {
+  if (!mesh || mesh->empty()) return 0;
+  return sizeof(ChunkMesh) + mesh->quad_count() * sizeof(Quad);
+}
+
 template <class Act>
 void MeshPlanner::for_each_beside(const ChunkKey& key, Act act) {
   for (int i = 0; i < kDirectionCount; ++i) {
@@ -30,6 +35,7 @@ void MeshPlanner::take(std::span<const ChunkChange> changes) {
       if (const auto it = states_.find(chunk.key); it != states_.end()) {
         if (it->second.rank) ready_.erase(*it->second.rank);
         if (it->second.dirty) --dirty_;
+        keep(it->second, nullptr);
         states_.erase(it);
       }
       for_each_beside(chunk.key, [this](const ChunkKey& key, State& state) { place(key, state); });
@@ -83,7 +89,7 @@ void MeshPlanner::mark(const ChunkKey& key, State& state) {
 
 /// Marks the chunk to be meshed as a whole. Makes its open job void.
 void MeshPlanner::mark_whole(const ChunkKey& key, State& state) {
-  state.mesh.reset();
+  keep(state, nullptr);
   if (std::exchange(state.job, 0) != 0) state.edited = state.edited || state.edited_in_job;
   mark(key, state);
 }
@@ -121,11 +127,11 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
     // The kept mesh and the changed layers give the present mesh if take() has got all changes.
     const bool is_incremental = state.mesh && state.serial == job.serial &&
                                 state.order == job.chunk->order && state.open_sides == open_sides;
+    MeshPtr before = keep(state, nullptr);
     if (is_incremental) {
-      job.before = std::move(state.mesh);
+      job.before = std::move(before);
       job.changed = state.changed;
     }
-    state.mesh.reset();
     if (size == JobSize::layers && !is_incremental) {
       place(key, state);  // among the chunks to be meshed as a whole
       continue;
@@ -147,7 +153,7 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
 bool MeshPlanner::finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh) {
   const auto it = states_.find(key);
   if (it == states_.end() || number != it->second.job) return false;
-  it->second.mesh = std::move(mesh);
+  keep(it->second, std::move(mesh));
   it->second.job = 0;
   place(key, it->second);
   return true;
@@ -157,15 +163,10 @@ void MeshPlanner::forget_meshes() {
   for (auto& [key, state] : states_) mark_whole(key, state);
 }
 
-std::size_t MeshPlanner::kept_bytes() const {
-  // Chunks without quads share one mesh.
-  std::size_t bytes = 0;
-  for (const auto& [key, state] : states_) {
-    if (state.mesh && !state.mesh->empty()) {
-      bytes += sizeof(ChunkMesh) + state.mesh->quad_count() * sizeof(Quad);
-    }
-  }
-  return bytes;
+MeshPtr MeshPlanner::keep(State& state, MeshPtr mesh) {
+  kept_bytes_ += mesh_bytes(mesh);
+  kept_bytes_ -= mesh_bytes(state.mesh);
+  return std::exchange(state.mesh, std::move(mesh));
 }
 
 }  // namespace runstone

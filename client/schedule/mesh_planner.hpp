@@ -42,6 +42,8 @@ namespace runstone {
 
 /// The pointer is null if there is no mesh.
 using MeshPtr = std::shared_ptr<const ChunkMesh>;
+/// Returns the memory of a mesh. Chunks without quads share one, which counts as nothing.
+std::size_t mesh_bytes(const MeshPtr& mesh);
 
 struct MeshJob {
   ChunkKey key;
@@ -54,6 +56,13 @@ struct MeshJob {
   MeshPtr before;
   ChangedLayers changed;
 };
+
+/// Returns a bound of the quads that meshing a chunk with these runs makes, in bytes, as far as its
+/// own runs determine it: a run that alternates with air has three faces on average. Runs of the
+/// neighbours can cut faces at the border further.
+inline std::size_t mesh_bytes_about(const MeshJob& job) {
+  return sizeof(ChunkMesh) + 3 * sizeof(Quad) * job.chunk->runs.size();
+}
 
 enum class JobSize : std::uint8_t {
   any,
@@ -87,8 +96,8 @@ class MeshPlanner {
   /// Returns the number of chunks that got at least one job. jobs() divided by it is the number of
   /// meshes per chunk.
   std::uint64_t chunks_meshed() const { return chunks_; }
-  /// Returns the size of the kept meshes, in bytes. Cost: O(chunks).
-  std::size_t kept_bytes() const;
+  /// Returns the size of the kept meshes, in bytes.
+  std::size_t kept_bytes() const { return kept_bytes_; }
 
  private:
   using Rank = std::tuple<int, std::int64_t, ChunkKey>;
@@ -110,6 +119,8 @@ class MeshPlanner {
   void mark(const ChunkKey& key, State& state);
   void mark_whole(const ChunkKey& key, State& state);
   void place(const ChunkKey& key, State& state);
+  /// Replaces the kept mesh. Returns the one before.
+  MeshPtr keep(State& state, MeshPtr mesh);
   template <class Act>
   void for_each_beside(const ChunkKey& key, Act act);
 
@@ -118,6 +129,7 @@ class MeshPlanner {
   std::map<ChunkKey, State> states_;
   std::set<Rank> ready_;
   std::size_t dirty_ = 0;
+  std::size_t kept_bytes_ = 0;
   std::uint64_t jobs_ = 0, chunks_ = 0;
 };
 

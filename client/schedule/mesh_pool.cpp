@@ -3,6 +3,13 @@
 #include <utility>
 
 namespace runstone {
+namespace {
+
+/// A scratch mesh of more quads is freed, so that no worker keeps the memory of a chunk of the
+/// worst case.
+constexpr std::size_t kScratchQuadsMax = 65'536;
+
+}  // namespace
 
 MeshPool::MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, Wake wake)
     : visibility_(std::move(visibility)),
@@ -87,6 +94,7 @@ MeshResult MeshPool::mesh(const MeshJob& job, Scratch& scratch) const {
     mesh_rdm(*job.chunk, neighbours, visibility_, scratch.rdm, scratch.mesh);
   }
   result.mesh = scratch.mesh.empty() ? empty_ : std::make_shared<const ChunkMesh>(scratch.mesh);
+  if (scratch.mesh.quad_count() > kScratchQuadsMax) scratch.mesh = {};
   const std::int64_t end = clock_();
   result.mesh_ns = end - start;
   result.meshed_us = end / 1000;

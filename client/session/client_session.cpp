@@ -50,7 +50,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
   std::visit(
       [&](auto& m) {
         using T = std::decay_t<decltype(m)>;
-        if (state() == SessionState::authenticating && early_.size() < kEarlyMessagesMax) {
+        if (state() == SessionState::authenticating && !std::is_same_v<T, Chunks> &&
+            early_.size() < kEarlyMessagesMax) {
           early_.emplace_back(std::move(m), arrival);
         } else if (!is_open()) {
           connection_.fail_with(GoodbyeReason::unexpected_message, "message before ready");

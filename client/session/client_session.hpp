@@ -31,8 +31,8 @@ inline constexpr unsigned kPingsFirst = 4;
 /// Edits wait this long for the first pong. Then they are sent without a time.
 inline constexpr TimeUs kOffsetWaitUsMax = 1'000'000;
 /// SessionAccepted is of the class of the edits, so messages of other classes may overtake it. So
-/// many are held back.
-inline constexpr std::size_t kEarlyMessagesMax = 4096;
+/// many are held back. Chunks are none of them, because they answer a view, which is sent later.
+inline constexpr std::size_t kEarlyMessagesMax = 64;
 /// A view waits this long for the cache.
 inline constexpr TimeUs kCacheWaitUsMax = 250'000;
 /// Lines kept of the output of one command.

@@ -2,8 +2,12 @@
 
 namespace runstone {
 
-AuthorNames::AuthorNames(const std::vector<PlayerRow>& rows) {
-  for (const PlayerRow& row : rows) names_[row.author] = row.name;
+AuthorNames::AuthorNames(const std::vector<PlayerRow>& rows, const std::vector<UsedName>& used) {
+  for (const PlayerRow& row : rows) {
+    names_[row.author] = row.name;
+    authors_[row.name].insert(row.author);
+  }
+  for (const UsedName& name : used) authors_[name.name].insert(name.author);
 }
 
 std::string AuthorNames::of(AuthorId author) const {
@@ -13,17 +17,20 @@ std::string AuthorNames::of(AuthorId author) const {
 }
 
 Result<AuthorId, std::string> AuthorNames::find(const std::string& name) const {
-  std::vector<AuthorId> named;
-  for (const auto& [author, its_name] : names_) {
-    if (its_name == name) named.push_back(author);
-  }
-  if (named.size() == 1) return named.front();
-  if (named.empty()) {
+  const auto found = authors_.find(name);
+  if (found == authors_.end()) {
     return Unexpected<std::string>{"nobody of that name has ever built (players lists them)"};
   }
-  std::string numbers;
-  for (const AuthorId number : named) numbers += " #" + std::to_string(number);
-  return Unexpected<std::string>{"several players have that name:" + numbers};
+  if (found->second.size() == 1) return *found->second.begin();
+  std::string list;
+  for (const AuthorId author : found->second) list += (list.empty() ? " " : ", ") + of(author);
+  return Unexpected<std::string>{"several players have or had that name:" + list +
+                                 " (give # and a number)"};
+}
+
+bool AuthorNames::is_in_use(const std::string& name, AuthorId author) const {
+  const auto found = names_.find(author);
+  return found != names_.end() && found->second == name;
 }
 
 }  // namespace runstone

@@ -1,6 +1,8 @@
-// AuthorNames: finds the name of an author of the log, and the author with a name.
+// AuthorNames: finds the name of an author of the log, and the author with a name. An author is
+// also found by an earlier name.
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,17 +14,21 @@ namespace runstone {
 
 class AuthorNames {
  public:
-  explicit AuthorNames(const std::vector<PlayerRow>& rows);
+  /// `rows` has the names in use. `used` has the names that were ever used, as far as they are
+  /// known; it may repeat those in use.
+  AuthorNames(const std::vector<PlayerRow>& rows, const std::vector<UsedName>& used);
 
   /// Returns "ana #3", or "#3" for an author without a row, or "the server" for author 0.
   std::string of(AuthorId author) const;
-  /// Returns the only author with this name. Fails if there is none, or if several authors have the
-  /// name, because keys are unique and names are not; the error then lists their numbers. Cost:
-  /// O(authors).
+  /// Returns the only author who has this name or had it earlier. Fails if there is none, or if
+  /// there are several, because keys are unique and names are not; the error then lists them.
   Result<AuthorId, std::string> find(const std::string& name) const;
+  /// Returns true if this is the name that the author uses.
+  bool is_in_use(const std::string& name, AuthorId author) const;
 
  private:
-  std::map<AuthorId, std::string> names_;
+  std::map<AuthorId, std::string> names_;              // in use
+  std::map<std::string, std::set<AuthorId>> authors_;  // by each name, in use or earlier
 };
 
 }  // namespace runstone

@@ -21,6 +21,14 @@ std::string memory_text(std::size_t bytes) {
   return std::to_string(bytes / (1024 * 1024)) + " MiB";
 }
 
+StoreResult<AuthorNames> read_author_names(WorldReader& reader) {
+  const auto rows = reader.players();
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  const auto used = reader.player_names();
+  if (!used) return Unexpected<StoreError>{used.error()};
+  return AuthorNames(*rows, *used);
+}
+
 }  // namespace
 
 CommandHandler::CommandHandler(WorldServer& world, RollbackService& rollback,
@@ -117,23 +125,23 @@ void CommandHandler::resolve(const CommandFilter& filter, const std::string& com
     if (author.number) out.authors.push_back(*author.number);
   }
   if (!has_names) return go_on(out);
-  auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
-  workers_.run([rows](WorldReader& reader, const Generator&) { *rows = reader.players(); },
-               [rows, out, filter, command, reply, go_on](const std::string& error) mutable {
-                 if (!error.empty()) return refuse(reply, command + ": " + error);
-                 if (!*rows) return refuse(reply, command + ": " + rows->error().message());
-                 const AuthorNames names(**rows);
-                 for (const CommandFilter::Author& author : filter.authors) {
-                   if (author.number) continue;
-                   const auto named = names.find(author.name);
-                   if (!named) {
-                     return refuse(reply,
-                                   command + " author \"" + author.name + "\": " + named.error());
-                   }
-                   out.authors.push_back(*named);
-                 }
-                 go_on(out);
-               });
+  auto names = std::make_shared<StoreResult<AuthorNames>>(AuthorNames({}, {}));
+  workers_.run(
+      [names](WorldReader& reader, const Generator&) { *names = read_author_names(reader); },
+      [names, out, filter, command, reply, go_on](const std::string& error) mutable {
+        if (!error.empty()) return refuse(reply, command + ": " + error);
+        if (!*names) return refuse(reply, command + ": " + names->error().message());
+        for (const CommandFilter::Author& author : filter.authors) {
+          if (author.number) continue;
+          const std::string quoted = "author \"" + author.name + "\"";
+          const auto named = (*names)->find(author.name);
+          if (!named) return refuse(reply, command + " " + quoted + ": " + named.error());
+          if (!(*names)->is_in_use(author.name, *named))
+            reply({quoted + " is now called " + (*names)->of(*named), false, true});
+          out.authors.push_back(*named);
+        }
+        go_on(out);
+      });
 }
 
 void CommandHandler::log(const LogCommand& command, const Clocks& now, const CommandReply& reply) {
@@ -147,14 +155,13 @@ void CommandHandler::log(const LogCommand& command, const Clocks& now, const Com
             workers_.run(
                 [on_disk, limit, text, wrong, materials = materials_](WorldReader& reader,
                                                                       const Generator&) {
-                  const auto rows = reader.players();
+                  const auto names = read_author_names(reader);
                   const auto newest = newest_edits(reader, on_disk, limit);
-                  if (!rows) *wrong = rows.error().message();
+                  if (!names) *wrong = names.error().message();
                   if (!newest) *wrong = newest.error().message();
                   if (!wrong->empty()) return;
-                  const AuthorNames names(*rows);
                   for (const EditRecord& record : *newest) {
-                    *text += log_line(record, names.of(record.op.author), materials) + "\n";
+                    *text += log_line(record, names->of(record.op.author), materials) + "\n";
                   }
                 },
                 [text, wrong, reply](const std::string& error) {

@@ -1,4 +1,4 @@
-// PlayerReader: reading of players and of the watermarks of their operations.
+// PlayerReader: reading of players, of their names, and of the watermarks of their operations.
 #pragma once
 #include <vector>
 
@@ -13,6 +13,9 @@ class PlayerReader {
 
   /// Returns all players, ascending by author. Fails (corrupt) if a row is damaged or missing.
   virtual StoreResult<std::vector<PlayerRow>> players() = 0;
+  /// Returns the last kNamesPerAuthorMax names that each player has used, ascending by author, then
+  /// by first use.
+  virtual StoreResult<std::vector<UsedName>> player_names() = 0;
   /// Returns the watermarks of all client instances. Compactions keep them. Fails (corrupt) if a row
   /// is damaged or missing.
   virtual StoreResult<std::vector<HighWater>> high_waters() = 0;

@@ -46,6 +46,8 @@ StoreResult<std::vector<PlayerRow>> SqliteStore::players() {
   });
 }
 
+StoreResult<std::vector<UsedName>> SqliteStore::player_names() { return names_.names(); }
+
 StoreResult<std::vector<HighWater>> SqliteStore::high_waters() {
   return at_one_moment<std::vector<HighWater>>([&]() -> StoreResult<std::vector<HighWater>> {
     auto marks = player_table_.high_waters();
@@ -62,6 +64,7 @@ StoreResult<void> SqliteStore::put_players(std::span<const PlayerRow> players) {
   for (const PlayerRow& player : players) {
     if (player.author == 0) return refuse("player author=0", "is the server itself");
     if (auto put = player_table_.put(player, *fold); !put) return put;
+    if (auto added = names_.add({player.author, player.name}); !added) return added;
   }
   return meta_table_.put_fold(fold_key_of(kPlayers), *fold);
 }

@@ -15,6 +15,7 @@
 #include "server/store/keyframe_table.hpp"
 #include "server/store/log_table.hpp"
 #include "server/store/meta_table.hpp"
+#include "server/store/name_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/segment_table.hpp"
 #include "server/store/sqlite_result.hpp"
@@ -71,6 +72,7 @@ class SqliteStore final : public Store {
 
   // PlayerReader
   StoreResult<std::vector<PlayerRow>> players() override;
+  StoreResult<std::vector<UsedName>> player_names() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
   AuthorId author_max() const override { return state_.author_max; }
 
@@ -104,6 +106,7 @@ class SqliteStore final : public Store {
   struct Tables {
     MetaTable meta;
     PlayerTable players;
+    NameTable names;
     LogTable log;
     SegmentTable segments;
     ChunkTable base, snapshots;
@@ -160,6 +163,7 @@ class SqliteStore final : public Store {
   std::unique_ptr<sql::Database> database_;
   MetaTable meta_table_;
   PlayerTable player_table_;
+  NameTable names_;
   LogTable log_;
   SegmentTable segments_;
   ChunkTable base_, snapshots_;

@@ -161,6 +161,8 @@ StoreResult<SqliteStore::Tables> SqliteStore::Tables::open(sql::Database& databa
   if (!meta) return failed(meta.error());
   auto players = PlayerTable::open(database);
   if (!players) return failed(players.error());
+  auto names = NameTable::open(database);
+  if (!names) return failed(names.error());
   auto log = LogTable::open(database);
   if (!log) return failed(log.error());
   auto segments = SegmentTable::open(database);
@@ -171,8 +173,9 @@ StoreResult<SqliteStore::Tables> SqliteStore::Tables::open(sql::Database& databa
   if (!snapshots) return failed(snapshots.error());
   auto keyframes = KeyframeTable::open(database);
   if (!keyframes) return failed(keyframes.error());
-  return Tables{*std::move(meta), *std::move(players),   *std::move(log),      *std::move(segments),
-                *std::move(base), *std::move(snapshots), *std::move(keyframes)};
+  return Tables{*std::move(meta),      *std::move(players),  *std::move(names),
+                *std::move(log),       *std::move(segments), *std::move(base),
+                *std::move(snapshots), *std::move(keyframes)};
 }
 
 StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder,

@@ -61,6 +61,15 @@ CREATE TABLE player_instance(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kPlayerNames = R"sql(
+CREATE TABLE player_name(
+  author INTEGER NOT NULL, number INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  checksum INTEGER NOT NULL,
+  PRIMARY KEY(author, number)
+) STRICT, WITHOUT ROWID;
+)sql";
+
 // There is no index by time: times never fall along the log, so a time is found by bisection.
 // Nearly every edit has cause player, so the index by cause holds the others only.
 constexpr const char* kIndexes = R"sql(
@@ -96,7 +105,7 @@ CREATE INDEX keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, d
 StoreResult<void> create_schema(sql::Database& database) {
   const std::string marks = "PRAGMA application_id=" + std::to_string(kApplicationId) +
                             "; PRAGMA user_version=" + std::to_string(kWorldFormat) + ";";
-  for (const char* part : {marks.c_str(), kTables, kIndexes, kKeyframes}) {
+  for (const char* part : {marks.c_str(), kTables, kPlayerNames, kIndexes, kKeyframes}) {
     if (auto made = database.run(part); !made) return failed(made.error());
   }
   return {};

@@ -23,7 +23,7 @@ Authority::Authority(const EditLimits& limits, const LogPosition& log)
     : limits_(limits),
       epoch_(log.epoch),
       head_(log.last),
-      last_time_us_(log.last_time_us),
+      log_clock_(log.last_time_us),
       chunks_(limits.chunk_edge) {}
 
 void Authority::replay_onto_stack(const EditRecord& record) {
@@ -47,9 +47,9 @@ std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_h
 }
 
 std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
+  log_clock_.advance(now);
   if (queue_.empty()) return std::nullopt;
-  // The wall clock may be set back. The times of the log never decrease.
-  last_time_us_ = std::max(last_time_us_, now.utc_us);
+  const TimeUs time_us = log_clock_.stamp();
   OrderedBatch batch;
   batch.commit.epoch = epoch_;
   std::size_t bytes = 0;
@@ -75,8 +75,7 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
     bytes += kOrderedEditBytesMax + encode(offer.edit).size() +
              kPreviousBytesMax * ordered.previous.size();
     batch.commit.edits.push_back(std::move(ordered));
-    batch.records.push_back(
-        {version, offer.op, last_time_us_, offer.cause, offer.edit, offer.subject});
+    batch.records.push_back({version, offer.op, time_us, offer.cause, offer.edit, offer.subject});
   }
   std::vector<ChunkKey>& all = batch.all_touched;
   std::sort(all.begin(), all.end());

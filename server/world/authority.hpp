@@ -17,6 +17,7 @@
 #include "protocol/codec/messages.hpp"
 #include "protocol/rules/edit_check.hpp"
 #include "server/world/clocks.hpp"
+#include "server/world/log_clock.hpp"
 #include "server/world/operation_watermarks.hpp"
 #include "server/world/world_chunks.hpp"
 
@@ -66,10 +67,13 @@ class Authority {
   void reject(const OperationId& op, RejectReason reason) { resolved_.reject(op, reason); }
 
   std::size_t queued() const { return queue_.size(); }
-  /// Orders as many queued edits as one commit message may carry. Returns nullopt if none is
-  /// queued; call it until then. Cost: O(runs + edits) for each touched chunk.
+  /// Advances the log's time, and orders as many queued edits as one commit message may carry.
+  /// Returns nullopt if none is queued; call it until then. Cost: O(runs + edits) for each touched
+  /// chunk.
   std::optional<OrderedBatch> commit(const Clocks& now);
 
+  /// The time of the log, for its warnings.
+  LogClock& log_clock() { return log_clock_; }
   Epoch epoch() const { return epoch_; }
   /// Returns an upper bound of the sequences of all edits that were accepted so far.
   Sequence sequence_bound() const { return head_ + queue_.size(); }
@@ -80,7 +84,7 @@ class Authority {
   EditLimits limits_;
   Epoch epoch_;
   Sequence head_;
-  TimeUs last_time_us_;
+  LogClock log_clock_;
   WorldChunks chunks_;
   OperationWatermarks resolved_;
   std::deque<EditOffer> queue_;

@@ -7,7 +7,7 @@ namespace runstone {
 
 struct Clocks {
   TimeUs steady_us = 0;  // monotonic: for intervals, commits and pongs
-  TimeUs utc_us = 0;     // wall clock: for the log
+  TimeUs utc_us = 0;     // wall clock: for the log (LogClock)
 };
 
 }  // namespace runstone

@@ -211,6 +211,8 @@ void WorldServer::step_checkpointer(const Clocks& now) {
 void WorldServer::tick(const Clocks& now) {
   WorldState& world = *state_;
   commit(now);
+  if (const auto warning = world.authority.log_clock().take_warning())
+    world.environment.report(OperatorLogLevel::warn, *warning);
   forget_gone_authors(world);
   close_silent_sessions(world, now);
   apply_due_views(world, now);

@@ -87,6 +87,8 @@ TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
         "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, seq INTEGER5, epoch INTEGER0, "
         "digest0 INTEGER0, digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "player") == "author INTEGER1, key BLOB0, name TEXT0, checksum INTEGER0");
+  CHECK(columns(file, "player_name") ==
+        "author INTEGER1, number INTEGER2, name TEXT0, checksum INTEGER0");
   CHECK(
       columns(file, "player_instance") ==
       "author INTEGER1, instance INTEGER2, decided INTEGER0, last_us INTEGER0, checksum INTEGER0");
@@ -94,7 +96,7 @@ TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
                 "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master "
                 "WHERE type = 'table' ORDER BY name)") ==
         "base edit_log keyframe keyframe_chunk log_box log_box_node log_box_parent log_box_rowid "
-        "meta player player_instance snapshot");
+        "meta player player_instance player_name snapshot");
   CHECK(
       raw_sql(
           file,
@@ -143,6 +145,8 @@ TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
               "keyframe") == "2 1 1700000000000001 1 1657188782348826176 737397801681045469");
   CHECK(value("checksum", "keyframe") == "-6012113385911227469");
   CHECK(value("checksum", "player") == "-8523557106004048105");
+  CHECK(value("author || ' ' || number || ' ' || name", "player_name") == "1 1 builder 1");
+  CHECK(value("checksum", "player_name") == "8744597731677023775");
   CHECK(value("epoch || ' ' || seq", "base") == "0 0");
   CHECK(value("epoch || ' ' || seq", "snapshot") == "1 1");
   CHECK(value("decided || ' ' || last_us", "player_instance") == "4 1700000000000001");

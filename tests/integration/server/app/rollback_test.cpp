@@ -200,6 +200,42 @@ TEST_CASE("a griefer is rolled back by control while a builder builds", "[integr
   CHECK(wrong == 0);
 }
 
+TEST_CASE("commands find a renamed player by the old name, and choose nobody if two had it",
+          "[integration][rollback]") {
+  const TempFolder folder;
+  const std::string world = folder / "world";
+  Sequence edits = 0;
+  const auto edit_as = [&](Server& server, std::uint8_t who, const std::string& name,
+                           ClientInstance instance) {
+    RawClient client(server.port());
+    client.name = name;
+    REQUIRE(client.join(who, instance).has_value());
+    build(client, 1, SetVoxel{{who, 80, static_cast<std::int32_t>(instance)}}, 1);
+    REQUIRE(client.sees_durable(++edits));
+  };
+  {
+    auto server = start_server(quiet_config(world), flat_creation());
+    edit_as(*server, 1, "mole", 1);
+    edit_as(*server, 1, "angel", 2);
+    server->stop();
+  }
+  auto server = start_server(quiet_config(world), flat_creation());
+  const Answer log = control(world, {"log", "author", "mole"});
+  CHECK(log.is_ok);
+  CHECK(log.text.starts_with("author \"mole\" is now called angel #1\n"));
+  CHECK(log.text.find(" angel #1 player voxel 1 80 2") != std::string::npos);
+  const Answer preview = control(world, {"rollback", "preview", "author", "mole"});
+  CHECK(preview.is_ok);
+  CHECK(preview.text.find("would take back 2 edits") != std::string::npos);
+  CHECK(control(world, {"log", "author", "angel"}).text.find("now called") == std::string::npos);
+
+  edit_as(*server, 2, "mole", 1);
+  const Answer several = control(world, {"log", "author", "mole"});
+  CHECK_FALSE(several.is_ok);
+  CHECK(several.text.find("several players have or had that name: angel #1, mole #2") !=
+        std::string::npos);
+}
+
 TEST_CASE("a silent control connection does not keep a server from stopping",
           "[integration][rollback]") {
   const TempFolder folder;

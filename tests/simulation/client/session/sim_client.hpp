@@ -108,8 +108,7 @@ class SimClient {
   void step_cache() {
     while (auto lookup = session_.take_cache_lookup()) {
       time_.after(rng_.between(100, 300'000), [this, life = life_, q = *std::move(lookup)] {
-        if (life == life_)
-          session_.receive_cache_result(cache_->find(q.world, q.keys), time_.now());
+        if (life == life_) session_.receive_cache_result(cache_->find(q), time_.now());
       });
     }
     const auto world = session_.cached_world();

@@ -71,6 +71,13 @@ TEST_CASE("a client with a window has a cache; other clients have one if an opti
   CHECK(refused({"--connect", "a:1", "--cache-mib", "0"}) == 2);
 }
 
+TEST_CASE("the memory budget is 1 GiB unless an option says otherwise", "[client_app]") {
+  CHECK(accepted({"--connect", "a:1"}).memory_mib == 1024);
+  CHECK(accepted({"--connect", "a:1", "--memory-mib", "64"}).memory_mib == 64);
+  CHECK(refused({"--connect", "a:1", "--memory-mib", "63"}) == 2);
+  CHECK(refused({"--connect", "a:1", "--memory-mib", "65537"}) == 2);
+}
+
 TEST_CASE("of two values of one flag the last one counts", "[client_app]") {
   CHECK(accepted({"--connect", "a:1", "--connect", "b:2"}).server.host == "b");
 }

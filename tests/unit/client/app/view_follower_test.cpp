@@ -25,7 +25,7 @@ struct FollowerBench : SessionBench {
   }
 
   Player player;
-  ViewFollower follower{session, player, 1, 0};
+  ViewFollower follower{session, player, {1, 0}};
 };
 
 }  // namespace
@@ -82,4 +82,26 @@ TEST_CASE_METHOD(FollowerBench, "a view is complete since its last chunk came, u
   player.move_to({8, 8, 8});
   follower.update_completeness(now + 30);
   CHECK_FALSE(follower.complete_since_us());
+}
+
+TEST_CASE_METHOD(FollowerBench, "other radii are requested at once, and kept when the player moves",
+                 "[client_app]") {
+  static_cast<void>(open());
+  static_cast<void>(follower.follow(now));
+  static_cast<void>(sent());
+  const auto sent_radius = [this] {
+    const auto views = take<View>(sent());
+    REQUIRE(views.size() == 1);
+    return views[0].radius_h;
+  };
+  follower.set_radii({0, 0});
+  CHECK(session.view().radius_h == 0);
+  CHECK(sent_radius() == 0);
+  player.move_to({8 + 3 * kEdge, 8, 8});
+  CHECK(follower.follow(now + kViewEveryUs));
+  CHECK(sent_radius() == 0);
+  follower.set_radii({2, 1});
+  CHECK(session.view().centre == ChunkCoord{3, 0, 0});
+  CHECK(session.view().radius_v == 1);
+  CHECK(sent_radius() == 2);
 }

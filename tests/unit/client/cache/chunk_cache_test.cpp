@@ -75,15 +75,27 @@ TEST_CASE("chunks are found as they were stored, also in another run", "[cache]"
     CHECK(cache->counters().kept == 110);
   }
   const auto cache = opened(folder.path());
-  const auto found = cache->find(world, keys_of(0, 120));
+  const auto found = cache->find({world, keys_of(0, 120)});
   REQUIRE(found.size() == 100);
   require_true(found);
   CHECK(found[9].second->version == Version{3, 50});
   CHECK(found[10].second->version == Version{3, 60});
   CHECK(cache->counters().hits == 100);
   CHECK(cache->counters().misses == 20);
-  CHECK(cache->find(world_at(3, 90, 100, 2), keys_of(0, 10)).empty());  // another world
+  CHECK(cache->find({world_at(3, 90, 100, 2), keys_of(0, 10)}).empty());  // another world
   CHECK(cache->take_warning().empty());
+}
+
+TEST_CASE("a lookup ends when the chunks found take its memory", "[cache]") {
+  const TempFolder folder;
+  const CachedWorld world = world_at(3, 90, 100);
+  const auto cache = opened(folder.path());
+  cache->keep(world, chunks_at(0, 100, {3, 50}));
+  const auto some = cache->find({world, keys_of(0, 100), 10 * sizeof(Chunk)});
+  CHECK(!some.empty());
+  CHECK(some.size() <= 10);
+  require_true(some);
+  CHECK(cache->find({world, keys_of(0, 100), 0}).empty());
 }
 
 TEST_CASE("after a restart of the server only common history is found", "[cache]") {
@@ -93,24 +105,24 @@ TEST_CASE("after a restart of the server only common history is found", "[cache]
   cache->keep(world_at(1, 100, 110), chunks_at(1, 1, {1, 100}));
   cache->keep(world_at(1, 100, 110), chunks_at(2, 1, {1, 105}));  // not known to be durable
   SECTION("a crash: chunks not known to be durable are dropped, even if the log is longer again") {
-    CHECK(cache->find(world_at(2, 500, 500), keys_of(0, 3)).size() == 2);
+    CHECK(cache->find({world_at(2, 500, 500), keys_of(0, 3)}).size() == 2);
     CHECK(cache->counters().not_common == 1);
     // It is not found later either, when the durable sequence is beyond it.
-    CHECK(cache->find(world_at(3, 900, 900), keys_of(0, 3)).size() == 2);
+    CHECK(cache->find({world_at(3, 900, 900), keys_of(0, 3)}).size() == 2);
   }
   SECTION("a crash that lost edits reported as durable") {
-    CHECK(cache->find(world_at(2, 99, 99), keys_of(0, 3)).size() == 1);
+    CHECK(cache->find({world_at(2, 99, 99), keys_of(0, 3)}).size() == 1);
   }
   SECTION("the same epoch: all history is common") {
-    CHECK(cache->find(world_at(1, 104, 130), keys_of(0, 3)).size() == 3);
+    CHECK(cache->find({world_at(1, 104, 130), keys_of(0, 3)}).size() == 3);
   }
   SECTION("a restored backup: no edited chunk is common") {
-    CHECK(cache->find(world_at(1, 80, 80), keys_of(0, 3)).size() == 1);
+    CHECK(cache->find({world_at(1, 80, 80), keys_of(0, 3)}).size() == 1);
   }
   SECTION("a world made anew with other chunks") {
     CachedWorld other = world_at(1, 104, 130);
     other.chunk_edge = 32;
-    CHECK(cache->find(other, keys_of(0, 3)).empty());
+    CHECK(cache->find({other, keys_of(0, 3)}).empty());
   }
 }
 
@@ -120,12 +132,12 @@ TEST_CASE("the cache keeps its size bound and evicts the chunks unused for longe
   const auto cache = opened(folder.path(), kMiB / 2);
   for (int batch = 0; batch < 20; ++batch) {
     cache->keep(world, chunks_at(batch * 50, 50, {1, 7}));
-    CHECK(cache->find(world, keys_of(0, 10)).size() == 10);  // used in each round
+    CHECK(cache->find({world, keys_of(0, 10)}).size() == 10);  // used in each round
     CHECK(cache->bytes() <= kMiB / 2);
   }
   CHECK(cache->counters().evicted > 100);
-  CHECK(cache->find(world, keys_of(950, 50)).size() == 50);  // the newest are here
-  CHECK(cache->find(world, keys_of(50, 50)).empty());        // the oldest are not
+  CHECK(cache->find({world, keys_of(950, 50)}).size() == 50);  // the newest are here
+  CHECK(cache->find({world, keys_of(50, 50)}).empty());        // the oldest are not
   CHECK(std::filesystem::file_size(folder / "cache.sqlite") <= kMiB);
 }
 
@@ -148,14 +160,14 @@ TEST_CASE("a file with flipped bits never gives a wrong chunk", "[cache]") {
     const TempFolder other;
     std::ofstream(other / "cache.sqlite", std::ios::binary) << damaged;
     const auto cache = opened(other.path());
-    const auto found = cache->find(world, keys_of(0, 200));
+    const auto found = cache->find({world, keys_of(0, 200)});
     require_true(found);
     lost += 200 - found.size();
     corrupt += cache->counters().corrupt;
     set_aside += cache->counters().databases_set_aside;
     // The cache goes on working.
     cache->keep(world, chunks_at(500, 5, {1, 9}));
-    require_true(cache->find(world, keys_of(0, 200)));
+    require_true(cache->find({world, keys_of(0, 200)}));
   }
   CHECK(lost > 0);
   CHECK(corrupt > 0);
@@ -171,7 +183,7 @@ TEST_CASE("a damaged database is set aside with a warning, and a new one is begu
   CHECK(std::filesystem::exists(folder / "cache.sqlite.damaged"));
   const CachedWorld world = world_at(1, 1, 1);
   cache->keep(world, chunks_at(0, 3, {1, 1}));
-  CHECK(cache->find(world, keys_of(0, 3)).size() == 3);
+  CHECK(cache->find({world, keys_of(0, 3)}).size() == 3);
 }
 
 TEST_CASE("one process at a time uses the cache", "[cache]") {
@@ -207,7 +219,7 @@ TEST_CASE("a client that is killed while it writes leaves no wrong chunk", "[cac
     REQUIRE(::waitpid(child, &status, 0) == child);
     REQUIRE(WIFSIGNALED(status));
     const auto cache = opened(folder.path(), 2 * kMiB);
-    const auto found = cache->find(world, keys_of(0, 400));
+    const auto found = cache->find({world, keys_of(0, 400)});
     require_true(found);
     CHECK(cache->counters().corrupt == 0);
     CHECK(cache->counters().databases_set_aside == 0);

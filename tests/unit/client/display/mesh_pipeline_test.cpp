@@ -9,6 +9,7 @@
 #include "tests/support/authority_model.hpp"
 #include "tests/support/chunks_message.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/support/worst_chunk.hpp"
 #include "tests/unit/client/display/fake_screen.hpp"
 
 using namespace runstone;
@@ -221,4 +222,56 @@ TEST_CASE_METHOD(Fixture, "when materials change their look, all chunks are mesh
                 [] { return std::vector<Marker>{}; });
   take_frames(pipeline.frames_presented() + 1);
   CHECK(screen_log.lines()[screen_log.lines().size() - 2] == "upload 0 quads 0");
+}
+
+TEST_CASE_METHOD(Fixture, "the bytes of meshes count while their chunk is in view",
+                 "[client_app]") {
+  CHECK(pipeline.mesh_bytes() == 0);
+  CHECK(pipeline.gpu_bytes() == 0);
+  edit({5, 5, 5});  // a single voxel: six quads of 8 bytes
+  CHECK(pipeline.mesh_bytes() == sizeof(ChunkMesh) + 48);
+  CHECK(pipeline.gpu_bytes() == 48);
+  edit({9, 5, 5});
+  CHECK(pipeline.gpu_bytes() == 96);
+  replica.set_view({2, {9, 0, 0}, 0, 0});
+  turn();
+  CHECK(pipeline.mesh_bytes() == 0);
+  CHECK(pipeline.gpu_bytes() == 0);
+}
+
+TEST_CASE("without room for meshes one job is made at a time", "[client_app]") {
+  const bool has_room = GENERATE(true, false);
+  CAPTURE(has_room);
+  constexpr std::int32_t edge = 16;
+  Replica replica;
+  replica.set_view({1, {0, 0, 0}, 2, 0});
+  static_cast<void>(replica.open({edge, 5, 77, 1, 0, 0, 0}));
+  WakeUp wake;
+  MeshPipeline pipeline(replica, nullptr, false, 1, [&wake] { wake.notify(); });
+  MaterialTable materials;
+  REQUIRE(materials.add({"red", {220, 30, 30, 255}, Visibility::opaque, {}}).has_value());
+  pipeline.set_materials(materials);
+  std::size_t chunks = 0;
+  for (std::int32_t x = -2; x <= 2; ++x) {
+    for (std::int32_t z = -2; z <= 2; ++z) {
+      if (!replica.view()->contains({x, 0, z})) continue;
+      replica.receive(chunks_of(ChunkSnapshot{{0, {x, 0, z}}, test::worst_chunk(edge)}), {});
+      ++chunks;
+    }
+  }
+  pipeline.take(replica.drain_changes(), ClockOffset{}, steady_now_us());
+  if (!has_room) pipeline.set_mesh_bytes_max(0);
+  const auto jobs = [&pipeline] {
+    ClientReport report;
+    pipeline.add_to(report);
+    return report.meshes.jobs;
+  };
+  pipeline.mesh();
+  CHECK(jobs() == (has_room ? 8 : 1));
+  while (!pipeline.is_up_to_date()) {  // it goes on nevertheless
+    wake.wait(std::chrono::seconds(1));
+    pipeline.mesh();
+  }
+  CHECK(jobs() >= chunks);
+  CHECK(pipeline.mesh_bytes() > chunks * 12'000 * sizeof(Quad));
 }

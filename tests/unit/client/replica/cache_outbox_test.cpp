@@ -45,6 +45,29 @@ TEST_CASE_METHOD(OutboxFixture, "only chunks that the server vouches for are han
   CHECK(outbox.take(&table, 9).empty());
 }
 
+TEST_CASE_METHOD(OutboxFixture, "chunks that left the view are bounded in bytes", "[replica]") {
+  outbox.enable();
+  Chunk large = *chunk_at(1);
+  large.voxels.runs.reserve(kCacheOutboxBytesMax / 4 / 4);  // a quarter, at 4 bytes a run
+  TrackedChunk& chunk = *table.track({0, {0, 0, 0}}).first;
+  table.set_current(chunk, std::make_shared<const Chunk>(std::move(large)));
+  for (int i = 0; i < 5; ++i) outbox.add(chunk);
+  CHECK(outbox.take(nullptr, 99).size() == 3);  // three, and what is kept beside the runs
+  outbox.add(chunk);
+  CHECK(outbox.take(nullptr, 99).size() == 1);
+}
+
+TEST_CASE_METHOD(OutboxFixture, "a batch of chunks in view is bounded in bytes", "[replica]") {
+  Chunk large = *chunk_at(1);
+  large.voxels.runs.reserve(kCacheBatchBytesMax / 4);
+  table.set_current(*table.track({0, {0, 0, 0}}).first,
+                    std::make_shared<const Chunk>(std::move(large)));
+  current(1, 1);
+  CHECK(outbox.take(&table, 9).size() == 1);
+  CHECK(outbox.take(&table, 9).size() == 1);
+  CHECK(outbox.take(&table, 9).empty());
+}
+
 TEST_CASE_METHOD(OutboxFixture,
                  "chunks that left the view come first, also while the past is shown",
                  "[replica]") {

@@ -34,6 +34,27 @@ TEST_CASE_METHOD(LocalEditsFixture, "client sequences ascend from 1 without gaps
   CHECK(edits.counters().submitted == 2);
 }
 
+TEST_CASE_METHOD(LocalEditsFixture, "the memory of an edit counts until the edit leaves",
+                 "[replica]") {
+  CHECK(edits.bytes() == 0);
+  const ClientSequence voxel = submit();
+  const std::size_t one = edits.bytes();
+  CHECK(one > sizeof(LocalEdit));
+  const EditDescriptor stroke{FillStroke{std::vector<VoxelPos>(200, VoxelPos{1, 2, 3}), 1}, {}, 1};
+  const auto long_stroke = edits.submit(stroke, {}, 0);
+  REQUIRE(long_stroke.has_value());
+  CHECK(edits.bytes() >= one + 200 * sizeof(VoxelPos));
+  CHECK(edits.reject({*long_stroke, RejectReason::busy, "", 0}, {1, 0}).has_value());
+  CHECK(edits.bytes() == one);
+  edits.confirm(voxel, {1, 10});
+  CHECK(edits.bytes() == one);
+  CHECK(edits.retire(10).durable.size() == 1);
+  CHECK(edits.bytes() == 0);
+  submit();
+  edits.clear();
+  CHECK(edits.bytes() == 0);
+}
+
 TEST_CASE_METHOD(LocalEditsFixture,
                  "an edit beyond the bound is refused and counts as not submitted", "[replica]") {
   for (std::size_t i = 0; i < kLocalEditsMax; ++i) submit();

@@ -74,6 +74,23 @@ TEST_CASE("a snapshot ends a request, and an unavailable chunk holds nothing", "
   CHECK(table.count(ChunkState::unavailable) == 1);
 }
 
+TEST_CASE("runs that are confirmed and shown count once", "[replica]") {
+  TrackedChunk chunk(kKey);
+  const std::size_t empty = chunk.bytes();
+  ReplicaChunks table;
+  TrackedChunk& tracked = *table.track(kKey).first;
+  CHECK(table.bytes() == empty);
+  table.set_current(tracked, some_chunk());
+  const std::size_t confirmed = table.bytes();
+  CHECK(confirmed > empty);
+  tracked.shown = {tracked.confirmed(), &tracked.confirmed()->voxels};
+  table.recount(tracked);
+  CHECK(table.bytes() == confirmed);
+  tracked.shown = std::make_shared<const RunChunk>(tracked.confirmed()->voxels);
+  table.recount(tracked);
+  CHECK(table.bytes() > confirmed);
+}
+
 TEST_CASE("counts by state equal those of a walk after any transitions", "[replica]") {
   ReplicaChunks table;
   std::uint32_t random = 7;
@@ -107,10 +124,11 @@ TEST_CASE("counts by state equal those of a walk after any transitions", "[repli
         table.erase_if([&key](const TrackedChunk& c) { return c.key == key; });
     }
     const auto counts = walked(table);
-    std::size_t confirmed = 0;
+    std::size_t confirmed = 0, bytes = 0;
     std::set<ChunkKey> awaiting;
     for (const auto& [at, each] : table) {
       confirmed += each.confirmed() ? 1 : 0;
+      bytes += each.bytes();
       if (is_awaiting(each.state())) awaiting.insert(at);
     }
     CAPTURE(step);
@@ -118,6 +136,7 @@ TEST_CASE("counts by state equal those of a walk after any transitions", "[repli
       REQUIRE(table.count(static_cast<ChunkState>(i)) == counts[i]);
     }
     REQUIRE(table.confirmed_count() == confirmed);
+    REQUIRE(table.bytes() == bytes);
     REQUIRE(table.awaiting() == awaiting);
   }
   table.clear();
@@ -125,5 +144,6 @@ TEST_CASE("counts by state equal those of a walk after any transitions", "[repli
     CHECK(table.count(static_cast<ChunkState>(i)) == 0);
   }
   CHECK(table.confirmed_count() == 0);
+  CHECK(table.bytes() == 0);
   CHECK(table.awaiting().empty());
 }

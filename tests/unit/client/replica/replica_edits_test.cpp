@@ -297,3 +297,23 @@ TEST_CASE_METHOD(ReplicaBench, "an edit change names the earlier edit that it re
   CHECK(changes.edits[0].subject == 0);
   CHECK(changes.edits[1].subject == 1);
 }
+
+TEST_CASE_METHOD(ReplicaBench, "the memory of edits that wait counts until they are applied",
+                 "[replica]") {
+  load(kHere);
+  const std::size_t loaded = replica.chunk_bytes();
+  const ClientSequence seq = submit(box({0, 0, 0}, {9, 9, 9}, 2));
+  CHECK(replica.chunk_bytes() > loaded);  // the shown runs are no longer the confirmed ones
+  replica.receive(Reject{seq, RejectReason::busy, "", 0}, 700);
+  CHECK(replica.chunk_bytes() == loaded);
+
+  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 3)));  // is lost
+  take(world.commit(other(2), set({2, 1, 1}, 3)));               // does not follow
+  take(world.commit(other(3), set({3, 1, 1}, 3)));
+  CHECK(replica.chunk_bytes() > loaded + 2 * sizeof(OrderedInfo));
+  load(kHere);
+  require_in_step(kHere);
+  CHECK(replica.chunk_bytes() < loaded + 2 * sizeof(OrderedInfo));
+  replica.set_view({2, {50, 0, 0}, 2, 2});
+  CHECK(replica.chunk_bytes() == 0);
+}

@@ -50,6 +50,26 @@ TEST_CASE("the report is JSON in which an infinite latency is the word inf", "[c
   CHECK(out["replica"]["drifted"] == 0);
 }
 
+TEST_CASE("the report says how often the memory budget bound, and what was in use",
+          "[client_app]") {
+  const ClientSession session(SessionConfig{});
+  ClientReport report = sample();
+  CHECK(to_table(report, session).find("budget") == std::string::npos);
+  report.memory = {100, 20, 3, 4};
+  report.budget = {64 << 20, 1000, 3, 1, {2, 1}, {6, 3}};
+  const json memory = json::parse(to_json(report, session))["memory"];
+  CHECK(memory["budget_bytes"] == 64 << 20);
+  CHECK(memory["peak_bytes"] == 1000);
+  CHECK(memory["bytes"] == 127);
+  CHECK(memory["gpu_bytes"] == 4);
+  CHECK(memory["view_shrinks"] == 3);
+  CHECK(memory["view_radius"] == 2);
+  CHECK(memory["view_radius_wanted"] == 6);
+  CHECK(to_table(report, session)
+            .find("the budget of 64 MiB made the view shrink 3 times and grow "
+                  "1 times; its radius is 2 of 6 chunks") != std::string::npos);
+}
+
 TEST_CASE("the report has the times at which parts of the first view were meshed", "[client_app]") {
   const ClientSession session(SessionConfig{});
   ClientReport report = sample();

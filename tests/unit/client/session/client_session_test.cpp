@@ -140,6 +140,15 @@ TEST_CASE_METHOD(SessionBench, "messages in the wrong state end the session", "[
   CHECK(refused(SessionAccepted{1, 0}));
   CHECK(refused(Durable{1, 1}));
   CHECK(refused(Hello{}));
+  const auto refused_early = [&](Message message) {
+    session = ClientSession(config());
+    greet();
+    receive(server.make_welcome());
+    receive(std::move(message));
+    return session.wants_close();
+  };
+  CHECK(refused_early(chunks_of(server.world.snapshot({0, 0, 0}))));  // no view was sent
+  CHECK_FALSE(refused_early(Durable{3, 0}));  // SessionAccepted was overtaken
   session = ClientSession(config());
   static_cast<void>(open());
   receive(Ping{});

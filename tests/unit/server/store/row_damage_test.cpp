@@ -166,6 +166,19 @@ TEST_CASE("loading one damaged chunk fails and its neighbours still load", "[sto
   CHECK((*store)->load_base(kBaseKey)->has_value());
 }
 
+TEST_CASE("a changed column of a player's name is named", "[store][damage]") {
+  const TempFolder folder;
+  make_world(folder.path());
+  CHECK(damage(folder, "UPDATE player_name SET name = name || '!' WHERE author = 2") ==
+        "player_name author=2 number=1");
+  CHECK(damage(folder, "UPDATE player_name SET author = 3 WHERE author = 2") ==
+        "player_name author=3 number=1");
+  CHECK(damage(folder, "UPDATE player_name SET number = 4 WHERE author = 2") ==
+        "player_name author=2 number=4");
+  CHECK(damage(folder, "UPDATE player_name SET checksum = 0 WHERE author = 2") ==
+        "player_name author=2 number=1");
+}
+
 TEST_CASE("a changed column of a player is named", "[store][damage]") {
   const TempFolder folder;
   make_world(folder.path());

@@ -122,6 +122,36 @@ TEST_CASE("records, players and marks come back as they were appended", "[store]
   CHECK(store->check().has_value());
 }
 
+TEST_CASE("the last 16 names of each player are kept in the order of their first use", "[store]") {
+  const TempFolder folder;
+  const auto text_of_names = [](Store& store) {
+    std::string text;
+    const auto names = store.player_names();
+    REQUIRE(names.has_value());
+    for (const UsedName& name : *names) text += std::to_string(name.author) + " " + name.name + ";";
+    return text;
+  };
+  const auto rename = [](Store& store, AuthorId author, const std::string& name) {
+    PlayerRow row = sample_player(author);
+    row.name = name;
+    REQUIRE(store.append({&row, 1}, {}).has_value());
+  };
+  {
+    auto store = created(folder.path());
+    REQUIRE(store->raise_epoch().has_value());
+    for (const char* name : {"ana", "mole", "ana"}) rename(*store, 7, name);
+    rename(*store, 3, "ana");
+    CHECK(text_of_names(*store) == "3 ana;7 ana;7 mole;");
+    for (int i = 1; i <= 15; ++i) rename(*store, 7, "n" + std::to_string(i));
+  }
+  auto store = opened(folder.path());
+  const std::string after = text_of_names(*store);
+  CHECK(after.starts_with("3 ana;7 mole;7 n1;7 n2;"));
+  CHECK(after.ends_with("7 n14;7 n15;"));
+  CHECK(store->player_names()->size() == 17);
+  CHECK(store->check().has_value());
+}
+
 TEST_CASE("a mark never falls when an older client sequence is logged later", "[store]") {
   const TempFolder folder;
   SplitMix64 rng(2);

@@ -133,6 +133,23 @@ TEST_CASE("a session that edits too fast is rejected, and accepted again later",
   CHECK(bench.server.head() == 3);
 }
 
+TEST_CASE("a jump of the wall clock is reported to the operator, and no edit gets its time",
+          "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.tick();
+  bench.environment.lines.clear();
+  const Clocks right = bench.now();
+  const Clocks wrong{right.steady_us + 50'000, right.utc_us + 100'000'000'000'000};
+  bench.server.tick(wrong);
+  REQUIRE(bench.environment.lines.size() == 1);
+  CHECK(bench.environment.lines[0].find("the wall clock has jumped") != std::string::npos);
+  bench.edit(1, 1, kAtOrigin);
+  bench.server.commit(wrong);
+  REQUIRE(bench.environment.records.size() == 1);
+  CHECK(bench.environment.records[0].time_us == right.utc_us + 50'000);
+}
+
 TEST_CASE("a new name of a known author is stored once, without an edit", "[world]") {
   WorldStart start;
   start.players.push_back({6, key_pair_of(seed_of(1)).public_key, "old name"});

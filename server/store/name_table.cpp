@@ -1,0 +1,86 @@
+#include "server/store/name_table.hpp"
+
+#include <limits>
+#include <string_view>
+
+#include "server/store/sqlite_result.hpp"
+#include "server/store/world_schema.hpp"
+
+namespace runstone {
+namespace {
+
+std::int64_t name_checksum(std::int64_t author, std::int64_t number, std::string_view name) {
+  return RowChecksum("player_name").integer(author).integer(number).text(name).value();
+}
+
+}  // namespace
+
+StoreResult<NameTable> NameTable::open(sql::Database& database) {
+  const std::string row = "SELECT author, number, name, checksum FROM player_name";
+  auto all = database.prepare(row + " ORDER BY author, number");
+  if (!all) return failed(all.error());
+  auto of_author = database.prepare(row + " WHERE author = ?1 ORDER BY number");
+  if (!of_author) return failed(of_author.error());
+  auto insert = database.prepare(
+      "INSERT INTO player_name(author, number, name, checksum) VALUES(?1, ?2, ?3, ?4)");
+  if (!insert) return failed(insert.error());
+  auto drop = database.prepare("DELETE FROM player_name WHERE author = ?1 AND number <= ?2");
+  if (!drop) return failed(drop.error());
+  return NameTable(database.file(), *std::move(all), *std::move(of_author), *std::move(insert),
+                   *std::move(drop));
+}
+
+StoreResult<UsedName> NameTable::name_of(const sql::Statement& row) const {
+  const std::int64_t author = row.integer(0);
+  const std::int64_t number = row.integer(1);
+  const std::string name(row.text(2));
+  if (row.integer(3) != name_checksum(author, number, name) || author < 1 ||
+      author > std::numeric_limits<AuthorId>::max()) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::corrupt, file_,
+         "player_name author=" + std::to_string(author) + " number=" + std::to_string(number),
+         "checksum is wrong"}};
+  }
+  return UsedName{static_cast<AuthorId>(author), name};
+}
+
+StoreResult<std::vector<UsedName>> NameTable::names() {
+  const sql::ResetAtEnd reset_at_end(all_);
+  std::vector<UsedName> names;
+  for (;;) {
+    const auto more = all_.step();
+    if (!more) return failed(more.error());
+    if (!*more) return names;
+    auto name = name_of(all_);
+    if (!name) return failed(name.error());
+    names.push_back(*std::move(name));
+  }
+}
+
+StoreResult<void> NameTable::add(const UsedName& name) {
+  std::int64_t last = 0;
+  {
+    const sql::ResetAtEnd reset_at_end(of_author_);
+    of_author_.bind(1, std::int64_t{name.author});
+    for (;;) {
+      const auto more = of_author_.step();
+      if (!more) return failed(more.error());
+      if (!*more) break;
+      const auto used = name_of(of_author_);
+      if (!used) return failed(used.error());
+      if (used->name == name.name) return {};
+      last = of_author_.integer(1);
+    }
+  }
+  const std::int64_t number = last + 1;
+  const auto inserted = insert_.bind(1, std::int64_t{name.author})
+                            .bind(2, number)
+                            .bind(3, std::string_view(name.name))
+                            .bind(4, name_checksum(name.author, number, name.name))
+                            .run();
+  if (!inserted) return failed(inserted.error());
+  return store_result(
+      drop_.bind(1, std::int64_t{name.author}).bind(2, number - kNamesPerAuthorMax).run());
+}
+
+}  // namespace runstone
