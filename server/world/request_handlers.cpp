@@ -9,8 +9,10 @@
 namespace runstone {
 namespace {
 
-/// Returns what is wrong with the descriptor, for the author of the client.
-std::string detail_of(RejectReason reason, const EditRequest& request) {
+/// Returns what is wrong with the descriptor, for the author of the client, or why the server is
+/// busy, for the player.
+std::string detail_of(const WorldState& world, RejectReason reason, const EditRequest& request) {
+  if (reason == RejectReason::busy && world.disk_is_full) return kDiskIsFull;
   if (reason != RejectReason::bad_edit || !request.fault) return "";
   return std::string(request.fault->what) + " (at byte " + std::to_string(request.fault->offset) +
          ")";
@@ -57,8 +59,8 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     refusal = RejectReason::out_of_reach;
     world.authority.reject(op, *refusal);
   } else {
-    const bool has_room =
-        world.accepts_edits && world.environment.log_has_room(world.authority.queued() + 1);
+    const bool has_room = world.accepts_edits && !world.disk_is_full &&
+                          world.environment.log_has_room(world.authority.queued() + 1);
     refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0},
                                      has_room);
   }
@@ -68,7 +70,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;
   mine.awaits_durable = std::max(mine.awaits_durable, applied_by);
   send_reject(world, session,
-              {request.client_seq, *refusal, detail_of(*refusal, request), applied_by});
+              {request.client_seq, *refusal, detail_of(world, *refusal, request), applied_by});
 }
 
 void on_move(WorldState& world, SessionId session, const Move& move) {

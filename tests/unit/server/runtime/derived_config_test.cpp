@@ -17,6 +17,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   config.digest_check_ms = 250;
   config.memory_mib = 16;
   config.snapshot_s = 9;
+  config.stop_s = 4;
   const WorldConfig world = world_config_of(config, sample_meta());
   CHECK(world.world_id == sample_meta().world_id);
   CHECK(world.chunk_edge == kSampleEdge);
@@ -29,6 +30,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   CHECK(world.digest_check_interval_us == 250'000);
   CHECK(world.resident_bytes_max == 16U * 1024 * 1024);
   CHECK(world.snapshots.interval_us == 9'000'000);
+  CHECK(world.stop_us_max == 4'000'000);
 }
 
 TEST_CASE("the configured encoding is the preferred one", "[server]") {
