@@ -181,8 +181,9 @@ void CommandHandler::preview(const RollbackPreviewCommand& command, const Clocks
     const auto pictures = std::make_shared<PreviewPictures>(world_folder_);
     rollback_.preview(
         filter, now, reply, [pictures](const RestorePlan& plan) { pictures->add(plan); },
-        [pictures](WorldReader& reader, const Generator& generator, const std::string& id) {
-          return pictures->draw(reader, generator, id);
+        [pictures](WorldReader& reader, const Generator& generator, const std::string& id,
+                   const ShouldContinue& wanted) {
+          return pictures->draw(reader, generator, id, wanted);
         });
   };
   resolve(command.filter, "rollback preview", reply, go_on);

@@ -80,9 +80,14 @@ struct ServerConfig {
   std::uint64_t snapshot_s = 30;             // seconds between two rounds, 1..86400
   std::uint64_t keyframe_edits = 32'768;     // least number between two keyframes, 0: none .. 10^9
   std::uint64_t log_queue_records = 65'536;  // above it edits are rejected as busy, 1..10^7
-  std::uint64_t digest_check_ms = 1'000;     // between two digest checks of a session, 10..3600000
-  std::uint64_t digest_check_chunks = 8;     // digests per check, 0: none .. 1024
-  std::uint64_t counters_s = 60;             // seconds between two lines of counters, 0: never
+  /// MiB of free disk space below which edits are rejected as busy, 0: no reserve .. 10^9.
+  std::uint64_t disk_reserve_mib = 64;
+  /// Seconds until a stop leaves what is in no snapshot to the next start, 1..3600. Containers
+  /// usually have ten seconds.
+  std::uint64_t stop_s = 8;
+  std::uint64_t digest_check_ms = 1'000;  // between two digest checks of a session, 10..3600000
+  std::uint64_t digest_check_chunks = 8;  // digests per check, 0: none .. 1024
+  std::uint64_t counters_s = 60;          // seconds between two lines of counters, 0: never
   friend bool operator==(const ServerConfig&, const ServerConfig&) = default;
 };
 

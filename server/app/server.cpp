@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/os/low_priority.hpp"
+#include "common/os/steady_clock.hpp"
 #include "server/admin/control_socket.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/runtime/server_core.hpp"
@@ -128,17 +129,20 @@ StopReport Server::stop() {
   Parts& parts = *parts_;
   parts.is_running = false;
   if (parts.control) parts.control->stop();
-  const bool is_flushed = parts.core->begin_stop().get();
+  const TimeUs due_us =
+      steady_now_us() + static_cast<TimeUs>(parts.config.stop_s) * std::int64_t{1'000'000};
+  parts.core->begin_stop().wait();
   parts.core->stop_writer();
+  parts.workers->stop();  // nobody waits for the chunks that they have not begun
   parts.workers->join();
   parts.core->log_counters();
   parts.control.reset();  // closes connections that have not read their answer
   parts.work.reset();
   for (std::thread& thread : parts.io_threads) thread.join();
-  const bool is_clean = is_flushed && !parts.core->has_failed();
+  const StopState state = parts.core->stop_state();
   const auto live = parts.core->edited_chunks();
   parts.core.reset();
-  return sum_up(*parts.world.store, live, is_clean);
+  return sum_up(*parts.world.store, live, state, [due_us] { return steady_now_us() < due_us; });
 }
 
 }  // namespace runstone

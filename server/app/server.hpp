@@ -33,8 +33,8 @@ class Server {
   /// Carries out a command as an operator. Replies come from another thread; the last one has
   /// is_done. A server that stops may leave out replies.
   void command(const std::string& line, CommandReply reply);
-  /// Sends a goodbye to all sessions, waits for the log, writes all snapshots and ends all threads.
-  /// Blocks. Call it once.
+  /// Sends a goodbye to all sessions, waits for the log, writes snapshots for at most `stop_s`, and
+  /// ends all threads. Blocks. Call it once.
   StopReport stop();
 
  private:

@@ -1,6 +1,6 @@
 // runstone-server: runs a world, imports one, compacts one, or gives a running server a command.
-// Exit codes: 0 stopped cleanly (control: the command succeeded), 1 failed while running, 2 could
-// not start (docs/server-reference.md).
+// Exit codes: 0 stopped, and every edit is in the log (control: the command succeeded), 1 failed
+// while running, 2 could not start (docs/server-reference.md).
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -105,6 +105,25 @@ class Signals {
   asio::signal_set stop_, counters_;
 };
 
+/// Logs what the operator must know about a stop that left something undone.
+void log_stop(const StopReport& report, const ServerConfig& config) {
+  if (report.state.lost_edits > 0) {
+    logger("store").error(
+        "EDITS ARE LOST: lost_edits={} were accepted and could not be written; clients that keep "
+        "them offer them again",
+        report.state.lost_edits);
+  }
+  if (report.state.chunks_left > 0) {
+    logger("store").warn(
+        "chunks_left={} after stop_s={}: every edit is in the log, and the next start takes their "
+        "edits from there",
+        report.state.chunks_left, config.stop_s);
+  } else if (!report.is_summed) {
+    logger("store").warn("stop_s={} was too short to compute the world digest", config.stop_s);
+  }
+  if (!report.error.empty()) logger("store").error("{}", report.error);
+}
+
 int run(const ServerOptions& options) {
   const auto config = read_config(options);
   if (!config) return cannot_start(config.error());
@@ -147,7 +166,7 @@ int run(const ServerOptions& options) {
   if (console) console->close();
   logger("app").info("stopping");
   const StopReport report = (*server)->stop();
-  if (!report.error.empty()) logger("store").error("{}", report.error);
+  log_stop(report, *config);
   bool is_written = true;
   if (!options.digests_file.empty()) {
     const auto written = write_digests_json(options.digests_file, report.digests);
@@ -155,7 +174,7 @@ int run(const ServerOptions& options) {
     if (!is_written) logger("app").error("{}", written.error());
   }
   std::cout << stop_line(report) << " dense expansions: " << dense_expansions() << "\n";
-  return report.is_clean && report.error.empty() && is_written ? kStopped : kFailed;
+  return report.state.is_durable() && report.error.empty() && is_written ? kStopped : kFailed;
 }
 
 /// Ends the process in any thread, as a power failure would: durable edits stay. It may not allocate.

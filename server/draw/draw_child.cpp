@@ -25,8 +25,12 @@ constexpr Milliseconds kEndLimit{10'000};       // for the exit of a child witho
 
 }  // namespace
 
-DrawChild::DrawChild(std::string program, int pid, int socket, Milliseconds answer_limit)
-    : program_(std::move(program)), pid_(pid), socket_(socket), answer_limit_(answer_limit) {}
+DrawChild::DrawChild(std::string program, int pid, int socket, const DrawChildOptions& options)
+    : program_(std::move(program)),
+      pid_(pid),
+      socket_(socket),
+      answer_limit_(options.answer_limit),
+      should_continue_(options.should_continue) {}
 
 DrawChild::DrawChild(DrawChild&& other) noexcept
     : program_(std::move(other.program_)),
@@ -34,6 +38,7 @@ DrawChild::DrawChild(DrawChild&& other) noexcept
       pid_(std::exchange(other.pid_, -1)),
       socket_(std::exchange(other.socket_, -1)),
       answer_limit_(other.answer_limit_),
+      should_continue_(std::move(other.should_continue_)),
       orders_(std::move(other.orders_)),
       lines_(std::move(other.lines_)),
       broken_(std::exchange(other.broken_, "moved away")) {}
@@ -46,6 +51,7 @@ DrawChild& DrawChild::operator=(DrawChild&& other) noexcept {
   pid_ = std::exchange(other.pid_, -1);
   socket_ = std::exchange(other.socket_, -1);
   answer_limit_ = other.answer_limit_;
+  should_continue_ = std::move(other.should_continue_);
   orders_ = std::move(other.orders_);
   lines_ = std::move(other.lines_);
   broken_ = std::exchange(other.broken_, "moved away");
@@ -80,7 +86,7 @@ DrawChild::Outcome<DrawChild> DrawChild::start(const DrawChildOptions& options) 
         program + ": cannot be started: " + std::strerror(pid.error()) +
         "; pictures need runstone-client (--client PATH or RUNSTONE_CLIENT says where it is)");
   }
-  DrawChild child(program, *pid, ends[0], options.answer_limit);
+  DrawChild child(program, *pid, ends[0], options);
   const auto answer = child.await_answer();
   if (!answer) return failure(answer.error());
   if (const auto* failed = std::get_if<DrawFailed>(&*answer)) return child.lost(failed->text);
@@ -193,8 +199,10 @@ DrawChild::Outcome<void> DrawChild::wait_for(short events) {
       return lost("did nothing for " + std::to_string(answer_limit_.count() / 1000) +
                   " s and was stopped");
     }
+    if (should_continue_ && !should_continue_()) return lost("is not wanted any more");
     pollfd poll{socket_, events, 0};
-    // The wait has steps of at most a second, because the limit may not fit into an int.
+    // The wait has steps of at most a second, because the limit may not fit into an int, and
+    // because the child may be wanted no longer.
     const int count =
         ::poll(&poll, 1, static_cast<int>(std::min<Milliseconds::rep>(left.count(), 1000)));
     if (count > 0) return {};

@@ -19,6 +19,7 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "common/core/bytes.hpp"
@@ -37,6 +38,8 @@ struct DrawChildOptions {
   std::string program;
   /// The child is stopped if it takes longer to answer, or to read what it is sent.
   std::chrono::milliseconds answer_limit{std::chrono::minutes(2)};
+  /// The child is stopped soon after this returns false. Empty: it always goes on.
+  std::function<bool()> should_continue = {};
 };
 
 class DrawChild {
@@ -68,7 +71,7 @@ class DrawChild {
   Outcome<void> finish();
 
  private:
-  DrawChild(std::string program, int pid, int socket, std::chrono::milliseconds answer_limit);
+  DrawChild(std::string program, int pid, int socket, const DrawChildOptions& options);
   Outcome<void> send();
   Outcome<DrawAnswer> await_answer();
   Outcome<void> wait_for(short events);
@@ -81,6 +84,7 @@ class DrawChild {
   int pid_ = -1;     // -1: no child
   int socket_ = -1;  // both of the child's standard streams
   std::chrono::milliseconds answer_limit_;
+  std::function<bool()> should_continue_;
   Bytes orders_;        // not sent yet
   std::string lines_;   // received, not parsed yet
   std::string broken_;  // the error that every call returns; empty while there is a child

@@ -53,24 +53,26 @@ void PreviewPictures::add(const RestorePlan& plan) {
 }
 
 std::string PreviewPictures::draw(WorldReader& reader, const Generator& generator,
-                                  const std::string& name) {
+                                  const std::string& name, const ShouldContinue& wanted) {
   if (changed_.empty()) return "no picture: nothing would change";
   if (changed_.size() > kChunksMax) {
     return "no picture: more than " + std::to_string(kChunksMax) +
            " chunks would change; a smaller `box` can be drawn";
   }
-  const auto drawn = draw_both(reader, generator, name);
+  const auto drawn = draw_both(reader, generator, name, wanted);
   if (!drawn) return "no picture: " + drawn.error();
   return "pictures " + folder_ + "/" + name + "-before.png and " + name + "-after.png";
 }
 
 Result<void, std::string> PreviewPictures::draw_both(WorldReader& reader,
                                                      const Generator& generator,
-                                                     const std::string& name) {
+                                                     const std::string& name,
+                                                     const ShouldContinue& wanted) {
   std::error_code wrong;
   std::filesystem::create_directories(folder_, wrong);
   if (wrong) return Unexpected<std::string>{folder_ + ": cannot be made: " + wrong.message()};
-  auto child = DrawChild::start({.program = "", .answer_limit = kAnswerMax});
+  auto child =
+      DrawChild::start({.program = "", .answer_limit = kAnswerMax, .should_continue = wanted});
   if (!child) return Unexpected<std::string>{child.error()};
   if (auto sent = child->world(edge_, reader.meta().materials); !sent) return sent;
 
@@ -88,7 +90,8 @@ Result<void, std::string> PreviewPictures::draw_both(WorldReader& reader,
   }
   const auto last = reader.last_sequence();
   if (!last) return Unexpected<std::string>{last.error().message()};
-  auto world = WorldAt::open(reader, generator, *last);
+  auto world = WorldAt::open(reader, generator, *last,
+                             [&](Sequence, Sequence) { return !wanted || wanted(); });
   if (!world) return Unexpected<std::string>{world.error().message()};
   for (const ChunkKey& key : around) {
     const auto chunk = world->chunk(key);

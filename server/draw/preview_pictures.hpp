@@ -12,6 +12,7 @@
 #include "common/generate/generator.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "server/rollback/restore_plan.hpp"
+#include "server/rollback/should_continue.hpp"
 #include "server/store/world_reader.hpp"
 
 namespace runstone {
@@ -27,8 +28,10 @@ class PreviewPictures {
   /// Adds a chunk that would change.
   void add(const RestorePlan& plan);
   /// Draws NAME-before.png and NAME-after.png, with the chunks around. Returns a line of text with
-  /// their paths, or with the reason why there are no pictures.
-  std::string draw(WorldReader& reader, const Generator& generator, const std::string& name);
+  /// their paths, or with the reason why there are no pictures. Ends within a second or two when
+  /// `wanted` returns false.
+  std::string draw(WorldReader& reader, const Generator& generator, const std::string& name,
+                   const ShouldContinue& wanted);
 
  private:
   struct ChangedChunk {
@@ -36,7 +39,7 @@ class PreviewPictures {
     RunChunk now, restored;
   };
   Result<void, std::string> draw_both(WorldReader& reader, const Generator& generator,
-                                      const std::string& name);
+                                      const std::string& name, const ShouldContinue& wanted);
 
   std::string folder_;
   std::vector<ChangedChunk> changed_;

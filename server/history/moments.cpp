@@ -53,7 +53,8 @@ StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
         {StoreError::Kind::bad_request, (*reader)->file(), "keyframe",
          "none is near enough to seq=" + std::to_string(at) + " yet: the moment cannot be shown"});
   }
-  auto world = WorldAt::open(**reader, generator_, at);
+  const auto progress = [this](Sequence, Sequence) { return !is_cancelled_.load(); };
+  auto world = WorldAt::open(**reader, generator_, at, progress);
   if (!world) return failed(world.error());
   const auto end = edit_at(**reader, at);
   if (!end) return failed(end.error());

@@ -3,6 +3,7 @@
 // blocks on the disk.
 // Threads: any. A world makes one chunk at a time.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <list>
 #include <memory>
@@ -29,6 +30,9 @@ class Moments {
   StoreResult<LogEnd> open(Sequence at);
   /// Opens the moment after the last edit at or before this time (UTC).
   StoreResult<LogEnd> open_at_time(TimeUs utc_us);
+  /// Makes the calls under way, and all later ones, that would open a moment fail soon
+  /// (cancelled). Thread: any.
+  void cancel() { is_cancelled_.store(true); }
   /// Returns the chunk as it was after edit `at`. Opens the moment again if it is no longer kept.
   StoreResult<Chunk> chunk(Sequence at, const ChunkKey& key);
 
@@ -46,6 +50,7 @@ class Moments {
   const std::string folder_;
   const Generator& generator_;
   const std::size_t kept_max_;
+  std::atomic<bool> is_cancelled_{false};
   std::mutex mutex_;                                            // guards the list alone
   std::list<std::pair<Sequence, std::shared_ptr<Kept>>> kept_;  // used last first
 };

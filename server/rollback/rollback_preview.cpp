@@ -39,7 +39,7 @@ void RollbackPreview::compute(WorldReader& reader, const Generator& generator,
     chunks += plan->voxels > 0 ? 1 : 0;
     if (view_plan && plan->voxels > 0) view_plan(*plan);
   }
-  if (summarise && voxels > 0) summary = summarise(reader, generator, id());
+  if (summarise && voxels > 0) summary = summarise(reader, generator, id(), should_continue);
 }
 
 std::string RollbackPreview::text_of_nothing() const {

@@ -9,6 +9,7 @@
 
 #include "server/rollback/restore_plan.hpp"
 #include "server/rollback/selection.hpp"
+#include "server/rollback/should_continue.hpp"
 #include "server/store/world_reader.hpp"
 
 namespace runstone {
@@ -18,9 +19,10 @@ struct RollbackPreview {
   /// A function that gets the plan of each chunk that would change, one after another, on the
   /// worker.
   using PlanViewer = std::function<void(const RestorePlan&)>;
-  /// A function that the worker calls after the last plan. It returns lines for the answer.
+  /// A function that the worker calls after the last plan. It returns lines for the answer, and
+  /// returns soon when the answer is no longer wanted.
   using Summary = std::function<std::string(WorldReader& reader, const Generator& generator,
-                                            const std::string& id)>;
+                                            const std::string& id, const ShouldContinue& wanted)>;
 
   std::uint64_t number = 0;
   State state = State::computing;

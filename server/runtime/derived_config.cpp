@@ -39,6 +39,7 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.resident_bytes_max = config.memory_mib << 20;
   world.snapshots.edits_max = config.snapshot_edits;
   world.snapshots.interval_us = static_cast<TimeUs>(config.snapshot_s) * kUsPerSecond;
+  world.stop_us_max = static_cast<TimeUs>(config.stop_s) * kUsPerSecond;
   return world;
 }
 

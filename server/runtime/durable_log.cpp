@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "common/os/free_space.hpp"
 #include "server/runtime/logging.hpp"
 
 namespace runstone {
@@ -16,11 +17,14 @@ DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string&
     strand_.post([this] { events_.on_snapshots_saved(); });
   };
   callbacks.on_failed = [this](const StoreError& error) { on_failed(error); };
+  callbacks.on_space = [this](DiskSpace space, const std::string& why) { on_space(space, why); };
+  callbacks.free_bytes = [folder] { return free_bytes(folder); };
   LogWriter::Limits limits;
   limits.queued_records_max = options.queued_records_max;
+  limits.reserve_bytes = options.reserve_bytes;
   writer_ = std::make_unique<LogWriter>(store, std::move(callbacks), limits);
-  // The writer's callbacks read keyframes_. Nobody can append before this constructor returns, so
-  // no callback runs before.
+  // on_durable() reads keyframes_. Nobody can append before this constructor returns, so it does
+  // not run before.
   if (options.keyframes) {
     keyframes_ = std::make_unique<KeyframeThread>(folder, generator, *options.keyframes, *writer_);
   }
@@ -41,6 +45,24 @@ void DurableLog::on_failed(const StoreError& error) {
   has_failed_.store(true);
   strand_.post([this] { events_.on_failed(); });
   events_.on_failed_in_writer();
+}
+
+void DurableLog::on_space(DiskSpace space, const std::string& reason) {
+  is_full_.store(space == DiskSpace::full);
+  switch (space) {
+    case DiskSpace::enough:
+      logger("store").info("the world's disk has space again: edits are accepted");
+      break;
+    case DiskSpace::low:
+      logger("store").warn("READ-ONLY: {}: edits are rejected until there is space", reason);
+      break;
+    case DiskSpace::full:
+      logger("store").error(
+          "READ-ONLY: {}: edits are rejected, and accepted ones are written when there is space",
+          reason);
+      break;
+  }
+  strand_.post([this, space] { events_.on_space(space); });
 }
 
 void DurableLog::stop() {

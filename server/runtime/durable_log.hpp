@@ -22,6 +22,7 @@ class DurableLog {
  public:
   struct Options {
     std::size_t queued_records_max = 65'536;
+    std::uint64_t reserve_bytes = 0;          // LogWriter::Limits::reserve_bytes
     Sequence durable = 0;                     // what the log holds already
     std::optional<KeyframePolicy> keyframes;  // nullopt: no keyframes are made
   };
@@ -30,6 +31,8 @@ class DurableLog {
     std::function<void(Sequence)> on_durable;
     /// Reports that the snapshots of the oldest save_snapshots() not reported yet are on disk.
     std::function<void()> on_snapshots_saved;
+    /// Reports that the disk has no more space for new edits, or has space again.
+    std::function<void(DiskSpace)> on_space;
     /// Reports, at most once, that the log cannot be written any more.
     std::function<void()> on_failed;
     /// Reports the same, at once and on the writer's thread.
@@ -45,18 +48,25 @@ class DurableLog {
   LogWriter& writer() { return *writer_; }
   /// Thread: any.
   bool has_failed() const { return has_failed_.load(); }
-  /// Stops making keyframes, writes what is queued, and ends both threads. It may be called again.
+  /// Returns true while writes wait because the disk is full. Thread: any.
+  bool is_full() const { return is_full_.load(); }
+  /// Returns the last edit that is on disk. Thread: any.
+  Sequence durable() const { return durable_.load(); }
+  /// Stops making keyframes, writes what is queued, and ends both threads. On a full disk the edits
+  /// behind durable() are lost. It may be called again.
   void stop();
 
  private:
   void on_durable(Sequence seq);
   void on_failed(const StoreError& error);
+  void on_space(DiskSpace space, const std::string& reason);
 
   WorldStrand& strand_;
   const Events events_;
   std::atomic<Sequence> durable_;
   std::atomic<bool> is_report_posted_{false};
   std::atomic<bool> has_failed_{false};
+  std::atomic<bool> is_full_{false};
   std::unique_ptr<LogWriter> writer_;
   std::unique_ptr<KeyframeThread> keyframes_;  // null without a policy; uses writer_
 };

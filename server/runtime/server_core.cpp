@@ -58,10 +58,12 @@ Result<void, std::string> ServerCore::recover() {
                                               meta.materials, config_.world, on_stop_);
   DurableLog::Options options;
   options.queued_records_max = config_.log_queue_records;
+  options.reserve_bytes = config_.disk_reserve_mib << 20;
   options.durable = start->log.last;
   if (config_.keyframe_edits > 0) options.keyframes = KeyframePolicy{config_.keyframe_edits};
   log_ = std::make_unique<DurableLog>(strand_, store_, config_.world, generator_, options,
                                       log_events());
+  // A task that on_space posted from the constructor runs later, because no thread runs the strand.
   environment_.attach(*world_, *log_, *commands_);
   logger("world").info("world={} epoch={} seq={} checkpoint={} replayed={} players={} snapshots={}",
                        config_.world, *epoch, start->log.last, start->checkpoint, *replayed,
@@ -77,6 +79,10 @@ DurableLog::Events ServerCore::log_events() {
     commands_->tick(now);
   };
   events.on_snapshots_saved = [this] { world_->snapshots_saved(read_clocks()); };
+  events.on_space = [this](DiskSpace space) {
+    world_->set_disk_is_full(space != DiskSpace::enough);
+    commands_->tick(read_clocks());
+  };
   events.on_failed = [this] {
     world_->log_failed();
     commands_->tick(read_clocks());
@@ -112,10 +118,10 @@ void ServerCore::write_counters() {
       "{}", counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime));
 }
 
-std::future<bool> ServerCore::begin_stop() {
+std::future<void> ServerCore::begin_stop() {
   listener_->stop();
-  auto promise = std::make_shared<std::promise<bool>>();
-  std::future<bool> answer = promise->get_future();
+  auto promise = std::make_shared<std::promise<void>>();
+  std::future<void> answer = promise->get_future();
   strand_.post([this, promise = std::move(promise)]() mutable {
     stopping_ = std::move(promise);
     commands_->stop();
@@ -130,12 +136,18 @@ std::future<bool> ServerCore::begin_stop() {
 }
 
 void ServerCore::finish_stop_if_flushed() {
+  // Sessions end within the linger time of NetSession, which is a second.
   if (!stopping_ || !sessions_.is_empty()) return;
-  if (!log_->has_failed() && !world_->is_flushed()) return;
+  const bool gives_up = log_->has_failed() || (log_->is_full() && world_->is_stop_overdue());
+  if (!gives_up && !world_->is_flushed()) return;
   ticks_.stop();
   counters_.stop();
-  stopping_->set_value(!log_->has_failed());
+  stopping_->set_value();
   stopping_.reset();
+}
+
+StopState ServerCore::stop_state() const {
+  return {log_->has_failed(), world_->head() - log_->durable(), world_->dirty_chunks()};
 }
 
 void ServerCore::stop_writer() {

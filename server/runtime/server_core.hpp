@@ -23,6 +23,7 @@
 #include "server/runtime/durable_log.hpp"
 #include "server/runtime/periodic_task.hpp"
 #include "server/runtime/server_environment.hpp"
+#include "server/runtime/stop_state.hpp"
 #include "server/runtime/world_readers.hpp"
 #include "server/runtime/world_strand.hpp"
 #include "server/store/world_folder.hpp"
@@ -53,19 +54,21 @@ class ServerCore final : public NetEvents {
   std::uint16_t port() const { return listener_->port(); }
 
   /// Stops in this order: no new connections; a goodbye to each session; every accepted edit is
-  /// ordered and made durable; changed chunks are written as snapshots. The future becomes true
-  /// when all of it is on disk, or false if the log failed.
-  std::future<bool> begin_stop();
+  /// ordered and made durable; changed chunks are written as snapshots, for at most `stop_s`. The
+  /// future becomes ready when this is done. It also becomes ready if the log fails, or if the disk
+  /// is full and `stop_s` is over.
+  std::future<void> begin_stop();
   /// Ends the readers, the keyframe thread and the log writer, which writes what is queued.
   /// Requires that the future of begin_stop() is ready.
   void stop_writer();
+  /// Returns what the stop has left undone. Requires stop_writer(), and that no thread runs the
+  /// strand any more.
+  StopState stop_state() const;
   /// Returns the edited chunks in memory, ascending. Requires that no thread runs the strand any
   /// more.
   std::vector<std::pair<ChunkKey, ChunkPtr>> edited_chunks() const {
     return world_->edited_chunks();
   }
-  /// Thread: any.
-  bool has_failed() const { return log_->has_failed(); }
   /// Writes one line of counters at info. Thread: any.
   void log_counters();
   /// Carries out a command of the console or the control socket. The replies come on the world
@@ -102,7 +105,7 @@ class ServerCore final : public NetEvents {
   CommitScheduler commits_;
   PeriodicTask ticks_, counters_;
   // The answer of begin_stop(), set while it waits. Used on the world strand.
-  std::shared_ptr<std::promise<bool>> stopping_;
+  std::shared_ptr<std::promise<void>> stopping_;
 
   // These parts exist from recover() on.
   std::unique_ptr<WorldServer> world_;

@@ -13,7 +13,8 @@ WorldReaders::OpenedHistoryResult open(Moments& moments, const HistoryRequest& r
   const auto end = request.to == HistoryTarget::time ? moments.open_at_time(request.utc_us)
                                                      : moments.open(request.seq);
   if (end) return OpenedHistory{end->version.seq, end->time_us};
-  if (end.error().kind != StoreError::Kind::bad_request)
+  if (end.error().kind != StoreError::Kind::bad_request &&
+      end.error().kind != StoreError::Kind::cancelled)
     logger("store").error("{}", end.error().message());
   return Unexpected<std::string>{end.error().what};
 }
@@ -46,6 +47,7 @@ void WorldReaders::load_history_chunk(Sequence at, const ChunkKey& key,
   asio::post(history_readers_, [this, at, key, then = std::move(then)] {
     auto loaded = moments_.chunk(at, key);
     Result<ChunkPtr, std::string> chunk = ChunkPtr();
+    if (!loaded && loaded.error().kind == StoreError::Kind::cancelled) return;  // the server stops
     if (loaded) {
       chunk = std::make_shared<const Chunk>(*std::move(loaded));
     } else {
@@ -64,6 +66,9 @@ void WorldReaders::read_log(RollbackService::Workers::Work work,
 }
 
 void WorldReaders::stop() {
+  moments_.cancel();
+  log_readers_.stop();
+  history_readers_.stop();
   log_readers_.join();
   history_readers_.join();
 }

@@ -39,8 +39,9 @@ class WorldReaders {
   /// `work` did not run.
   void read_log(RollbackService::Workers::Work work, std::function<void(std::string)> then);
 
-  /// Waits until the history readers and the log readers have finished what was queued, and ends
-  /// their threads.
+  /// Ends the threads of the history readers and the log readers. Waits for the reads under way,
+  /// which end soon, and drops the queued ones: their `then` is not called. Requires that
+  /// RollbackService::stop() was called.
   void stop();
 
  private:

@@ -4,20 +4,22 @@
 #include <iterator>
 
 #include "common/core/assert.hpp"
+#include "common/os/steady_clock.hpp"
 
 namespace runstone {
 
 LogWriter::LogWriter(WorldSink& world, Callbacks callbacks, Limits limits)
-    : world_(world),
-      callbacks_(std::move(callbacks)),
-      limits_(limits),
-      thread_([this] { run(); }) {}
+    : world_(world), callbacks_(std::move(callbacks)), limits_(limits) {
+  check_space();
+  thread_ = std::thread([this] { run(); });
+}
 
 LogWriter::~LogWriter() { stop(); }
 
 bool LogWriter::has_room(std::size_t records) const {
   const std::lock_guard guard(mutex_);
-  return !failed_ && !stopping_ && room_taken_ + records <= limits_.queued_records_max;
+  return !failed_ && !stopping_ && space_ == DiskSpace::enough &&
+         room_taken_ + records <= limits_.queued_records_max;
 }
 
 void LogWriter::append(std::vector<PlayerRow> players, std::vector<EditRecord> records) {
@@ -84,26 +86,18 @@ LogWriter::Batch LogWriter::take_group() {
 }
 
 void LogWriter::run() {
+  Batch group;
   std::optional<Job> job;
-  for (;;) {
-    Batch group;
-    {
-      std::unique_lock lock(mutex_);
-      work_.wait(lock, [&] { return job || !batches_.empty() || !jobs_.empty() || stopping_; });
-      group = take_group();
-      if (!job && !jobs_.empty()) {
-        job = std::move(jobs_.front());
-        jobs_.pop_front();
-        job_is_running_ = true;
-      }
-      if (group.room == 0 && !job) return;  // the writer stops, and the queues are empty
-    }
-    if (const auto written = write(group); !written)
-      return fail(written.error(), job ? &*job : nullptr);
+  while (take_work(group, job)) {
+    StoreResult<void> written = write(group);
     // One slice per round: records that were queued meanwhile are written before the next slice.
-    if (job) {
-      if (const auto written = write_slice(*job); !written) return fail(written.error(), nullptr);
+    if (written && job) written = write_slice(*job);
+    if (!written && written.error().kind == StoreError::Kind::full) {
+      if (!wait_for_room(written.error(), job)) return;
+      continue;
     }
+    if (!written) return fail(written.error(), job);
+    check_space();
     if (job && job->is_over()) {
       {
         const std::lock_guard guard(mutex_);
@@ -116,17 +110,37 @@ void LogWriter::run() {
   }
 }
 
-StoreResult<void> LogWriter::write(const Batch& group) {
+bool LogWriter::take_work(Batch& group, std::optional<Job>& job) {
+  std::unique_lock lock(mutex_);
+  const auto has_work = [&] {
+    return group.room > 0 || job || !batches_.empty() || !jobs_.empty() || stopping_;
+  };
+  if (space_ == DiskSpace::enough) {
+    work_.wait(lock, has_work);
+  } else {
+    work_.wait_for(lock, limits_.space_interval, has_work);
+  }
+  if (group.room == 0) group = take_group();
+  if (!job && !jobs_.empty()) {
+    job = std::move(jobs_.front());
+    jobs_.pop_front();
+    job_is_running_ = true;
+  }
+  return group.room > 0 || job || !stopping_;
+}
+
+StoreResult<void> LogWriter::write(Batch& group) {
   if (group.room == 0) return {};
   if (auto appended = world_.append(group.players, group.records); !appended) return appended;
+  const Batch written = std::exchange(group, {});
   {
     const std::lock_guard guard(mutex_);
-    room_taken_ -= group.room;
+    room_taken_ -= written.room;
     counters_.commits += 1;
-    counters_.records += group.records.size();
+    counters_.records += written.records.size();
   }
-  if (!group.records.empty() && callbacks_.on_durable)
-    callbacks_.on_durable(group.records.back().version.seq);
+  if (!written.records.empty() && callbacks_.on_durable)
+    callbacks_.on_durable(written.records.back().version.seq);
   return {};
 }
 
@@ -152,18 +166,62 @@ StoreResult<void> LogWriter::write_slice(Job& job) {
   return {};
 }
 
-void LogWriter::fail(const StoreError& error, Job* job) {
-  std::deque<Job> dropped;
+void LogWriter::check_space() {
+  const TimeUs now_us = steady_now_us();
+  const bool was_full = space_ == DiskSpace::full;  // only this thread writes it
+  const TimeUs interval_us = std::chrono::microseconds(limits_.space_interval).count();
+  if (!was_full && looked_us_ != 0 && now_us - looked_us_ < interval_us) return;
+  looked_us_ = now_us;
+  const bool has_reserve = limits_.reserve_bytes > 0 && callbacks_.free_bytes;
+  const auto free = has_reserve ? callbacks_.free_bytes() : std::nullopt;
+  if (!free || *free >= limits_.reserve_bytes) return set_space(DiskSpace::enough, "");
+  set_space(DiskSpace::low, "the world's disk has " + std::to_string(*free >> 20) +
+                                " MiB free, and its reserve is " +
+                                std::to_string(limits_.reserve_bytes >> 20) + " MiB");
+}
+
+void LogWriter::set_space(DiskSpace space, const std::string& reason) {
+  {
+    const std::lock_guard guard(mutex_);
+    if (std::exchange(space_, space) == space) return;
+  }
+  if (callbacks_.on_space) callbacks_.on_space(space, reason);
+}
+
+bool LogWriter::wait_for_room(const StoreError& error, std::optional<Job>& job) {
+  set_space(DiskSpace::full, error.message());
+  end_keyframes(error, job);
+  std::unique_lock lock(mutex_);
+  if (stopping_) return false;
+  // A job for a keyframe ends the wait, so that its error does not wait.
+  const auto is_keyframe = [](const Job& one) { return one.done != nullptr; };
+  work_.wait_for(lock, limits_.space_interval,
+                 [&] { return stopping_ || std::any_of(jobs_.begin(), jobs_.end(), is_keyframe); });
+  return true;
+}
+
+void LogWriter::end_keyframes(const StoreError& error, std::optional<Job>& job) {
+  std::deque<Job> ended;
+  {
+    const std::lock_guard guard(mutex_);
+    std::deque<Job> jobs = std::exchange(jobs_, {});
+    for (Job& one : jobs) (one.done ? ended : jobs_).push_back(std::move(one));
+    if (job && job->done) {
+      ended.push_back(*std::move(job));
+      job.reset();
+      job_is_running_ = false;
+    }
+  }
+  for (const Job& one : ended) one.done(Unexpected<StoreError>{error});
+}
+
+void LogWriter::fail(const StoreError& error, std::optional<Job>& job) {
   {
     const std::lock_guard guard(mutex_);
     failed_ = true;
     batches_.clear();
-    dropped.swap(jobs_);
   }
-  if (job != nullptr) dropped.push_back(std::move(*job));
-  for (const Job& one : dropped) {
-    if (one.done) one.done(Unexpected<StoreError>{error});
-  }
+  end_keyframes(error, job);
   if (callbacks_.on_failed) callbacks_.on_failed(error);
 }
 

@@ -8,24 +8,30 @@
 //     is not offered again.
 //   - Order: records go before jobs, and a job is written in slices. A record therefore never waits
 //     for many chunks.
-//   - Failure: after the first error nothing more is written, on_failed is called once, and queued
+//   - A full disk: what was to be written stays queued and is written again once a second, until
+//     there is room. has_room() returns false meanwhile. It also returns false while less space is
+//     free than the reserve: the reserve is for what is queued already. Jobs for keyframes end with
+//     an error while the disk is full, because a keyframe holds nothing that the log does not.
+//   - Failure: after any other error nothing more is written, on_failed is called once, and queued
 //     batches are dropped. They were never acknowledged. The program must end and recover from the
-//     log. A keyframe that cannot be written ends only its job: a keyframe holds nothing that the
-//     log does not.
+//     log. A keyframe that cannot be written ends only its job.
 // Threads: append(), save_snapshots(), save_keyframe() and has_room() from any thread. The writer
 // thread calls the callbacks, which must return soon. The mutex is a leaf: no callback and no disk
 // access happens while it is locked.
 #pragma once
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "server/store/disk_space.hpp"
 #include "server/store/world_sink.hpp"
 
 namespace runstone {
@@ -38,6 +44,9 @@ class LogWriter {
     std::size_t commit_records_max = 4096;
     std::size_t jobs_max = 4;
     std::size_t slice_chunks_max = 32;  // chunks per transaction
+    std::uint64_t reserve_bytes = 0;    // below so many free bytes the disk space is low
+    /// The time between two looks at the free space, and between two writes to a full disk.
+    std::chrono::milliseconds space_interval{1000};
   };
   using SnapshotChunks = std::vector<std::pair<ChunkKey, ChunkPtr>>;
   struct Callbacks {
@@ -45,6 +54,12 @@ class LogWriter {
     /// Gets the chunks of the job, as they were passed to save_snapshots(), and its checkpoint.
     std::function<void(SnapshotChunks, std::optional<Sequence>)> on_snapshots_saved;
     std::function<void(StoreError)> on_failed;
+    /// Reports a change of the disk space, with a reason unless it is enough. The constructor
+    /// itself calls it if the space is low at the start.
+    std::function<void(DiskSpace, const std::string&)> on_space = {};
+    /// Returns the free bytes of the world's disk, or nullopt if they are not known. Empty: nobody
+    /// looks at them.
+    std::function<std::optional<std::uint64_t>()> free_bytes = {};
   };
   struct Counters {
     std::uint64_t commits = 0, records = 0, snapshots = 0, keyframes = 0;  // since the start
@@ -61,8 +76,8 @@ class LogWriter {
   LogWriter& operator=(const LogWriter&) = delete;
 
   /// Returns true if append() may be called with this many records now. Only append() reduces the
-  /// room, so the thread that appends can rely on the answer. Returns false after a failure and
-  /// after stop().
+  /// room of the queue, so the thread that appends can rely on the answer, even if the disk space
+  /// changes before it appends. Returns false after a failure and after stop().
   bool has_room(std::size_t records) const;
   /// Queues one batch. It becomes durable as a whole. It takes room for its records; a batch of
   /// players only takes room for one record. Requires has_room() for that. A writer that has failed
@@ -76,8 +91,9 @@ class LogWriter {
   /// keyframe with the last one. The writer thread calls `done` when all of it is on disk, or has
   /// failed. Returns false as save_snapshots(); `done` is not called then.
   bool save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, KeyframeDone done);
-  /// Writes everything that is queued, calls the callbacks, and ends the thread. It may be called
-  /// again, but not from a callback.
+  /// Writes everything that is queued, calls the callbacks, and ends the thread. If the disk is
+  /// full, it tries once more and gives up: Counters::queued_records are the records that are lost.
+  /// It may be called again, but not from a callback.
   void stop();
 
   Counters counters() const;
@@ -100,17 +116,30 @@ class LogWriter {
 
   bool queue(Job job);
   void run();
+  /// Waits for work and takes it: a group unless one is left to write, and a job unless one is
+  /// under way. Returns false if the writer stops and nothing is left. May return without work, so
+  /// that the free space is looked at again.
+  bool take_work(Batch& group, std::optional<Job>& job);
   /// Moves batches from the queue into one. Requires that the mutex is locked.
   Batch take_group();
-  StoreResult<void> write(const Batch& group);
+  /// Writes the group and empties it.
+  StoreResult<void> write(Batch& group);
   /// Writes the next slice of a job. The last slice moves the checkpoint, or writes the keyframe.
   StoreResult<void> write_slice(Job& job);
-  /// Ends the writer. `job` is the one that is being written, or null.
-  void fail(const StoreError& error, Job* job);
+  /// Looks at the free space, unless it was done less than space_interval ago.
+  void check_space();
+  void set_space(DiskSpace space, const std::string& reason);
+  /// Waits before the next write to a full disk. Returns false if the writer stops.
+  bool wait_for_room(const StoreError& error, std::optional<Job>& job);
+  /// Ends the jobs for keyframes, `job` included, with an error.
+  void end_keyframes(const StoreError& error, std::optional<Job>& job);
+  /// Ends the writer. `job` is the one that is being written, if any.
+  void fail(const StoreError& error, std::optional<Job>& job);
 
   WorldSink& world_;
   const Callbacks callbacks_;
   const Limits limits_;
+  TimeUs looked_us_ = 0;  // when the free space was looked at; only for check_space()
   mutable std::mutex mutex_;
   std::condition_variable work_;
   // mutex_ guards all members from here on.
@@ -119,8 +148,9 @@ class LogWriter {
   std::size_t room_taken_ = 0;   // by batches queued or being written
   bool job_is_running_ = false;  // the writer thread has a job that is not in jobs_
   bool stopping_ = false, failed_ = false;
+  DiskSpace space_ = DiskSpace::enough;
   Counters counters_;
-  // The thread is the last member: it starts when all others exist.
+  // The constructor starts the thread last, when all others exist.
   std::thread thread_;
 };
 

@@ -45,7 +45,12 @@ StoreResult<void> SqliteStore::write(const std::function<StoreResult<void>()>& b
     return done;
   }
   auto committed = store_result(transaction->commit());
-  broken_ = !committed.has_value();
+  if (!committed) {
+    segments_.forget();
+    // A full disk fails a write to the WAL, before the fsync. SQLite knows then that nothing was
+    // committed, and the next transaction overwrites what was written.
+    broken_ = committed.error().kind != StoreError::Kind::full;
+  }
   return committed;
 }
 

@@ -120,8 +120,9 @@ class SqliteStore final : public Store {
   StoreResult<void> read_state();
   /// Follows a commit that changed the state. A mark that cannot be written lags.
   void committed(const DurableState& state);
-  /// Calls `body` in one transaction and commits. After a failed commit the state of the disk is
-  /// unknown, so every later write is refused.
+  /// Calls `body` in one transaction and commits. If the disk is full, nothing is written, and the
+  /// call may be repeated. After any other failed commit the state of the disk is unknown, so every
+  /// later write is refused.
   StoreResult<void> write(const std::function<StoreResult<void>()>& body);
   /// Calls `body` in one read transaction: commits of other processes are not visible to it.
   template <class T>

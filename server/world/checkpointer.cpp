@@ -32,7 +32,7 @@ void Checkpointer::next_slice() {
 void Checkpointer::step(Authority& authority, Sequence durable, const Clocks& now,
                         WorldEnvironment& environment, std::vector<ChunkKey>& to_load) {
   if (!last_round_us_) last_round_us_ = now.steady_us;
-  if (in_flight_) return;
+  if (in_flight_ || is_abandoned_) return;
   WorldChunks& chunks = authority.chunks();
   if (!round_) {
     if (!is_due(authority, now)) return;
@@ -74,6 +74,11 @@ void Checkpointer::step(Authority& authority, Sequence durable, const Clocks& no
   } else {
     next_slice();
   }
+}
+
+void Checkpointer::abandon() {
+  is_abandoned_ = true;
+  round_.reset();
 }
 
 void Checkpointer::saved(WorldChunks& chunks) {

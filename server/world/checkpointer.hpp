@@ -6,7 +6,8 @@
 //   3. It hands the captured chunks to the log writer.
 // A chunk is captured once, not again when its log is durable, so a round ends while edits keep
 // coming. With the last slice the checkpoint becomes T. It stays below the first edit that only the
-// log has because its chunk is quarantined.
+// log has because its chunk is quarantined. If a round is abandoned, the checkpoint stays where it
+// is, and the slices that were written stay valid: the next start replays the other edits.
 // Thread: the world strand.
 #pragma once
 #include <cstdint>
@@ -46,6 +47,10 @@ class Checkpointer {
 
   /// Runs one round after the other from now on, until no chunk is dirty. For a server that stops.
   void finish() { finishing_ = true; }
+  /// Ends the round under way and begins no other one. A slice that was handed over is still
+  /// written, and its chunks may be reported by saved().
+  void abandon();
+  bool is_abandoned() const { return is_abandoned_; }
   /// Returns true if every ordered edit is contained in snapshots, except those of quarantined
   /// chunks.
   bool is_clean(const Authority& authority) const;
@@ -72,7 +77,7 @@ class Checkpointer {
   Sequence last_target_;
   std::optional<TimeUs> last_round_us_;
   std::uint64_t rounds_ = 0;
-  bool finishing_ = false;
+  bool finishing_ = false, is_abandoned_ = false;
   std::optional<Round> round_;
   struct InFlight {
     std::vector<std::pair<ChunkKey, Version>> chunks;

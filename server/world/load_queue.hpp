@@ -27,6 +27,8 @@ class LoadQueue {
   void request(SessionId session, const ChunkKey& key);
   /// Queues a key that the world needs. Does nothing if the world waits for it already.
   void request_for_world(const ChunkKey& key) { world_keys_.insert(key); }
+  /// Removes all keys that only the world needs.
+  void cancel_for_world() { world_keys_.clear(); }
   /// Removes a key of the session, if it waits. Cost: O(keys of the session).
   void cancel(SessionId session, const ChunkKey& key);
   /// Removes and returns all keys of the session, in its order.

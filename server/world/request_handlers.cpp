@@ -61,13 +61,14 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     refusal = RejectReason::out_of_reach;
     world.authority.reject(op, *refusal);
   } else {
-    const bool has_room =
-        world.accepts_edits && world.environment.log_has_room(world.authority.queued() + 1);
+    const bool has_room = world.accepts_edits && !world.disk_is_full &&
+                          world.environment.log_has_room(world.authority.queued() + 1);
     refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0},
                                      has_room);
   }
   if (!refusal) return;
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
+  if (*refusal == RejectReason::busy && world.disk_is_full) detail = kDiskIsFull;
   ++world.counters.edits_rejected;
   const bool maybe_applied = *refusal == RejectReason::already_resolved;
   const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;

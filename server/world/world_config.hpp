@@ -53,6 +53,7 @@ struct WorldConfig {
   // Memory and disk.
   std::size_t resident_bytes_max = 512ULL << 20;
   SnapshotPolicy snapshots;
+  TimeUs stop_us_max = 8'000'000;  // after it, a stop begins no more snapshots
 };
 
 /// The state that the store remembers. The log above the checkpoint follows by

@@ -163,7 +163,7 @@ WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player);
     if (!world.environment.log_has_room(out.count + 1)) {
-      out.reason = "the log is full (log_queue_records)";
+      out.reason = world.disk_is_full ? kDiskIsFull : "the log is full (log_queue_records)";
       break;
     }
     if (paying) {
@@ -204,6 +204,10 @@ std::vector<PlayerRow> WorldServer::visitors() const {
 
 void WorldServer::step_checkpointer(const Clocks& now) {
   WorldState& world = *state_;
+  if (world.is_stopping && now.steady_us >= world.stop_due_us) {
+    world.checkpointer.abandon();
+    world.loads.cancel_for_world();
+  }
   world.checkpointer.step(world.authority, world.durable, now, world.environment,
                           [&](const ChunkKey& key) { request_load(world, key); });
 }
@@ -299,6 +303,8 @@ void WorldServer::snapshots_saved(const Clocks& now) {
   step_checkpointer(now);
 }
 
+void WorldServer::set_disk_is_full(bool is_full) { state_->disk_is_full = is_full; }
+
 void WorldServer::log_failed() { state_->accepts_edits = false; }
 
 void WorldServer::begin_stop(const Clocks& now) {
@@ -306,6 +312,7 @@ void WorldServer::begin_stop(const Clocks& now) {
   commit(now);  // orders the edits that were accepted
   world.accepts_edits = false;
   world.is_stopping = true;
+  world.stop_due_us = now.steady_us + world.config.stop_us_max;
   world.checkpointer.finish();
   while (!world.sessions.empty()) {
     close_session(world, world.sessions.begin()->first, GoodbyeReason::closing, "the server stops");
@@ -318,8 +325,11 @@ void WorldServer::begin_stop(const Clocks& now) {
 
 bool WorldServer::is_flushed() const {
   return state_->authority.queued() == 0 && state_->durable == state_->authority.head() &&
-         state_->checkpointer.is_clean(state_->authority);
+         (state_->checkpointer.is_clean(state_->authority) || is_stop_overdue());
 }
+
+bool WorldServer::is_stop_overdue() const { return state_->checkpointer.is_abandoned(); }
+std::size_t WorldServer::dirty_chunks() const { return state_->authority.chunks().dirty().size(); }
 
 bool WorldServer::accepts_edits() const { return state_->accepts_edits; }
 Epoch WorldServer::epoch() const { return state_->authority.epoch(); }

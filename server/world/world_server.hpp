@@ -109,16 +109,25 @@ class WorldServer {
   void durable(Sequence seq, const Clocks& now);
   /// Reports that the oldest unanswered save_snapshots() is on disk.
   void snapshots_saved(const Clocks& now);
+  /// Reports that the disk has no space for new edits, or has space again. Edits are rejected busy
+  /// meanwhile.
+  void set_disk_is_full(bool is_full);
   /// Reports that the log cannot be written any more. Edits are rejected busy from now on.
   void log_failed();
 
   // Stop.
-  /// Closes all sessions, rejects edits, and writes all dirty chunks as snapshots. It continues
-  /// with the answers of WorldEnvironment until is_flushed().
+  /// Closes all sessions, rejects edits, and writes dirty chunks as snapshots for at most
+  /// stop_us_max. It continues with the answers of WorldEnvironment and with tick() until
+  /// is_flushed().
   void begin_stop(const Clocks& now);
-  /// Returns true if every ordered edit is durable and contained in snapshots, except those of
-  /// quarantined chunks.
+  /// Returns true if every ordered edit is durable and either contained in snapshots, except those
+  /// of quarantined chunks, or left to the next start because is_stop_overdue().
   bool is_flushed() const;
+  /// Returns true if a stop is under way and begins no more snapshots.
+  bool is_stop_overdue() const;
+  /// Returns the number of chunks with edits that only the log has. Quarantined chunks do not
+  /// count.
+  std::size_t dirty_chunks() const;
 
   // State.
   /// Returns false if the server stops or the log has failed.

@@ -19,6 +19,9 @@
 
 namespace runstone {
 
+/// Why edits are rejected while disk_is_full: for players and operators.
+inline constexpr const char* kDiskIsFull = "the world's disk is full";
+
 struct WorldState {
   WorldState(WorldConfig config_, const WorldStart& start, WorldEnvironment& environment_,
              RandomBytes random_);
@@ -39,7 +42,9 @@ struct WorldState {
   Sequence durable = 0;
   bool accepts_edits =
       true;  // false: edits are rejected busy, because the server stops or the log failed
+  bool disk_is_full = false;  // edits are rejected busy until there is space again
   bool is_stopping = false;
+  TimeUs stop_due_us = 0;  // when a stop that is under way begins no more snapshots
   // Presence.
   bool player_list_changed = false;
   std::map<AuthorId, std::string> sent_player_list;

@@ -34,7 +34,7 @@ void JoinProbe::run(std::uint16_t port) {
     const auto began = std::chrono::steady_clock::now();
     AttackClient newcomer(port, kAddress);
     ++joins_.tried;
-    if (newcomer.open_session(mix64(~who), kNewcomerMsMax)) {
+    if (newcomer.open_session(mix64(~who), 1, kNewcomerMsMax)) {
       ++joins_.open;
       const std::chrono::duration<double, std::milli> took =
           std::chrono::steady_clock::now() - began;

@@ -187,6 +187,10 @@ TEST_CASE("a child that ends, stays silent or answers nonsense is an error with 
   CHECK(
       contains(start_error({script(folder, "echo error no paint left; exit 2")}), "no paint left"));
   CHECK(contains(start_error({script(folder, "exec sleep 60"), 200ms}), "did nothing for 0 s"));
+  CHECK(contains(start_error({.program = script(folder, "exec sleep 60"),
+                              .answer_limit = 60s,
+                              .should_continue = [] { return false; }}),
+                 "is not wanted any more"));
   // The first script draws once and ends. The second one stays and gives a wrong answer.
   auto child = DrawChild::start({script(folder, "echo ready 1 X; head -c 20 >/dev/null; exit 5")});
   REQUIRE(child.has_value());

@@ -220,7 +220,7 @@ TEST_CASE("an invalid descriptor is rejected as bad_edit and the session goes on
   client.send(voxel_edit(2, {3, 70, 3}, 1));
   const auto commit = client.next_of<Commit>();
   REQUIRE(commit.has_value());
-  CHECK(commit->first == 1);
+  CHECK(commit->edits.at(0).seq == 1);
   CHECK(commit->edits.at(0).op.seq == 2);
 
   // The same client comes back and offers the edit again.

@@ -91,7 +91,7 @@ TEST_CASE("a damaged chunk is unavailable to the sessions that see it, and other
     near.send(edit(1, {18, 1, 1}));  // the neighbouring chunk accepts edits
     auto commit = near.next_of<Commit>();
     REQUIRE(commit.has_value());
-    CHECK(commit->first == 3);
+    CHECK(commit->edits.at(0).seq == 3);
     CHECK(commit->edits.at(0).previous == std::vector<Sequence>{2});
     far.send(edit(1, {2, 1, 1}));  // an edit of the damaged chunk is ordered like any other
     commit = far.next_of<Commit>();

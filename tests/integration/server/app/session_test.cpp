@@ -60,7 +60,7 @@ TEST_CASE("a client joins, gets its view nearest first, edits, and gets the dura
   const auto commit = client.next_of<Commit>(&seen);
   REQUIRE(commit.has_value());
   CHECK(commit->epoch == 1);
-  CHECK(commit->first == 1);
+  CHECK(commit->edits.at(0).seq == 1);
   CHECK(commit->edits.at(0).op == OperationId{1, 1, 1});
   std::optional<Durable> durable;
   for (const Message& message : seen) {
@@ -97,8 +97,8 @@ TEST_CASE("several clients see each other's edits as equal commits", "[integrati
     while (order.size() < 3 * kEdits) {
       const auto commit = client->next_of<Commit>();
       REQUIRE(commit.has_value());
-      CHECK(commit->first == next);
       for (const OrderedEdit& e : commit->edits) {
+        CHECK(e.seq == next);
         CHECK(e.previous == std::vector<Sequence>{next - 1});  // every edit is in one chunk
         order.push_back(e.op);
         ++next;

@@ -159,7 +159,7 @@ TEST_CASE("a damaged snapshot is quarantined: not sent, not regenerated, its edi
     client.send(EditRequest{4, 0, {SetVoxel{{17, 1, 1}}, {}, 3}});
     const auto commit = client.next_of<Commit>();
     REQUIRE(commit.has_value());
-    CHECK(commit->first == 4);
+    CHECK(commit->edits.at(0).seq == 4);
     CHECK(commit->edits.at(0).previous == std::vector<Sequence>{2});
     const StopReport report = server->stop();
     CHECK(report.is_clean);

@@ -28,12 +28,15 @@ struct StoppedWorld {
     const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{kHere, here}, {kThere, there}};
     REQUIRE(store->save_snapshots(chunks, 3).has_value());
   }
-  StopReport with(const ChunkKey& key, const Chunk& live, bool is_clean = true) const {
+  StopReport with(const ChunkKey& key, const Chunk& live, const StopState& state = {},
+                  std::size_t rows_max = 100) const {
     const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {
         {key, std::make_shared<const Chunk>(live)}};
-    return sum_up(*store, chunks, is_clean);
+    return sum_up(*store, chunks, state, [left = rows_max]() mutable { return left-- > 0; });
   }
 };
+
+constexpr StopState kLost{false, 6, 0};
 
 }  // namespace
 
@@ -80,7 +83,7 @@ TEST_CASE(
   const DigestCheckEntry entry{key, live.version, digest_of(live.voxels)};
   CHECK(std::count(report.digests.chunks.begin(), report.digests.chunks.end(), entry) == 1);
   // A stop that was cut short leaves chunks that are newer than their snapshots, which is no error.
-  CHECK(world.with(key, live, false).error.empty());
+  CHECK(world.with(key, live, kLost).error.empty());
 }
 
 TEST_CASE("a stop that was not clean lists the stored chunks, and marks line and file as unclean",
@@ -88,12 +91,12 @@ TEST_CASE("a stop that was not clean lists the stored chunks, and marks line and
   const StoppedWorld world;
   Chunk live = *world.here;
   live.version = {1, 9};  // never on disk
-  const StopReport report = world.with(kHere, live, false);
+  const StopReport report = world.with(kHere, live, kLost);
   CHECK_FALSE(report.is_clean);
   CHECK(report.digests.chunks ==
         std::vector<DigestCheckEntry>{{kHere, {1, 2}, digest_of(world.here->voxels)},
                                       {kThere, {1, 3}, digest_of(world.there->voxels)}});
-  CHECK(stop_line(report) == "stopped unclean seq=3 snapshots=2 live=1");
+  CHECK(stop_line(report) == "stopped unclean seq=3 snapshots=2 live=1 lost_edits=6");
   const auto read = parse_digests_json(to_json(report.digests), "d.json");
   REQUIRE_FALSE(read.has_value());
   CHECK(read.error().message().find("clean") != std::string::npos);
@@ -102,6 +105,36 @@ TEST_CASE("a stop that was not clean lists the stored chunks, and marks line and
   CHECK(stop_line(clean) ==
         "stopped seq=3 edited_chunks=2 live=1 world_digest=" + to_hex(clean.world_digest));
   CHECK(parse_digests_json(to_json(clean.digests), "d.json").has_value());
+}
+
+TEST_CASE("a stop that leaves chunks to the next start is durable, and says how many they are",
+          "[server]") {
+  const StoppedWorld world;
+  Chunk live = *world.here;
+  live.version = {1, 3};  // newer than its snapshot, which is no error
+  const StopReport report = world.with(kHere, live, {false, 0, 7});
+  CHECK(report.state.is_durable());
+  CHECK_FALSE(report.is_clean);
+  CHECK_FALSE(report.digests.is_clean);
+  CHECK(report.error.empty());
+  CHECK(stop_line(report) == "stopped seq=3 chunks_left=7 live=1");
+}
+
+TEST_CASE("a stop without time to read every snapshot has no digest and is no failure",
+          "[server]") {
+  const StoppedWorld world;
+  for (const std::size_t rows_max : {0U, 1U, 2U, 3U}) {
+    CAPTURE(rows_max);
+    const StopReport report = world.with(kHere, *world.here, {}, rows_max);
+    CHECK_FALSE(report.is_summed);
+    CHECK(report.is_clean);
+    CHECK(report.error.empty());
+    CHECK(report.digests.chunks.empty());
+    CHECK_FALSE(report.digests.is_clean);
+    CHECK(stop_line(report) == "stopped seq=3 chunks_left=0 live=1");
+  }
+  // The question is asked before the list, and after each of two snapshots and a live chunk.
+  CHECK(world.with(kHere, *world.here, {}, 4).is_summed);
 }
 
 TEST_CASE("a snapshot that cannot be read is named, and the others are summed up", "[server]") {

@@ -21,6 +21,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   config.budgets_per_address = 5;
   config.sessions_per_key = 6;
   config.sessions_per_address = 7;
+  config.stop_s = 4;
   const WorldConfig world = world_config_of(config, sample_meta());
   CHECK(world.world_id == sample_meta().world_id);
   CHECK(world.chunk_edge == kSampleEdge);
@@ -37,6 +38,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   CHECK(world.budgets_per_address == 5);
   CHECK(world.sessions_per_key == 6);
   CHECK(world.sessions_per_address == 7);
+  CHECK(world.stop_us_max == 4'000'000);
 }
 
 TEST_CASE("the configured encoding is the preferred one", "[server]") {

@@ -34,7 +34,7 @@ class FakeSink final : public WorldSink {
     entered.release();
     gate.acquire();
     if (fail_at == commits.size())
-      return Unexpected<StoreError>{{StoreError::Kind::full, "w", "", "disk full"}};
+      return Unexpected<StoreError>{{StoreError::Kind::io, "w", "", "disk broken"}};
     commits.push_back(std::move(commit));
     return {};
   }
@@ -240,7 +240,7 @@ TEST_CASE("after a failure nothing more is written or acknowledged", "[store][lo
   writer.stop();
   CHECK(sink.commits.size() == 1);
   CHECK(durable == std::vector<Sequence>{2});
-  CHECK(failures == std::vector<std::string>{"w: disk full"});
+  CHECK(failures == std::vector<std::string>{"w: disk broken"});
 }
 
 TEST_CASE("a keyframe is written with the last slice of its chunks, after records",
@@ -312,7 +312,7 @@ TEST_CASE("a failure of the writer ends the jobs for keyframes with an error",
   writer.append({}, sample_records(rng, 1, 1, 2));  // fails
   sink.open_gate();
   writer.stop();
-  CHECK(done == std::vector<std::string>{"w: disk full", "w: disk full"});
+  CHECK(done == std::vector<std::string>{"w: disk broken", "w: disk broken"});
   CHECK_FALSE(writer.save_keyframe(chunks(1), Keyframe{}, tell));
 }
 

@@ -162,5 +162,25 @@ TEST_CASE("finish() writes every dirty chunk, also those that a start replayed",
   CHECK(bench.environment.saves.size() == 1);
 }
 
+TEST_CASE("an abandoned round keeps the slices that were written and the checkpoint", "[world]") {
+  CheckpointerBench bench({5, 1'000'000, 2}, {1, 0, 0}, 0);
+  for (std::int32_t x = 0; x < 5; ++x) bench.edit(x);
+  bench.durable = 5;
+  bench.step();
+  bench.answer_loads();
+  bench.step();
+  REQUIRE(bench.environment.saves.size() == 1);  // the first slice is being written
+  bench.checkpointer.abandon();
+  CHECK(bench.checkpointer.is_abandoned());
+  bench.checkpointer.saved(bench.authority.chunks());
+  bench.checkpointer.finish();
+  bench.step();
+  CHECK(bench.environment.loads.empty());
+  CHECK(bench.environment.saves.size() == 1);
+  CHECK(bench.checkpointer.checkpoint() == 0);
+  CHECK(bench.authority.chunks().dirty() == std::set<ChunkKey>{key_at(2), key_at(3), key_at(4)});
+  CHECK_FALSE(bench.checkpointer.is_clean(bench.authority));
+}
+
 }  // namespace
 }  // namespace runstone

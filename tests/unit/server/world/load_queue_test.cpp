@@ -47,6 +47,14 @@ TEST_CASE("at most the allowed number of loads is under way", "[world]") {
   CHECK(queue.next() == key_of(2));
 }
 
+TEST_CASE("keys that only the world needs are cancelled together", "[world]") {
+  LoadQueue queue(1);
+  queue.request(1, key_of(1));
+  for (std::int32_t x = 0; x < 3; ++x) queue.request_for_world(key_of(x));
+  queue.cancel_for_world();
+  CHECK(load_order(queue) == std::vector<std::int32_t>{1});
+}
+
 TEST_CASE("a cancelled key is not loaded", "[world]") {
   LoadQueue queue(1);
   for (std::int32_t x = 0; x < 3; ++x) queue.request(1, key_of(x));

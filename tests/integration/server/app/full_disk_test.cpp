@@ -1,0 +1,132 @@
+// A whole server whose disk has no space: it is read-only until there is space again.
+#include <catch2/catch.hpp>
+
+#include "tests/integration/server/app/raw_client.hpp"
+#include "tests/integration/server/app/server_bench.hpp"
+#include "tests/support/full_disk_vfs.hpp"
+
+namespace runstone::test {
+namespace {
+
+EditRequest voxel(ClientSequence seq) {
+  return {seq, 0, {SetVoxel{{static_cast<std::int32_t>(seq % 16), 1, 1}}, {}, 2}};
+}
+
+/// Sends edits from `seq` on until one is rejected, and returns the number of this one. Requires
+/// that the reason is the full disk.
+ClientSequence edit_until_rejected(RawClient& client, ClientSequence seq) {
+  for (; seq < 100'000; ++seq) {
+    client.send(voxel(seq));
+    while (const auto message = client.next()) {
+      if (const auto* reject = std::get_if<Reject>(&*message)) {
+        CHECK(reject->client_seq == seq);
+        REQUIRE(reject->reason == RejectReason::busy);
+        if (reject->detail == "the world's disk is full") return seq;
+        break;  // the world strand did not know the reason yet
+      }
+      if (std::holds_alternative<Commit>(*message)) break;
+    }
+  }
+  FAIL("no edit was rejected");
+  return 0;
+}
+
+/// Sends edits from `seq` on until one is accepted, and returns the number of this one.
+ClientSequence edit_until_accepted(RawClient& client, ClientSequence seq) {
+  for (; seq < 10'000'000; ++seq) {
+    client.send(voxel(seq));
+    while (const auto message = client.next()) {
+      if (std::holds_alternative<Commit>(*message)) return seq;
+      if (std::holds_alternative<Reject>(*message)) break;
+    }
+  }
+  FAIL("no edit was accepted");
+  return 0;
+}
+
+Sequence log_end(const std::string& folder) {
+  return *(*open_world(folder, StoreAccess::read_only))->last_sequence();
+}
+
+ServerConfig edits_config(const std::string& world) {
+  ServerConfig config = quiet_config(world);
+  config.messages_per_second = 0;
+  return config;
+}
+
+}  // namespace
+
+TEST_CASE("a server whose disk fills up rejects edits, keeps the accepted ones and goes on later",
+          "[integration]") {
+  FullDiskVfs vfs;
+  const TempFolder folder;
+  {
+    const auto server = start_server(edits_config(folder / "world"), flat_creation());
+    RawClient client(server->port());
+    REQUIRE(client.join(1).has_value());
+    client.send(voxel(1));
+    REQUIRE(client.sees_durable(1));
+    vfs.fill();
+    const ClientSequence rejected = edit_until_rejected(client, 2);
+    vfs.make_room();
+    const ClientSequence accepted = edit_until_accepted(client, rejected + 1);
+    CHECK(accepted > rejected);
+    const StopReport report = server->stop();
+    CHECK(report.is_clean);
+    CHECK(report.state.lost_edits == 0);
+    CHECK(report.error.empty());
+  }
+  const auto server = start_server(edits_config(folder / "world"), {});
+  CHECK(server->stop().is_clean);
+}
+
+TEST_CASE("a stop on a full disk says how many accepted edits are lost, and the log stays sound",
+          "[integration]") {
+  FullDiskVfs vfs;
+  const TempFolder folder;
+  ServerConfig config = edits_config(folder / "world");
+  config.stop_s = 1;
+  {
+    const auto server = start_server(config, flat_creation());
+    RawClient client(server->port());
+    REQUIRE(client.join(1).has_value());
+    client.send(voxel(1));
+    REQUIRE(client.sees_durable(1));
+    vfs.fill();
+    edit_until_rejected(client, 2);
+    const StopReport report = server->stop();
+    CHECK_FALSE(report.is_clean);
+    CHECK_FALSE(report.state.is_durable());
+    CHECK_FALSE(report.state.has_failed);
+    CHECK(report.state.lost_edits > 0);
+    CHECK(stop_line(report).find("stopped unclean") == 0);
+  }
+  vfs.make_room();
+  CHECK(log_end(folder / "world") == 1);
+  const auto server = start_server(config, {});
+  RawClient client(server->port());
+  const auto accepted = client.join(1);
+  REQUIRE(accepted.has_value());
+  CHECK(accepted->resolved == 1);  // the client offers the others again
+  client.send(voxel(2));
+  CHECK(client.sees_durable(2));
+}
+
+TEST_CASE("a server that starts below its disk reserve is read-only from the first edit on",
+          "[integration]") {
+  const TempFolder folder;
+  ServerConfig config = edits_config(folder / "world");
+  config.disk_reserve_mib = 1'000'000'000;
+  const auto server = start_server(config, flat_creation());
+  RawClient client(server->port());
+  REQUIRE(client.join(1).has_value());
+  client.send(voxel(1));
+  const auto reject = client.next_of<Reject>();
+  REQUIRE(reject.has_value());
+  CHECK(*reject == Reject{1, RejectReason::busy, "the world's disk is full", 0});
+  client.send(View{1, {0, 0, 0}, 0, 0});
+  CHECK(client.next_of<ChunkSnapshot>().has_value());
+  CHECK(server->stop().is_clean);
+}
+
+}  // namespace runstone::test
