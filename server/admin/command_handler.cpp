@@ -89,14 +89,15 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
 
 void CommandHandler::status(const CommandReply& reply) const {
   const WorldCounters& c = world_.counters();
+  const MemoryUse memory = world_.memory_use();
   reply({"sessions " + std::to_string(world_.session_count()) + ", edits " +
              std::to_string(world_.head()) + " (on disk " + std::to_string(world_.durable()) +
              "), since the start " + std::to_string(c.edits_ordered) + " ordered and " +
              std::to_string(c.edits_rejected) + " rejected\nchunks in memory " +
-             std::to_string(world_.resident_chunks()) + " (" +
-             memory_text(world_.resident_bytes()) + "), damaged " +
-             std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
-             std::to_string(rollback_.running()),
+             std::to_string(world_.resident_chunks()) + " (" + memory_text(memory.voxels) +
+             "), waiting edits " + memory_text(memory.stacked + memory.queued) +
+             ", damaged chunks " + std::to_string(c.chunks_failed) +
+             ", rollbacks and undos under way " + std::to_string(rollback_.running()),
          true, true});
 }
 

@@ -182,7 +182,7 @@ const std::vector<Field>& fields() {
       number("budgets_per_address", &C::budgets_per_address, 0, 1'000'000,
              "times builder_budget for all players of one address, 0: no limit"),
       number("memory_mib", &C::memory_mib, 16, 1'048'576,
-             "MiB of chunks before unused ones leave memory"),
+             "MiB of chunks and of edits that wait, then views wait and edits are rejected"),
       number("snapshot_edits", &C::snapshot_edits, 1, 1'000'000'000,
              "edits between two rounds of snapshots"),
       number("snapshot_s", &C::snapshot_s, 1, 86'400, "seconds between two rounds of snapshots"),

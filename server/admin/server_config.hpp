@@ -75,7 +75,7 @@ struct ServerConfig {
   EditBudget builder_budget{100, 4'000};      // of a player; kBuilderBudgets has names
   std::uint64_t budgets_per_address = 4;      // of one address, times builder_budget, 0: no limit
   // World and disk.
-  std::uint64_t memory_mib = 512;            // MiB of chunks that no session sees, 16..1048576
+  std::uint64_t memory_mib = 512;            // MiB of chunks and of edits that wait, 16..1048576
   std::uint64_t snapshot_edits = 20'000;     // between two rounds of snapshots, 1..10^9
   std::uint64_t snapshot_s = 30;             // seconds between two rounds, 1..86400
   std::uint64_t keyframe_edits = 32'768;     // least number between two keyframes, 0: none .. 10^9

@@ -36,7 +36,8 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.preferred_encoding = config.encoding;
   world.digest_check_interval_us = static_cast<TimeUs>(config.digest_check_ms) * kUsPerMs;
   world.digest_check_chunks = config.digest_check_chunks;
-  world.resident_bytes_max = config.memory_mib << 20;
+  world.memory = memory_limits_of(config.memory_mib << 20);
+  world.snapshots.stack_bytes_max = world.memory.stack_bytes_max;
   world.snapshots.edits_max = config.snapshot_edits;
   world.snapshots.interval_us = static_cast<TimeUs>(config.snapshot_s) * kUsPerSecond;
   world.stop_us_max = static_cast<TimeUs>(config.stop_s) * kUsPerSecond;

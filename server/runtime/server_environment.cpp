@@ -54,6 +54,8 @@ bool ServerEnvironment::log_has_room(std::size_t records) const {
   return log_->writer().has_room(records);
 }
 
+std::size_t ServerEnvironment::log_queued_bytes() const { return log_->writer().queued_bytes(); }
+
 void ServerEnvironment::log_append(std::vector<PlayerRow> players,
                                    std::vector<EditRecord> records) {
   log_->writer().append(std::move(players), std::move(records));

@@ -51,6 +51,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void forget_outside(SessionId session, const View& view) override;
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override;
   bool log_has_room(std::size_t records) const override;
+  std::size_t log_queued_bytes() const override;
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
   void load_chunk(const ChunkKey& key) override;
   void open_history(SessionId session, const HistoryRequest& request) override;

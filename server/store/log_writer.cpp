@@ -4,9 +4,20 @@
 #include <iterator>
 
 #include "common/core/assert.hpp"
+#include "common/edits/descriptor/edit_memory.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
+namespace {
+
+std::size_t memory_of(const std::vector<EditRecord>& records) {
+  std::size_t bytes = 0;
+  for (const EditRecord& record : records)
+    bytes += sizeof(EditRecord) + own_bytes(record.edit) + shared_bytes(record.edit);
+  return bytes;
+}
+
+}  // namespace
 
 LogWriter::LogWriter(WorldSink& world, Callbacks callbacks, Limits limits)
     : world_(world), callbacks_(std::move(callbacks)), limits_(limits) {
@@ -24,13 +35,15 @@ bool LogWriter::has_room(std::size_t records) const {
 
 void LogWriter::append(std::vector<PlayerRow> players, std::vector<EditRecord> records) {
   if (players.empty() && records.empty()) return;
+  const std::size_t bytes = memory_of(records);
   {
     const std::lock_guard guard(mutex_);
     if (failed_ || stopping_) return;
     const std::size_t room = std::max<std::size_t>(records.size(), 1);
     RUNSTONE_ASSERT(room_taken_ + room <= limits_.queued_records_max);
     room_taken_ += room;
-    batches_.push_back({std::move(players), std::move(records), room});
+    bytes_taken_ += bytes;
+    batches_.push_back({std::move(players), std::move(records), room, bytes});
   }
   work_.notify_one();
 }
@@ -68,7 +81,13 @@ LogWriter::Counters LogWriter::counters() const {
   const std::lock_guard guard(mutex_);
   Counters now = counters_;
   now.queued_records = room_taken_;
+  now.queued_bytes = bytes_taken_;
   return now;
+}
+
+std::size_t LogWriter::queued_bytes() const {
+  const std::lock_guard guard(mutex_);
+  return bytes_taken_;
 }
 
 LogWriter::Batch LogWriter::take_group() {
@@ -80,6 +99,7 @@ LogWriter::Batch LogWriter::take_group() {
     std::move(next.players.begin(), next.players.end(), std::back_inserter(group.players));
     std::move(next.records.begin(), next.records.end(), std::back_inserter(group.records));
     group.room += next.room;
+    group.bytes += next.bytes;
     batches_.pop_front();
   }
   return group;
@@ -136,6 +156,7 @@ StoreResult<void> LogWriter::write(Batch& group) {
   {
     const std::lock_guard guard(mutex_);
     room_taken_ -= written.room;
+    bytes_taken_ -= written.bytes;
     counters_.commits += 1;
     counters_.records += written.records.size();
   }

@@ -63,7 +63,7 @@ class LogWriter {
   };
   struct Counters {
     std::uint64_t commits = 0, records = 0, snapshots = 0, keyframes = 0;  // since the start
-    std::size_t queued_records = 0;                                        // now
+    std::size_t queued_records = 0, queued_bytes = 0;                      // now
   };
 
   /// Starts the thread, which alone uses `world` from now until stop() has returned.
@@ -97,12 +97,15 @@ class LogWriter {
   void stop();
 
   Counters counters() const;
+  /// Returns the bytes of memory that the queued records take, until they are durable.
+  std::size_t queued_bytes() const;
 
  private:
   struct Batch {
     std::vector<PlayerRow> players;
     std::vector<EditRecord> records;
-    std::size_t room = 0;  // of queued_records_max that the batch takes
+    std::size_t room = 0;   // of queued_records_max that the batch takes
+    std::size_t bytes = 0;  // of memory that the records take
   };
   struct Job {
     SnapshotChunks chunks;
@@ -146,6 +149,7 @@ class LogWriter {
   std::deque<Batch> batches_;
   std::deque<Job> jobs_;
   std::size_t room_taken_ = 0;   // by batches queued or being written
+  std::size_t bytes_taken_ = 0;  // likewise, bytes of memory
   bool job_is_running_ = false;  // the writer thread has a job that is not in jobs_
   bool stopping_ = false, failed_ = false;
   DiskSpace space_ = DiskSpace::enough;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_memory.hpp"
 
 namespace runstone {
 namespace {
@@ -17,6 +18,15 @@ static_assert(kOrderedEditBytesMax + kDescriptorBytesMax + kPreviousBytesMax * k
                   kServerEditBytesMax / 2,
               "one more edit over the target still fits the message");
 
+/// Returns the bytes that an edit takes on each of the stacks of the chunks that it touches.
+std::size_t stack_bytes_of(const EditDescriptor& edit, std::size_t chunks) {
+  return own_bytes(edit) + sizeof(Sequence) + shared_bytes(edit) / chunks;
+}
+
+std::size_t memory_of(const EditOffer& offer) {
+  return sizeof(EditOffer) + own_bytes(offer.edit) + shared_bytes(offer.edit);
+}
+
 }  // namespace
 
 Authority::Authority(const EditLimits& limits, const LogPosition& log)
@@ -27,9 +37,10 @@ Authority::Authority(const EditLimits& limits, const LogPosition& log)
       chunks_(limits.chunk_edge) {}
 
 void Authority::replay_onto_stack(const EditRecord& record) {
-  for (const ChunkCoord at : touched_chunks(record.edit, limits_.chunk_edge)) {
-    chunks_.replay_onto_stack({0, at}, record.version, record.edit);
-  }
+  const std::vector<ChunkCoord> touched = touched_chunks(record.edit, limits_.chunk_edge);
+  const std::size_t bytes = stack_bytes_of(record.edit, std::max<std::size_t>(1, touched.size()));
+  for (const ChunkCoord at : touched)
+    chunks_.replay_onto_stack({0, at}, record.version, record.edit, bytes);
 }
 
 std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_has_room) {
@@ -42,6 +53,7 @@ std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_h
     return refusal;
   }
   resolved_.raise(offer.op);
+  queued_bytes_ += memory_of(offer);
   queue_.push_back(offer);
   return std::nullopt;
 }
@@ -56,6 +68,7 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
   while (!queue_.empty() && batch.records.size() < kCommitEditsMax && bytes < kCommitBytesTarget) {
     const EditOffer offer = queue_.front();
     queue_.pop_front();
+    queued_bytes_ -= memory_of(offer);
     const Version version{epoch_, ++head_};
     OrderedEdit ordered;
     ordered.seq = version.seq;
@@ -66,11 +79,12 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
     ordered.edit = offer.edit;
     ordered.subject = offer.subject;
     std::vector<ChunkKey>& touched = batch.touched.emplace_back();
-    for (const ChunkCoord at : touched_chunks(offer.edit, limits_.chunk_edge)) {
-      const ChunkKey key{0, at};
-      ordered.previous.push_back(chunks_.push(key, version, offer.edit));
-      touched.push_back(key);
-    }
+    for (const ChunkCoord at : touched_chunks(offer.edit, limits_.chunk_edge))
+      touched.push_back({0, at});
+    const std::size_t stacked =
+        stack_bytes_of(offer.edit, std::max<std::size_t>(1, touched.size()));
+    for (const ChunkKey& key : touched)
+      ordered.previous.push_back(chunks_.push(key, version, offer.edit, stacked));
     batch.all_touched.insert(batch.all_touched.end(), touched.begin(), touched.end());
     bytes += kOrderedEditBytesMax + encode(offer.edit).size() +
              kPreviousBytesMax * ordered.previous.size();

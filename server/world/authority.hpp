@@ -67,6 +67,8 @@ class Authority {
   void reject(const OperationId& op, RejectReason reason) { resolved_.reject(op, reason); }
 
   std::size_t queued() const { return queue_.size(); }
+  /// Returns the bytes of memory that the queued edits take.
+  std::size_t queued_bytes() const { return queued_bytes_; }
   /// Advances the log's time, and orders as many queued edits as one commit message may carry.
   /// Returns nullopt if none is queued; call it until then. Cost: O(runs + edits) for each touched
   /// chunk.
@@ -88,6 +90,7 @@ class Authority {
   WorldChunks chunks_;
   OperationWatermarks resolved_;
   std::deque<EditOffer> queue_;
+  std::size_t queued_bytes_ = 0;
 };
 
 }  // namespace runstone

@@ -17,6 +17,7 @@ bool Checkpointer::is_clean(const Authority& authority) const {
 bool Checkpointer::is_due(const Authority& authority, const Clocks& now) const {
   if (authority.head() == last_target_ && authority.chunks().dirty().empty()) return false;
   return finishing_ || authority.head() - last_target_ >= policy_.edits_max ||
+         authority.chunks().stack_bytes() >= policy_.stack_bytes_max ||
          now.steady_us - *last_round_us_ >= policy_.interval_us;
 }
 

@@ -26,6 +26,8 @@ struct SnapshotPolicy {
   // or after this time, if anything was ordered.
   TimeUs interval_us = 30'000'000;
   std::size_t slice_chunks = 128;  // captured, loaded and written at a time
+  // A round also begins when the edits that wait for their chunks take so many bytes.
+  std::size_t stack_bytes_max = 64ULL << 20;
 };
 
 class Checkpointer {

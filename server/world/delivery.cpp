@@ -166,7 +166,7 @@ void request_load(WorldState& world, const ChunkKey& key) {
 }
 
 void start_loads(WorldState& world) {
-  while (const auto key = world.loads.next()) {
+  while (const auto key = world.loads.next(views_wait_for_memory(world))) {
     // Another session may have requested the same chunk before.
     if (!world.authority.chunks().begin_load(*key)) continue;
     world.loads.load_started();

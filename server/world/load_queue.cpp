@@ -23,8 +23,12 @@ std::vector<ChunkKey> LoadQueue::cancel(SessionId session) {
   return keys;
 }
 
-std::optional<ChunkKey> LoadQueue::next() {
+std::optional<ChunkKey> LoadQueue::next(bool sessions_wait) {
   if (in_flight_ >= in_flight_max_) return std::nullopt;
+  if (sessions_wait) {
+    if (world_keys_.empty()) return std::nullopt;
+    return world_keys_.extract(world_keys_.begin()).value();
+  }
   auto lane = last_served_ ? lanes_.upper_bound(*last_served_) : lanes_.begin();
   if (lane == lanes_.end() && world_keys_.empty()) lane = lanes_.begin();
   if (lane == lanes_.end()) {

@@ -35,8 +35,8 @@ class LoadQueue {
   std::vector<ChunkKey> cancel(SessionId session);
 
   /// Removes and returns the next key. Returns nullopt if none waits or in_flight_max loads are
-  /// under way.
-  std::optional<ChunkKey> next();
+  /// under way. If `sessions_wait`, only the world is served.
+  std::optional<ChunkKey> next(bool sessions_wait = false);
   /// Counts a load that workers begin or have ended.
   void load_started() { ++in_flight_; }
   void load_ended();

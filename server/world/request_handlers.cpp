@@ -16,6 +16,12 @@ std::string text_of(const Error& fault) {
   return std::string(fault.what) + " (at byte " + std::to_string(fault.offset) + ")";
 }
 
+/// Returns the reason for a rejection as busy, for the player. It is empty if it passes soon.
+const char* why_busy(const WorldState& world) {
+  if (world.disk_is_full) return kDiskIsFull;
+  return is_memory_full(world) ? kMemoryIsFull : "";
+}
+
 }  // namespace
 
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request,
@@ -61,14 +67,14 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     refusal = RejectReason::out_of_reach;
     world.authority.reject(op, *refusal);
   } else {
-    const bool has_room = world.accepts_edits && !world.disk_is_full &&
+    const bool has_room = world.accepts_edits && !world.disk_is_full && !is_memory_full(world) &&
                           world.environment.log_has_room(world.authority.queued() + 1);
     refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0},
                                      has_room);
   }
   if (!refusal) return;
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
-  if (*refusal == RejectReason::busy && world.disk_is_full) detail = kDiskIsFull;
+  if (*refusal == RejectReason::busy) detail = why_busy(world);
   ++world.counters.edits_rejected;
   const bool maybe_applied = *refusal == RejectReason::already_resolved;
   const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;

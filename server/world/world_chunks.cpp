@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "common/core/assert.hpp"
 #include "common/core/key_text.hpp"
@@ -9,7 +10,11 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kChunkOverheadBytes = 192;  // estimate: entry, control block, vectors
+// Estimates: entry, control block, vectors.
+constexpr std::size_t kChunkOverheadBytes = 192;
+constexpr std::size_t kStackOverheadBytes = 256;
+constexpr std::size_t kStackKeptMax =
+    16;  // edits whose room an empty stack keeps for the next ones
 
 std::size_t bytes_of(const Chunk& chunk) {
   return chunk.voxels.runs.byte_capacity() + kChunkOverheadBytes;
@@ -33,12 +38,13 @@ void WorldChunks::set_saved(const ChunkKey& key, Version version) {
 }
 
 void WorldChunks::replay_onto_stack(const ChunkKey& key, Version version,
-                                    const EditDescriptor& edit) {
+                                    const EditDescriptor& edit, std::size_t bytes) {
   if (version <= entries_[key].saved) return;
-  push(key, version, edit);
+  push(key, version, edit, bytes);
 }
 
-Sequence WorldChunks::push(const ChunkKey& key, Version version, const EditDescriptor& edit) {
+Sequence WorldChunks::push(const ChunkKey& key, Version version, const EditDescriptor& edit,
+                           std::size_t bytes) {
   Entry& e = entries_[key];
   RUNSTONE_ASSERT(e.version < version);
   const Sequence previous = e.version.seq;
@@ -48,8 +54,11 @@ Sequence WorldChunks::push(const ChunkKey& key, Version version, const EditDescr
     if (!first) first = version.seq;
     return previous;
   }
+  if (e.stack.empty()) bytes += kStackOverheadBytes;
   e.stack.push_back(edit);
   e.stack_seqs.push_back(version.seq);
+  e.stack_bytes += bytes;
+  stack_bytes_ += bytes;
   dirty_.insert(key);
   return previous;
 }
@@ -65,8 +74,7 @@ void WorldChunks::apply_and_publish(const ChunkKey& key, Entry& e, Chunk chunk) 
     stack_depths_.add(edits.size());
     chunk.version = e.version;
   }
-  e.stack.clear();
-  e.stack_seqs.clear();
+  clear_stack(e);
   e.published = std::make_shared<const Chunk>(std::move(chunk));
   e.residency = Residency::resident;
   ++resident_count_;
@@ -77,6 +85,16 @@ void WorldChunks::unpublish(Entry& e) {
   --resident_count_;
   resident_bytes_ -= bytes_of(*e.published);
   e.published = nullptr;
+}
+
+void WorldChunks::clear_stack(Entry& e) {
+  e.stack.clear();
+  e.stack_seqs.clear();
+  if (e.stack.capacity() > kStackKeptMax) {
+    e.stack.shrink_to_fit();
+    e.stack_seqs.shrink_to_fit();
+  }
+  stack_bytes_ -= std::exchange(e.stack_bytes, 0);
 }
 
 void WorldChunks::publish(const ChunkKey& key) {
@@ -147,8 +165,7 @@ void WorldChunks::quarantine(const ChunkKey& key) {
   if (e == nullptr || e->residency != Residency::loading) return;
   e->residency = Residency::quarantined;
   quarantined_[key] = e->stack_seqs.empty() ? std::nullopt : std::optional(e->stack_seqs.front());
-  e->stack = {};
-  e->stack_seqs = {};
+  clear_stack(*e);
   dirty_.erase(key);
 }
 

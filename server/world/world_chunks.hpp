@@ -5,6 +5,7 @@
 //     edit above its saved version, in order.
 //   - A chunk is evicted only when its saved version is its version, so a load finds all of its
 //     edits.
+//   - stack_bytes() is the sum of `bytes` of the edits on all stacks.
 // Memory: an edited chunk keeps a small entry (its version) until the server stops. A chunk at
 // version (0, 0) is removed with its voxels.
 // Thread: the world strand.
@@ -42,12 +43,14 @@ class WorldChunks {
   /// Sets the version of a chunk's snapshot. Requires that no replay_onto_stack() came before.
   void set_saved(const ChunkKey& key, Version version);
   /// Puts a logged edit back on the stack of a chunk it touches, unless the snapshot contains it.
-  /// Requires log order.
-  void replay_onto_stack(const ChunkKey& key, Version version, const EditDescriptor& edit);
+  /// Requires log order. `bytes` as for push().
+  void replay_onto_stack(const ChunkKey& key, Version version, const EditDescriptor& edit,
+                         std::size_t bytes);
 
   /// Puts an ordered edit on top of the chunk's stack and raises its version. Returns the sequence
-  /// of its version before.
-  Sequence push(const ChunkKey& key, Version version, const EditDescriptor& edit);
+  /// of its version before. `bytes`: of memory that the edit takes on this stack.
+  Sequence push(const ChunkKey& key, Version version, const EditDescriptor& edit,
+                std::size_t bytes);
   /// Applies a resident chunk's stack to a private copy in one sweep and publishes the copy.
   /// Cost: O(runs + stack).
   void publish(const ChunkKey& key);
@@ -87,6 +90,8 @@ class WorldChunks {
   const StackDepths& stack_depths() const { return stack_depths_; }
   std::size_t resident_count() const { return resident_count_; }
   std::size_t resident_bytes() const { return resident_bytes_; }
+  /// Returns the bytes of the edits on all stacks, and of the stacks.
+  std::size_t stack_bytes() const { return stack_bytes_; }
   std::size_t quarantined_count() const { return quarantined_.size(); }
 
  private:
@@ -97,12 +102,14 @@ class WorldChunks {
     ChunkPtr published;
     std::vector<EditDescriptor> stack;
     std::vector<Sequence> stack_seqs;  // of the edits in `stack`
+    std::size_t stack_bytes = 0;
   };
   Entry* entry(const ChunkKey& key);
   const Entry* entry(const ChunkKey& key) const;
   /// Applies the stack above the chunk's version and publishes the chunk.
   void apply_and_publish(const ChunkKey& key, Entry& e, Chunk chunk);
   void unpublish(Entry& e);
+  void clear_stack(Entry& e);
 
   std::int32_t edge_;
   std::unordered_map<ChunkKey, Entry, ChunkKeyHash> entries_;
@@ -110,7 +117,7 @@ class WorldChunks {
   // The first edit of each quarantined chunk that is not in a snapshot.
   std::unordered_map<ChunkKey, std::optional<Sequence>, ChunkKeyHash> quarantined_;
   std::deque<ChunkKey> idle_;
-  std::size_t resident_count_ = 0, resident_bytes_ = 0;
+  std::size_t resident_count_ = 0, resident_bytes_ = 0, stack_bytes_ = 0;
   StackDepths stack_depths_;
   ApplyScratch scratch_;
 };

@@ -12,6 +12,7 @@
 #include "protocol/codec/messages.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
+#include "server/world/memory_use.hpp"
 #include "server/world/player_rows.hpp"
 
 namespace runstone {
@@ -51,7 +52,7 @@ struct WorldConfig {
   TimeUs retry_interval_us = 100'000;    // after a full queue, unless drained() is called before
   std::size_t stack_load_edits = 1'024;  // an absent chunk with a longer stack is loaded
   // Memory and disk.
-  std::size_t resident_bytes_max = 512ULL << 20;
+  MemoryLimits memory;
   SnapshotPolicy snapshots;
   TimeUs stop_us_max = 8'000'000;  // after it, a stop begins no more snapshots
 };

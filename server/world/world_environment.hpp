@@ -79,6 +79,8 @@ class WorldEnvironment {
 
   /// Returns true if the log queue has room for `records` more. If not, edits are rejected busy.
   virtual bool log_has_room(std::size_t records) const = 0;
+  /// Returns the bytes of memory that the records take that are not durable yet.
+  virtual std::size_t log_queued_bytes() const = 0;
   /// Queues records for the log writer, and rows of players to be written with them. There may be
   /// rows without records. Requires log_has_room(). Answer to records: WorldServer::durable().
   virtual void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) = 0;

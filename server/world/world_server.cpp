@@ -22,8 +22,6 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kEvictionStepsPerTick = 512;
-
 void on_open_message(WorldState& world, SessionId session, const Message& message,
                      const Clocks& now) {
   if (const auto* view = std::get_if<View>(&message)) return on_view(world, session, *view, now);
@@ -166,6 +164,10 @@ WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector
       out.reason = world.disk_is_full ? kDiskIsFull : "the log is full (log_queue_records)";
       break;
     }
+    if (is_memory_full(world)) {
+      out.reason = kMemoryIsFull;
+      break;
+    }
     if (paying) {
       const std::uint64_t price =
           edit_price(offer.edit, world.config.chunk_edge, world.config.edit_budget);
@@ -229,8 +231,8 @@ void WorldServer::tick(const Clocks& now) {
   retry_pending(world, now);
   step_checkpointer(now);
   collect_released(world);
-  world.authority.chunks().evict(world.config.resident_bytes_max, kEvictionStepsPerTick,
-                                 [&](const ChunkKey& key) { return world.interest.is_used(key); });
+  keep_memory_bounds(world);
+  start_loads(world);  // of the chunks that waited for memory
 }
 
 void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
@@ -343,9 +345,7 @@ std::size_t WorldServer::session_count() const { return state_->sessions.size();
 std::size_t WorldServer::resident_chunks() const {
   return state_->authority.chunks().resident_count();
 }
-std::size_t WorldServer::resident_bytes() const {
-  return state_->authority.chunks().resident_bytes();
-}
+MemoryUse WorldServer::memory_use() const { return memory_use_of(*state_); }
 const StackDepths& WorldServer::stack_depths() const {
   return state_->authority.chunks().stack_depths();
 }

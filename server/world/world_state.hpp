@@ -19,8 +19,10 @@
 
 namespace runstone {
 
-/// Why edits are rejected while disk_is_full: for players and operators.
+/// Why edits are rejected, for players and operators: while disk_is_full, and while
+/// is_memory_full().
 inline constexpr const char* kDiskIsFull = "the world's disk is full";
+inline constexpr const char* kMemoryIsFull = "the server's memory is full (memory_mib)";
 
 struct WorldState {
   WorldState(WorldConfig config_, const WorldStart& start, WorldEnvironment& environment_,
@@ -42,7 +44,8 @@ struct WorldState {
   Sequence durable = 0;
   bool accepts_edits =
       true;  // false: edits are rejected busy, because the server stops or the log failed
-  bool disk_is_full = false;  // edits are rejected busy until there is space again
+  bool disk_is_full = false;     // edits are rejected busy until there is space again
+  bool is_memory_short = false;  // chunks wait for memory, as of the last tick
   bool is_stopping = false;
   TimeUs stop_due_us = 0;  // when a stop that is under way begins no more snapshots
   // Presence.

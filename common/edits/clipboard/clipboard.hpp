@@ -52,6 +52,10 @@ class Clipboard {
   /// Returns the smallest box that holds the touched cells.
   const CellBox& touched_box() const { return touched_box_; }
   std::size_t byte_size() const { return byte_size_; }  // of the encoding
+  /// Returns the bytes of memory that the clipboard takes.
+  std::size_t memory_bytes() const {
+    return sizeof(Clipboard) + cells_.runs.byte_capacity() + palette_.capacity() * sizeof(Material);
+  }
   /// Returns the material of a cell, or nullopt if it is untouched. Requires a place inside the
   /// extent. Cost: O(log runs).
   std::optional<Material> at(LocalPos place) const;

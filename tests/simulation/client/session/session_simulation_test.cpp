@@ -126,7 +126,7 @@ class Simulation {
     config.snapshots.edits_max = 300;
     config.snapshots.interval_us = 3'000'000;
     config.snapshots.slice_chunks = 5;
-    config.resident_bytes_max = 20'000;  // so that chunks leave memory
+    config.memory.idle_bytes_max = 20'000;  // so that chunks leave memory
     return config;
   }
 

@@ -233,6 +233,7 @@ class SimServer final : public WorldEnvironment {
     });
   }
   bool log_has_room(std::size_t) const override { return !log_full; }
+  std::size_t log_queued_bytes() const override { return 0; }
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override {
     batches_.emplace_back(std::move(players), std::move(records));
     if (batches_.size() == 1) write_later();

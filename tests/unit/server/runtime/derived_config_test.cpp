@@ -32,7 +32,10 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   CHECK(world.loads_in_flight_max == 12);
   CHECK(world.idle_us_max == 7'000'000);
   CHECK(world.digest_check_interval_us == 250'000);
-  CHECK(world.resident_bytes_max == 16U * 1024 * 1024);
+  CHECK(world.memory.edit_bytes_max == 16U * 1024 * 1024);
+  CHECK(world.memory.view_bytes_max < world.memory.edit_bytes_max);
+  CHECK(world.memory.idle_bytes_max < world.memory.view_bytes_max);
+  CHECK(world.snapshots.stack_bytes_max == world.memory.stack_bytes_max);
   CHECK(world.snapshots.interval_us == 9'000'000);
   CHECK(world.edit_budget == EditBudget{3, 8});
   CHECK(world.budgets_per_address == 5);

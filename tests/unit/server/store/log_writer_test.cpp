@@ -70,6 +70,24 @@ LogWriter::SnapshotChunks chunks(std::size_t count) {
 
 }  // namespace
 
+TEST_CASE("queued records count with the memory that they take, until they are durable",
+          "[store][log-writer]") {
+  FakeSink sink;
+  SplitMix64 rng(1);
+  LogWriter writer(sink, {});
+  CHECK(writer.queued_bytes() == 0);
+  writer.append({}, sample_records(rng, 1, 1, 3));
+  const std::size_t three = writer.queued_bytes();
+  CHECK(three >= 3 * sizeof(EditRecord));
+  sink.entered.acquire();  // being written is not yet written
+  writer.append({}, sample_records(rng, 1, 4, 1));
+  CHECK(writer.queued_bytes() > three);
+  CHECK(writer.counters().queued_bytes == writer.queued_bytes());
+  sink.open_gate();
+  writer.stop();
+  CHECK(writer.queued_bytes() == 0);
+}
+
 TEST_CASE("everything that queued during one commit goes into the next", "[store][log-writer]") {
   FakeSink sink;
   SplitMix64 rng(1);

@@ -62,6 +62,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::size_t log_records_max =
       std::numeric_limits<std::size_t>::max();  // records that are not written yet
   std::size_t log_written = 0;                  // written records
+  std::size_t log_bytes = 0;                    // of memory that waiting records take
 
   bool send(SessionId session, const EncodedMessage& message) override {
     if (full.contains(session)) return false;
@@ -96,6 +97,7 @@ class FakeEnvironment : public WorldEnvironment {
     return log_room && more <= log_records_max &&
            records.size() - log_written <= log_records_max - more;
   }
+  std::size_t log_queued_bytes() const override { return log_bytes; }
   void log_append(std::vector<PlayerRow> new_players,
                   std::vector<EditRecord> new_records) override {
     players.insert(players.end(), new_players.begin(), new_players.end());

@@ -1,0 +1,23 @@
+// The bytes of memory that an edit descriptor takes. A server bounds the edits that wait by them.
+#pragma once
+#include <cstddef>
+#include <variant>
+
+#include "common/edits/descriptor/edit_descriptor.hpp"
+
+namespace runstone {
+
+/// Returns the bytes of one copy of the descriptor, without what its copies share. Cost: O(1).
+inline std::size_t own_bytes(const EditDescriptor& edit) {
+  const auto* stroke = std::get_if<FillStroke>(&edit.shape);
+  return sizeof(EditDescriptor) + (stroke ? stroke->points.size() * sizeof(VoxelPos) : 0);
+}
+
+/// Returns the bytes that all copies of the descriptor share: the clipboard of a paste, otherwise
+/// 0. Cost: O(1).
+inline std::size_t shared_bytes(const EditDescriptor& edit) {
+  const auto* paste = std::get_if<Paste>(&edit.shape);
+  return paste != nullptr && paste->clipboard ? paste->clipboard->memory_bytes() : 0;
+}
+
+}  // namespace runstone

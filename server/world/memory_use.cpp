@@ -1,0 +1,50 @@
+#include "server/world/memory_use.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "server/world/world_state.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kEvictionStepsPerTick = 512;
+
+std::string mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20); }
+
+}  // namespace
+
+MemoryUse memory_use_of(const WorldState& world) {
+  const WorldChunks& chunks = world.authority.chunks();
+  return {chunks.resident_bytes(), chunks.stack_bytes(),
+          world.authority.queued_bytes() + world.environment.log_queued_bytes()};
+}
+
+bool views_wait_for_memory(const WorldState& world) {
+  return memory_use_of(world).total() > world.config.memory.view_bytes_max;
+}
+
+bool is_memory_full(const WorldState& world) {
+  return memory_use_of(world).total() > world.config.memory.edit_bytes_max;
+}
+
+void keep_memory_bounds(WorldState& world) {
+  const MemoryUse use = memory_use_of(world);
+  const std::size_t edits = use.stacked + use.queued;
+  const std::size_t idle_max = world.config.memory.idle_bytes_max;
+  world.authority.chunks().evict(idle_max - std::min(idle_max, edits), kEvictionStepsPerTick,
+                                 [&](const ChunkKey& key) { return world.interest.is_used(key); });
+  const bool is_short = views_wait_for_memory(world);
+  if (std::exchange(world.is_memory_short, is_short) == is_short) return;
+  if (!is_short) {
+    world.environment.report(OperatorLogLevel::info, "MEMORY: there is room again");
+    return;
+  }
+  world.environment.report(OperatorLogLevel::warn,
+                           "MEMORY: memory_mib is used up: voxels " + mebibytes(use.voxels) +
+                               " MiB, waiting edits " + mebibytes(edits) +
+                               " MiB: chunks are loaded later, and edits may be rejected");
+}
+
+}  // namespace runstone

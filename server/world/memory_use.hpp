@@ -1,0 +1,49 @@
+// MemoryUse: the memory that the data of a world take, and what the server refuses when it runs
+// out. The three bounds follow each other, so that each kind of use leaves room for the next one:
+//   1. Over idle_bytes_max, chunks that nobody uses leave memory.
+//   2. Over view_bytes_max, no chunk is loaded for a session: its view stays incomplete until other
+//      chunks leave. Chunks that the next checkpoint needs are still loaded, because a saved chunk
+//      can leave memory and its stack becomes empty.
+//   3. Over edit_bytes_max, edits are rejected busy.
+// The edits that were accepted already may exceed the last bound, by one commit.
+// Not counted: the queues of the sessions, which have bounds of their own (net_session.hpp), and
+// the version of each chunk that was ever edited.
+// Thread: the world strand.
+#pragma once
+#include <cstddef>
+
+namespace runstone {
+
+struct WorldState;
+
+struct MemoryLimits {
+  std::size_t idle_bytes_max = 448ULL << 20;
+  std::size_t view_bytes_max = 480ULL << 20;
+  std::size_t edit_bytes_max = 512ULL << 20;
+  /// Edits that wait for their chunks over this begin a round of snapshots, which loads the chunks.
+  std::size_t stack_bytes_max = 64ULL << 20;
+};
+/// Returns the bounds of a world whose data may take this many bytes.
+constexpr MemoryLimits memory_limits_of(std::size_t bytes) {
+  return {bytes / 16 * 14, bytes / 16 * 15, bytes, bytes / 8};
+}
+
+struct MemoryUse {
+  std::size_t voxels = 0;   // of the chunks in memory
+  std::size_t stacked = 0;  // edits that wait for chunks that are not in memory
+  std::size_t queued = 0;   // edits that wait for the next commit or for the disk
+  std::size_t total() const { return voxels + stacked + queued; }
+};
+/// Cost: O(1).
+MemoryUse memory_use_of(const WorldState& world);
+
+/// Returns true if no chunk may be loaded for a session now.
+bool views_wait_for_memory(const WorldState& world);
+/// Returns true if edits must be rejected now.
+bool is_memory_full(const WorldState& world);
+
+/// Makes chunks without users leave memory, and warns the operator when the memory is full and when
+/// it is no longer. Call it on each tick.
+void keep_memory_bounds(WorldState& world);
+
+}  // namespace runstone

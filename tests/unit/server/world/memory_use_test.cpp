@@ -1,0 +1,157 @@
+// The bounds of the memory that the data of a world take.
+#include "server/world/memory_use.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/runs/run_builder.hpp"
+#include "tests/unit/server/world/world_bench.hpp"
+
+namespace runstone {
+namespace {
+
+using namespace test;
+
+constexpr std::size_t kNoBound = std::size_t{1} << 40;
+
+/// Returns a paste of one row of cells that alternate, so that each is a run of its own.
+EditShape row_paste(VoxelPos at) {
+  RunBuilder cells({60, 1, 1}, AxisOrder::xzy);
+  for (int i = 0; i < 60; ++i) cells.append(1, static_cast<Material>(1 + i % 2));
+  return Paste{at, *Clipboard::of({1, 2}, cells.finish()), {}};
+}
+
+WorldConfig with_memory(std::size_t views, std::size_t edits) {
+  WorldConfig c = config();
+  c.memory = {kNoBound, views, edits, kNoBound};
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("the edits of a chunk that is not in memory count until it is loaded", "[world]") {
+  WorldBench bench;
+  bench.join(1, 1);
+  bench.edit(1, 1, kAtOrigin);
+  CHECK(bench.server.memory_use().queued > 0);
+  bench.server.commit(bench.now());
+  CHECK(bench.server.memory_use().queued == 0);
+  const std::size_t one = bench.server.memory_use().stacked;
+  CHECK(one > sizeof(EditDescriptor));
+  bench.edit(1, 2, kAtOrigin);
+  bench.server.commit(bench.now());
+  const std::size_t two = bench.server.memory_use().stacked;
+  CHECK(two > one);
+  CHECK(two < 2 * one);  // the stack itself counts once
+  bench.view(1, kSmall);
+  CHECK(bench.server.memory_use().stacked == 0);
+  CHECK(bench.server.memory_use().voxels > 0);
+  bench.edit(1, 3, kAtOrigin);
+  bench.server.commit(bench.now());
+  CHECK(bench.server.memory_use().stacked == 0);
+}
+
+TEST_CASE("the clipboard of a paste counts once, over all the chunks that it touches", "[world]") {
+  const EditDescriptor paste{row_paste({1, 1, 1}), {}, kEmpty};  // touches four chunks
+  const std::size_t clipboard = std::get<Paste>(paste.shape).clipboard->memory_bytes();
+  WorldBench bench;
+  bench.join(1, 1);
+  for (std::int32_t x = 0; x < 4; ++x)
+    bench.edit(1, static_cast<ClientSequence>(x + 1), SetVoxel{{x * kEdge, 1, 1}});
+  bench.server.commit(bench.now());
+  const std::size_t before = bench.server.memory_use().stacked;
+  bench.server.received(1, EditRequest{5, 0, paste}, bench.now());
+  bench.server.commit(bench.now());
+  const std::size_t added = bench.server.memory_use().stacked - before;
+  const std::size_t copies = 4 * (sizeof(EditDescriptor) + sizeof(Sequence));
+  CHECK(added <= clipboard + copies);
+  CHECK(added + 4 > clipboard + copies);
+}
+
+TEST_CASE("over the bound edits are rejected busy with the reason, and accepted when there is room",
+          "[world]") {
+  WorldBench bench(with_memory(kNoBound, 100'000));
+  bench.join(1, 1);
+  bench.environment.log_bytes = 100'001;
+  bench.edit(1, 1, kAtOrigin);
+  CHECK(
+      bench.environment.messages<Reject>(1, kEdge) ==
+      std::vector<Reject>{{1, RejectReason::busy, "the server's memory is full (memory_mib)", 0}});
+  const std::vector<EditOffer> offers = {{{1, 99, 1}, Cause::rollback, 0, {kAtOrigin, {}, 2}, 0}};
+  const auto refused = bench.server.order_server_edits(offers, 0, bench.now());
+  CHECK(refused.state == WorldServer::ServerEditsResult::State::busy);
+  CHECK(std::string(refused.reason) == "the server's memory is full (memory_mib)");
+  bench.environment.log_bytes = 0;
+  bench.edit(1, 2, kAtOrigin);
+  CHECK(bench.server.order_server_edits(offers, 0, bench.now()).count == 1);
+  CHECK(bench.environment.records.size() == 2);
+}
+
+TEST_CASE("edits to chunks that are not in memory cannot take more than the bound", "[world]") {
+  WorldBench bench(with_memory(kNoBound, 50'000));
+  bench.join(1, 1);
+  for (std::int32_t x = 0; x < 1'000; ++x) {
+    bench.edit(1, static_cast<ClientSequence>(x + 1), SetVoxel{{x * kEdge, 1, 1}});
+    bench.server.commit(bench.now());
+  }
+  CHECK(bench.environment.records.size() > 50);
+  CHECK(bench.environment.records.size() < 300);
+  CHECK(bench.server.memory_use().total() < 51'000);
+}
+
+TEST_CASE("without memory a session waits for its chunks, and the world still loads its own",
+          "[world]") {
+  WorldConfig c = with_memory(50'000, kNoBound);
+  c.stack_load_edits = 1;
+  WorldBench bench(c);
+  bench.join(1, 1);
+  bench.environment.log_bytes = 50'001;
+  bench.view(1, kSmall);
+  CHECK(bench.environment.loads.empty());
+  bench.tick();
+  REQUIRE(bench.environment.lines.size() > 1);
+  CHECK(bench.environment.lines.back().find("MEMORY: memory_mib is used up") == 0);
+
+  bench.edit(1, 1, SetVoxel{{100, 1, 1}});
+  bench.edit(1, 2, SetVoxel{{100, 1, 1}});
+  bench.tick();
+  CHECK(bench.environment.loads == std::deque<ChunkKey>{{0, {6, 0, 0}}});  // its stack is long
+  bench.answer_loads();
+  CHECK(bench.environment.snapshots.empty());
+
+  bench.environment.log_bytes = 0;
+  bench.tick();
+  CHECK(bench.environment.lines.back() == "MEMORY: there is room again");
+  bench.answer_loads();
+  CHECK(bench.environment.snapshots.size() == 5);
+}
+
+TEST_CASE("edits that wait make chunks without users leave memory", "[world]") {
+  WorldConfig c = config();
+  c.memory = {20'000, kNoBound, kNoBound, kNoBound};
+  WorldBench bench(c);
+  bench.join(1, 1);
+  bench.view(1, kSmall);
+  bench.send_view(1, {2, {1000, 0, 0}, 1, 0});
+  bench.tick();
+  const std::size_t resident = bench.server.resident_chunks();
+  CHECK(resident >= 5);
+  bench.environment.log_bytes = 20'000;
+  bench.tick();
+  CHECK(bench.server.resident_chunks() == resident - 5);
+}
+
+TEST_CASE("many edits that wait for their chunks begin a round of snapshots", "[world]") {
+  WorldConfig c = config();
+  c.snapshots.stack_bytes_max = 5'000;
+  WorldBench bench(c);
+  bench.join(1, 1);
+  bench.edit(1, 1, kAtOrigin);
+  bench.tick();
+  CHECK(bench.environment.loads.empty());
+  for (std::int32_t x = 1; x < 20; ++x)
+    bench.edit(1, static_cast<ClientSequence>(x + 1), SetVoxel{{x * kEdge, 1, 1}});
+  bench.tick();
+  CHECK_FALSE(bench.environment.loads.empty());
+}
+
+}  // namespace runstone
