@@ -41,6 +41,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
     case ServerConnection::Dispatch::handled:
       return;
     case ServerConnection::Dispatch::another_world:
+      lost_.clear();
       return replica_->reset();
     case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
@@ -68,6 +69,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
         } else if constexpr (std::is_same_v<T, Reject>) {
           if (m.reason == RejectReason::rate_limited) allowance_.refused(arrival.now_us);
+          lost_.take(replica_->local_edits(), m, arrival.now_us);
           replica_->receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, DigestCheck>) {
           replica_->receive(m, arrival.now_us);
@@ -117,7 +119,18 @@ void ClientSession::tick(TimeUs now_us) {
   if (view_waiting_since_us_ && now_us - *view_waiting_since_us_ >= kCacheWaitUsMax) send_view();
   replica_->tick(now_us);
   connection_.request_chunks(replica_->take_requests());
+  submit_lost_edits(now_us);
   send_waiting_edits(now_us);
+}
+
+void ClientSession::submit_lost_edits(TimeUs now_us) {
+  lost_.forget_settled(replica_->local_edits());
+  while (const LostEdit* lost = lost_.due(now_us)) {
+    const auto submitted = submit(lost->edit, lost->submitted_us, now_us);
+    const bool is_later = !submitted && submitted.error().code == ErrorCode::limit_exceeded;
+    if (is_later) return lost_.put_off(now_us);
+    submitted ? lost_.submitted(*submitted) : lost_.drop();
+  }
 }
 
 Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs submitted_us,

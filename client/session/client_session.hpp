@@ -18,6 +18,7 @@
 #include "client/replica/replica.hpp"
 #include "client/session/edit_allowance.hpp"
 #include "client/session/history_requests.hpp"
+#include "client/session/lost_edits.hpp"
 #include "client/session/server_connection.hpp"
 #include "common/core/result.hpp"
 #include "protocol/codec/messages.hpp"
@@ -152,6 +153,7 @@ class ClientSession {
   /// Sends the claims of what is held, and then the view.
   void send_view();
   void send_waiting_edits(TimeUs now_us);
+  void submit_lost_edits(TimeUs now_us);
 
   ServerConnection connection_;
   std::unique_ptr<Replica> replica_ = std::make_unique<Replica>();
@@ -164,6 +166,7 @@ class ClientSession {
 
   EditAllowance allowance_;
   std::vector<ClientSequence> waiting_;  // local edits to send, ascending
+  LostEdits lost_;
   // Cache lookups of this connection.
   std::set<ChunkKey> looked_up_;       // keys that were or will be looked up
   std::vector<ChunkKey> lookup_keys_;  // keys of the next lookup

@@ -27,12 +27,13 @@ std::optional<RejectReason> check_server_edit(const EditDescriptor& edit,
 
 bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach) {
   const VoxelBox box = bounding_box(edit);
-  const auto outside = [](double at, std::int32_t low, std::int32_t high) {
-    return std::max({low - at, at - high, 0.0});
+  // Along one axis, to the centre of the farthest voxel. `end` is not included.
+  const auto farthest = [](double at, std::int32_t first, std::int32_t end) {
+    return std::max(at - (first + 0.5), (end - 0.5) - at);
   };
-  const double dx = outside(from.x, box.min.x, box.max.x);
-  const double dy = outside(from.y, box.min.y, box.max.y);
-  const double dz = outside(from.z, box.min.z, box.max.z);
+  const double dx = farthest(from.x, box.min.x, box.max.x);
+  const double dy = farthest(from.y, box.min.y, box.max.y);
+  const double dz = farthest(from.z, box.min.z, box.max.z);
   return dx * dx + dy * dy + dz * dz <= reach * reach;
 }
 

@@ -29,8 +29,8 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
 /// applies.
 std::optional<RejectReason> check_server_edit(const EditDescriptor& edit, const EditLimits& limits);
 
-/// Returns true if the distance from `from` to the geometry's bounding box is at most `reach`
-/// voxels.
+/// Returns true if every voxel of the geometry's bounding box is at most `reach` voxels away:
+/// measured from `from` to the centre of the farthest voxel.
 bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach);
 
 }  // namespace runstone

@@ -72,8 +72,10 @@ struct ServerConfig {
   std::uint64_t height_max = 1ULL << 29;      // voxels above y = 0 where edits may be, 1..2^29
   std::uint64_t depth_max = 1ULL << 29;       // voxels below y = 0 where edits may be, 0..2^29
   std::uint64_t reach_max = 0;                // voxels from the player to the edit, 0: no limit
-  EditBudget builder_budget{100, 4'000};      // of a player; kBuilderBudgets has names
-  std::uint64_t budgets_per_address = 4;      // of one address, times builder_budget, 0: no limit
+  /// Voxels a second at which `reach_max` follows a player who jumps, 0: at once .. 2^30.
+  std::uint64_t speed_max = 0;
+  EditBudget builder_budget{100, 4'000};  // of a player; kBuilderBudgets has names
+  std::uint64_t budgets_per_address = 4;  // of one address, times builder_budget, 0: no limit
   // World and disk.
   std::uint64_t memory_mib = 512;            // MiB of chunks and of edits that wait, 16..1048576
   std::uint64_t snapshot_edits = 20'000;     // between two rounds of snapshots, 1..10^9

@@ -30,6 +30,7 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.loads_in_flight_max = kLoadsPerWorker * config.worker_threads;
   world.edit_volume_max = config.edit_volume_max;
   world.reach_max = static_cast<double>(config.reach_max);
+  world.speed_max = static_cast<double>(config.speed_max);
   world.edit_budget = config.builder_budget;
   world.budgets_per_address = config.budgets_per_address;
   world.idle_us_max = static_cast<TimeUs>(config.idle_s) * kUsPerSecond;

@@ -120,6 +120,7 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
   }
   mine.pose.at = world.config.spawn;
   mine.pose_changed = true;
+  mine.position.start(world.config.spawn, now.steady_us);
   mine.last_message_us = now.steady_us;
   world.interest.open(session);
   world.environment.opened(session);

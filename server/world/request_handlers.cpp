@@ -16,6 +16,14 @@ std::string text_of(const Error& fault) {
   return std::string(fault.what) + " (at byte " + std::to_string(fault.offset) + ")";
 }
 
+bool is_within_reach(const WorldState& world, WorldSession& session, const EditDescriptor& edit,
+                     const Clocks& now) {
+  const WorldConfig& config = world.config;
+  if (config.reach_max == 0) return true;
+  const WorldPos& from = session.position.follow(session.pose.at, config.speed_max, now.steady_us);
+  return within_reach(edit, from, config.reach_max);
+}
+
 /// Returns the reason for a rejection as busy, for the player. It is empty if it passes soon.
 const char* why_busy(const WorldState& world) {
   if (world.disk_is_full) return kDiskIsFull;
@@ -46,7 +54,6 @@ void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& 
 void on_edit(WorldState& world, SessionId session, const EditRequest& request, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   const OperationId op{mine.author, mine.instance, request.client_seq};
-  const double reach = world.config.reach_max;
   // An invalid descriptor touches nothing: it costs the least that an edit costs.
   const std::uint64_t price =
       request.fault ? 1
@@ -63,7 +70,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   } else if (request.fault) {
     refusal = RejectReason::bad_edit;
     world.authority.reject(op, *refusal);
-  } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {
+  } else if (!is_within_reach(world, mine, request.edit, now)) {
     refusal = RejectReason::out_of_reach;
     world.authority.reject(op, *refusal);
   } else {
@@ -82,8 +89,9 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   send_reject(world, session, {request.client_seq, *refusal, std::move(detail), applied_by});
 }
 
-void on_move(WorldState& world, SessionId session, const Move& move) {
+void on_move(WorldState& world, SessionId session, const Move& move, const Clocks& now) {
   WorldSession& mine = *world.find(session);
+  mine.position.follow(mine.pose.at, world.config.speed_max, now.steady_us);
   if (mine.pose == move.pose) return;
   mine.pose = move.pose;
   mine.pose_changed = true;

@@ -11,7 +11,7 @@ void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& 
 /// Queues the edit for the next commit, or answers with a reject.
 void on_edit(WorldState& world, SessionId session, const EditRequest& request, const Clocks& now);
 /// Stores the player's pose; presence.hpp sends it.
-void on_move(WorldState& world, SessionId session, const Move& move);
+void on_move(WorldState& world, SessionId session, const Move& move, const Clocks& now);
 void on_ping(WorldState& world, SessionId session, const Ping& ping, const Clocks& now);
 
 }  // namespace runstone

@@ -32,9 +32,10 @@ struct WorldConfig {
   std::size_t sessions_per_address = 0;       // likewise; 0: no limit
   std::uint8_t view_radius_max = 16;          // chunks; larger views are reduced to it
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit
-  double reach_max = 0;                    // voxels from the player's pose to the edit; 0: no limit
-  EditBudget edit_budget;                  // of a player's key
-  std::uint64_t budgets_per_address = 0;   // of one address, times edit_budget; 0: no limit
+  double reach_max = 0;                       // voxels from the player to the edit; 0: no limit
+  double speed_max = 0;                   // voxels a second of a player, for the reach; 0: no limit
+  EditBudget edit_budget;                 // of a player's key
+  std::uint64_t budgets_per_address = 0;  // of one address, times edit_budget; 0: no limit
   std::size_t loads_per_session_max = 64;  // chunks one session may wait for at a time
   std::size_t loads_in_flight_max = 8;     // with the workers at a time, at least 1
   TimeUs view_interval_us = 50'000;        // between two views of a session that take effect

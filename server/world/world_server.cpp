@@ -32,7 +32,7 @@ void on_open_message(WorldState& world, SessionId session, const Message& messag
   }
   if (const auto* edit = std::get_if<EditRequest>(&message))
     return on_edit(world, session, *edit, now);
-  if (const auto* move = std::get_if<Move>(&message)) return on_move(world, session, *move);
+  if (const auto* move = std::get_if<Move>(&message)) return on_move(world, session, *move, now);
   if (const auto* ping = std::get_if<Ping>(&message)) return on_ping(world, session, *ping, now);
   if (const auto* request = std::get_if<HistoryRequest>(&message))
     return on_history_request(world, session, *request, now);

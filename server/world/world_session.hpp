@@ -12,6 +12,7 @@
 #include "protocol/codec/message_table.hpp"
 #include "server/interest/cache_claims.hpp"
 #include "server/limits/address_block.hpp"
+#include "server/limits/followed_position.hpp"
 #include "server/world/world_environment.hpp"
 
 namespace runstone {
@@ -51,6 +52,7 @@ struct WorldSession {
   AuthorId author = 0;    // valid when open
   Pose pose;
   bool pose_changed = false;     // since poses were sent last
+  FollowedPosition position;     // the reach of edits is measured from there
   bool has_player_list = false;  // it got the full player list and all changes since
   // Durable watermark.
   Sequence durable_sent = 0;  // the last one sent; welcome sends the first

@@ -296,6 +296,61 @@ TEST_CASE_METHOD(SessionBench,
   CHECK(take<EditRequest>(out).empty());
 }
 
+TEST_CASE_METHOD(
+    SessionBench,
+    "an edit that the server lost and is too busy to take again is submitted until it is "
+    "taken",
+    "[session]") {
+  static_cast<void>(open());
+  pong();
+  const EditDescriptor edit = set({1, 2, 3}, 4);
+  REQUIRE(session.submit(edit, now, now).has_value());
+  receive(server.world.commit(session.operation(1), edit));
+  REQUIRE(session.replica().local_edits().find(1)->state == LocalEditState::confirmed);
+  session.disconnected();
+  // The server ended before the edit was on disk.
+  server.world = runstone::test::AuthorityModel{kEdge, 4};
+  static_cast<void>(open());
+  pong();
+  session.tick(now);
+  static_cast<void>(sent());
+  for (ClientSequence seq = 1; seq <= 3; ++seq) {
+    receive(Reject{seq, seq == 2 ? RejectReason::rate_limited : RejectReason::busy, "", 0});
+    session.tick(now);
+    auto out = sent();
+    CHECK(take<EditRequest>(out).empty());
+    now += LostEdits::kAgainUs;
+    pong();
+    session.tick(now);
+    out = sent();
+    const auto again = take<EditRequest>(out);
+    REQUIRE(again.size() == 1);
+    CHECK(again[0].client_seq == seq + 1);
+    CHECK(again[0].edit == edit);
+  }
+  receive(server.world.commit(session.operation(4), edit));
+  now += 2 * LostEdits::kAgainUs;
+  pong();
+  session.tick(now);
+  auto out = sent();
+  CHECK(take<EditRequest>(out).empty());
+}
+
+TEST_CASE_METHOD(SessionBench, "an edit that was never applied and is rejected busy is given up",
+                 "[session]") {
+  static_cast<void>(open());
+  pong();
+  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  static_cast<void>(sent());
+  receive(Reject{1, RejectReason::busy, "", 0});
+  now += 2 * LostEdits::kAgainUs;
+  pong();
+  session.tick(now);
+  auto out = sent();
+  CHECK(take<EditRequest>(out).empty());
+  CHECK(session.replica().drain_changes().rejects.size() == 1);
+}
+
 TEST_CASE_METHOD(SessionBench, "an edit without an answer is sent again once per kAnswerUsMax",
                  "[session]") {
   static_cast<void>(open());

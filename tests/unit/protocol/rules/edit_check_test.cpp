@@ -76,13 +76,19 @@ TEST_CASE("an edit that reaches above or below the world is rejected as a whole"
   CHECK(reason(FillSphere{{0, 3, 0}, 5}) == RejectReason::outside_world);
 }
 
-TEST_CASE("reach is measured to the nearest voxel of the bounding box", "[rules]") {
-  const EditDescriptor edit{FillBox{{{10, 0, 0}, {12, 2, 2}}}, {}, 1};
-  CHECK(within_reach(edit, {4, 1, 1}, 6));
-  CHECK_FALSE(within_reach(edit, {3.9, 1, 1}, 6));
-  CHECK(within_reach(edit, {11, 1, 1}, 0));
-  CHECK(within_reach(edit, {15, 6, 1}, 5));
-  CHECK_FALSE(within_reach(edit, {15, 6.1, 1}, 5));
+TEST_CASE("reach is measured to the farthest voxel of the bounding box", "[rules]") {
+  const EditDescriptor voxel{SetVoxel{{10, 0, 0}}, {}, 1};
+  CHECK(within_reach(voxel, {10.5, 0.5, 0.5}, 0));
+  CHECK(within_reach(voxel, {4.5, 0.5, 0.5}, 6));
+  CHECK_FALSE(within_reach(voxel, {4.4, 0.5, 0.5}, 6));
+  CHECK(within_reach(voxel, {13.5, 4.5, 0.5}, 5));
+  CHECK_FALSE(within_reach(voxel, {13.5, 4.6, 0.5}, 5));
+
+  const EditDescriptor box{FillBox{{{0, 0, 0}, {101, 1, 1}}}, {}, 1};
+  CHECK(within_reach(box, {0.5, 0.5, 0.5}, 100));
+  CHECK_FALSE(within_reach(box, {0.5, 0.5, 0.5}, 99));  // it begins where the player stands
+  CHECK(within_reach(box, {50.5, 0.5, 0.5}, 50));
+  CHECK_FALSE(within_reach(box, {50.5, 0.5, 0.5}, 49));
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   config.sessions_per_key = 6;
   config.sessions_per_address = 7;
   config.stop_s = 4;
+  config.speed_max = 70;
   const WorldConfig world = world_config_of(config, sample_meta());
   CHECK(world.world_id == sample_meta().world_id);
   CHECK(world.chunk_edge == kSampleEdge);
@@ -42,6 +43,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   CHECK(world.sessions_per_key == 6);
   CHECK(world.sessions_per_address == 7);
   CHECK(world.stop_us_max == 4'000'000);
+  CHECK(world.speed_max == 70);
 }
 
 TEST_CASE("the configured encoding is the preferred one", "[server]") {

@@ -205,15 +205,6 @@ TEST_CASE("the subject of an edit is in its commit and its record", "[world]") {
   CHECK(batch->records[1].subject == 0);
 }
 
-TEST_CASE("reach is measured to the edit's bounding box", "[world]") {
-  const EditDescriptor edit{FillBox{{{10, 0, 0}, {12, 2, 2}}}, {}, 1};
-  CHECK(within_reach(edit, {5, 1, 1}, 5));
-  CHECK_FALSE(within_reach(edit, {4.9, 1, 1}, 5));
-  CHECK(within_reach(edit, {11, 1, 1}, 0.1));
-  CHECK(within_reach(edit, {15, 6, 1}, 5));
-  CHECK_FALSE(within_reach(edit, {15, 6.5, 1}, 5));
-}
-
 TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loaded", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   Authority resident(limits(), {1, 0, 0});

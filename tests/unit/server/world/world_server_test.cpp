@@ -36,6 +36,30 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   CHECK(bench.environment.records.size() == 2);
 }
 
+TEST_CASE("a player who jumps reaches what is there only as fast as the server believes",
+          "[world]") {
+  WorldConfig c = config();
+  c.reach_max = 10;
+  c.speed_max = 20;
+  Bench bench(c);
+  bench.join(1, 1);
+  bench.time_us += 1'000'000;
+  bench.server.received(1, Move{{{100, 0, 0}, 0, 0}}, bench.now());
+  bench.edit(1, 1, SetVoxel{{100, 0, 0}});  // the server believes x = 0
+  bench.time_us += 1'000'000;
+  bench.edit(1, 2, SetVoxel{{100, 0, 0}});  // x = 20
+  bench.edit(1, 3, SetVoxel{{25, 0, 0}});
+  bench.time_us += 4'000'000;
+  bench.edit(1, 4, SetVoxel{{100, 0, 0}});
+  bench.server.commit(bench.now());
+  const auto rejects = bench.environment.messages<Reject>(1, kEdge);
+  REQUIRE(rejects.size() == 2);
+  CHECK(rejects[0].client_seq == 1);
+  CHECK(rejects[1].client_seq == 2);
+  CHECK(rejects[1].reason == RejectReason::out_of_reach);
+  CHECK(bench.environment.records.size() == 2);
+}
+
 TEST_CASE("sessions of one key share its edit budget, and keys of one address share another",
           "[world]") {
   constexpr AddressBlock kHome = address_block_v4(1), kSchool = address_block_v4(2);

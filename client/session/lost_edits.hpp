@@ -1,0 +1,62 @@
+// LostEdits: edits that the server had applied and then lost, because it ended before they were on
+// disk, and that it rejects for a while when they are offered again: its log is full, or the edit
+// budget is used up. The player has seen them applied, so they are not given up: they are submitted
+// again, as new edits, until the server takes them.
+// Bound: the edits that LocalEdits kept at the reconnection. Thread: one. Times are arguments.
+#pragma once
+#include <deque>
+#include <set>
+
+#include "client/replica/local_edits.hpp"
+
+namespace runstone {
+
+struct LostEdit {
+  EditDescriptor edit;
+  TimeUs submitted_us = 0;
+};
+
+class LostEdits {
+ public:
+  /// The time from a rejection to the next attempt.
+  static constexpr TimeUs kAgainUs = 1'000'000;
+
+  /// Takes the edit over if the server once applied it and the reason of the rejection passes. Call
+  /// it before LocalEdits takes the rejection.
+  void take(const LocalEdits& edits, const Reject& reject, TimeUs now_us) {
+    const bool is_temporary =
+        reject.reason == RejectReason::busy || reject.reason == RejectReason::rate_limited;
+    const LocalEdit* local = edits.find(reject.client_seq);
+    const bool is_lost = again_.erase(reject.client_seq) != 0 || (local && local->was_applied);
+    if (!is_temporary || local == nullptr || !is_lost) return;
+    edits_.push_back({local->edit, local->submitted_us});
+    put_off(now_us);
+  }
+  /// Returns the oldest edit if it is time to submit it, otherwise null.
+  const LostEdit* due(TimeUs now_us) const {
+    return edits_.empty() || now_us < due_us_ ? nullptr : &edits_.front();
+  }
+  /// Removes the oldest edit, which was submitted as `seq`.
+  void submitted(ClientSequence seq) {
+    edits_.pop_front();
+    again_.insert(seq);
+  }
+  /// Removes the oldest edit, which can never be submitted.
+  void drop() { edits_.pop_front(); }
+  void put_off(TimeUs now_us) { due_us_ = now_us + kAgainUs; }
+  /// Forgets the submitted edits that are safe by now.
+  void forget_settled(const LocalEdits& edits) {
+    std::erase_if(again_, [&](ClientSequence seq) { return edits.find(seq) == nullptr; });
+  }
+  void clear() {
+    edits_.clear();
+    again_.clear();
+  }
+
+ private:
+  std::deque<LostEdit> edits_;
+  std::set<ClientSequence> again_;  // that were submitted again and may be rejected once more
+  TimeUs due_us_ = 0;
+};
+
+}  // namespace runstone
