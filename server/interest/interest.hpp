@@ -50,6 +50,7 @@ class Interest {
   bool subscribes(SessionId session, const ChunkKey& key) const;
   /// Returns true if a session is subscribed to the chunk or waits for it.
   bool is_used(const ChunkKey& key) const { return users_.contains(key); }
+  std::size_t used_count() const { return users_.size(); }
   /// Returns the chunks that lost their last user since the last call. Some may have a new one.
   std::vector<ChunkKey> take_released() { return std::exchange(released_, {}); }
 

@@ -166,7 +166,11 @@ void request_load(WorldState& world, const ChunkKey& key) {
 }
 
 void start_loads(WorldState& world) {
-  while (const auto key = world.loads.next(views_wait_for_memory(world))) {
+  const auto next = [&] {
+    return views_wait_for_memory(world) ? world.loads.next_for_world()
+                                        : world.loads.next(world.over_share);
+  };
+  while (const auto key = next()) {
     // Another session may have requested the same chunk before.
     if (!world.authority.chunks().begin_load(*key)) continue;
     world.loads.load_started();

@@ -23,18 +23,22 @@ std::vector<ChunkKey> LoadQueue::cancel(SessionId session) {
   return keys;
 }
 
-std::optional<ChunkKey> LoadQueue::next(bool sessions_wait) {
+std::optional<ChunkKey> LoadQueue::next_for_world() {
+  if (in_flight_ >= in_flight_max_ || world_keys_.empty()) return std::nullopt;
+  return world_keys_.extract(world_keys_.begin()).value();
+}
+
+std::optional<ChunkKey> LoadQueue::next(const std::set<SessionId>& must_wait) {
   if (in_flight_ >= in_flight_max_) return std::nullopt;
-  if (sessions_wait) {
-    if (world_keys_.empty()) return std::nullopt;
-    return world_keys_.extract(world_keys_.begin()).value();
-  }
-  auto lane = last_served_ ? lanes_.upper_bound(*last_served_) : lanes_.begin();
-  if (lane == lanes_.end() && world_keys_.empty()) lane = lanes_.begin();
+  const auto first_served = [&](auto lane) {
+    return std::find_if(lane, lanes_.end(),
+                        [&](const auto& one) { return !must_wait.contains(one.first); });
+  };
+  auto lane = first_served(last_served_ ? lanes_.upper_bound(*last_served_) : lanes_.begin());
+  if (lane == lanes_.end() && world_keys_.empty()) lane = first_served(lanes_.begin());
   if (lane == lanes_.end()) {
     last_served_.reset();
-    if (world_keys_.empty()) return std::nullopt;
-    return world_keys_.extract(world_keys_.begin()).value();
+    return next_for_world();
   }
   last_served_ = lane->first;
   const ChunkKey key = lane->second.front();

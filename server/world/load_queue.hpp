@@ -35,8 +35,10 @@ class LoadQueue {
   std::vector<ChunkKey> cancel(SessionId session);
 
   /// Removes and returns the next key. Returns nullopt if none waits or in_flight_max loads are
-  /// under way. If `sessions_wait`, only the world is served.
-  std::optional<ChunkKey> next(bool sessions_wait = false);
+  /// under way. Skips the sessions that must wait.
+  std::optional<ChunkKey> next(const std::set<SessionId>& must_wait = {});
+  /// As next(), for the world only.
+  std::optional<ChunkKey> next_for_world();
   /// Counts a load that workers begin or have ended.
   void load_started() { ++in_flight_; }
   void load_ended();

@@ -1,6 +1,8 @@
 #include "server/world/memory_use.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -9,9 +11,33 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kEvictionStepsPerTick = 512;
+constexpr std::size_t kEvictionStepsPerTick = 2'048;
+constexpr std::size_t kShareOfFree = 2;  // alpha of the dynamic thresholds
 
 std::string mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20); }
+
+/// Returns the sessions that may load no chunk because their address sees more than its share.
+/// Cost: O(sessions).
+std::set<SessionId> sessions_over_share(const WorldState& world, const MemoryUse& use) {
+  const WorldChunks& chunks = world.authority.chunks();
+  const std::size_t mean = use.voxels / std::max<std::size_t>(1, chunks.resident_count());
+  const std::size_t voxels = std::min(use.voxels, mean * world.interest.used_count());
+  const std::size_t in_use = voxels + use.stacked + use.queued;
+  const std::size_t bound = world.config.memory.view_bytes_max;
+  if (in_use <= bound / 2) return {};
+  const std::size_t share = kShareOfFree * (bound - std::min(bound, in_use));
+  std::map<AddressBlock, std::size_t> seen;  // bytes; a chunk counts for each session
+  for (const auto& [id, session] : world.sessions) {
+    const SessionInterest* interest = world.interest.find(id);
+    if (interest == nullptr) continue;
+    seen[session.address] += mean * interest->count(ChunkInterest::subscribed);
+  }
+  std::set<SessionId> over;
+  for (const auto& [id, session] : world.sessions) {
+    if (seen[session.address] >= share) over.insert(id);
+  }
+  return over;
+}
 
 }  // namespace
 
@@ -35,6 +61,7 @@ void keep_memory_bounds(WorldState& world) {
   const std::size_t idle_max = world.config.memory.idle_bytes_max;
   world.authority.chunks().evict(idle_max - std::min(idle_max, edits), kEvictionStepsPerTick,
                                  [&](const ChunkKey& key) { return world.interest.is_used(key); });
+  world.over_share = sessions_over_share(world, memory_use_of(world));
   const bool is_short = views_wait_for_memory(world);
   if (std::exchange(world.is_memory_short, is_short) == is_short) return;
   if (!is_short) {

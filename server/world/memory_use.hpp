@@ -4,6 +4,11 @@
 //   2. Over view_bytes_max, no chunk is loaded for a session: its view stays incomplete until other
 //      chunks leave. Chunks that the next checkpoint needs are still loaded, because a saved chunk
 //      can leave memory and its stack becomes empty.
+//      Before that, from half of it on, an address may load chunks only while those that its
+//      sessions see take less than twice the memory that is left. So however many addresses see as
+//      much as they can, some memory is left for others (the dynamic thresholds of A. K. Choudhury
+//      and E. L. Hahne, "Dynamic queue length thresholds for shared-memory packet switches", 1998,
+//      with alpha = 2).
 //   3. Over edit_bytes_max, edits are rejected busy.
 // The edits that were accepted already may exceed the last bound, by one commit.
 // Not counted: the queues of the sessions, which have bounds of their own (net_session.hpp), and
@@ -37,12 +42,13 @@ struct MemoryUse {
 /// Cost: O(1).
 MemoryUse memory_use_of(const WorldState& world);
 
-/// Returns true if no chunk may be loaded for a session now.
+/// Returns true if no chunk may be loaded for any session now.
 bool views_wait_for_memory(const WorldState& world);
 /// Returns true if edits must be rejected now.
 bool is_memory_full(const WorldState& world);
 
-/// Makes chunks without users leave memory, and warns the operator when the memory is full and when
+/// Makes chunks without users leave memory, finds the sessions whose address sees more than its share
+/// (WorldState::over_share), and warns the operator when the memory is full and when
 /// it is no longer. Call it on each tick.
 void keep_memory_bounds(WorldState& world);
 

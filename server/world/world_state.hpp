@@ -2,6 +2,7 @@
 // are free functions over it. WorldServer is its interface.
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,10 @@ struct WorldState {
   Sequence durable = 0;
   bool accepts_edits =
       true;  // false: edits are rejected busy, because the server stops or the log failed
-  bool disk_is_full = false;     // edits are rejected busy until there is space again
-  bool is_memory_short = false;  // chunks wait for memory, as of the last tick
+  bool disk_is_full = false;  // edits are rejected busy until there is space again
+  // As of the last tick:
+  bool is_memory_short = false;    // all sessions wait for memory to load chunks
+  std::set<SessionId> over_share;  // those that wait because their address sees much
   bool is_stopping = false;
   TimeUs stop_due_us = 0;  // when a stop that is under way begins no more snapshots
   // Presence.

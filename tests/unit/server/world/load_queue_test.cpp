@@ -47,6 +47,24 @@ TEST_CASE("at most the allowed number of loads is under way", "[world]") {
   CHECK(queue.next() == key_of(2));
 }
 
+TEST_CASE("sessions that must wait are skipped, and the world is not", "[world]") {
+  LoadQueue queue(1);
+  for (const SessionId session : {1, 2, 3}) {
+    queue.request(session, key_of(static_cast<std::int32_t>(session * 10)));
+    queue.request(session, key_of(static_cast<std::int32_t>(session * 10 + 1)));
+  }
+  queue.request_for_world(key_of(1));
+  queue.request_for_world(key_of(2));
+  CHECK(queue.next_for_world() == key_of(1));
+  const std::set<SessionId> must_wait{1, 3};
+  CHECK(queue.next(must_wait) == key_of(20));
+  CHECK(queue.next(must_wait) == key_of(2));
+  CHECK(queue.next(must_wait) == key_of(21));
+  CHECK_FALSE(queue.next(must_wait));
+  CHECK_FALSE(queue.next_for_world());
+  CHECK(load_order(queue) == std::vector<std::int32_t>{10, 30, 11, 31});
+}
+
 TEST_CASE("keys that only the world needs are cancelled together", "[world]") {
   LoadQueue queue(1);
   queue.request(1, key_of(1));

@@ -125,6 +125,43 @@ TEST_CASE("without memory a session waits for its chunks, and the world still lo
   CHECK(bench.environment.snapshots.size() == 5);
 }
 
+TEST_CASE("an address that sees much leaves memory for others", "[world]") {
+  constexpr AddressBlock kHog{1}, kOther{2};
+  constexpr std::size_t kBound = 40'000;
+  WorldConfig c = with_memory(kBound, kNoBound);
+  c.memory.idle_bytes_max = 0;
+  WorldBench bench(c);
+  bench.join(1, 1, 1, kHog);
+  bench.join(2, 2, 1, kHog);
+  const auto look = [&](SessionId session, std::int32_t x) {
+    bench.send_view(session, {1, {x, 0, 0}, 4, 2});
+    for (int i = 0; i < 300; ++i) {
+      bench.tick();
+      if (bench.environment.loads.empty()) continue;
+      const ChunkKey key = bench.environment.loads.front();
+      bench.environment.loads.pop_front();
+      bench.server.chunk_loaded(key, dotted_chunk(kEdge), bench.now());
+    }
+  };
+  look(1, 0);
+  look(2, 1'000);
+  const std::size_t seen = bench.server.memory_use().voxels;
+  CHECK(seen > kBound / 2);
+  CHECK(seen < kBound * 3 / 4);  // two thirds for one address
+  CHECK(bench.environment.loads.empty());
+
+  const auto sent = [&](SessionId session) {
+    return std::ranges::count(bench.environment.snapshots, session,
+                              &FakeEnvironment::SentSnapshot::session);
+  };
+  const auto before = sent(1) + sent(2);
+  bench.join(3, 3, 1, kOther);
+  look(3, 2'000);
+  CHECK(sent(3) > 5);
+  CHECK(sent(1) + sent(2) == before);
+  CHECK(bench.server.memory_use().voxels < kBound);
+}
+
 TEST_CASE("edits that wait make chunks without users leave memory", "[world]") {
   WorldConfig c = config();
   c.memory = {20'000, kNoBound, kNoBound, kNoBound};
