@@ -31,9 +31,9 @@ std::optional<EditLedger::Refusal> EditLedger::charge(const EditPayer& payer, st
   TokenBucket& key = keys_.try_emplace(payer.key, of_key_.per_second, of_key_.burst).first->second;
   if (const TimeUs wait_us = key.wait_us(price, now_us); wait_us > 0)
     return Refusal{"key", wait_us};
-  if (of_address_.is_limited()) {
+  if (payer.address && of_address_.is_limited()) {
     TokenBucket& address =
-        addresses_.try_emplace(payer.address, of_address_.per_second, of_address_.burst)
+        addresses_.try_emplace(*payer.address, of_address_.per_second, of_address_.burst)
             .first->second;
     if (const TimeUs wait_us = address.wait_us(price, now_us); wait_us > 0)
       return Refusal{"address", wait_us};

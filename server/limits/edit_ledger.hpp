@@ -18,7 +18,7 @@ namespace runstone {
 /// Who pays for an edit.
 struct EditPayer {
   PublicKey key{};
-  AddressBlock address{};
+  std::optional<AddressBlock> address;  // nullopt: the player has no session, and no address pays
 };
 
 class EditLedger {
@@ -36,7 +36,7 @@ class EditLedger {
   /// Requires a price that edit_price() returned for the budget of a key. Cost: O(log payers).
   std::optional<Refusal> charge(const EditPayer& payer, std::uint64_t price, TimeUs now_us);
 
-  /// Returns the number of budgets that are not full.
+  /// Returns the number of budgets that are kept: all that are not full, and some that are.
   std::size_t size() const { return keys_.size() + addresses_.size(); }
   /// Forgets the budgets that have refilled. Cost: O(size()).
   void forget_full(TimeUs now_us);

@@ -26,6 +26,8 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   if (!players) return failure(players.error());
   start.players = *std::move(players);
   start.author_max = store.author_max();
+  // A write of a player reads the player's names. A damaged one would end the log writer.
+  if (const auto names = store.player_names(); !names) return failure(names.error());
   auto watermarks = store.high_waters();
   if (!watermarks) return failure(watermarks.error());
   start.resolved = *std::move(watermarks);

@@ -113,7 +113,7 @@ void LogWriter::run() {
     // One slice per round: records that were queued meanwhile are written before the next slice.
     if (written && job) written = write_slice(*job);
     if (!written && written.error().kind == StoreError::Kind::full) {
-      if (!wait_for_room(written.error(), job)) return;
+      if (!wait_for_room(written.error(), group, job)) return;
       continue;
     }
     if (!written) return fail(written.error(), job);
@@ -209,11 +209,19 @@ void LogWriter::set_space(DiskSpace space, const std::string& reason) {
   if (callbacks_.on_space) callbacks_.on_space(space, reason);
 }
 
-bool LogWriter::wait_for_room(const StoreError& error, std::optional<Job>& job) {
+bool LogWriter::wait_for_room(const StoreError& error, const Batch& group,
+                              std::optional<Job>& job) {
   set_space(DiskSpace::full, error.message());
   end_keyframes(error, job);
   std::unique_lock lock(mutex_);
-  if (stopping_) return false;
+  if (stopping_) {
+    if (group.room > 0) return false;
+    // Only the snapshots found no room. Records need less of it, and more may be queued.
+    job.reset();
+    jobs_.clear();
+    job_is_running_ = false;
+    return true;
+  }
   // A job for a keyframe ends the wait, so that its error does not wait.
   const auto is_keyframe = [](const Job& one) { return one.done != nullptr; };
   work_.wait_for(lock, limits_.space_interval,

@@ -93,6 +93,7 @@ class LogWriter {
   bool save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, KeyframeDone done);
   /// Writes everything that is queued, calls the callbacks, and ends the thread. If the disk is
   /// full, it tries once more and gives up: Counters::queued_records are the records that are lost.
+  /// Snapshots without room do not keep it from writing records.
   /// It may be called again, but not from a callback.
   void stop();
 
@@ -132,8 +133,10 @@ class LogWriter {
   /// Looks at the free space, unless it was done less than space_interval ago.
   void check_space();
   void set_space(DiskSpace space, const std::string& reason);
-  /// Waits before the next write to a full disk. Returns false if the writer stops.
-  bool wait_for_room(const StoreError& error, std::optional<Job>& job);
+  /// Waits before the next write to a full disk. `group` is what is left of the records. If the
+  /// writer stops, it does not wait: it returns false if records found no room, and drops the
+  /// snapshots otherwise.
+  bool wait_for_room(const StoreError& error, const Batch& group, std::optional<Job>& job);
   /// Ends the jobs for keyframes, `job` included, with an error.
   void end_keyframes(const StoreError& error, std::optional<Job>& job);
   /// Ends the writer. `job` is the one that is being written, if any.

@@ -58,6 +58,12 @@ class Players {
   /// Returns the last kVisitorsMax players of this run that left without an edit, the latest last.
   const std::deque<PlayerRow>& visitors() const { return visitors_; }
   std::size_t count() const { return known_.size(); }
+  /// Returns the author's key, or nullopt if nobody has the number.
+  std::optional<PublicKey> key_of(AuthorId author) const {
+    const auto found = known_.find(author);
+    if (found == known_.end()) return std::nullopt;
+    return found->second.row.key;
+  }
   /// Returns true if the author's row in the store has another name.
   bool is_renamed(AuthorId author) const {
     const auto found = known_.find(author);

@@ -73,14 +73,16 @@ void retry_loads(WorldState& world, const Clocks& now) {
   }
 }
 
-/// Returns the payer of an author with an open session.
+/// Returns who pays for edits of an author: its key, and the address of its first session. Returns
+/// nullopt if nobody has the number.
 std::optional<EditPayer> payer_of(const WorldState& world, AuthorId author) {
-  if (author == 0) return std::nullopt;
+  const std::optional<PublicKey> key = world.players.key_of(author);
+  if (!key) return std::nullopt;
   for (const auto& [id, session] : world.sessions) {
     if (session.state == SessionStage::open && session.author == author)
-      return EditPayer{session.key, session.address};
+      return EditPayer{*key, session.address};
   }
-  return std::nullopt;
+  return EditPayer{*key, std::nullopt};
 }
 
 /// Counts the end of a load that was under way.

@@ -71,8 +71,8 @@ class WorldServer {
   /// Orders the offers at once and in order, behind all queued edits, as far as the log has room.
   /// Requires that they pass check_server_edit(), that their client sequences ascend, that they
   /// have one author and instance, and that their cause is not player. Each offer costs its
-  /// edit_price(), paid as an edit of the author `payer` is, from the address of the author's first
-  /// session. Nobody pays if `payer` is 0 or has no session.
+  /// edit_price(), paid by the key of the author `payer` and the address of the author's first
+  /// session. An author without a session pays by the key alone. Nobody pays if `payer` is 0.
   ServerEditsResult order_server_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                        const Clocks& now);
 

@@ -152,10 +152,13 @@ TEST_CASE("a job with a payer writes as fast as the budget of the payer allows",
     b.job.step(b.bench.server, b.bench.now());
     CHECK(b.job.progress().edits == 4);
   }
-  SECTION("an author without a session pays nothing, and the job ends") {
+  SECTION("an author who has left pays as before") {
     b.bench.server.disconnected(kRestorer);
-    b.step();
-    CHECK(b.job.state() == RestoreJob::State::done);
+    b.job.step(b.bench.server, b.bench.now());
+    CHECK(b.job.progress().edits == 4);
+    b.bench.tick(200'000);
+    b.job.step(b.bench.server, b.bench.now());
+    CHECK(b.job.progress().edits == 6);
   }
 }
 

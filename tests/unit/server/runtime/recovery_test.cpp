@@ -84,6 +84,18 @@ TEST_CASE("a start fails if a player or a watermark is missing", "[server]") {
   }
 }
 
+TEST_CASE("a start fails on a damaged name of a player and names it", "[server]") {
+  const TempFolder folder;
+  make_world(folder / "world");
+  REQUIRE(raw_sql(folder / "world/world.sqlite",
+                  "UPDATE player_name SET name = 'x' WHERE author = 2; SELECT changes()") == "1");
+  auto store = open_world(folder / "world", StoreAccess::read_write);
+  REQUIRE(store.has_value());
+  const auto start = read_world_start(**store);
+  REQUIRE_FALSE(start.has_value());
+  CHECK(start.error().find("player_name author=2 number=1") != std::string::npos);
+}
+
 TEST_CASE("a start fails on a damaged last record and names it", "[server]") {
   const TempFolder folder;
   make_world(folder / "world");

@@ -27,14 +27,14 @@ class FillingSink final : public WorldSink {
   }
   StoreResult<void> save_snapshots(ChunkSpan /*chunks*/,
                                    std::optional<Sequence> /*checkpoint*/) override {
-    return is_full ? no_room() : StoreResult<void>{};
+    return is_full || is_full_for_snapshots ? no_room() : StoreResult<void>{};
   }
   StoreResult<void> save_keyframe(ChunkSpan /*chunks*/,
                                   const std::optional<Keyframe>& /*keyframe*/) override {
     return is_full ? no_room() : StoreResult<void>{};
   }
 
-  std::atomic<bool> is_full{false};
+  std::atomic<bool> is_full{false}, is_full_for_snapshots{false};
   std::vector<Sequence> written;  // read it after stop()
 
  private:
@@ -45,7 +45,8 @@ class FillingSink final : public WorldSink {
 
 /// A log writer over a FillingSink. The events are counted.
 struct SpaceBench {
-  explicit SpaceBench(std::uint64_t reserve_bytes = 0) {
+  /// The default is a look at each turn.
+  explicit SpaceBench(std::uint64_t reserve_bytes = 0, std::chrono::milliseconds interval = 0ms) {
     LogWriter::Callbacks callbacks;
     callbacks.on_durable = [this](Sequence seq) { durable = seq; };
     callbacks.on_snapshots_saved = [this](auto, auto) { saved.release(); };
@@ -58,7 +59,8 @@ struct SpaceBench {
     callbacks.free_bytes = [this] { return std::optional<std::uint64_t>(free); };
     LogWriter::Limits limits;
     limits.reserve_bytes = reserve_bytes;
-    limits.space_interval = 0ms;  // look at each turn
+    limits.space_interval = interval;
+    limits.commit_records_max = 4;
     writer.emplace(sink, std::move(callbacks), limits);
   }
   std::counting_semaphore<>& seen(DiskSpace space) {
@@ -120,6 +122,18 @@ TEST_CASE("a stop on a full disk gives up and says how many records are lost",
   CHECK(bench.writer->counters().queued_records == 3);
   CHECK(bench.durable == 0);
   CHECK_FALSE(bench.has_failed);
+}
+
+TEST_CASE("a stop writes all records although the snapshots before them have no room",
+          "[store][log-writer]") {
+  SpaceBench bench(0, 1h);
+  bench.sink.is_full_for_snapshots = true;
+  REQUIRE(bench.writer->save_snapshots({}, Sequence{1}));
+  bench.full.acquire();
+  for (Sequence first = 1; first < 13; first += 4) bench.append(first, 4);
+  bench.writer->stop();
+  CHECK(bench.sink.written == sequences(12));
+  CHECK(bench.writer->counters().queued_records == 0);
 }
 
 TEST_CASE("snapshots wait for space, and keyframes end with an error", "[store][log-writer]") {
