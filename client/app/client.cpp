@@ -217,6 +217,11 @@ void Client::drain_changes() {
     logged_refusal_ = session_.history_refusal();
     if (!logged_refusal_.empty()) spdlog::warn("the past is not shown: {}", logged_refusal_);
   }
+  const bool is_read_only = session_.is_server_read_only();
+  if (std::exchange(logged_read_only_, is_read_only) != is_read_only) {
+    spdlog::warn(is_read_only ? "the server is read-only: its disk is full"
+                              : "the server accepts edits again");
+  }
   for (const RejectedEdit& reject : changes.rejects) {
     spdlog::info("edit={} rejected: {} {}", reject.seq, to_string(reject.reason), reject.detail);
   }

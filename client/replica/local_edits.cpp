@@ -55,7 +55,6 @@ std::vector<ClientSequence> LocalEdits::resume(ClientSequence resolved) {
   std::vector<ClientSequence> offers;
   for (auto& [seq, local] : edits_) {
     if (seq > resolved) {
-      local.was_applied |= local.state == LocalEditState::confirmed;
       local.state = LocalEditState::pending;
       local.version = {};
       offers.push_back(seq);

@@ -48,7 +48,6 @@ struct LocalEdit {
   TimeUs sent_us = kNever;       // last put on the wire
   LocalEditState state = LocalEditState::pending;
   Version version;  // confirmed: of its commit; unseen: an upper bound
-  bool was_applied = false;  // its commit was seen once, and the server lost it
 
   bool needs_answer() const {
     return state == LocalEditState::pending || state == LocalEditState::asking;

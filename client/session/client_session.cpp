@@ -69,11 +69,12 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
         } else if constexpr (std::is_same_v<T, Reject>) {
           if (m.reason == RejectReason::rate_limited) allowance_.refused(arrival.now_us);
-          lost_.take(replica_->local_edits(), m, arrival.now_us);
+          lost_.take(replica_->local_edits(), m, opened_us_, arrival.now_us);
           replica_->receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, DigestCheck>) {
           replica_->receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, Durable>) {
+          is_server_read_only_ = m.is_read_only;
           replica_->receive(m);
         } else if constexpr (std::is_same_v<T, ViewState>) {
           on_view_state(m);
@@ -93,6 +94,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
 void ClientSession::on_session_accepted(const SessionAccepted& accepted, TimeUs now_us) {
   const Welcome& world = *welcome();
   opened_us_ = now_us;
+  is_server_read_only_ = false;
   allowance_.set(world.edit_budget, world.chunk_edge);
   replica_->set_view(view());
   waiting_ = replica_->open({.chunk_edge = world.chunk_edge,

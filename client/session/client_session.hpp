@@ -75,6 +75,8 @@ class ClientSession {
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) {
     return allowance_.wait_us(edit, now_us);
   }
+  /// Returns true if the server accepts no edits because its disk is full.
+  bool is_server_read_only() const { return is_server_read_only_; }
   /// Requests a view; its number is ignored.
   void set_view(const View& view);
   /// Requests the view as it was at a moment of the past, read-only, or as it is now.
@@ -164,6 +166,7 @@ class ClientSession {
   bool is_commanding_ = false, is_command_ok_ = false;
   std::vector<std::string> command_lines_;  // kCommandLinesKept at most
 
+  bool is_server_read_only_ = false;
   EditAllowance allowance_;
   std::vector<ClientSequence> waiting_;  // local edits to send, ascending
   LostEdits lost_;

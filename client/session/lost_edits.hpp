@@ -1,6 +1,6 @@
-// LostEdits: edits that the server had applied and then lost, because it ended before they were on
-// disk, and that it rejects for a while when they are offered again: its log is full, or the edit
-// budget is used up. The player has seen them applied, so they are not given up: they are submitted
+// LostEdits: edits of before a reconnection that the server rejects for a while: its log is full, or
+// they are more than the edit budget pays at once. The player saw them applied, while there was no
+// connection, or before the server ended and lost them. So they are not given up: they are submitted
 // again, as new edits, until the server takes them.
 // Bound: the edits that LocalEdits kept at the reconnection. Thread: one. Times are arguments.
 #pragma once
@@ -21,14 +21,15 @@ class LostEdits {
   /// The time from a rejection to the next attempt.
   static constexpr TimeUs kAgainUs = 1'000'000;
 
-  /// Takes the edit over if the server once applied it and the reason of the rejection passes. Call
-  /// it before LocalEdits takes the rejection.
-  void take(const LocalEdits& edits, const Reject& reject, TimeUs now_us) {
+  /// Takes the edit over if it is older than the connection, which opened at `opened_us`, and the
+  /// reason of the rejection passes. Call it before LocalEdits takes the rejection.
+  void take(const LocalEdits& edits, const Reject& reject, TimeUs opened_us, TimeUs now_us) {
     const bool is_temporary =
         reject.reason == RejectReason::busy || reject.reason == RejectReason::rate_limited;
     const LocalEdit* local = edits.find(reject.client_seq);
-    const bool is_lost = again_.erase(reject.client_seq) != 0 || (local && local->was_applied);
-    if (!is_temporary || local == nullptr || !is_lost) return;
+    const bool is_again = again_.erase(reject.client_seq) != 0;
+    if (!is_temporary || local == nullptr) return;
+    if (!is_again && local->submitted_us >= opened_us) return;
     edits_.push_back({local->edit, local->submitted_us});
     put_off(now_us);
   }

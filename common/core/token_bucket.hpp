@@ -58,14 +58,16 @@ class TokenBucket {
     if (now_us <= last_us_) return;
     // A part is a millionth of a token. One token a second is one part a microsecond, so nothing is
     // rounded.
-    const auto idle_us =
-        static_cast<std::uint64_t>(std::min<TimeUs>(now_us - last_us_, kIdleUsMax));
-    parts_ = std::min(full_, parts_ + idle_us * per_second_);
+    const auto idle_us = static_cast<std::uint64_t>(now_us - last_us_);
     last_us_ = now_us;
+    const std::uint64_t missing = full_ - parts_;
+    // The product cannot overflow: it is below `missing`.
+    parts_ = idle_us > missing / std::max<std::uint64_t>(1, per_second_)
+                 ? full_
+                 : parts_ + idle_us * per_second_;
   }
 
   static constexpr std::uint64_t kPart = 1'000'000;
-  static constexpr TimeUs kIdleUsMax = 3'600'000'000;  // keeps the product far from 2^64
   std::uint64_t per_second_, full_, parts_;
   TimeUs last_us_ = 0;
   bool started_ = false;

@@ -64,7 +64,7 @@ Result<Message> BodyReader::read(const wire::Reject& t) const {
 
 Result<Message> BodyReader::read(const wire::Durable& t) const {
   if (t.epoch() == 0) return bad("durable epoch is 0");
-  return Durable{t.epoch(), t.seq()};
+  return Durable{t.epoch(), t.seq(), t.is_read_only()};
 }
 
 }  // namespace runstone

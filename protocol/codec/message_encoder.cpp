@@ -120,7 +120,7 @@ struct BodyBuilder {
                               m.seq);
   }
   Offset<wire::Durable> operator()(const Durable& m) {
-    return wire::CreateDurable(b, m.epoch, m.seq);
+    return wire::CreateDurable(b, m.epoch, m.seq, m.is_read_only);
   }
   Offset<wire::DigestCheck> operator()(const DigestCheck& m) {
     return wire::CreateDigestCheck(b, bytes_of(b, encode_digest_checks(m.entries)));

@@ -311,6 +311,7 @@ struct Reject {
 struct Durable {
   Epoch epoch = 0;
   Sequence seq = 0;
+  bool is_read_only = false;  // the disk is full: every edit is rejected busy
   friend bool operator==(const Durable&, const Durable&) = default;
 };
 struct DigestCheckEntry {

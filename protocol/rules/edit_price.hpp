@@ -10,7 +10,7 @@
 namespace runstone {
 
 /// The table of prices, in units. A unit is about what a click costs: one log record and one changed
-/// chunk, together about one KiB that the disk writes.
+/// chunk, together up to 5 KB that the disk writes.
 struct EditPrices {
   /// Each chunk that the bounding box of the edit touches, up to kTouchedChunksMax. The chunk gets a
   /// new version, is swept, and is written once with the next snapshots.
@@ -18,7 +18,7 @@ struct EditPrices {
   /// Each started kClipboardBytes of a clipboard. They are written to the log twice, kept in memory
   /// until all touched chunks are loaded, and sent to every session that sees the edit.
   static constexpr std::uint64_t kClipboardPart = 1;
-  static constexpr std::size_t kClipboardBytes = 256;
+  static constexpr std::size_t kClipboardBytes = 64;
 };
 
 /// Returns the price of an edit, at least 1. An edit that costs more than the whole budget costs the

@@ -25,6 +25,6 @@ function(runstone_check_conform_notices what from to)
                    ${PROJECT_SOURCE_DIR}/protocol/schema/frozen/runstone_v1.fbs ${file})
   set_tests_properties(schema.${what}_are_noticed PROPERTIES WILL_FAIL TRUE)
 endfunction()
-runstone_check_conform_notices(swapped_fields "table Durable { epoch:uint; seq:ulong; }"
-                               "table Durable { seq:ulong; epoch:uint; }")
+runstone_check_conform_notices(swapped_fields "table Durable { epoch:uint; seq:ulong; is_read_only:bool; }"
+                               "table Durable { seq:ulong; epoch:uint; is_read_only:bool; }")
 runstone_check_conform_notices(renumbered_kinds "Hello = 1, Welcome = 2," "Welcome = 1, Hello = 2,")

@@ -5,7 +5,8 @@
 //   - The mark is never ahead of the disk: it is written after the fsync of the commit that it
 //     covers.
 //   - After the end of the process, kill -9 included, it covers every commit for which append()
-//     returned, because the kernel holds what was written.
+//     returned, because the kernel holds what was written. If a write of the mark fails, it lags
+//     until one succeeds.
 //   - After a power failure it may lag behind the disk, because not every write of it is synced:
 //     that would double the time of a commit. It is synced by each start, with each checkpoint and
 //     when the world is closed. A lag makes the check weaker; it never causes a false alarm.

@@ -132,15 +132,19 @@ void LogWriter::run() {
 
 bool LogWriter::take_work(Batch& group, std::optional<Job>& job) {
   std::unique_lock lock(mutex_);
-  const auto has_work = [&] {
-    return group.room > 0 || job || !batches_.empty() || !jobs_.empty() || stopping_;
-  };
+  const auto must_go_on = [&] { return group.room > 0 || job || !jobs_.empty() || stopping_; };
+  const auto has_work = [&] { return must_go_on() || !batches_.empty(); };
   if (space_ == DiskSpace::enough) {
     work_.wait(lock, has_work);
   } else {
     work_.wait_for(lock, limits_.space_interval, has_work);
   }
-  if (group.room == 0) group = take_group();
+  if (!batches_.empty()) work_.wait_until(lock, group_due_, must_go_on);
+  const auto now = std::chrono::steady_clock::now();
+  if (group.room == 0 && (stopping_ || now >= group_due_)) {
+    group = take_group();
+    if (group.room > 0) group_due_ = now + limits_.commit_interval;
+  }
   if (!job && !jobs_.empty()) {
     job = std::move(jobs_.front());
     jobs_.pop_front();
@@ -195,7 +199,11 @@ void LogWriter::check_space() {
   looked_us_ = now_us;
   const bool has_reserve = limits_.reserve_bytes > 0 && callbacks_.free_bytes;
   const auto free = has_reserve ? callbacks_.free_bytes() : std::nullopt;
-  if (!free || *free >= limits_.reserve_bytes) return set_space(DiskSpace::enough, "");
+  // A disk that was too full is used again when a quarter more than the reserve is free, so that
+  // the mode does not change every second.
+  const bool was_enough = space_ == DiskSpace::enough;
+  const std::uint64_t needed = limits_.reserve_bytes + (was_enough ? 0 : limits_.reserve_bytes / 4);
+  if (!free || *free >= needed) return set_space(DiskSpace::enough, "");
   set_space(DiskSpace::low, "the world's disk has " + std::to_string(*free >> 20) +
                                 " MiB free, and its reserve is " +
                                 std::to_string(limits_.reserve_bytes >> 20) + " MiB");

@@ -1,7 +1,8 @@
 // LogWriter: the one thread that writes a world. It takes batches of records, and jobs for
 // snapshots and keyframes, from bounded queues.
 //   - Group commit: all batches that were queued during the last fsync become one transaction, and
-//     one call of on_durable. A slow disk makes larger groups. No clock is needed.
+//     one call of on_durable. A slow disk makes larger groups, and so does
+//     commit_interval, because a commit writes some pages of the database however small it is.
 //   - Full: has_room() returns false, and the world rejects edits as busy. The queue of jobs does
 //     not fill in a server: the checkpointer and the keyframe thread each have at most one job
 //     under way. So a refused job means that the writer has failed or stopped. The job
@@ -42,6 +43,8 @@ class LogWriter {
     std::size_t queued_records_max = 65536;  // counted until they are durable
     /// Records per transaction. A single larger batch is one transaction all the same.
     std::size_t commit_records_max = 4096;
+    /// The least time between the begins of two commits of records, unless the writer stops.
+    std::chrono::milliseconds commit_interval{0};
     std::size_t jobs_max = 4;
     std::size_t slice_chunks_max = 32;  // chunks per transaction
     std::uint64_t reserve_bytes = 0;    // below so many free bytes the disk space is low
@@ -146,6 +149,7 @@ class LogWriter {
   const Callbacks callbacks_;
   const Limits limits_;
   TimeUs looked_us_ = 0;  // when the free space was looked at; only for check_space()
+  std::chrono::steady_clock::time_point group_due_;  // of the next commit; only for take_work()
   mutable std::mutex mutex_;
   std::condition_variable work_;
   // mutex_ guards all members from here on.

@@ -12,6 +12,9 @@ namespace {
 
 constexpr const char* kPlayers = "player";
 constexpr const char* kWatermarks = "player_instance";
+/// A damaged mark does not say how many starts are lost. No more than these, we trust: clients keep
+/// chunks by epoch, so an epoch must not be used twice.
+constexpr Epoch kEpochsSkipped = 10'000;
 
 std::string fold_key_of(const std::string& table) { return table + "_fold"; }
 
@@ -112,12 +115,14 @@ StoreResult<void> SqliteStore::accept_lost_rows(std::vector<std::string>& lost) 
 StoreResult<std::vector<std::string>> SqliteStore::accept_losses() {
   std::vector<std::string> lost;
   if (loss_) lost.push_back(loss_->message());
+  if (is_mark_damaged_) state_.epoch += kEpochsSkipped;
   const auto written = write([&]() -> StoreResult<void> {
     if (auto put = meta_table_.put("epoch", std::int64_t{state_.epoch}); !put) return put;
     if (auto put = meta_table_.put("author_max", std::int64_t{state_.author_max}); !put) return put;
     return accept_lost_rows(lost);
   });
   if (!written) return failed(written.error());
+  database_->keep_wal_on_close(false);
   return lost;
 }
 

@@ -175,6 +175,7 @@ class SqliteStore final : public Store {
   /// The greatest numbers of database and mark.
   DurableState state_;
   std::optional<StoreError> loss_;
+  bool is_mark_damaged_ = false;
   bool broken_ = false;
 };
 

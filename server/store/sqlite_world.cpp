@@ -216,7 +216,7 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
                                                      std::move(mark)));
   if (const auto read = store->read_state(); !read) return failed(read.error());
   if (store->loss_ && access == StoreAccess::read_write) return failed(*store->loss_);
-  store->database_->keep_wal_on_close(false);
+  store->database_->keep_wal_on_close(store->loss_.has_value());
   return store;
 }
 
@@ -241,6 +241,7 @@ StoreResult<void> SqliteStore::read_state() {
     loss_ = mixture(file(), *end, state_.seq);
     if (access_ != StoreAccess::read_only) return failed(*loss_);
   } else if (!marked) {
+    is_mark_damaged_ = true;
     loss_ = marked.error();
     loss_->what += std::string(". ") + kLossAdvice;
   } else if (*marked) {

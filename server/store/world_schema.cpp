@@ -141,6 +141,14 @@ StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
                        "; this program knows format " + std::to_string(kWorldFormat) +
                        ". Nothing was changed.");
   }
+  if (version == 1) {
+    return fail_as(StoreError::Kind::bad_request,
+                   "is of world format 1; this program knows format " +
+                       std::to_string(kWorldFormat) +
+                       ". The runstone-replay that is as old as the world can export its log, and "
+                       "`runstone-replay import` of this program makes a world of it. Nothing was "
+                       "changed.");
+  }
   if (version != kWorldFormat)
     return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(version));
   return {};

@@ -14,7 +14,7 @@ namespace runstone {
 inline constexpr std::uint32_t kApplicationId = 0x52756e53;
 /// PRAGMA user_version of every world: the version of the schema and of the contents of its
 /// columns.
-inline constexpr std::uint32_t kWorldFormat = 1;
+inline constexpr std::uint32_t kWorldFormat = 2;
 
 /// Makes all tables and sets both marks, in the caller's transaction.
 StoreResult<void> create_schema(sql::Database& database);

@@ -43,11 +43,10 @@ void Authority::replay_onto_stack(const EditRecord& record) {
     chunks_.replay_onto_stack({0, at}, record.version, record.edit, bytes);
 }
 
-std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_has_room) {
+std::optional<RejectReason> Authority::submit(const EditOffer& offer) {
   if (resolved_.knows(offer.op)) return resolved_.answer_to(offer.op);
   auto refusal = offer.cause == Cause::player ? check_edit(offer.edit, limits_)
                                               : check_server_edit(offer.edit, limits_);
-  if (!refusal && !log_has_room) refusal = RejectReason::busy;
   if (refusal) {
     resolved_.reject(offer.op, *refusal);
     return refusal;

@@ -61,8 +61,8 @@ class Authority {
   /// Queues an edit. Returns nullopt if it was queued, otherwise the reason for the rejection.
   /// Either way the operation is resolved: submitting it again returns the same rejection, or
   /// already_resolved. An edit of a player must pass check_edit(), any other edit
-  /// check_server_edit(). The reason is busy if `log_has_room` is false.
-  std::optional<RejectReason> submit(const EditOffer& offer, bool log_has_room);
+  /// check_server_edit(). Requires that the log has room.
+  std::optional<RejectReason> submit(const EditOffer& offer);
   /// Resolves an operation that was rejected by a check outside of Authority.
   void reject(const OperationId& op, RejectReason reason) { resolved_.reject(op, reason); }
 

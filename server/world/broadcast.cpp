@@ -118,7 +118,7 @@ void commit_and_broadcast(WorldState& world, const Clocks& now) {
 }
 
 void send_durable_to_authors(WorldState& world) {
-  const EncodedMessage encoded = encode_message(Durable{world.authority.epoch(), world.durable});
+  const EncodedMessage encoded = encoded_durable(world);
   for (const SessionId session : world.open_sessions()) {
     const WorldSession& mine = *world.find(session);
     if (mine.durable_sent < mine.awaits_durable) send_durable(world, session, encoded);
@@ -126,9 +126,11 @@ void send_durable_to_authors(WorldState& world) {
 }
 
 void broadcast_durable(WorldState& world, const Clocks& now) {
-  if (now.steady_us - world.durable_us < world.config.durable_interval_us) return;
+  const bool is_due = now.steady_us - world.durable_us >= world.config.durable_interval_us;
+  if (!is_due && world.read_only_told == world.disk_is_full) return;
+  world.read_only_told = world.disk_is_full;
   world.durable_us = now.steady_us;
-  const EncodedMessage encoded = encode_message(Durable{world.authority.epoch(), world.durable});
+  const EncodedMessage encoded = encoded_durable(world);
   for (const SessionId session : world.open_sessions()) send_durable(world, session, encoded);
 }
 

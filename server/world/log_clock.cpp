@@ -50,6 +50,8 @@ void LogClock::jump(TimeUs error_us, const Clocks& now) {
   } else if (now.steady_us - jump_->steady_us >= kAcceptUs) {
     warning_ = "the wall clock has kept its jump: the time of the log goes from " +
                utc_text(time_us_) + " to " + utc_text(now.utc_us);
+    if (now.utc_us < last_us_)
+      *warning_ += ", but edits keep the time of the newest one until " + utc_text(last_us_);
     time_us_ = now.utc_us;
     jump_.reset();
   }

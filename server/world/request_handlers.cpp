@@ -60,8 +60,13 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
                     : edit_price(request.edit, world.config.chunk_edge, world.config.edit_budget);
   std::optional<RejectReason> refusal;
   std::string detail;
+  const bool has_room = world.accepts_edits && !world.disk_is_full && !is_memory_full(world) &&
+                        world.environment.log_has_room(world.authority.queued() + 1);
   if (world.authority.resolved().knows(op)) {
     refusal = world.authority.resolved().answer_to(op);
+  } else if (!has_room) {
+    refusal = RejectReason::busy;
+    world.authority.reject(op, *refusal);
   } else if (const auto unpaid =
                  world.edit_ledger.charge({mine.key, mine.address}, price, now.steady_us)) {
     refusal = RejectReason::rate_limited;
@@ -74,10 +79,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     refusal = RejectReason::out_of_reach;
     world.authority.reject(op, *refusal);
   } else {
-    const bool has_room = world.accepts_edits && !world.disk_is_full && !is_memory_full(world) &&
-                          world.environment.log_has_room(world.authority.queued() + 1);
-    refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0},
-                                     has_room);
+    refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0});
   }
   if (!refusal) return;
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);

@@ -17,16 +17,6 @@ void want_all(WorldState& world, SessionId session) {
   collect_released(world);
 }
 
-void open_next(WorldState& world, SessionId session) {
-  WorldSession& mine = *world.find(session);
-  if (!mine.next_history_request || mine.is_opening_history ||
-      world.histories_opening >= kHistoriesOpeningMax)
-    return;
-  mine.is_opening_history = true;
-  ++world.histories_opening;
-  world.environment.open_history(session, *mine.next_history_request);
-}
-
 /// Answers a request: the session sees another state of the world from here on.
 void begin_state(WorldState& world, SessionId session, std::uint32_t request, const Clocks& now) {
   WorldSession& mine = *world.find(session);
@@ -46,23 +36,37 @@ void return_to_live(WorldState& world, SessionId session, std::uint32_t request,
   begin_state(world, session, request, now);
 }
 
+/// Carries out the session's newest request, unless it must wait: for the answer to the request
+/// before, for a worker, or because every state makes the whole view wanted again and so costs as
+/// much as a new view.
+void open_next(WorldState& world, SessionId session, const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  if (!mine.next_history_request || mine.is_opening_history ||
+      now.steady_us < mine.history_due_us || world.histories_opening >= kHistoriesOpeningMax)
+    return;
+  mine.history_due_us = now.steady_us + world.config.view_interval_us;
+  if (mine.next_history_request->to == HistoryTarget::live) {
+    const std::uint32_t request = mine.next_history_request->request;
+    mine.next_history_request.reset();
+    return return_to_live(world, session, request, now);
+  }
+  mine.is_opening_history = true;
+  ++world.histories_opening;
+  world.environment.open_history(session, *mine.next_history_request);
+}
+
 }  // namespace
 
 void on_history_request(WorldState& world, SessionId session, const HistoryRequest& request,
                         const Clocks& now) {
-  WorldSession& mine = *world.find(session);
-  if (request.to == HistoryTarget::live) {
-    mine.next_history_request.reset();  // ignores the answer to a request that is being opened
-    return return_to_live(world, session, request.request, now);
-  }
-  mine.next_history_request = request;
-  open_next(world, session);
+  world.find(session)->next_history_request = request;
+  open_next(world, session, now);
 }
 
-void open_waiting_history(WorldState& world) {
-  for (const auto& [id, session] : world.sessions) {
+void open_waiting_history(WorldState& world, const Clocks& now) {
+  for (const SessionId id : world.open_sessions()) {
     if (world.histories_opening >= kHistoriesOpeningMax) return;
-    if (session.next_history_request) open_next(world, id);
+    if (world.find(id) != nullptr) open_next(world, id, now);
   }
 }
 
@@ -74,7 +78,7 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
   mine->is_opening_history = false;
   // A newer request has replaced this one.
   if (!mine->next_history_request || mine->next_history_request->request != request)
-    return open_next(world, session);
+    return open_next(world, session, now);
   mine->next_history_request.reset();
   if (!opened) {
     mine->history_request = request;

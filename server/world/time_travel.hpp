@@ -10,13 +10,13 @@
 
 namespace runstone {
 
-/// Replaces the session's earlier request, if that is still waiting. A return to the live world
-/// takes effect at once. A request for the past takes effect when a worker has opened it;
-/// kHistoriesOpeningMax are opened at a time.
+/// Replaces the session's earlier request, if that is still waiting. A session's requests take effect
+/// view_interval_us apart, as its views. A request for the past also waits until a worker has opened
+/// it; kHistoriesOpeningMax are opened at a time.
 void on_history_request(WorldState& world, SessionId session, const HistoryRequest& request,
                         const Clocks& now);
-/// Opens requests that had to wait. Call it on every tick.
-void open_waiting_history(WorldState& world);
+/// Carries out requests that had to wait. Call it on every tick.
+void open_waiting_history(WorldState& world, const Clocks& now);
 /// Handles the answer to WorldEnvironment::open_history(): the end of the view, or the reason of a
 /// failure.
 void on_history_opened(WorldState& world, SessionId session, std::uint32_t request,

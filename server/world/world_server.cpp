@@ -178,7 +178,7 @@ WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector
         break;
       }
     }
-    const auto refusal = world.authority.submit(offer, true);
+    const auto refusal = world.authority.submit(offer);
     RUNSTONE_ASSERT(!refusal);
     ++out.count;
   }
@@ -228,7 +228,7 @@ void WorldServer::tick(const Clocks& now) {
   broadcast_poses(world, now);
   broadcast_durable(world, now);
   send_due_digest_checks(world, now);
-  open_waiting_history(world);
+  open_waiting_history(world, now);
   retry_loads(world, now);
   retry_pending(world, now);
   step_checkpointer(now);

@@ -56,6 +56,7 @@ struct WorldSession {
   bool has_player_list = false;  // it got the full player list and all changes since
   // Durable watermark.
   Sequence durable_sent = 0;  // the last one sent; welcome sends the first
+  bool read_only_sent = false;
   Sequence awaits_durable =
       0;  // the client's last edit; the session gets the watermark at once until then
   // Rejects that did not fit the session's queue, in order. They are sent when it drains.
@@ -77,6 +78,7 @@ struct WorldSession {
   // Time travel (time_travel.hpp).
   std::optional<HistoryRequest> next_history_request;  // the newest request, until it is answered
   bool is_opening_history = false;                     // a worker opens a request
+  TimeUs history_due_us = 0;                           // when the next request may take effect
   std::optional<HistoryView> history;                  // nullopt: the session sees the live world
   std::uint32_t history_request = 0;                   // the newest one that was answered
   // Reports that precede the session's next chunk, in this order.

@@ -110,15 +110,22 @@ void send_pending_rejects(WorldState& world, SessionId session) {
   mine->pending_rejects.erase(mine->pending_rejects.begin(),
                               mine->pending_rejects.begin() + static_cast<std::ptrdiff_t>(sent));
   if (mine->durable_sent < world.durable && mine->durable_sent < mine->awaits_durable) {
-    send_durable(world, session, encode_message(Durable{world.authority.epoch(), world.durable}));
+    send_durable(world, session, encoded_durable(world));
   }
+}
+
+EncodedMessage encoded_durable(const WorldState& world) {
+  return encode_message(Durable{world.authority.epoch(), world.durable, world.disk_is_full});
 }
 
 void send_durable(WorldState& world, SessionId session, const EncodedMessage& encoded) {
   WorldSession* mine = world.find(session);
-  if (mine == nullptr || !mine->pending_rejects.empty() || mine->durable_sent == world.durable)
-    return;
-  if (send_or_skip(world, session, encoded)) mine->durable_sent = world.durable;
+  if (mine == nullptr || !mine->pending_rejects.empty()) return;
+  const bool is_known =
+      mine->durable_sent == world.durable && mine->read_only_sent == world.disk_is_full;
+  if (is_known || !send_or_skip(world, session, encoded)) return;
+  mine->durable_sent = world.durable;
+  mine->read_only_sent = world.disk_is_full;
 }
 
 bool send_or_skip(WorldState& world, SessionId session, const EncodedMessage& message) {

@@ -57,6 +57,7 @@ struct WorldState {
   TimeUs poses_us = 0;           // when poses were sent last
   SessionId pose_sent_last = 0;  // the session whose pose was sent last
   TimeUs durable_us = 0;         // when every session got the durable watermark last
+  bool read_only_told = false;   // what it said of the disk
   // Digest checks.
   TimeUs digest_checks_us = 0;      // up to this time, all that were due are sent
   SessionId digest_check_last = 0;  // the session served last
@@ -102,6 +103,8 @@ bool send_or_close(WorldState& world, SessionId session, const Message& message)
 void send_reject(WorldState& world, SessionId session, Reject reject);
 /// Sends pending rejects as far as they fit, then the durable watermark if the session awaits it.
 void send_pending_rejects(WorldState& world, SessionId session);
+/// Returns the durable watermark.
+EncodedMessage encoded_durable(const WorldState& world);
 /// Sends the durable watermark, which `encoded` holds, unless the session has it. Does nothing
 /// while rejects are pending, because they precede it. If the session's queue is full, a later call
 /// sends it.

@@ -369,7 +369,7 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
     case kKindOf<Reject>:
       return any_reject(rng);
     case kKindOf<Durable>:
-      return Durable{1 + rng.below(1000), any64(rng)};
+      return Durable{1 + rng.below(1000), any64(rng), rng.below(2) == 0};
     case kKindOf<DigestCheck>:
       return any_digest_check(rng);
     case kKindOf<Move>:

@@ -1,4 +1,4 @@
-// The bytes of world format 1: columns, row checksums and marks. A change here means a new
+// The bytes of world format 2: columns, row checksums and marks. A change here means a new
 // kWorldFormat.
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -61,7 +61,7 @@ TEST_CASE("the marks of a world are where format 1 has them", "[store][golden]")
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(raw_sql(file, "PRAGMA application_id") == "1383427667");
-  CHECK(raw_sql(file, "PRAGMA user_version") == "1");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "2");
   CHECK(raw_sql(file, "PRAGMA journal_mode") == "wal");
 }
 

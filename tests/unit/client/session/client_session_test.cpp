@@ -336,10 +336,46 @@ TEST_CASE_METHOD(
   CHECK(take<EditRequest>(out).empty());
 }
 
-TEST_CASE_METHOD(SessionBench, "an edit that was never applied and is rejected busy is given up",
+TEST_CASE_METHOD(SessionBench,
+                 "edits made without a connection that exceed the budget are submitted again",
+                 "[session]") {
+  static_cast<void>(open());
+  session.disconnected();
+  now += 1'000;
+  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  now += 1'000;
+  static_cast<void>(open());
+  pong();
+  session.tick(now);
+  auto out = sent();
+  REQUIRE(take<EditRequest>(out).size() == 1);
+  receive(Reject{1, RejectReason::rate_limited, "", 0});
+  now += LostEdits::kAgainUs;
+  pong();
+  session.tick(now);
+  out = sent();
+  REQUIRE(take<EditRequest>(out).size() == 1);
+  CHECK(take<EditRequest>(out)[0].client_seq == 2);
+}
+
+TEST_CASE_METHOD(SessionBench, "a session knows whether its server is read-only", "[session]") {
+  static_cast<void>(open());
+  CHECK_FALSE(session.is_server_read_only());
+  receive(Durable{server.world.epoch(), server.world.head(), true});
+  CHECK(session.is_server_read_only());
+  receive(Durable{server.world.epoch(), server.world.head(), false});
+  CHECK_FALSE(session.is_server_read_only());
+  receive(Durable{server.world.epoch(), server.world.head(), true});
+  session.disconnected();
+  static_cast<void>(open());
+  CHECK_FALSE(session.is_server_read_only());
+}
+
+TEST_CASE_METHOD(SessionBench, "an edit of this connection that is rejected busy is given up",
                  "[session]") {
   static_cast<void>(open());
   pong();
+  now += 1'000;
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
   static_cast<void>(sent());
   receive(Reject{1, RejectReason::busy, "", 0});

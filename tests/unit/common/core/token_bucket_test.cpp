@@ -55,5 +55,15 @@ TEST_CASE("a token bucket of huge numbers does not overflow", "[core]") {
   CHECK(bucket.is_full(10'000'000'000'000));
 }
 
+TEST_CASE("a slow bucket fills over many hours", "[core]") {
+  TokenBucket bucket(1, 100'000);
+  REQUIRE(bucket.take(100'000, 0));
+  const TimeUs later_us = TimeUs{36'000} * 1'000'000;
+  CHECK_FALSE(bucket.take(36'001, later_us));
+  CHECK(bucket.take(36'000, later_us));
+  CHECK(bucket.wait_us(100'001, later_us) == TokenBucket::kNever);
+  CHECK(bucket.take(100'000, std::numeric_limits<TimeUs>::max()));
+}
+
 }  // namespace
 }  // namespace runstone

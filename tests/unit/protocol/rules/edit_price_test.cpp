@@ -23,7 +23,7 @@ TEST_CASE("an edit costs a unit for each chunk that its box touches", "[rules]")
   CHECK(price(FillBox{{{0, 0, 0}, {4096, 4096, 4096}}}) == kTouchedChunksMax);
 }
 
-TEST_CASE("a paste costs more for each started 256 bytes of its clipboard", "[rules]") {
+TEST_CASE("a paste costs more for each started 64 bytes of its clipboard", "[rules]") {
   const auto paste = [](std::uint32_t runs) {
     ClipboardBuilder cells({128, 1, 128});
     for (std::uint32_t i = 0; i < runs; ++i) cells.append(1, static_cast<Material>(1 + i % 2));
@@ -34,8 +34,8 @@ TEST_CASE("a paste costs more for each started 256 bytes of its clipboard", "[ru
     const Paste shape = paste(runs);
     const EditDescriptor edit{shape, {}, kEmpty};
     const std::uint64_t chunks = edit_price({FillBox{{{0, 0, 0}, {128, 1, 128}}}, {}, 1}, 16, {});
-    CHECK(price(shape) <= chunks + (shape.clipboard->byte_size() + 255) / 256);
-    CHECK(price(shape) > (shape.clipboard->byte_size() - 1) / 256);
+    CHECK(price(shape) <= chunks + (shape.clipboard->byte_size() + 63) / 64);
+    CHECK(price(shape) > (shape.clipboard->byte_size() - 1) / 64);
   }
 }
 

@@ -276,7 +276,7 @@ TEST_CASE("a damaged mark is reported until the loss is accepted", "[store][loss
   {
     const auto store = world_of(folder.path(), StoreAccess::repair);
     CHECK(store->accept_losses()->size() == 1);
-    REQUIRE(store->raise_epoch().has_value());
+    CHECK(*store->raise_epoch() > 10'000);  // nobody knows how many starts are lost
   }
   CHECK(refusal(folder.path()) == "opens");
 }

@@ -22,8 +22,7 @@ struct CheckpointerBench {
 
   void edit(std::int32_t chunk_x, Material material = 1) {
     const EditDescriptor edit{SetVoxel{{chunk_x * 16, 0, 0}}, {}, material};
-    REQUIRE_FALSE(
-        authority.submit({{1, 1, next_client++}, Cause::player, 0, edit}, true).has_value());
+    REQUIRE_FALSE(authority.submit({{1, 1, next_client++}, Cause::player, 0, edit}).has_value());
     (void)authority.commit({0, 0});
   }
   void step(TimeUs now_us = 0) {

@@ -61,6 +61,33 @@ TEST_CASE("a slice that is written when a stop reaches its limit counts, and no 
   CHECK(bench.server.checkpoint() == 0);
 }
 
+TEST_CASE(
+    "every session is told when the disk is full, when it is not, and when it joins meanwhile",
+    "[world]") {
+  WorldBench bench;
+  bench.join(1, 1);
+  bench.join(2, 2);
+  const auto told = [&](SessionId session) {
+    const auto durable = bench.environment.messages<Durable>(session, kEdge);
+    return durable.empty() ? -1 : static_cast<int>(durable.back().is_read_only);
+  };
+  bench.tick();
+  CHECK(told(2) == -1);
+  bench.server.set_disk_is_full(true);
+  bench.tick();
+  CHECK(told(1) == 1);
+  CHECK(told(2) == 1);
+  bench.join(3, 3);
+  bench.tick(1'100'000);
+  CHECK(told(3) == 1);
+  bench.server.set_disk_is_full(false);
+  bench.tick();
+  for (const SessionId session : {1, 2, 3}) CHECK(told(session) == 0);
+  const std::size_t sent = bench.environment.messages<Durable>(1, kEdge).size();
+  bench.tick(1'100'000);
+  CHECK(bench.environment.messages<Durable>(1, kEdge).size() == sent);
+}
+
 TEST_CASE("while the disk is full edits are rejected with that reason, and accepted again later",
           "[world]") {
   WorldBench bench;

@@ -36,6 +36,20 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   CHECK(bench.environment.records.size() == 2);
 }
 
+TEST_CASE("an edit that is rejected busy costs no budget", "[world]") {
+  WorldConfig c = config();
+  c.edit_budget = {1, 2};
+  Bench bench(c);
+  bench.join(1, 1);
+  bench.environment.log_room = false;
+  for (ClientSequence seq = 1; seq <= 5; ++seq) bench.edit(1, seq, kAtOrigin);
+  bench.environment.log_room = true;
+  for (ClientSequence seq = 6; seq <= 8; ++seq) bench.edit(1, seq, kAtOrigin);
+  bench.server.commit(bench.now());
+  CHECK(bench.environment.records.size() == 2);
+  CHECK(bench.environment.messages<Reject>(1, kEdge).back().reason == RejectReason::rate_limited);
+}
+
 TEST_CASE("a player who jumps reaches what is there only as fast as the server believes",
           "[world]") {
   WorldConfig c = config();
