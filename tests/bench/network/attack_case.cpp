@@ -7,13 +7,17 @@
 #include <chrono>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "tests/bench/harness/statistics.hpp"
 #include "tests/bench/network/attack.hpp"
 #include "tests/bench/network/attack_result.hpp"
 #include "tests/bench/network/attack_table.hpp"
+#include "tests/bench/network/echo_probe.hpp"
 #include "tests/bench/network/fleet.hpp"
 #include "tests/bench/network/join_probe.hpp"
 
@@ -21,6 +25,7 @@ namespace runstone::bench {
 namespace {
 
 constexpr double kLook = 0.02;
+constexpr double kEchoesPerSecond = 100;
 constexpr double kStopPatience = 60;  // seconds until a server that was told to stop has failed
 
 /// Returns the reasons in the log lines for ended sessions, such as "timed_out: no message for too
@@ -83,7 +88,11 @@ class AttackRun {
     const double bots_before = fleet->bots().core_seconds();
     std::optional<RunningAttack> attack;
     std::optional<JoinProbe> probe;
+    std::unique_ptr<EchoProbe> echo;
     if (phase == during) {
+      auto started = EchoProbe::start(link_, kEchoesPerSecond);
+      if (!started) return Unexpected<std::string>{started.error()};
+      echo = *std::move(started);
       written_before_kb_ = written_kb();
       attack.emplace(attack_, plan(seconds, options_.seed));
       probe.emplace(server_.port);
@@ -98,6 +107,8 @@ class AttackRun {
     if (phase == during) {
       out_.bot_cores = (fleet->bots().core_seconds() - bots_before) / seconds;
       out_.written_kb = written_kb() - written_before_kb_;
+      const std::vector<double> echoes = echo->stop();
+      if (!echoes.empty()) out_.echo_p99_ms = quantile(echoes, 0.99);
       out_.joins = probe->finish();
       out_.outcome = attack->finish();
       out_.attacker_cores = out_.outcome.core_seconds / seconds;

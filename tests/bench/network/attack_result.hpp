@@ -19,6 +19,8 @@ struct AttackResult {
   std::string name;
   bool is_hostile = true;
   std::array<FleetReport, 3> seen;  // by phase
+  // The round trip of a message to a plain Asio server during the attack: the load of the machine.
+  double echo_p99_ms = 0;
   JoinProbe::Joins joins;
   AttackOutcome outcome;
   // The reasons in the server's log. The log may drop lines.

@@ -52,6 +52,7 @@ void add_figures_of(const AttackResult& result, const AttackResult& quiet,
     add(when + "_server_cores", result.server_cores[phase]);
   }
   add("during_p99_of_quiet", of_quiet(result, quiet));
+  add("during_echo_p99_ms", result.echo_p99_ms);
   add("server_resident_max_mb", result.resident_max_mb);
   add("during_disk_kb_s", disk_kb_s(result, options));
   add("disk_kb_s_per_attacker", disk_kb_s_each(result, quiet, options));
@@ -91,11 +92,11 @@ std::string times(const FleetReport& seen) {
 
 std::string load_row(const AttackResult& result, const AttackResult& quiet,
                      const NetOptions& options) {
-  return fmt::format("| {} | {} | {} | {:.2f} | {:.0f} | {:.0f}, {:.1f} | {:.2f} |\n", result.name,
-                     number_text(result.seen[during].p50_ms),
-                     number_text(result.seen[during].p99_ms), of_quiet(result, quiet),
-                     result.resident_max_mb, disk_kb_s(result, options),
-                     disk_kb_s_each(result, quiet, options), result.stop_s);
+  return fmt::format(
+      "| {} | {} | {} | {:.2f} | {} | {:.0f} | {:.0f}, {:.1f} | {:.2f} |\n", result.name,
+      number_text(result.seen[during].p50_ms), number_text(result.seen[during].p99_ms),
+      of_quiet(result, quiet), number_text(result.echo_p99_ms), result.resident_max_mb,
+      disk_kb_s(result, options), disk_kb_s_each(result, quiet, options), result.stop_s);
 }
 
 std::string builders_row(const AttackResult& result) {
@@ -174,14 +175,16 @@ std::string attack_tables(std::span<const AttackResult> results, const NetOption
   return fmt::format(
       "\n### Attacks\n\n"
       "Loopback: {} bots in one place with {} edits a second each, {} s before, "
-      "during and after an attack of {} clients from {} addresses; a server for each attack. "
+      "during and after an attack of {} clients from {} address(es); a server for each attack. "
       "Latency from when an edit was due until each bot that sees it had received and verified "
       "it. The server is stopped after {} s of a second attack, which goes on meanwhile. "
+      "The echo is the round trip of a message to a plain Asio server in the same seconds: it shows "
+      "the load of the machine. "
       "Disk: bytes written during the first attack; for each attacker, bytes written from the "
       "first attack to the end of the server, less those of the quiet row.\n\n"
-      "| attack | p50 ms | p99 ms | p99, times quiet | server MB, most | "
+      "| attack | p50 ms | p99 ms | p99, times quiet | echo p99 ms | server MB, most | "
       "disk KB/s, each attacker | stop s |\n"
-      "|---|---|---|---|---|---|---|\n"
+      "|---|---|---|---|---|---|---|---|\n"
       "{}\n"
       "| attack | before p50, p99, max ms | during | after | samples, never | "
       "bots disconnected, rules broken | newcomers accepted, slowest ms | "
