@@ -167,9 +167,23 @@ void ServerCore::on_connected(SessionId session) {
 
 void ServerCore::on_message(SessionId session, Message&& message, std::size_t bytes) {
   strand_.post([this, session, message = std::move(message), bytes]() mutable {
-    world_->received(session, std::move(message), read_clocks());
-    if (const auto& net = sessions_.find(session)) net->handled(bytes);
+    messages_.push(session, std::move(message), bytes);
+    schedule_turn();
   });
+}
+
+void ServerCore::schedule_turn() {
+  if (messages_.is_empty() || std::exchange(is_turn_posted_, true)) return;
+  strand_.post([this] {
+    is_turn_posted_ = false;
+    if (auto turn = messages_.next()) handle(*std::move(turn));
+    schedule_turn();
+  });
+}
+
+void ServerCore::handle(MessageTurns::Turn&& turn) {
+  world_->received(turn.session, std::move(turn.message), read_clocks());
+  if (const auto& net = sessions_.find(turn.session)) net->handled(turn.bytes);
 }
 
 void ServerCore::on_drained(SessionId session) {
@@ -180,6 +194,7 @@ void ServerCore::on_disconnected(SessionId session) {
   logger("net").debug("session={} disconnected", session);
   listener_->forget(session);
   strand_.post([this, session] {
+    while (auto turn = messages_.next_of(session)) handle(*std::move(turn));
     world_->disconnected(session);
     sessions_.remove(session);
   });

@@ -21,6 +21,7 @@
 #include "server/runtime/commit_scheduler.hpp"
 #include "server/runtime/connected_sessions.hpp"
 #include "server/runtime/durable_log.hpp"
+#include "server/runtime/message_turns.hpp"
 #include "server/runtime/periodic_task.hpp"
 #include "server/runtime/server_environment.hpp"
 #include "server/runtime/stop_state.hpp"
@@ -88,6 +89,11 @@ class ServerCore final : public NetEvents {
   void tick();
   /// Runs after every task of the world strand.
   void after_task();
+  /// Posts a task that handles the next message, unless none waits or the task is posted already. It
+  /// is posted again while messages wait. Tasks that were posted in between run first, so that later
+  /// messages take part in the turns.
+  void schedule_turn();
+  void handle(MessageTurns::Turn&& turn);
   void finish_stop_if_flushed();
   void write_counters();
 
@@ -98,6 +104,8 @@ class ServerCore final : public NetEvents {
   WorldStrand strand_;
   std::shared_ptr<Listener> listener_;
   ConnectedSessions sessions_;
+  MessageTurns messages_;        // used on the world strand
+  bool is_turn_posted_ = false;  // likewise
   ChunkSource chunks_;
   ChunkSender sender_;
   WorldReaders readers_;

@@ -120,7 +120,11 @@ std::vector<ChunkCoord> touched_chunks(const Paste& paste, std::int32_t edge) {
     return static_cast<std::size_t>(to - from + 1);
   };
   const std::size_t y_side = side(low.y, high.y), z_side = side(low.z, high.z);
-  std::vector<bool> marked(side(low.x, high.x) * y_side * z_side, false);
+  // At least one cell is touched, so a box within one chunk touches it. A box of which every cell is
+  // touched touches all of its chunks. This covers most pastes, and saves the walk over their runs.
+  const bool all_touched =
+      low == high || paste.clipboard->touched() == paste.clipboard->touched_box().extent.volume();
+  std::vector<bool> marked(side(low.x, high.x) * y_side * z_side, all_touched);
   const auto place = [&](ChunkCoord c) {
     return (side(low.x, c.x) - 1) * y_side * z_side + (side(low.y, c.y) - 1) * z_side +
            side(low.z, c.z) - 1;
@@ -135,7 +139,7 @@ std::vector<ChunkCoord> touched_chunks(const Paste& paste, std::int32_t edge) {
   };
   const RunChunk& cells = paste.clipboard->cells();
   const OrderedExtent e = ordered(cells.extent, cells.order);
-  cells.runs.visit([&](const auto& runs) {
+  const auto mark_runs = [&](const auto& runs) {
     std::uint32_t begin = 0;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (runs.material(i) != 0) {
@@ -144,7 +148,8 @@ std::vector<ChunkCoord> touched_chunks(const Paste& paste, std::int32_t edge) {
       }
       begin = runs.end(i);
     }
-  });
+  };
+  if (!all_touched) cells.runs.visit(mark_runs);
   std::vector<ChunkCoord> out;
   for (ChunkCoord c = low; c.x <= high.x; ++c.x) {
     for (c.y = low.y; c.y <= high.y; ++c.y) {

@@ -1,6 +1,7 @@
 // Attack: a way in which hostile clients misuse a server: a name, and the behaviour of one
 // connection. Each attack is bounded in connections and time and ends by itself.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -16,7 +17,10 @@ struct Attack {
   const char* name;
   const char* what;                    // a description for readers
   void (*play)(AttackThread& thread);  // one thread of the attack, until its time is over
+  bool is_hostile = true;              // false: a row to compare with
 };
+/// The attack in which nobody attacks. The other rows are compared with it.
+inline constexpr const char* kQuiet = "quiet";
 /// Returns all attacks, by name.
 std::span<const Attack> all_attacks();
 
@@ -34,23 +38,34 @@ struct AttackOutcome {
   void merge(const AttackOutcome& other);
 };
 
+/// The size of an attack.
+struct AttackPlan {
+  std::uint16_t port = 0;  // of the server
+  unsigned clients = 1;    // threads; each has one connection, or many if the attack needs many
+  unsigned addresses = 1;  // of which each thread has one
+  double seconds = 0;
+  std::uint64_t seed = 0;
+};
+
 /// A running attack by several clients, each on a thread of its own. The threads have the lowest
 /// priority. So the latency of the bots shows the load of the server, and not the cores that
 /// attackers on the same machine use.
 class RunningAttack {
  public:
-  /// Starts `clients` threads. Each has one connection, or many if the attack needs many.
-  RunningAttack(const Attack& attack, std::uint16_t port, unsigned clients, double seconds,
-                std::uint64_t seed);
-  /// Waits for the end of the attack.
+  /// Starts the threads.
+  RunningAttack(const Attack& attack, const AttackPlan& plan);
+  /// Ends the attack.
   ~RunningAttack();
   RunningAttack(const RunningAttack&) = delete;
   RunningAttack& operator=(const RunningAttack&) = delete;
-  /// Waits for the end of the attack, which comes soon after its seconds are over or the testbed is
-  /// interrupted. Call it once.
+  /// Ends the attack soon, before its seconds are over.
+  void stop() { is_stopped_ = true; }
+  /// Waits for the end of the attack, which comes soon after its seconds are over, after
+  /// stop(), or after the testbed is interrupted. Call it once.
   AttackOutcome finish();
 
  private:
+  std::atomic<bool> is_stopped_{false};
   std::vector<AttackOutcome> outcomes_;  // by thread
   std::vector<std::thread> threads_;
 };

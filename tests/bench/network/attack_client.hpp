@@ -20,9 +20,9 @@ class AttackClient {
   /// 127.0.0.0/8). `receive_bytes` is the size of the socket's buffer; 0 leaves it to the kernel.
   AttackClient(std::uint16_t port, std::uint32_t from, int receive_bytes = 0);
 
-  /// Performs the handshake with a key drawn from `identity`, as this instance. It offers commands. It does not offer
-  /// receive acknowledgements, so that the server does not pace what it sends. Returns false if the
-  /// server ended the connection, or after `wait_ms`.
+  /// Performs the handshake with a key drawn from `identity`, as this instance. It offers commands.
+  /// It does not offer receive acknowledgements, so that the server does not pace what it sends.
+  /// Returns false if the server ended the connection, or after `wait_ms`.
   bool open_session(std::uint64_t identity, ClientInstance instance, int wait_ms);
 
   /// Queues a message; flush() sends. Bytes are sent unchanged, outside of any frame.

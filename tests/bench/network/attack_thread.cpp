@@ -15,15 +15,18 @@ constexpr int kSmallBuffer = 4 * 1024;
 
 }  // namespace
 
-AttackThread::AttackThread(std::uint16_t port, unsigned index, double seconds, std::uint64_t seed)
-    : port_(port),
+AttackThread::AttackThread(const AttackPlan& plan, unsigned index,
+                           const std::atomic<bool>& is_stopped)
+    : port_(plan.port),
       index_(index),
+      address_(kAttackers + index % plan.addresses),
+      is_stopped_(is_stopped),
       began_(Clock::now()),
-      ends_(began_ +
-            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))),
-      random_(mix64(seed + index)) {}
+      ends_(began_ + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(plan.seconds))),
+      random_(mix64(plan.seed + index)) {}
 
-bool AttackThread::is_over() const { return Clock::now() >= ends_ || interrupted(); }
+bool AttackThread::is_over() const { return Clock::now() >= ends_ || is_stopped_ || interrupted(); }
 
 double AttackThread::seconds() const {
   return std::chrono::duration<double>(Clock::now() - began_).count();
@@ -40,7 +43,7 @@ std::unique_ptr<AttackClient> AttackThread::connect(std::uint32_t from, int rece
 }
 
 std::unique_ptr<AttackClient> AttackThread::join(int receive_bytes) {
-  auto client = connect(kAttackers, receive_bytes);
+  auto client = connect(address_, receive_bytes);
   if (client == nullptr || client->open_session(random_.next(), 1, kJoinMsMax)) return client;
   end(*client);
   pause_ms(kAgainMs);

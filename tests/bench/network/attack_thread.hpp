@@ -1,6 +1,7 @@
 // AttackThread: the state of each thread of an attack: its time, its random numbers, its
 // connections and their outcomes.
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -20,12 +21,15 @@ inline constexpr double kJustBelowFlooding = 9'000;
 class AttackThread {
  public:
   static constexpr std::uint32_t kLoopback = 0x7F000001;      // 127.0.0.1: of the honest clients
-  static constexpr std::uint32_t kAttackers = kLoopback + 1;  // 127.0.0.2
+  static constexpr std::uint32_t kAttackers = kLoopback + 1;  // 127.0.0.2 and following
   static constexpr unsigned kConnectionsMax = 20'000;         // of each thread
 
-  AttackThread(std::uint16_t port, unsigned index, double seconds, std::uint64_t seed);
+  /// `is_stopped` ends the attack early. It must outlive the thread.
+  AttackThread(const AttackPlan& plan, unsigned index, const std::atomic<bool>& is_stopped);
 
   unsigned index() const { return index_; }
+  /// Returns the rate of a flood of messages: every second thread stays below the server's limit.
+  double flood_rate() const { return index_ % 2 == 0 ? kJustBelowFlooding : kNoLimit; }
   SplitMix64& random() { return random_; }
   bool is_over() const;
   double seconds() const;  // since it began
@@ -33,7 +37,7 @@ class AttackThread {
 
   /// Returns a new connection, or null if the attack is over or has used its connections.
   std::unique_ptr<AttackClient> connect(std::uint32_t from = kAttackers, int receive_bytes = 0);
-  /// Returns a new connection with a session. Returns null after a pause if the server rejected it.
+  /// Returns a new connection with a session, from the thread's address. Returns null after a pause if the server rejected it.
   std::unique_ptr<AttackClient> join(int receive_bytes = 0);
   /// Records the ending of a connection.
   void end(AttackClient& client);
@@ -50,8 +54,13 @@ class AttackThread {
   using Clock = std::chrono::steady_clock;
   const std::uint16_t port_;
   const unsigned index_;
+  const std::uint32_t address_;
+  const std::atomic<bool>& is_stopped_;
   const Clock::time_point began_, ends_;
   SplitMix64 random_;
 };
+
+/// A step that does nothing.
+inline void say_nothing(AttackClient& /*client*/) {}
 
 }  // namespace runstone::bench

@@ -69,6 +69,10 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--attackers", options.attackers, "hostile clients, or threads that make many")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  net->add_option("--attacker-addresses", options.attacker_addresses,
+                  "addresses that they come from; a server limits edits by address too")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
   net->add_option("--attack-bots", options.attack_bots, "honest clients under attack")
       ->capture_default_str()
       ->check(CLI::Range(1, 200));

@@ -26,7 +26,8 @@ struct NetOptions {
   double fleet_seconds = 20;
   std::vector<std::string> attacks;  // empty: all
   double attack_seconds = 8;         // of each attack, and of the phases before and after it
-  unsigned attackers = 8;            // threads with a hostile client each
+  unsigned attackers = 24;           // threads with a hostile client each
+  unsigned attacker_addresses = 1;   // that they come from
   unsigned attack_bots = 20;         // honest clients under attack
   std::uint64_t seed = 1;
   bool quick = false;

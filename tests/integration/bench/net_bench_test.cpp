@@ -121,13 +121,15 @@ TEST_CASE(
     "rule",
     "[testbed]") {
   std::string tables;
-  const json testbed =
-      run_testbed({"--experiments", "attack", "--attacks",
-                   "absurd-views,byte-a-second,claims,half-open,unread-pings,views",
-                   "--attack-seconds", "1", "--attackers", "2", "--attack-bots", "3"},
-                  tables);
+  const json testbed = run_testbed(
+      {"--experiments", "attack", "--attacks",
+       "absurd-views,byte-a-second,chunk-requests,claims,half-open,spread-views,teleports,"
+       "tiny-chunks,unread-pings,views",
+       "--attack-seconds", "1", "--attackers", "2", "--attack-bots", "3"},
+      tables);
   for (const char* attack :
-       {"absurd-views", "byte-a-second", "claims", "half-open", "unread-pings", "views"}) {
+       {"quiet", "absurd-views", "byte-a-second", "chunk-requests", "claims", "half-open",
+        "spread-views", "teleports", "tiny-chunks", "unread-pings", "views"}) {
     for (const std::string phase : {"before", "during", "after"}) {
       CAPTURE(attack, phase);
       CHECK(figure(testbed, "attack", attack, phase + "_samples") > 0);
@@ -138,7 +140,18 @@ TEST_CASE(
     }
     CHECK(figure(testbed, "attack", attack, "joins_open") ==
           figure(testbed, "attack", attack, "joins_tried"));
+    CHECK(figure(testbed, "attack", attack, "server_resident_max_mb") >=
+          figure(testbed, "attack", attack, "during_server_resident_mb"));
+    CHECK(figure(testbed, "attack", attack, "during_disk_kb_s") > 0);
+    CHECK(figure(testbed, "attack", attack, "disk_kb_s_per_attacker") >= 0);
+    CHECK(figure(testbed, "attack", attack, "stop_s") > 0);
   }
+  CHECK(figure(testbed, "attack", "quiet", "during_p99_of_quiet") == 1);
+  CHECK(figure(testbed, "attack", "quiet", "attacker_connections") == 0);
+  CHECK(figure(testbed, "attack", "teleports", "attacker_received_mb") > 0);
+  CHECK(figure(testbed, "attack", "spread-views", "attacker_received_mb") > 0);
+  CHECK(figure(testbed, "attack", "tiny-chunks", "disk_kb_s_per_attacker") > 0);
+  CHECK(testbed["bars"].size() == 5);
   CHECK(figure(testbed, "attack", "absurd-views", "told malformed_message") > 0);
   CHECK(figure(testbed, "attack", "absurd-views", "logged malformed_message") > 0);
   CHECK(figure(testbed, "attack", "claims", "told flooding") > 0);

@@ -1,0 +1,61 @@
+// The order in which the messages of sessions reach the world.
+#include "server/runtime/message_turns.hpp"
+
+#include <catch2/catch.hpp>
+#include <utility>
+#include <vector>
+
+using namespace runstone;
+
+namespace {
+
+/// A session and the number in its ping.
+using SentPing = std::pair<SessionId, TimeUs>;
+
+SentPing ping_of(const MessageTurns::Turn& turn) {
+  return {turn.session, std::get<Ping>(turn.message).sent_us};
+}
+
+std::vector<SentPing> all_turns(MessageTurns& turns) {
+  std::vector<SentPing> out;
+  while (const auto turn = turns.next()) out.push_back(ping_of(*turn));
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a session waits for one message of each other session, however many they sent",
+          "[server]") {
+  MessageTurns turns;
+  CHECK(turns.is_empty());
+  CHECK_FALSE(turns.next());
+  for (TimeUs i = 0; i < 4; ++i) turns.push(2, Ping{i}, 8);
+  for (TimeUs i = 0; i < 3; ++i) turns.push(7, Ping{i}, 8);
+  turns.push(5, Ping{0}, 8);
+  CHECK(all_turns(turns) ==
+        std::vector<SentPing>{{2, 0}, {5, 0}, {7, 0}, {2, 1}, {7, 1}, {2, 2}, {7, 2}, {2, 3}});
+  CHECK(turns.is_empty());
+}
+
+TEST_CASE("a message that comes later waits for no second turn of another session", "[server]") {
+  MessageTurns turns;
+  for (TimeUs i = 0; i < 4; ++i) turns.push(2, Ping{i}, 8);
+  REQUIRE(turns.next());
+  turns.push(1, Ping{0}, 8);
+  CHECK(all_turns(turns) == std::vector<SentPing>{{1, 0}, {2, 1}, {2, 2}, {2, 3}});
+}
+
+TEST_CASE("the messages of a session that ends are taken in their order", "[server]") {
+  MessageTurns turns;
+  for (TimeUs i = 0; i < 2; ++i) {
+    turns.push(2, Ping{i}, 8);
+    turns.push(3, Ping{i}, 16);
+  }
+  const auto first = turns.next_of(3), second = turns.next_of(3);
+  REQUIRE((first && second));
+  CHECK(ping_of(*first) == SentPing{3, 0});
+  CHECK(first->bytes == 16);
+  CHECK(ping_of(*second) == SentPing{3, 1});
+  CHECK_FALSE(turns.next_of(3));
+  CHECK(all_turns(turns) == std::vector<SentPing>{{2, 0}, {2, 1}});
+}
