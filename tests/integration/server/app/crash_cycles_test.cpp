@@ -7,6 +7,8 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <sstream>
+#include <string>
 
 #include "tests/integration/server/app/honest_builder.hpp"
 #include "tests/integration/server/app/hostile_clients.hpp"
@@ -108,6 +110,13 @@ struct CrashTally {
   bool is_sound() const {
     return failed_starts == 0 && lost == 0 && repeated == 0 && error.empty();
   }
+  std::string summary() const {
+    std::ostringstream out;
+    out << cycles << " cycles, " << durable << " durable edits, of them " << mine
+        << " of the builder, " << hostile << " hostile edits in the log, " << lost << " lost, "
+        << repeated << " repeated, " << failed_starts << " failed starts";
+    return out.str();
+  }
 };
 
 /// Lets the servers of one world die `cycles` times, or until something is wrong.
@@ -164,10 +173,7 @@ void crash_cycles(const char* how, int cycles) {
   }
   const auto seconds =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - begin);
-  WARN(how << ": " << tally.cycles << " cycles, " << tally.durable << " durable edits, of them "
-           << tally.mine << " of the builder, " << tally.hostile << " hostile edits in the log, "
-           << tally.lost << " lost, " << tally.repeated << " repeated, " << tally.failed_starts
-           << " failed starts, " << seconds.count() << " s");
+  WARN(how << ": " << tally.summary() << ", " << seconds.count() << " s");
   CHECK(tally.error.empty());
   CHECK(tally.failed_starts == 0);
   CHECK(tally.lost == 0);
@@ -206,6 +212,7 @@ TEST_CASE("the power losses under attack are detected as losses if the disk igno
     world.ignore_syncs();
     live_and_die(world, kShortCycles, random, tally);
   }
+  WARN("no syncs: " << tally.summary() << (tally.error.empty() ? "" : ", a log cannot be read"));
   CHECK_FALSE(tally.is_sound());
 }
 

@@ -34,12 +34,15 @@ class HostileClients {
 
   void attack(std::uint16_t port, std::uint8_t n, SplitMix64 random) const {
     RawClient client(port, INADDR_LOOPBACK + 1 + n);
-    if (!client.join(static_cast<std::uint8_t>(kFirstKey + n))) return;
+    // A new instance each time: the server has resolved the sequences of the last one.
+    const ClientInstance instance = 1'000 + random.below(1'000'000'000);
+    if (!client.join(static_cast<std::uint8_t>(kFirstKey + n), instance)) return;
     const auto clipboard = n % 2 == 0 ? long_clipboard() : nullptr;
     for (ClientSequence seq = 1; !is_over_ && client.is_open(); ++seq) {
       client.send(
           EditRequest{seq, 0, clipboard ? far_paste(clipboard, n, random) : wide_box(random)});
-      while (client.next(kReadMs)) {
+      // Not all that arrives: reports about the edits of others would end the attack.
+      for (int read = 0; read < kReadsMax && client.next(kReadMs); ++read) {
       }
     }
   }
@@ -70,7 +73,7 @@ class HostileClients {
             static_cast<Material>(random.between(1, 4))};
   }
 
-  static constexpr int kReadMs = 2;
+  static constexpr int kReadMs = 2, kReadsMax = 8;
   std::atomic<bool> is_over_{false};
   std::vector<std::thread> threads_;
 };
