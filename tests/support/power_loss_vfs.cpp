@@ -44,6 +44,24 @@ struct PowerLossCalls {
     from.erase(std::remove(from.begin(), from.end(), what), from.end());
   }
 
+  /// A call for SQLite that holds the mutex of its VFS.
+  template <auto Function>
+  struct Locked;
+  template <class... Args, int (*Function)(sqlite3_file*, Args...)>
+  struct Locked<Function> {
+    static int call(sqlite3_file* file, Args... args) {
+      const std::lock_guard guard(of(file).vfs->mutex_);
+      return Function(file, args...);
+    }
+  };
+  template <class... Args, int (*Function)(sqlite3_vfs*, Args...)>
+  struct Locked<Function> {
+    static int call(sqlite3_vfs* vfs, Args... args) {
+      const std::lock_guard guard(of(vfs).mutex_);
+      return Function(vfs, args...);
+    }
+  };
+
   static int open(sqlite3_vfs* vfs, const char* name, sqlite3_file* out, int flags,
                   int* out_flags) {
     PowerLossVfs& self = of(vfs);
@@ -139,6 +157,7 @@ struct PowerLossCalls {
     if (!handle.alive() || !handle.vfs->operate()) return SQLITE_IOERR_FSYNC;
     if (std::exchange(handle.vfs->fail_sync_, false)) return SQLITE_IOERR_FSYNC;
     ++handle.vfs->syncs_;
+    if (handle.vfs->ignore_syncs_) return SQLITE_OK;
     for (const Change& change : handle.file->pending)
       PowerLossVfs::apply(change, handle.file->durable);
     handle.file->pending.clear();
@@ -243,22 +262,22 @@ struct PowerLossCalls {
     static const sqlite3_io_methods table = [] {
       sqlite3_io_methods m{};
       m.iVersion = 2;
-      m.xClose = close;
-      m.xRead = read;
-      m.xWrite = write;
-      m.xTruncate = truncate;
-      m.xSync = sync;
-      m.xFileSize = size;
-      m.xLock = lock;
-      m.xUnlock = unlock;
-      m.xCheckReservedLock = check_reserved;
-      m.xFileControl = control;
-      m.xSectorSize = sector_size;
-      m.xDeviceCharacteristics = characteristics;
-      m.xShmMap = shm_map;
-      m.xShmLock = shm_lock;
+      m.xClose = Locked<close>::call;
+      m.xRead = Locked<read>::call;
+      m.xWrite = Locked<write>::call;
+      m.xTruncate = Locked<truncate>::call;
+      m.xSync = Locked<sync>::call;
+      m.xFileSize = Locked<size>::call;
+      m.xLock = Locked<lock>::call;
+      m.xUnlock = Locked<unlock>::call;
+      m.xCheckReservedLock = Locked<check_reserved>::call;
+      m.xFileControl = Locked<control>::call;
+      m.xSectorSize = Locked<sector_size>::call;
+      m.xDeviceCharacteristics = Locked<characteristics>::call;
+      m.xShmMap = Locked<shm_map>::call;
+      m.xShmLock = Locked<shm_lock>::call;
       m.xShmBarrier = shm_barrier;
-      m.xShmUnmap = shm_unmap;
+      m.xShmUnmap = Locked<shm_unmap>::call;
       return m;
     }();
     return &table;
@@ -274,15 +293,17 @@ PowerLossVfs::PowerLossVfs() : vfs_(std::make_unique<sqlite3_vfs>()) {
   vfs_->pNext = nullptr;
   vfs_->zName = name_.c_str();
   vfs_->pAppData = this;
-  vfs_->xOpen = PowerLossCalls::open;
-  vfs_->xDelete = PowerLossCalls::remove;
-  vfs_->xAccess = PowerLossCalls::access;
-  vfs_->xFullPathname = PowerLossCalls::full_path;
+  vfs_->xOpen = PowerLossCalls::Locked<PowerLossCalls::open>::call;
+  vfs_->xDelete = PowerLossCalls::Locked<PowerLossCalls::remove>::call;
+  vfs_->xAccess = PowerLossCalls::Locked<PowerLossCalls::access>::call;
+  vfs_->xFullPathname = PowerLossCalls::Locked<PowerLossCalls::full_path>::call;
   const int registered = sqlite3_vfs_register(vfs_.get(), 0);
   RUNSTONE_ASSERT(registered == SQLITE_OK);
 }
 
 PowerLossVfs::~PowerLossVfs() { sqlite3_vfs_unregister(vfs_.get()); }
+
+void PowerLossVfs::make_default() { sqlite3_vfs_register(vfs_.get(), 1); }
 
 bool PowerLossVfs::operate() {
   if (cut_) return false;
@@ -303,6 +324,7 @@ void PowerLossVfs::apply(const Change& change, Bytes& to) {
 }
 
 void PowerLossVfs::power_loss(SplitMix64& chance) {
+  const std::lock_guard guard(mutex_);
   ++generation_;
   cut_ = false;
   cut_at_ = ~std::uint64_t{0};
@@ -353,6 +375,7 @@ void PowerLossVfs::power_loss(SplitMix64& chance) {
 }
 
 Bytes PowerLossVfs::contents(const std::string& path) const {
+  const std::lock_guard guard(mutex_);
   const auto found = live_names_.find(path);
   return found == live_names_.end() ? Bytes() : found->second->live;
 }

@@ -1,17 +1,12 @@
 // The server is killed with kill -9. Edits that were acknowledged as durable are kept, others are
 // offered again, and none is applied twice.
-#include <poll.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
 #include <thread>
 
 #include "tests/integration/server/app/raw_client.hpp"
-#include "tests/integration/server/app/server_bench.hpp"
+#include "tests/integration/server/app/server_process.hpp"
 #include "tests/support/crash_image.hpp"
 
 namespace runstone::test {
@@ -19,7 +14,6 @@ namespace {
 
 constexpr ClientSequence kCrashEdits = 4'000;
 constexpr ClientInstance kInstance = 33;
-constexpr int kStartMs = 60'000;
 
 /// Each edit sets another voxel of the chunk at the origin, above and below ground.
 VoxelPos place_of(ClientSequence seq) {
@@ -36,56 +30,13 @@ ServerConfig crash_config(const std::string& world) {
   return config;
 }
 
-/// A server in another process, which can be killed. Requires that this process has no second
-/// thread yet: a lock that such a thread holds at the fork stays locked in the child. So only the
-/// child starts to log.
-class ServerProcess {
- public:
-  explicit ServerProcess(const std::string& world) {
-    int ends[2];
-    REQUIRE(::pipe(ends) == 0);
-    child_ = ::fork();
-    REQUIRE(child_ >= 0);
-    if (child_ == 0) {
-      ::close(ends[0]);
-      auto server = Server::start(crash_config(world), flat_creation());
-      const std::uint16_t port = server ? (*server)->port() : 0;
-      if (::write(ends[1], &port, sizeof port) != sizeof port) ::_exit(1);
-      for (;;) ::pause();
-    }
-    ::close(ends[1]);  // so that the wait for the port ends if the child ends
-    pollfd port_is_known{ends[0], POLLIN, 0};
-    const bool has_port =
-        ::poll(&port_is_known, 1, kStartMs) > 0 &&
-        ::read(ends[0], &port_, sizeof port_) == static_cast<ssize_t>(sizeof port_);
-    ::close(ends[0]);
-    if (!has_port || port_ == 0) kill();
-    REQUIRE(has_port);
-    REQUIRE(port_ != 0);
-  }
-  ~ServerProcess() { kill(); }
-  ServerProcess(const ServerProcess&) = delete;
-  ServerProcess& operator=(const ServerProcess&) = delete;
-
-  std::uint16_t port() const { return port_; }
-  void kill() {
-    if (child_ <= 0) return;
-    ::kill(child_, SIGKILL);
-    ::waitpid(child_, nullptr, 0);
-    child_ = -1;
-  }
-
- private:
-  pid_t child_ = -1;
-  std::uint16_t port_ = 0;
-};
-
 TEST_CASE("after kill -9 durable edits are kept, and the others, offered again, are applied once",
           "[integration]") {
   const TempFolder folder;
   Sequence durable = 0;
   {
-    ServerProcess process(folder / "world");
+    ServerProcess process([&] { return crash_config(folder / "world"); });
+    REQUIRE(process.port() != 0);
     RawClient client(process.port());
     REQUIRE(client.join(1, kInstance).has_value());
     for (ClientSequence seq = 1; seq <= kCrashEdits; ++seq) client.send(edit(seq));

@@ -26,12 +26,13 @@ namespace runstone::test {
 
 class RawClient {
  public:
-  explicit RawClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    is_open_ = ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  /// Connects to a server on this machine from the IPv4 address `from` (host order, of
+  /// 127.0.0.0/8).
+  explicit RawClient(std::uint16_t port, std::uint32_t from = INADDR_LOOPBACK)
+      : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    const sockaddr_in here = endpoint(from, 0), there = endpoint(INADDR_LOOPBACK, port);
+    is_open_ = ::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 &&
+               ::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
     const timeval deadline{kSendSeconds, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof deadline);
   }
@@ -146,6 +147,14 @@ class RawClient {
 
  private:
   static constexpr time_t kSendSeconds = 60;
+
+  static sockaddr_in endpoint(std::uint32_t address, std::uint16_t port) {
+    sockaddr_in out{};
+    out.sin_family = AF_INET;
+    out.sin_port = htons(port);
+    out.sin_addr.s_addr = htonl(address);
+    return out;
+  }
 
   bool read_some(int deadline_ms) {
     if (!is_open_) return false;

@@ -1,0 +1,105 @@
+// HonestBuilder: a client that builds while its server dies again and again. It stays below its
+// edit budget, remembers which of its edits the server reported as durable, and offers all others
+// again to the next server. audit() looks for the durable edits in the log.
+#pragma once
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "server/store/store.hpp"
+#include "tests/integration/server/app/raw_client.hpp"
+
+namespace runstone::test {
+
+class HonestBuilder {
+ public:
+  /// Connects to a server that has just started. Requires that the server lets the client in.
+  void join(std::uint16_t port) {
+    client_ = std::make_unique<RawClient>(port);
+    const auto accepted = client_->join(kKey, kInstance);
+    REQUIRE(accepted.has_value());
+    author_ = accepted->author;
+    ordered_.erase(ordered_.upper_bound(durable_), ordered_.end());
+    next_ = ordered_.empty() ? 1 : ordered_.rbegin()->second.seq + 1;
+  }
+  /// Offers again what may be lost, and builds a voxel each millisecond.
+  void build(std::chrono::milliseconds time) {
+    using std::chrono::steady_clock;
+    const auto begin = steady_clock::now();
+    const ClientSequence offered = offered_;
+    for (auto now = begin; now < begin + time && client_->is_open(); now = steady_clock::now()) {
+      const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - begin);
+      offered_ = offered + 1 + static_cast<ClientSequence>(elapsed.count());
+      for (; next_ <= offered_; ++next_) client_->send(EditRequest{next_, 0, edit_of(next_)});
+      if (const auto message = client_->next(kReadMs)) take(*message);
+    }
+  }
+  /// Reads what the server sent before it died.
+  void read_rest() {
+    while (const auto message = client_->next()) take(*message);
+    client_.reset();
+  }
+
+  /// Returns the highest sequence that was reported as durable.
+  Sequence durable() const { return durable_; }
+
+  struct Audit {
+    std::uint64_t lost = 0;      // durable edits that the log lacks or has changed
+    std::uint64_t repeated = 0;  // operations that the log holds once more
+    std::uint64_t mine = 0;      // durable edits of this builder
+    std::uint64_t others = 0;    // edits of other clients
+    std::string error;           // why the log cannot be read; empty: it was read
+  };
+  /// Compares the log of a world that no server runs with what was reported as durable.
+  Audit audit(const std::string& folder) const {
+    Audit found;
+    const auto store = open_world(folder, StoreAccess::read_only);
+    if (!store) return {durable_, 0, 0, 0, store.error().message()};
+    const auto last = (*store)->last_sequence();
+    if (!last) return {durable_, 0, 0, 0, last.error().message()};
+    if (*last < durable_) found.lost = durable_ - *last;
+    std::set<OperationId> seen;
+    const auto read = (*store)->read_log(1, *last, [&](const EditRecord& record) {
+      if (!seen.insert(record.op).second) ++found.repeated;
+      if (record.op.instance != kInstance) ++found.others;
+      const auto mine = ordered_.find(record.version.seq);
+      if (mine == ordered_.end() || mine->first > durable_) return true;
+      ++found.mine;
+      if (record.op != mine->second || record.edit != edit_of(record.op.seq)) ++found.lost;
+      return true;
+    });
+    if (!read) found.error = read.error().message();
+    return found;
+  }
+
+ private:
+  static constexpr std::uint8_t kKey = 1;
+  static constexpr ClientInstance kInstance = 33;
+  static constexpr int kReadMs = 2;
+
+  /// Each edit sets another voxel near the origin.
+  static EditDescriptor edit_of(ClientSequence seq) {
+    const auto n = static_cast<std::int32_t>(seq);
+    return {SetVoxel{{n % 64, n / 4096, n / 64 % 64}}, {}, static_cast<Material>(1 + seq % 5)};
+  }
+
+  void take(const Message& message) {
+    if (const auto* durable = std::get_if<Durable>(&message)) durable_ = durable->seq;
+    const auto* commit = std::get_if<Commit>(&message);
+    if (commit == nullptr) return;
+    for (const OrderedEdit& edit : commit->edits) {
+      if (edit.op.author == author_) ordered_[edit.seq] = edit.op;
+    }
+  }
+
+  std::unique_ptr<RawClient> client_;
+  AuthorId author_ = 0;
+  ClientSequence next_ = 1;     // the next one to send
+  ClientSequence offered_ = 0;  // the last one that was ever sent
+  Sequence durable_ = 0;
+  std::map<Sequence, OperationId> ordered_;  // this builder's edits in the log
+};
+
+}  // namespace runstone::test

@@ -1,0 +1,91 @@
+// ServerProcess: a server in another process, which can be killed.
+#pragma once
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <functional>
+
+#include "tests/integration/server/app/server_bench.hpp"
+
+namespace runstone::test {
+
+class ServerProcess {
+ public:
+  /// Starts a server and waits until it has a port or has ended. `config` is called in the new
+  /// process. Requires that this process has no second thread: a lock that such a thread holds at
+  /// the fork stays locked in the child. So only the child starts to log.
+  explicit ServerProcess(const std::function<ServerConfig()>& config) {
+    int ends[2];
+    REQUIRE(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
+    child_ = ::fork();
+    REQUIRE(child_ >= 0);
+    if (child_ == 0) {
+      ::close(ends[0]);
+      ::_exit(run(config, ends[1]));
+    }
+    ::close(ends[1]);  // so that the wait for the port ends if the child ends
+    parent_end_ = ends[0];
+    pollfd port_is_known{parent_end_, POLLIN, 0};
+    if (::poll(&port_is_known, 1, kStartMs) <= 0 ||
+        ::read(parent_end_, &port_, sizeof port_) != static_cast<ssize_t>(sizeof port_)) {
+      port_ = 0;
+    }
+  }
+  ~ServerProcess() { kill(); }
+  ServerProcess(const ServerProcess&) = delete;
+  ServerProcess& operator=(const ServerProcess&) = delete;
+
+  /// Returns 0 if the server did not start.
+  std::uint16_t port() const { return port_; }
+  /// Kills the process as `kill -9` does. It may be called again.
+  void kill() {
+    if (child_ <= 0) return;
+    ::kill(child_, SIGKILL);
+    wait();
+  }
+  /// Stops the server in order. Returns true if every edit is in the log. Call it at most once.
+  bool stop() {
+    ::shutdown(parent_end_, SHUT_WR);
+    return wait() == 0;
+  }
+
+ private:
+  static constexpr int kStartMs = 60'000;
+
+  /// Runs a server in the child until the parent ends or closes its end of the socket. Returns the
+  /// child's exit code.
+  static int run(const std::function<ServerConfig()>& config, int socket) {
+    const ServerConfig values = config();
+    start_logging(values.log_level);
+    auto server = Server::start(values, flat_creation());
+    if (!server) {
+      std::fprintf(stderr, "%s\n", server.error().c_str());
+      return 1;
+    }
+    const std::uint16_t port = (*server)->port();
+    if (::write(socket, &port, sizeof port) != static_cast<ssize_t>(sizeof port)) return 1;
+    char end = 0;
+    static_cast<void>(::read(socket, &end, 1) == 0);
+    return (*server)->stop().state.is_durable() ? 0 : 1;
+  }
+
+  /// Waits until the child has ended, and returns its status.
+  int wait() {
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    ::close(parent_end_);
+    child_ = -1;
+    return status;
+  }
+
+  pid_t child_ = -1;
+  int parent_end_ = -1;
+  std::uint16_t port_ = 0;
+};
+
+}  // namespace runstone::test
