@@ -308,6 +308,7 @@ TEST_CASE_METHOD(
   receive(server.world.commit(session.operation(1), edit));
   REQUIRE(session.replica().local_edits().find(1)->state == LocalEditState::confirmed);
   session.disconnected();
+  now += 1'000;
   // The server ended before the edit was on disk.
   server.world = runstone::test::AuthorityModel{kEdge, 4};
   static_cast<void>(open());

@@ -9,7 +9,15 @@ namespace {
 
 using namespace test;
 
+WorldConfig without_view_interval() {
+  WorldConfig c = config();
+  c.view_interval_us = 0;
+  return c;
+}
+
 struct HistoryBench : WorldBench {
+  explicit HistoryBench(const WorldConfig& c = without_view_interval()) : WorldBench(c) {}
+
   void go_to(SessionId session, std::uint32_t request, Sequence seq) {
     server.received(session, HistoryRequest{request, HistoryTarget::sequence, seq, 0}, now());
   }
@@ -76,6 +84,33 @@ TEST_CASE("few history requests are opened at a time, and of each session only t
     CHECK(moments[0] == ViewState{1, 1, ViewPhase::begins, true, 5, 1000, ""});
     CHECK(moments[1] == ViewState{1, 1, ViewPhase::complete, true, 5, 1000, ""});
   }
+}
+
+TEST_CASE("the moments of a session take effect as far apart as its views, the live world too",
+          "[world]") {
+  WorldConfig c = config();
+  c.view_interval_us = 200'000;
+  HistoryBench bench(c);
+  bench.join(1, 1);
+  bench.view(1, kSmall);
+  bench.go_to(1, 1, 5);
+  bench.open_one();
+  bench.load_all();
+  const std::size_t seen = bench.states(1).size();
+  for (std::uint32_t request = 2; request < 9; ++request) {
+    const bool is_live = request % 2 == 0;
+    bench.server.received(
+        1, HistoryRequest{request, is_live ? HistoryTarget::live : HistoryTarget::sequence, 0, 0},
+        bench.now());
+  }
+  bench.server.received(1, HistoryRequest{9, HistoryTarget::live, 0, 0}, bench.now());
+  bench.tick(199'999);
+  CHECK(bench.environment.history_requests.empty());
+  CHECK(bench.states(1).size() == seen);
+  bench.tick(1);
+  bench.answer_loads();
+  REQUIRE(bench.states(1).size() == seen + 2);
+  CHECK(bench.states(1).back() == ViewState{9, 1, ViewPhase::complete, false, 0, 0, ""});
 }
 
 TEST_CASE("a session in the past gets no commits, and gets the current world when it returns",
