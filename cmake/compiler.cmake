@@ -38,6 +38,8 @@ if(RUNSTONE_SANITIZE)
   # x86-64 that set is AVX2, which Highway selects only with all of these flags. Without them it
   # would be the scalar set, and no vector code would be checked.
   add_compile_definitions(HWY_COMPILE_ONLY_STATIC)
+  # For tests whose figures or times a sanitizer changes.
+  add_compile_definitions(RUNSTONE_SANITIZED)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
     add_compile_options(-mavx2 -mbmi -mbmi2 -mfma -mf16c -mlzcnt -maes -mpclmul)
   endif()

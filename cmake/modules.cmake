@@ -4,7 +4,7 @@
 # EXCLUDE is a regular expression of paths that are left out.
 # A module inside another one's folder is declared first and keeps its sources to itself.
 #
-# With CMAKE_UNITY_BUILD, as in the presets release, asan and fuzz, the sources of a module are
+# With CMAKE_UNITY_BUILD, as in the presets release, asan, fuzz and tsan, the sources of a module are
 # compiled together, because their headers cost most of the time. SINGLE keeps them apart: in the
 # libraries for embedders, so that neither what is measured nor the time to compile one changed file
 # depends on the preset.

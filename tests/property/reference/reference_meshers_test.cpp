@@ -24,7 +24,11 @@ TEST_CASE("random scenes: every reference mesher covers exactly its expected fac
   std::set<AxisOrder> orders;
   int missing_neighbours = 0;
   int with_transparent = 0;
+#ifdef RUNSTONE_SANITIZED
+  constexpr int kScenes = 3000;
+#else
   constexpr int kScenes = 10000;
+#endif
   for (int scene_number = 0; scene_number < kScenes; ++scene_number) {
     const unsigned side_max = scene_number % 500 == 0 ? 40 : scene_number % 20 == 0 ? 20 : 10;
     const MeshScene scene = random_scene(rng, side_max);

@@ -138,7 +138,7 @@ TEST_CASE("a server that sends chunks of the worst case cannot make the client e
   CHECK(memory["view_shrinks"] >= 1);
   CHECK(report["replica"]["confirmed_chunks"] >= 1);
   CHECK(report["mesh"]["kept_bytes"] > 0);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef RUNSTONE_SANITIZED
   rusage usage{};
   REQUIRE(::getrusage(RUSAGE_CHILDREN, &usage) == 0);
   CHECK(static_cast<std::size_t>(usage.ru_maxrss) * 1024 < 384 * kMiB);  // 1.6 GiB without a bound

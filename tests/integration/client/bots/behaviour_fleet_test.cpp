@@ -1,9 +1,10 @@
 // Fleets of bots against a real server on loopback.
 #include "client/fleet/behaviour_fleet.hpp"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <thread>
 
 #include "tests/integration/server/app/server_bench.hpp"
 
@@ -110,12 +111,9 @@ TEST_CASE("a signal ends the edits of a fleet early, and submitted edits are sti
   BotOptions options = options_for(*flat.server, BotRole::build, 2);
   options.edits.reset();
   static volatile std::sig_atomic_t stop = 0;
-  std::thread stopper([] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
-    stop = 1;
-  });
+  std::signal(SIGALRM, [](int) { stop = 1; });
+  ::ualarm(700'000, 0);
   const FleetReport report = BehaviourFleet(options).run(stop);
-  stopper.join();
   CHECK(report.failure.empty());
   CHECK(report.counts.submitted > 20);
   CHECK(report.counts.durable == report.counts.submitted);

@@ -17,39 +17,11 @@
 #include "server/store/store.hpp"
 #include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
+#include "tests/integration/server/app/server_commands.hpp"
 #include "tests/support/run_replay.hpp"
 
 namespace runstone::test {
 namespace {
-
-struct Answer {
-  bool is_ok = false;
-  std::string text;
-};
-
-Answer control(const std::string& world, const std::vector<std::string>& words) {
-  std::ostringstream out;
-  const auto done = control_server({world, words}, out);
-  INFO((done ? "" : done.error()));
-  REQUIRE(done.has_value());
-  return {*done, out.str()};
-}
-
-/// Sends a client's command and waits until it is done.
-Answer command(RawClient& client, const std::string& text) {
-  static std::uint32_t id = 0;
-  client.send(CommandRequest{++id, text});
-  Answer answer;
-  for (;;) {
-    const auto output = client.next_of<CommandOutput>();
-    REQUIRE(output.has_value());
-    REQUIRE(output->id == id);
-    for (const std::string& line : output->lines) answer.text += line + "\n";
-    if (!output->is_done) continue;
-    answer.is_ok = output->is_ok;
-    return answer;
-  }
-}
 
 void build(RawClient& client, ClientSequence seq, const EditShape& shape, Material material) {
   client.send(EditRequest{seq, 0, {shape, {}, material}});

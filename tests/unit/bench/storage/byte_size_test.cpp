@@ -53,8 +53,7 @@ TEST_CASE("an interval is a node of 40 bytes in a block of 48", "[storage]") {
   CHECK(test::allocations_of([&] { const IntervalMap copy = two; }).bytes == 80);
 }
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(__clang__)  // clang reports sanitizers in another way
+#if defined(__GLIBC__) && !defined(RUNSTONE_SANITIZED)
 TEST_CASE("heap_bytes() agrees with malloc", "[storage]") {
   CHECK(heap_bytes(0) == 0);
   for (std::size_t bytes = 1; bytes < 100'000; bytes += bytes < 200 ? 1 : 997) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "client/replica/replica.hpp"
@@ -38,7 +39,8 @@ struct BudgetBench {
         }
       }
     }
-    std::ranges::stable_sort(out, std::ranges::greater{}, squared_distance);
+    std::ranges::sort(out, std::ranges::greater{},
+                      [](ChunkCoord at) { return std::pair(squared_distance(at), at); });
     return out;
   }
   void receive(ChunkCoord at, const Chunk& chunk) {

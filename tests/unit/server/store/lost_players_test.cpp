@@ -13,7 +13,7 @@ using namespace runstone::test;
 
 namespace {
 
-constexpr Sequence kEdits = 30;
+constexpr Sequence kLostPlayerEdits = 30;
 
 /// Makes a closed world with two players, who have two client processes each. One of them was
 /// renamed.
@@ -22,10 +22,10 @@ void make_peopled_world(const std::string& folder) {
   const auto store = *create_world(folder, sample_meta());
   REQUIRE(store->raise_epoch().has_value());
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
-  REQUIRE(store->append(players, sample_records(rng, 1, 1, kEdits - 1)).has_value());
+  REQUIRE(store->append(players, sample_records(rng, 1, 1, kLostPlayerEdits - 1)).has_value());
   PlayerRow renamed = sample_player(2);
   renamed.name = "another name";
-  REQUIRE(store->append({&renamed, 1}, sample_records(rng, 1, kEdits, 1)).has_value());
+  REQUIRE(store->append({&renamed, 1}, sample_records(rng, 1, kLostPlayerEdits, 1)).has_value());
 }
 
 std::unique_ptr<Store> peopled_world(const std::string& folder, StoreAccess access) {
@@ -69,7 +69,7 @@ TEST_CASE("a missing player is noticed and named, and the number stays taken", "
 TEST_CASE("a missing player whose edits were compacted away is noticed", "[store][loss]") {
   const TempFolder folder;
   make_peopled_world(folder.path());
-  compact_by_hand(folder / "world.sqlite", {{1, kEdits}, 1}, {});
+  compact_by_hand(folder / "world.sqlite", {{1, kLostPlayerEdits}, 1}, {});
   delete_row(folder, "player WHERE author = 1");
   const auto store = peopled_world(folder.path(), StoreAccess::read_only);
   const auto players = store->players();
@@ -99,7 +99,7 @@ TEST_CASE("a player's row in an older state is noticed", "[store][loss]") {
 TEST_CASE("a missing watermark is noticed, also without its edits in the log", "[store][loss]") {
   const TempFolder folder;
   make_peopled_world(folder.path());
-  compact_by_hand(folder / "world.sqlite", {{1, kEdits}, 1}, {});
+  compact_by_hand(folder / "world.sqlite", {{1, kLostPlayerEdits}, 1}, {});
   CHECK(peopled_world(folder.path(), StoreAccess::read_only)->high_waters()->size() == 4);
   delete_row(folder, kOneWatermark);
   const auto store = peopled_world(folder.path(), StoreAccess::read_write);
@@ -146,7 +146,8 @@ TEST_CASE("a batch that is refused changes no fold", "[store][loss]") {
   SplitMix64 rng(9);
   const auto store = peopled_world(folder.path(), StoreAccess::read_write);
   const std::vector<PlayerRow> players = {sample_player(3), sample_player(0)};  // 0 is the server
-  REQUIRE_FALSE(store->append(players, sample_records(rng, 1, kEdits + 1, 3)).has_value());
+  REQUIRE_FALSE(
+      store->append(players, sample_records(rng, 1, kLostPlayerEdits + 1, 3)).has_value());
   CHECK(store->players()->size() == 2);
   CHECK(store->high_waters().has_value());
   CHECK(store->author_max() == 2);
