@@ -77,7 +77,7 @@ bool NetSession::send(const EncodedMessage& message) {
     if (!queue_.push(message)) return false;
     wakes = take_wake();
     // The cost of sending this message is not in commit_send_ns before the writer has run.
-    if (class_of(message) == FrameClass::edits && is_woken_ && !std::exchange(is_due_, true)) {
+    if (message.kind == kKindOf<Commit> && is_woken_ && !std::exchange(is_due_, true)) {
       counters_.commits_due.fetch_add(1, std::memory_order_relaxed);
     }
   }
@@ -182,7 +182,8 @@ asio::awaitable<void> NetSession::end_after_linger(std::shared_ptr<NetSession> s
 // client sends, and TCP makes the others wait.
 asio::awaitable<void> NetSession::wait_for_read_budget(std::size_t bytes_read) {
   const TimeUs now_us = steady_now_us();
-  const TimeUs slot_us = read_budget_.book(bytes_read, now_us) - kReadBurstUs;
+  const TimeUs slot_us =
+      read_budget_.book(bytes_read + charged_.exchange(0), now_us) - kReadBurstUs;
   if (slot_us <= now_us) co_return;
   read_turn_.expires_at(time_point_of(slot_us));
   const auto [error] = co_await read_turn_.async_wait(kTuple);
@@ -321,7 +322,7 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     const IoResult wrote = co_await self->stream_->write(buffers);
     if (wrote.error) break;
     self->counters_.bytes_out.fetch_add(wrote.bytes, std::memory_order_relaxed);
-    if (batch.has_edits) {
+    if (batch.has_commits) {
       self->counters_.commit_send_ns.fetch_add(wrote.call_ns, std::memory_order_relaxed);
       self->counters_.commit_sends.fetch_add(1, std::memory_order_relaxed);
     }

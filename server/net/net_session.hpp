@@ -46,10 +46,10 @@ struct NetLimits {
 struct NetCounters {
   std::atomic<std::uint64_t> connections{0}, refused{0}, bytes_in{0}, bytes_out{0}, messages_in{0},
       malformed{0};
-  // Processor time of writes that sent bytes of the edits class, and the number of these writes.
+  // Processor time of writes that sent bytes of commits, and the number of these writes.
   std::atomic<std::int64_t> commit_send_ns{0};
   std::atomic<std::uint64_t> commit_sends{0};
-  // Sessions with queued bytes of the edits class whose writer was woken and has not run yet.
+  // Sessions with a queued commit whose writer was woken and has not run yet.
   std::atomic<std::uint64_t> commits_due{0};
 };
 
@@ -88,6 +88,9 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   void close(GoodbyeReason reason, const std::string& text);
   /// Reports that a message of NetEvents::on_message() was handled.
   void handled(std::size_t message_bytes);
+  /// Counts further bytes as read, for a message that cost more than its size says. Reading pauses
+  /// accordingly.
+  void charge_reading(std::size_t bytes) { charged_.fetch_add(bytes); }
   /// Calls close() with `server_full` and closes the socket without waiting for the linger time.
   /// Nothing can be queued afterwards. The goodbye reaches the client only if the writer sends it
   /// before the socket is closed.
@@ -122,6 +125,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   const AddressBlock address_;
   std::atomic<ChunkEncoding> encoding_{ChunkEncoding::raw};
   std::atomic<std::size_t> unhandled_{0};  // bytes, see NetLimits
+  std::atomic<std::size_t> charged_{0};    // bytes to be added to the next read
   std::atomic<bool> reader_paused_{false};
 
   std::mutex mutex_;  // a leaf: guards the next six

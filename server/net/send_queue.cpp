@@ -93,7 +93,7 @@ bool SendQueue::cut(FrameClass frame_class, std::size_t body_max, Batch& batch) 
   batch.pieces.push_back({frames_.next(message.kind, count, more), body});
   batch.messages.push_back(message.bytes);
   batch.bytes += kFrameHeaderBytes + count;
-  batch.has_edits = batch.has_edits || frame_class == FrameClass::edits;
+  batch.has_commits = batch.has_commits || message.kind == kKindOf<Commit>;
   if (frame_class == FrameClass::chunks) batch.chunk_bytes += kFrameHeaderBytes + count;
   mine.bytes -= count;
   mine.sent += count;
@@ -111,7 +111,7 @@ bool SendQueue::take(Batch& batch, std::size_t chunk_body_max) {
   batch.messages.clear();
   batch.pieces.clear();
   batch.bytes = 0;
-  batch.has_edits = false;
+  batch.has_commits = false;
   batch.chunk_bytes = 0;
   while (batch.bytes < limits_.write_bytes) {
     const bool is_chunks_turn =

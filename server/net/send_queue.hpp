@@ -57,7 +57,7 @@ class SendQueue {
       ByteView body;
     };
     std::vector<Piece> pieces;
-    bool has_edits = false;
+    bool has_commits = false;     // or parts of them
     std::size_t bytes = 0;        // headers included
     std::size_t chunk_bytes = 0;  // the part of `bytes` that is of the class chunks
   };

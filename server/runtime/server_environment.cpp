@@ -50,6 +50,10 @@ void ServerEnvironment::close(SessionId session, GoodbyeReason reason, const std
   if (const auto& net = sessions_.find(session)) net->close(reason, text);
 }
 
+void ServerEnvironment::charge_reading(SessionId session, std::size_t bytes) {
+  if (const auto& net = sessions_.find(session)) net->charge_reading(bytes);
+}
+
 bool ServerEnvironment::log_has_room(std::size_t records) const {
   return log_->writer().has_room(records);
 }

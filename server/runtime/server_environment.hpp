@@ -50,6 +50,7 @@ class ServerEnvironment final : public WorldEnvironment {
                    const ChunkPtr& chunk, Version held) override;
   void forget_outside(SessionId session, const View& view) override;
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override;
+  void charge_reading(SessionId session, std::size_t bytes) override;
   bool log_has_room(std::size_t records) const override;
   std::size_t log_queued_bytes() const override;
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;

@@ -11,6 +11,11 @@
 namespace runstone {
 namespace {
 
+// Bytes that count as read, so that messages that gain nothing do not keep the world busy: with the
+// default `read_kib_per_second`, a session gets 256 rejections and 4,096 chunks a second.
+constexpr std::size_t kRejectionBytes = 4'096;
+constexpr std::size_t kRequestedChunkBytes = 256;
+
 /// Describes what is wrong with a descriptor, for the author of the client.
 std::string text_of(const Error& fault) {
   return std::string(fault.what) + " (at byte " + std::to_string(fault.offset) + ")";
@@ -35,6 +40,7 @@ const char* why_busy(const WorldState& world) {
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request,
                       const Clocks& now) {
   WorldSession& mine = *world.find(session);
+  world.environment.charge_reading(session, request.keys.size() * kRequestedChunkBytes);
   for (const ChunkKey& key : request.keys) {
     mine.claims.drop(key);  // the client rejects its copy
     const auto state = world.interest.find(session)->state(key);
@@ -85,6 +91,9 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
   if (*refusal == RejectReason::busy) detail = why_busy(world);
   ++world.counters.edits_rejected;
+  // Edits that are offered again after a reconnection are no misuse.
+  if (*refusal != RejectReason::already_resolved)
+    world.environment.charge_reading(session, kRejectionBytes);
   const bool maybe_applied = *refusal == RejectReason::already_resolved;
   const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;
   mine.awaits_durable = std::max(mine.awaits_durable, applied_by);

@@ -77,6 +77,10 @@ class WorldEnvironment {
   /// Answer: WorldServer::disconnected().
   virtual void close(SessionId session, GoodbyeReason reason, const std::string& text) = 0;
 
+  /// Counts further bytes as read from the session, for a message that cost more than its size says.
+  /// What it sends next is read later.
+  virtual void charge_reading(SessionId /*session*/, std::size_t /*bytes*/) {}
+
   /// Returns true if the log queue has room for `records` more. If not, edits are rejected busy.
   virtual bool log_has_room(std::size_t records) const = 0;
   /// Returns the bytes of memory that the records take that are not durable yet.

@@ -58,6 +58,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::set<SessionId> full;          // sessions whose queue is full
   std::set<SessionId> refuse_edits;  // sessions whose queue of the edits class is full
   std::map<SessionId, std::size_t> snapshot_room;  // snapshots that still fit; absent: no bound
+  std::map<SessionId, std::size_t> charged;        // bytes beyond those of messages
   bool log_room = true;
   std::size_t log_records_max =
       std::numeric_limits<std::size_t>::max();  // records that are not written yet
@@ -97,6 +98,7 @@ class FakeEnvironment : public WorldEnvironment {
     return log_room && more <= log_records_max &&
            records.size() - log_written <= log_records_max - more;
   }
+  void charge_reading(SessionId session, std::size_t bytes) override { charged[session] += bytes; }
   std::size_t log_queued_bytes() const override { return log_bytes; }
   void log_append(std::vector<PlayerRow> new_players,
                   std::vector<EditRecord> new_records) override {

@@ -36,6 +36,22 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   CHECK(bench.environment.records.size() == 2);
 }
 
+TEST_CASE("rejections and requests for chunks count as much that was read", "[world]") {
+  WorldConfig c = config();
+  c.edit_budget = {1, 1};
+  Bench bench(c);
+  bench.join(1, 1);
+  bench.edit(1, 1, kAtOrigin);
+  CHECK(bench.environment.charged[1] == 0);
+  bench.edit(1, 2, kAtOrigin);
+  const std::size_t rejection = bench.environment.charged[1];
+  CHECK(rejection > 1'000);
+  bench.edit(1, 1, kAtOrigin);  // offered again
+  CHECK(bench.environment.charged[1] == rejection);
+  bench.server.received(1, ChunkRequest{{{0, {0, 0, 0}}, {0, {1, 0, 0}}}}, bench.now());
+  CHECK(bench.environment.charged[1] > rejection);
+}
+
 TEST_CASE("an edit that is rejected busy costs no budget", "[world]") {
   WorldConfig c = config();
   c.edit_budget = {1, 2};
