@@ -34,7 +34,7 @@ ServerCore::ServerCore(asio::io_context& io, asio::thread_pool& workers, const S
       sender_(workers, chunks_),
       readers_(strand_, workers, chunks_, config.world, generator),
       environment_(sessions_, *listener_, sender_, readers_),
-      commits_(strand_, listener_->counters(), [this] { world_->commit(read_clocks()); }),
+      commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
       counters_(strand_, std::chrono::seconds(config.counters_s), [this] { write_counters(); }) {}
 

@@ -8,23 +8,9 @@
 namespace runstone {
 namespace {
 
-// Upper bounds of an edit's bytes in a commit message: the fields and tables of OrderedEdit, the
-// descriptor, and a varint for each touched chunk. A commit that reaches its target takes no more
-// edits, so it stays below kServerEditBytesMax.
-constexpr std::size_t kOrderedEditBytesMax = 128;  // without the descriptor
-constexpr std::size_t kPreviousBytesMax = 10;
-constexpr std::size_t kCommitBytesTarget = kServerEditBytesMax / 2;
-static_assert(kOrderedEditBytesMax + kDescriptorBytesMax + kPreviousBytesMax * kTouchedChunksMax <
-                  kServerEditBytesMax / 2,
-              "one more edit over the target still fits the message");
-
 /// Returns the bytes that an edit takes on each of the stacks of the chunks that it touches.
 std::size_t stack_bytes_of(const EditDescriptor& edit, std::size_t chunks) {
   return own_bytes(edit) + sizeof(Sequence) + shared_bytes(edit) / chunks;
-}
-
-std::size_t memory_of(const EditOffer& offer) {
-  return sizeof(EditOffer) + own_bytes(offer.edit) + shared_bytes(offer.edit);
 }
 
 }  // namespace
@@ -34,7 +20,8 @@ Authority::Authority(const EditLimits& limits, const LogPosition& log)
       epoch_(log.epoch),
       head_(log.last),
       log_clock_(log.last_time_us),
-      chunks_(limits.chunk_edge) {}
+      chunks_(limits.chunk_edge),
+      queue_(limits.chunk_edge) {}
 
 void Authority::replay_onto_stack(const EditRecord& record) {
   const std::vector<ChunkCoord> touched = touched_chunks(record.edit, limits_.chunk_edge);
@@ -52,22 +39,18 @@ std::optional<RejectReason> Authority::submit(const EditOffer& offer) {
     return refusal;
   }
   resolved_.raise(offer.op);
-  queued_bytes_ += memory_of(offer);
-  queue_.push_back(offer);
+  queue_.push(offer);
   return std::nullopt;
 }
 
 std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
   log_clock_.advance(now);
-  if (queue_.empty()) return std::nullopt;
+  const std::vector<EditOffer> offers = queue_.take();
+  if (offers.empty()) return std::nullopt;
   const TimeUs time_us = log_clock_.stamp();
   OrderedBatch batch;
   batch.commit.epoch = epoch_;
-  std::size_t bytes = 0;
-  while (!queue_.empty() && batch.records.size() < kCommitEditsMax && bytes < kCommitBytesTarget) {
-    const EditOffer offer = queue_.front();
-    queue_.pop_front();
-    queued_bytes_ -= memory_of(offer);
+  for (const EditOffer& offer : offers) {
     const Version version{epoch_, ++head_};
     OrderedEdit ordered;
     ordered.seq = version.seq;
@@ -85,8 +68,6 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
     for (const ChunkKey& key : touched)
       ordered.previous.push_back(chunks_.push(key, version, offer.edit, stacked));
     batch.all_touched.insert(batch.all_touched.end(), touched.begin(), touched.end());
-    bytes += kOrderedEditBytesMax + encode(offer.edit).size() +
-             kPreviousBytesMax * ordered.previous.size();
     batch.commit.edits.push_back(std::move(ordered));
     batch.records.push_back({version, offer.op, time_us, offer.cause, offer.edit, offer.subject});
   }

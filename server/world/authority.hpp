@@ -9,7 +9,6 @@
 //   - An operation (author, instance, client sequence) is resolved once: see OperationWatermarks.
 #pragma once
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "protocol/codec/messages.hpp"
 #include "protocol/rules/edit_check.hpp"
 #include "server/world/clocks.hpp"
+#include "server/world/edit_queue.hpp"
 #include "server/world/log_clock.hpp"
 #include "server/world/operation_watermarks.hpp"
 #include "server/world/world_chunks.hpp"
@@ -28,14 +28,6 @@ struct LogPosition {
   Epoch epoch = 1;          // of this start, already raised
   Sequence last = 0;        // last sequence in the log; every record of the log is durable
   TimeUs last_time_us = 0;  // of that record; 0 if the log is empty
-};
-
-struct EditOffer {
-  OperationId op;
-  Cause cause = Cause::player;
-  TimeUs submitted_us = 0;
-  EditDescriptor edit;
-  Sequence subject = 0;  // the edit that this rollback, undo or redo is about; 0: none
 };
 
 /// One commit: its edits, their records for the log, and the chunks that each of them touched.
@@ -68,9 +60,9 @@ class Authority {
 
   std::size_t queued() const { return queue_.size(); }
   /// Returns the bytes of memory that the queued edits take.
-  std::size_t queued_bytes() const { return queued_bytes_; }
-  /// Advances the log's time, and orders as many queued edits as one commit message may carry.
-  /// Returns nullopt if none is queued; call it until then. Cost: O(runs + edits) for each touched
+  std::size_t queued_bytes() const { return queue_.bytes(); }
+  /// Advances the log's time, and orders the queued edits of one commit (EditQueue). Returns nullopt
+  /// if none is queued. Cost: O(runs + edits) for each touched
   /// chunk.
   std::optional<OrderedBatch> commit(const Clocks& now);
 
@@ -89,8 +81,7 @@ class Authority {
   LogClock log_clock_;
   WorldChunks chunks_;
   OperationWatermarks resolved_;
-  std::deque<EditOffer> queue_;
-  std::size_t queued_bytes_ = 0;
+  EditQueue queue_;
 };
 
 }  // namespace runstone

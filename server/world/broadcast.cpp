@@ -103,18 +103,19 @@ void send_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now)
 
 }  // namespace
 
-void commit_and_broadcast(WorldState& world, const Clocks& now) {
-  while (auto batch = world.authority.commit(now)) {
-    ++world.counters.commits;
-    world.counters.edits_ordered += batch->records.size();
-    std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);
-    world.environment.log_append(std::move(players), std::move(batch->records));
-    send_batch(world, *batch, now);
-    for (const ChunkKey& key : batch->all_touched) {
-      if (world.authority.chunks().stack_size(key) > world.config.stack_load_edits)
-        request_load(world, key);
-    }
+bool commit_and_broadcast(WorldState& world, const Clocks& now) {
+  auto batch = world.authority.commit(now);
+  if (!batch) return false;
+  ++world.counters.commits;
+  world.counters.edits_ordered += batch->records.size();
+  std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);
+  world.environment.log_append(std::move(players), std::move(batch->records));
+  send_batch(world, *batch, now);
+  for (const ChunkKey& key : batch->all_touched) {
+    if (world.authority.chunks().stack_size(key) > world.config.stack_load_edits)
+      request_load(world, key);
   }
+  return true;
 }
 
 void send_durable_to_authors(WorldState& world) {

@@ -145,7 +145,11 @@ void WorldServer::drained(SessionId session, const Clocks& now) {
 
 bool WorldServer::has_queued() const { return state_->authority.queued() > 0; }
 
-void WorldServer::commit(const Clocks& now) { commit_and_broadcast(*state_, now); }
+void WorldServer::commit_one(const Clocks& now) { commit_and_broadcast(*state_, now); }
+void WorldServer::commit(const Clocks& now) {
+  while (commit_and_broadcast(*state_, now)) {
+  }
+}
 
 WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector<EditOffer>& offers,
                                                                AuthorId payer, const Clocks& now) {
@@ -218,7 +222,7 @@ void WorldServer::step_checkpointer(const Clocks& now) {
 
 void WorldServer::tick(const Clocks& now) {
   WorldState& world = *state_;
-  commit(now);
+  commit_one(now);
   if (const auto warning = world.authority.log_clock().take_warning())
     world.environment.report(OperatorLogLevel::warn, *warning);
   forget_gone_authors(world);

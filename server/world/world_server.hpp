@@ -50,7 +50,9 @@ class WorldServer {
   // Progress.
   /// Returns true if edits wait for commit().
   bool has_queued() const;
-  /// Orders and sends the queued edits.
+  /// Orders and sends the queued edits of one commit. Others that are queued may follow later.
+  void commit_one(const Clocks& now);
+  /// Orders and sends all queued edits.
   void commit(const Clocks& now);
   /// Does periodic work: timeouts, views, presence, digest checks, retries, checkpoints and
   /// eviction.

@@ -90,8 +90,8 @@ struct WorldState {
 /// Sends goodbye with a reason and removes the session, if there is one.
 void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
                    const std::string& text);
-/// Removes authors without a row and without a session from players and watermarks. Requires that
-/// no edit is queued.
+/// Removes authors without a row and without a session from players and watermarks. Does nothing
+/// while edits are queued.
 void forget_gone_authors(WorldState& world);
 /// Removes a session that has disconnected.
 void forget_session(WorldState& world, SessionId session);

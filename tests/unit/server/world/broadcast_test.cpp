@@ -48,9 +48,9 @@ TEST_CASE("of a commit, a session gets the edits that it sees or made, and no ot
   bench.view(1, kSmall);
   bench.view(2, kSmall);
   bench.view(3, {1, {50, 0, 0}, 1, 0});
-  bench.edit(4, 1, kAtOrigin);  // sequence 1
-  bench.edit(1, 1, far_away);   // 2
-  bench.edit(2, 1, kAtOrigin);  // 3
+  bench.edit(1, 1, far_away);   // sequence 1
+  bench.edit(2, 1, kAtOrigin);  // 2
+  bench.edit(4, 1, kAtOrigin);  // 3
   bench.server.commit(bench.now());
   const auto sequences = [&](SessionId session) {
     std::vector<Sequence> out;
@@ -59,9 +59,9 @@ TEST_CASE("of a commit, a session gets the edits that it sees or made, and no ot
     return out;
   };
   CHECK(sequences(1) == std::vector<Sequence>{1, 2, 3});  // it made the one far away
-  CHECK(sequences(2) == std::vector<Sequence>{1, 3});
-  CHECK(sequences(3) == std::vector<Sequence>{2});
-  CHECK(sequences(4) == std::vector<Sequence>{1});
+  CHECK(sequences(2) == std::vector<Sequence>{2, 3});
+  CHECK(sequences(3) == std::vector<Sequence>{1});
+  CHECK(sequences(4) == std::vector<Sequence>{3});
 }
 
 TEST_CASE("edits that nobody sees and whose author has left are ordered and sent to nobody",

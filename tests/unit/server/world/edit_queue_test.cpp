@@ -1,0 +1,87 @@
+#include "server/world/edit_queue.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/runs/run_builder.hpp"
+#include "protocol/limits.hpp"
+
+namespace runstone {
+namespace {
+
+using Operations = std::vector<std::pair<AuthorId, ClientSequence>>;
+
+EditOffer cheap_offer(AuthorId author, ClientSequence seq) {
+  return {{author, 1, seq}, Cause::player, 0, {SetVoxel{{1, 1, 1}}, {}, 1}, 0};
+}
+
+/// Returns an edit that touches 48 x 48 chunks of edge 16.
+EditOffer costly_offer(AuthorId author, ClientSequence seq) {
+  return {{author, 1, seq}, Cause::player, 0, {FillBox{{{0, 0, 0}, {768, 1, 768}}}, {}, 1}, 0};
+}
+
+Operations taken(EditQueue& queue) {
+  Operations out;
+  for (const EditOffer& offer : queue.take()) out.emplace_back(offer.op.author, offer.op.seq);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("clients take turns with their edits, each in its own order", "[world]") {
+  EditQueue queue(16);
+  for (ClientSequence seq = 1; seq <= 3; ++seq) queue.push(cheap_offer(1, seq));
+  queue.push(cheap_offer(2, 9));
+  queue.push(cheap_offer(3, 4));
+  CHECK(queue.size() == 5);
+  CHECK(queue.bytes() > 5 * sizeof(EditDescriptor));
+  CHECK(taken(queue) == Operations{{1, 1}, {2, 9}, {3, 4}, {1, 2}, {1, 3}});
+  CHECK(queue.size() == 0);
+  CHECK(queue.bytes() == 0);
+  CHECK(queue.take().empty());
+}
+
+TEST_CASE("costly edits do not keep the edits of others waiting", "[world]") {
+  EditQueue queue(16);
+  for (ClientSequence seq = 1; seq <= 3; ++seq) {
+    queue.push(costly_offer(1, seq));
+    queue.push(costly_offer(2, seq));
+  }
+  for (ClientSequence seq = 1; seq <= 20; ++seq) queue.push(cheap_offer(3, seq));
+  CHECK(taken(queue) == Operations{{1, 1}});
+  queue.push(cheap_offer(4, 1));
+  CHECK(taken(queue) == Operations{{2, 1}});
+  const Operations cheap = taken(queue);
+  CHECK(cheap.size() == 21);
+  CHECK(cheap[1] == std::pair<AuthorId, ClientSequence>{4, 1});
+  CHECK(taken(queue) == Operations{{1, 2}});
+  CHECK(taken(queue) == Operations{{2, 2}});
+  CHECK(taken(queue) == Operations{{1, 3}});
+  CHECK(taken(queue) == Operations{{2, 3}});
+  CHECK(queue.size() == 0);
+}
+
+TEST_CASE("cheap edits without end do not keep a costly one waiting", "[world]") {
+  EditQueue queue(16);
+  queue.push(cheap_offer(1, 1));
+  queue.push(costly_offer(2, 1));
+  CHECK(taken(queue) == Operations{{1, 1}});
+  queue.push(cheap_offer(1, 2));
+  CHECK(taken(queue) == Operations{{2, 1}});
+  CHECK(taken(queue) == Operations{{1, 2}});
+}
+
+TEST_CASE("a commit has at most as many edits as its message", "[world]") {
+  EditQueue queue(16);
+  for (ClientSequence seq = 1; seq <= 2 * kCommitEditsMax; ++seq) queue.push(cheap_offer(1, seq));
+  ClientSequence next = 1;
+  while (queue.size() > 0) {
+    const Operations batch = taken(queue);
+    REQUIRE_FALSE(batch.empty());
+    CHECK(batch.size() <= kCommitEditsMax);
+    CHECK(batch.front().second == next);
+    next += batch.size();
+  }
+  CHECK(next == 2 * kCommitEditsMax + 1);
+}
+
+}  // namespace runstone
