@@ -154,7 +154,6 @@ TEST_CASE(
   CHECK(testbed["bars"].size() == 5);
   CHECK(figure(testbed, "attack", "absurd-views", "told malformed_message") > 0);
   CHECK(figure(testbed, "attack", "absurd-views", "logged malformed_message") > 0);
-  CHECK(figure(testbed, "attack", "claims", "told flooding") > 0);
   CHECK(figure(testbed, "attack", "half-open", "attacker_connections") > 32);
   CHECK(figure(testbed, "attack", "half-open", "told closed without a word") > 0);
   CHECK(tables.find("view radius exceeds 64 chunks") != std::string::npos);
