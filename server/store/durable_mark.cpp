@@ -1,5 +1,7 @@
 #include "server/store/durable_mark.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -82,6 +84,8 @@ StoreResult<void> DurableMark::write(const DurableState& state) {
     auto opened = sql::VfsFile::open(file_, sql::VfsFile::Mode::write, vfs_);
     if (!opened) return failed(opened.error());
     open_ = *std::move(opened);
+    // As the other files of a world. SQLite makes a file that everybody can read.
+    static_cast<void>(::chmod(file_.c_str(), S_IRUSR | S_IWUSR));
   }
   const Bytes bytes = slot_bytes(world_, state);
   if (const auto written = open_->write(next_slot_ * kSlotDistance, bytes); !written)

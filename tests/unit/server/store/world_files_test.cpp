@@ -50,6 +50,7 @@ TEST_CASE("a new world is for its owner alone, and a folder that is there stays 
     CHECK(mode(fresh + "/world.sqlite") == own_file);
     CHECK(mode(fresh + "/world.sqlite-wal") == own_file);
     CHECK(mode(fresh + "/world.sqlite-shm") == own_file);
+    CHECK(mode(fresh + "/world.durable") == own_file);
   }
   const std::string given = folder / "given";
   std::filesystem::create_directory(given);
