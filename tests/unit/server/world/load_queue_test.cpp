@@ -49,7 +49,7 @@ TEST_CASE("at most the allowed number of loads is under way", "[world]") {
 
 TEST_CASE("sessions that must wait are skipped, and the world is not", "[world]") {
   LoadQueue queue(1);
-  for (const SessionId session : {1, 2, 3}) {
+  for (const SessionId session : {1U, 2U, 3U}) {
     queue.request(session, key_of(static_cast<std::int32_t>(session * 10)));
     queue.request(session, key_of(static_cast<std::int32_t>(session * 10 + 1)));
   }

@@ -82,7 +82,7 @@ TEST_CASE(
   CHECK(told(3) == 1);
   bench.server.set_disk_is_full(false);
   bench.tick();
-  for (const SessionId session : {1, 2, 3}) CHECK(told(session) == 0);
+  for (const SessionId session : {1U, 2U, 3U}) CHECK(told(session) == 0);
   const std::size_t sent = bench.environment.messages<Durable>(1, kEdge).size();
   bench.tick(1'100'000);
   CHECK(bench.environment.messages<Durable>(1, kEdge).size() == sent);
