@@ -244,7 +244,7 @@ void LogWriter::end_keyframes(const StoreError& error, std::optional<Job>& job) 
     std::deque<Job> jobs = std::exchange(jobs_, {});
     for (Job& one : jobs) (one.done ? ended : jobs_).push_back(std::move(one));
     if (job && job->done) {
-      ended.push_back(*std::move(job));
+      ended.push_back(std::move(*job));
       job.reset();
       job_is_running_ = false;
     }
