@@ -5,6 +5,7 @@
 #include <chrono>
 #include <span>
 
+#include "common/os/steady_clock.hpp"
 #include "server/runtime/counters_line.hpp"
 #include "server/runtime/derived_config.hpp"
 #include "server/runtime/logging.hpp"
@@ -15,6 +16,7 @@ namespace runstone {
 namespace {
 
 constexpr auto kTickInterval = std::chrono::milliseconds(50);
+constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for the last of them
 
 }  // namespace
 
@@ -176,7 +178,13 @@ void ServerCore::schedule_turn() {
   if (messages_.is_empty() || std::exchange(is_turn_posted_, true)) return;
   strand_.post([this] {
     is_turn_posted_ = false;
-    if (auto turn = messages_.next()) handle(*std::move(turn));
+    // With many sessions a task waits for the writes of all of them, so each does several turns.
+    const TimeUs end_us = steady_now_us() + kTurnsUs;
+    do {
+      auto turn = messages_.next();
+      if (!turn) return;
+      handle(*std::move(turn));
+    } while (steady_now_us() < end_us);
     schedule_turn();
   });
 }
