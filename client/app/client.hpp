@@ -84,7 +84,7 @@ class Client {
   TimeUs titled_us_ = 0;             // when the title was last set
   std::uint64_t titled_frames_ = 0;  // frames presented by then
   std::string logged_refusal_;       // of the newest request to see the past
-  bool logged_read_only_ = false;    // the same, of the server
+  bool logged_read_only_ = false;    // the state of the server that was logged last
   bool end_requested_ = false;       // by the user or a signal
 };
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "client/bots/behaviour.hpp"
-#include "client/bots/edit_ledger.hpp"
 #include "client/bots/edit_schedule.hpp"
+#include "client/bots/placed_voxels.hpp"
 #include "client/schedule/histogram.hpp"
 #include "client/session/client_handshake.hpp"
 #include "protocol/codec/messages.hpp"
@@ -65,7 +65,7 @@ class Bot {
 
   virtual BotCounts counts() const { return counts_; }
   /// Returns how much of what the bot built is intact. Without a replica all counts are 0.
-  virtual EditLedger::Standing standing() const { return {}; }
+  virtual PlacedVoxels::Standing standing() const { return {}; }
 
  protected:
   explicit Bot(BotConfig config);

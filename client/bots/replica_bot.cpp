@@ -18,7 +18,7 @@ bool ReplicaBot::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us
   const auto sequence = session_.submit(edit, due_us, now_us);
   if (!sequence) return false;
   fleet_.due.add(config_.session.instance, *sequence, due_us);
-  ledger_.add(edit);
+  placed_.add(edit);
   open_[*sequence] = {due_us, edit};
   is_answered_ = false;
   return true;
@@ -47,7 +47,7 @@ void ReplicaBot::drain_changes() {
   for (const RejectedEdit& reject : changes.rejects) {
     ++counts_.rejected;
     if (const auto found = open_.find(reject.seq); found != open_.end()) {
-      ledger_.forget(found->second.edit);
+      placed_.forget(found->second.edit);
       open_.erase(found);
     }
   }

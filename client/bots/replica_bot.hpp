@@ -18,7 +18,7 @@ class ReplicaBot final : public Bot {
   const ClientSession& session() const { return session_; }
   bool loaded() const override { return session_.loaded(); }
   BotCounts counts() const override;
-  EditLedger::Standing standing() const override { return ledger_.compare(session_.replica()); }
+  PlacedVoxels::Standing standing() const override { return placed_.compare(session_.replica()); }
 
  private:
   const Welcome* world() const override {
@@ -37,7 +37,7 @@ class ReplicaBot final : public Bot {
   FleetStatistics& fleet_;
   ClientSession session_;
   ReplicaGround ground_{session_.replica()};
-  EditLedger ledger_;
+  PlacedVoxels placed_;
   struct Open {
     TimeUs due_us = 0;
     EditDescriptor edit;

@@ -11,7 +11,7 @@ namespace runstone {
 namespace {
 
 void add_session(FleetReport& report, const ReplicaBot& bot) {
-  const EditLedger::Standing standing = bot.standing();
+  const PlacedVoxels::Standing standing = bot.standing();
   report.standing.held += standing.held;
   report.standing.intact += standing.intact;
   report.standing.changed += standing.changed;

@@ -22,7 +22,7 @@ struct FleetReport {
   Histogram seen_us;  // due -> commit received and verified; each edit at each bot that received it
   std::vector<TimeUs> seen_worst_us;  // the slowest edit of those due in each second
   std::uint64_t unattributed = 0;     // edits received that no bot of the fleet made
-  EditLedger::Standing standing;      // of the bots with a replica
+  PlacedVoxels::Standing standing;    // of the bots with a replica
   // Counts of the bots with a replica: chunk digests that were compared with the server's, and
   // digests that differed.
   std::uint64_t digests_checked = 0, drifted = 0;

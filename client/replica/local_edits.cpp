@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "client/replica/edit_bytes.hpp"
+#include "common/edits/descriptor/edit_memory.hpp"
 
 namespace runstone {
 
@@ -86,7 +86,7 @@ LocalEdits::Retired LocalEdits::retire(Sequence durable) {
 }
 
 std::size_t LocalEdits::bytes_of(const LocalEdit& local) {
-  return sizeof(LocalEdit) + edit_bytes(local.edit) + local.chunks.size() * sizeof(ChunkKey);
+  return sizeof(LocalEdit) + memory_bytes(local.edit) + local.chunks.size() * sizeof(ChunkKey);
 }
 
 LocalEdits::Map::iterator LocalEdits::erase(Map::iterator it) {

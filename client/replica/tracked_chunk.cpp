@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "client/replica/edit_bytes.hpp"
+#include "common/edits/descriptor/edit_memory.hpp"
 
 namespace runstone {
 
@@ -69,9 +69,9 @@ std::size_t TrackedChunk::bytes() const {
   if (confirmed_) bytes += sizeof(Chunk) + confirmed_->voxels.runs.byte_capacity();
   const bool is_shared = confirmed_ && shown.get() == &confirmed_->voxels;
   if (shown && !is_shared) bytes += sizeof(RunChunk) + shown->runs.byte_capacity();
-  for (const PendingEdit& local : pending) bytes += sizeof(PendingEdit) + edit_bytes(local.edit);
+  for (const PendingEdit& local : pending) bytes += sizeof(PendingEdit) + memory_bytes(local.edit);
   for (const InboxEdit& held_back : inbox)
-    bytes += sizeof(InboxEdit) + sizeof(OrderedInfo) + edit_bytes(held_back.info->edit);
+    bytes += sizeof(InboxEdit) + sizeof(OrderedInfo) + memory_bytes(held_back.info->edit);
   return bytes;
 }
 

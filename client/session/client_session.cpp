@@ -131,7 +131,11 @@ void ClientSession::submit_lost_edits(TimeUs now_us) {
     const auto submitted = submit(lost->edit, lost->submitted_us, now_us);
     const bool is_later = !submitted && submitted.error().code == ErrorCode::limit_exceeded;
     if (is_later) return lost_.put_off(now_us);
-    submitted ? lost_.submitted(*submitted) : lost_.drop();
+    if (submitted) {
+      lost_.submitted(*submitted);
+    } else {
+      lost_.drop();
+    }
   }
 }
 

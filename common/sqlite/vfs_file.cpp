@@ -42,8 +42,9 @@ Result<VfsFile> VfsFile::open(const std::string& file, Mode mode, const std::str
   sqlite3_vfs* system = sqlite3_vfs_find(vfs.empty() ? nullptr : vfs.c_str());
   if (system == nullptr)
     return Unexpected<Error>{{Error::Kind::io, file, "no SQLite VFS is called " + vfs}};
-  // Of the types of files that a VFS knows, a super-journal fits: it takes no lock, and the first
-  // sync of a new one also syncs its name.
+  // A VFS must be told the type of each file. SQLite has no type for a file such as this one. We name
+  // the type of super-journals, because a VFS takes no lock for them, and syncs the name of a new one
+  // together with its first sync.
   const int flags =
       SQLITE_OPEN_SUPER_JOURNAL |
       (mode == Mode::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);

@@ -1,5 +1,5 @@
-// EditPrice: what an edit costs its player. The server takes the price from budgets of the player's
-// key and address before it does anything else with the edit. The client knows its budget from
+// EditPrice: what an edit costs its player. The server takes the price from the budgets of the
+// player's key and address before it checks the edit any further. The client knows its budget from
 // Welcome and the prices from here, so it predicts what the server will refuse.
 #pragma once
 #include <cstdint>

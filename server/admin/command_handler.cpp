@@ -89,7 +89,7 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
 
 void CommandHandler::status(const CommandReply& reply) const {
   const WorldCounters& c = world_.counters();
-  const MemoryUse memory = world_.memory_use();
+  const WorldMemory memory = world_.memory();
   reply({"sessions " + std::to_string(world_.session_count()) + ", edits " +
              std::to_string(world_.head()) + " (on disk " + std::to_string(world_.durable()) +
              "), since the start " + std::to_string(c.edits_ordered) + " ordered and " +

@@ -24,11 +24,11 @@ std::string log_part(const WorldServer& world, const LogWriter::Counters& log) {
 
 std::string chunks_part(const WorldServer& world, const RuntimeCounters& runtime) {
   const WorldCounters& w = world.counters();
-  const MemoryUse memory = world.memory_use();
+  const WorldMemory memory = world.memory();
   return fmt::format(
-      "chunks_resident={} resident_bytes={} stacked_bytes={} queued_bytes={} chunks_failed={} snapshots_sent={} "
-      "snapshots_encoded={} same_sent={} updates_sent={} claims_drifted={} chunks_requested={} "
-      "unavailable_sent={} chunks_stale={}",
+      "chunks_resident={} resident_bytes={} stacked_bytes={} queued_bytes={} chunks_failed={} "
+      "snapshots_sent={} snapshots_encoded={} same_sent={} updates_sent={} claims_drifted={} "
+      "chunks_requested={} unavailable_sent={} chunks_stale={}",
       world.resident_chunks(), memory.voxels, memory.stacked, memory.queued, w.chunks_failed,
       w.snapshots_sent, runtime.snapshots_encoded, w.not_modified_sent, w.updates_sent,
       w.claims_drifted, w.chunks_requested, w.unavailable_sent, w.chunks_stale);

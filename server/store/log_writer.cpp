@@ -12,8 +12,7 @@ namespace {
 
 std::size_t memory_of(const std::vector<EditRecord>& records) {
   std::size_t bytes = 0;
-  for (const EditRecord& record : records)
-    bytes += sizeof(EditRecord) + own_bytes(record.edit) + shared_bytes(record.edit);
+  for (const EditRecord& record : records) bytes += sizeof(EditRecord) + memory_bytes(record.edit);
   return bytes;
 }
 
@@ -81,13 +80,7 @@ LogWriter::Counters LogWriter::counters() const {
   const std::lock_guard guard(mutex_);
   Counters now = counters_;
   now.queued_records = room_taken_;
-  now.queued_bytes = bytes_taken_;
   return now;
-}
-
-std::size_t LogWriter::queued_bytes() const {
-  const std::lock_guard guard(mutex_);
-  return bytes_taken_;
 }
 
 LogWriter::Batch LogWriter::take_group() {

@@ -20,6 +20,7 @@
 // thread calls the callbacks, which must return soon. The mutex is a leaf: no callback and no disk
 // access happens while it is locked.
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -66,7 +67,7 @@ class LogWriter {
   };
   struct Counters {
     std::uint64_t commits = 0, records = 0, snapshots = 0, keyframes = 0;  // since the start
-    std::size_t queued_records = 0, queued_bytes = 0;                      // now
+    std::size_t queued_records = 0;                                        // now
   };
 
   /// Starts the thread, which alone uses `world` from now until stop() has returned.
@@ -102,7 +103,7 @@ class LogWriter {
 
   Counters counters() const;
   /// Returns the bytes of memory that the queued records take, until they are durable.
-  std::size_t queued_bytes() const;
+  std::size_t queued_bytes() const { return bytes_taken_.load(); }
 
  private:
   struct Batch {
@@ -148,6 +149,7 @@ class LogWriter {
   WorldSink& world_;
   const Callbacks callbacks_;
   const Limits limits_;
+  std::atomic<std::size_t> bytes_taken_{0};  // of memory, by records queued or being written
   TimeUs looked_us_ = 0;  // when the free space was looked at; only for check_space()
   std::chrono::steady_clock::time_point group_due_;  // of the next commit; only for take_work()
   mutable std::mutex mutex_;
@@ -156,7 +158,6 @@ class LogWriter {
   std::deque<Batch> batches_;
   std::deque<Job> jobs_;
   std::size_t room_taken_ = 0;   // by batches queued or being written
-  std::size_t bytes_taken_ = 0;  // likewise, bytes of memory
   bool job_is_running_ = false;  // the writer thread has a job that is not in jobs_
   bool stopping_ = false, failed_ = false;
   DiskSpace space_ = DiskSpace::enough;

@@ -127,10 +127,8 @@ void send_durable_to_authors(WorldState& world) {
 }
 
 void broadcast_durable(WorldState& world, const Clocks& now) {
-  const bool is_due = now.steady_us - world.durable_us >= world.config.durable_interval_us;
-  if (!is_due && world.read_only_told == world.disk_is_full) return;
-  world.read_only_told = world.disk_is_full;
-  world.durable_us = now.steady_us;
+  if (now.steady_us < world.durable_due_us) return;
+  world.durable_due_us = now.steady_us + world.config.durable_interval_us;
   const EncodedMessage encoded = encoded_durable(world);
   for (const SessionId session : world.open_sessions()) send_durable(world, session, encoded);
 }

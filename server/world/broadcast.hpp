@@ -7,9 +7,8 @@ namespace runstone {
 
 /// Orders the queued edits of one commit, appends them to the log, and sends each edit to the
 /// subscribers of the chunks that it touched and to the session of its client. Returns false if no
-/// edit is queued. Cost: O(edits +
-/// subscribers of touched chunks + sessions), because the sessions of the authors are searched among
-/// all, and that of audiences_of().
+/// edit is queued. Cost: O(edits + subscribers of touched chunks + sessions), because the sessions
+/// of the authors are searched among all, and that of audiences_of().
 bool commit_and_broadcast(WorldState& world, const Clocks& now);
 /// Sends the durable watermark to the sessions whose client has edits that are not yet
 /// acknowledged.

@@ -35,7 +35,7 @@ std::size_t work_of(const EditDescriptor& edit, std::int32_t chunk_edge) {
 }
 
 std::size_t memory_of(const EditOffer& offer) {
-  return sizeof(EditOffer) + own_bytes(offer.edit) + shared_bytes(offer.edit);
+  return sizeof(EditOffer) + memory_bytes(offer.edit);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include "protocol/codec/messages.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
-#include "server/world/memory_use.hpp"
 #include "server/world/player_rows.hpp"
+#include "server/world/world_memory.hpp"
 
 namespace runstone {
 

@@ -77,8 +77,8 @@ class WorldEnvironment {
   /// Answer: WorldServer::disconnected().
   virtual void close(SessionId session, GoodbyeReason reason, const std::string& text) = 0;
 
-  /// Counts further bytes as read from the session, for a message that cost more than its size says.
-  /// What it sends next is read later.
+  /// Counts `bytes` more as read from the session, because one of its messages cost more than its
+  /// size says. The server then waits longer before it reads from the session again.
   virtual void charge_reading(SessionId /*session*/, std::size_t /*bytes*/) {}
 
   /// Returns true if the log queue has room for `records` more. If not, edits are rejected busy.

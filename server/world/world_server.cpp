@@ -311,7 +311,10 @@ void WorldServer::snapshots_saved(const Clocks& now) {
   step_checkpointer(now);
 }
 
-void WorldServer::set_disk_is_full(bool is_full) { state_->disk_is_full = is_full; }
+void WorldServer::set_disk_is_full(bool is_full) {
+  state_->disk_is_full = is_full;
+  state_->durable_due_us = 0;  // the watermark tells every session
+}
 
 void WorldServer::log_failed() { state_->accepts_edits = false; }
 
@@ -351,7 +354,7 @@ std::size_t WorldServer::session_count() const { return state_->sessions.size();
 std::size_t WorldServer::resident_chunks() const {
   return state_->authority.chunks().resident_count();
 }
-MemoryUse WorldServer::memory_use() const { return memory_use_of(*state_); }
+WorldMemory WorldServer::memory() const { return world_memory_of(*state_); }
 const StackDepths& WorldServer::stack_depths() const {
   return state_->authority.chunks().stack_depths();
 }

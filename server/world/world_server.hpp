@@ -143,7 +143,7 @@ class WorldServer {
   /// Returns the number of sessions in any stage.
   std::size_t session_count() const;
   std::size_t resident_chunks() const;
-  MemoryUse memory_use() const;
+  WorldMemory memory() const;
   const WorldCounters& counters() const;
   /// Returns the depths of the edit stacks that were applied.
   const StackDepths& stack_depths() const;

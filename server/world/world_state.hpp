@@ -56,8 +56,7 @@ struct WorldState {
   std::map<AuthorId, std::string> sent_player_list;
   TimeUs poses_us = 0;           // when poses were sent last
   SessionId pose_sent_last = 0;  // the session whose pose was sent last
-  TimeUs durable_us = 0;         // when every session got the durable watermark last
-  bool read_only_told = false;   // what it said of the disk
+  TimeUs durable_due_us = 0;     // when every session gets the durable watermark next
   // Digest checks.
   TimeUs digest_checks_us = 0;      // up to this time, all that were due are sent
   SessionId digest_check_last = 0;  // the session served last

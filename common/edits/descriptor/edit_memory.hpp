@@ -1,4 +1,5 @@
-// The bytes of memory that an edit descriptor takes. A server bounds the edits that wait by them.
+// The bytes of memory that an edit descriptor takes. Server and client bound the edits that wait by
+// them.
 #pragma once
 #include <cstddef>
 #include <variant>
@@ -10,7 +11,7 @@ namespace runstone {
 /// Returns the bytes of one copy of the descriptor, without what its copies share. Cost: O(1).
 inline std::size_t own_bytes(const EditDescriptor& edit) {
   const auto* stroke = std::get_if<FillStroke>(&edit.shape);
-  return sizeof(EditDescriptor) + (stroke ? stroke->points.size() * sizeof(VoxelPos) : 0);
+  return sizeof(EditDescriptor) + (stroke ? stroke->points.capacity() * sizeof(VoxelPos) : 0);
 }
 
 /// Returns the bytes that all copies of the descriptor share: the clipboard of a paste, otherwise
@@ -18,6 +19,12 @@ inline std::size_t own_bytes(const EditDescriptor& edit) {
 inline std::size_t shared_bytes(const EditDescriptor& edit) {
   const auto* paste = std::get_if<Paste>(&edit.shape);
   return paste != nullptr && paste->clipboard ? paste->clipboard->memory_bytes() : 0;
+}
+
+/// Returns the bytes of one descriptor with all that belongs to it. A clipboard that several edits
+/// share counts for each of them. Cost: O(1).
+inline std::size_t memory_bytes(const EditDescriptor& edit) {
+  return own_bytes(edit) + shared_bytes(edit);
 }
 
 }  // namespace runstone

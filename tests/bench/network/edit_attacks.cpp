@@ -7,6 +7,7 @@
 #include "common/core/coords.hpp"
 #include "common/edits/clipboard/clipboard.hpp"
 #include "tests/bench/network/attack_thread.hpp"
+#include "tests/support/hostile_edits.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -66,29 +67,18 @@ void edit_too_much(AttackThread& thread) {
 }
 
 void paste_much(AttackThread& thread) {
-  // 47,000 runs, a byte each: about the longest clipboard that an edit may have.
-  constexpr std::uint32_t kRuns = 47'000;
-  const Extent extent{128, 125, 3};
-  RunChunk cells{extent, AxisOrder::xyz, RunList(extent.volume())};
-  for (std::uint32_t end = 1; end <= kRuns; ++end) {
-    cells.runs.push_back(
-        {end == kRuns ? extent.volume() : end, static_cast<Material>(1 + end % 2)});
-  }
-  const auto clipboard = Clipboard::of({1, 2}, cells);
-  if (!clipboard) return;
+  const auto clipboard = test::long_clipboard();
   flood_edits(thread, [&clipboard](const VoxelPos& at) {
-    return EditDescriptor{Paste{at, *clipboard, {}}, {}, kEmpty};
+    return EditDescriptor{Paste{at, clipboard, {}}, {}, kEmpty};
   });
 }
 
 void edit_widely(AttackThread& thread) {
-  // 922,624 voxels in one layer, each time in other chunks.
-  constexpr std::int32_t kWidth = 1'024, kDepth = 901, kPlaces = 1'000;
-  flood_edits(thread, [&thread](const VoxelPos& at) {
-    VoxelBox box{at, at};
-    box.min.x += kWidth * thread.random().between(-kPlaces, kPlaces);
-    box.max = {box.min.x + kWidth, box.min.y + 1, box.min.z + kDepth};
-    return EditDescriptor{FillBox{box}, {}, 1};
+  // Each time in other chunks.
+  constexpr std::int32_t kStep = 1'024, kPlaces = 1'000;
+  flood_edits(thread, [&thread](VoxelPos at) {
+    at.x += kStep * thread.random().between(-kPlaces, kPlaces);
+    return test::wide_box(at, 1);
   });
 }
 

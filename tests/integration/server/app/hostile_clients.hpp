@@ -9,6 +9,7 @@
 
 #include "common/core/hash.hpp"
 #include "tests/integration/server/app/raw_client.hpp"
+#include "tests/support/hostile_edits.hpp"
 
 namespace runstone::test {
 
@@ -40,37 +41,25 @@ class HostileClients {
     const auto clipboard = n % 2 == 0 ? long_clipboard() : nullptr;
     for (ClientSequence seq = 1; !is_over_ && client.is_open(); ++seq) {
       client.send(
-          EditRequest{seq, 0, clipboard ? far_paste(clipboard, n, random) : wide_box(random)});
-      // Not all that arrives: reports about the edits of others would end the attack.
+          EditRequest{seq, 0, clipboard ? far_paste(clipboard, n, random) : far_box(random)});
+      // It reads a few messages only. If it read until none is left, the commits of others would keep
+      // it from sending.
       for (int read = 0; read < kReadsMax && client.next(kReadMs); ++read) {
       }
     }
   }
 
-  /// Returns 47,000 runs, a byte each: about the longest clipboard that an edit may have.
-  static std::shared_ptr<const Clipboard> long_clipboard() {
-    constexpr std::uint32_t kRuns = 47'000;
-    const Extent extent{128, 125, 3};
-    RunChunk cells{extent, AxisOrder::xyz, RunList(extent.volume())};
-    for (std::uint32_t end = 1; end <= kRuns; ++end) {
-      cells.runs.push_back(
-          {end == kRuns ? extent.volume() : end, static_cast<Material>(1 + end % 2)});
-    }
-    return *Clipboard::of({1, 2}, cells);
-  }
   static EditDescriptor far_paste(const std::shared_ptr<const Clipboard>& clipboard, std::uint8_t n,
                                   SplitMix64& random) {
     const VoxelPos at{(1 << 20) + random.between(-64, 64), random.between(-64, 64),
                       ((n + 1) << 12) + random.between(-64, 64)};
     return {Paste{at, clipboard, {}}, {}, kEmpty};
   }
-  static EditDescriptor wide_box(SplitMix64& random) {
-    constexpr std::int32_t kWidth = 1'024, kDepth = 901, kPlaces = 500;
-    const VoxelPos at{kWidth * random.between(-kPlaces, kPlaces), random.between(-64, 64),
-                      kWidth * random.between(2, kPlaces)};
-    return {FillBox{{at, {at.x + kWidth, at.y + 1, at.z + kDepth}}},
-            {},
-            static_cast<Material>(random.between(1, 4))};
+  static EditDescriptor far_box(SplitMix64& random) {
+    constexpr std::int32_t kStep = 1'024, kPlaces = 500;
+    const VoxelPos at{kStep * random.between(-kPlaces, kPlaces), random.between(-64, 64),
+                      kStep * random.between(2, kPlaces)};
+    return wide_box(at, static_cast<Material>(random.between(1, 4)));
   }
 
   static constexpr int kReadMs = 2, kReadsMax = 8;

@@ -1,5 +1,5 @@
 // The bounds of the memory that the data of a world take.
-#include "server/world/memory_use.hpp"
+#include "server/world/world_memory.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -32,22 +32,22 @@ TEST_CASE("the edits of a chunk that is not in memory count until it is loaded",
   WorldBench bench;
   bench.join(1, 1);
   bench.edit(1, 1, kAtOrigin);
-  CHECK(bench.server.memory_use().queued > 0);
+  CHECK(bench.server.memory().queued > 0);
   bench.server.commit(bench.now());
-  CHECK(bench.server.memory_use().queued == 0);
-  const std::size_t one = bench.server.memory_use().stacked;
+  CHECK(bench.server.memory().queued == 0);
+  const std::size_t one = bench.server.memory().stacked;
   CHECK(one > sizeof(EditDescriptor));
   bench.edit(1, 2, kAtOrigin);
   bench.server.commit(bench.now());
-  const std::size_t two = bench.server.memory_use().stacked;
+  const std::size_t two = bench.server.memory().stacked;
   CHECK(two > one);
   CHECK(two < 2 * one);  // the stack itself counts once
   bench.view(1, kSmall);
-  CHECK(bench.server.memory_use().stacked == 0);
-  CHECK(bench.server.memory_use().voxels > 0);
+  CHECK(bench.server.memory().stacked == 0);
+  CHECK(bench.server.memory().voxels > 0);
   bench.edit(1, 3, kAtOrigin);
   bench.server.commit(bench.now());
-  CHECK(bench.server.memory_use().stacked == 0);
+  CHECK(bench.server.memory().stacked == 0);
 }
 
 TEST_CASE("the clipboard of a paste counts once, over all the chunks that it touches", "[world]") {
@@ -58,10 +58,10 @@ TEST_CASE("the clipboard of a paste counts once, over all the chunks that it tou
   for (std::int32_t x = 0; x < 4; ++x)
     bench.edit(1, static_cast<ClientSequence>(x + 1), SetVoxel{{x * kEdge, 1, 1}});
   bench.server.commit(bench.now());
-  const std::size_t before = bench.server.memory_use().stacked;
+  const std::size_t before = bench.server.memory().stacked;
   bench.server.received(1, EditRequest{5, 0, paste}, bench.now());
   bench.server.commit(bench.now());
-  const std::size_t added = bench.server.memory_use().stacked - before;
+  const std::size_t added = bench.server.memory().stacked - before;
   const std::size_t copies = 4 * (sizeof(EditDescriptor) + sizeof(Sequence));
   CHECK(added <= clipboard + copies);
   CHECK(added + 4 > clipboard + copies);
@@ -95,7 +95,7 @@ TEST_CASE("edits to chunks that are not in memory cannot take more than the boun
   }
   CHECK(bench.environment.records.size() > 50);
   CHECK(bench.environment.records.size() < 300);
-  CHECK(bench.server.memory_use().total() < 51'000);
+  CHECK(bench.server.memory().total() < 51'000);
 }
 
 TEST_CASE("without memory a session waits for its chunks, and the world still loads its own",
@@ -145,7 +145,7 @@ TEST_CASE("an address that sees much leaves memory for others", "[world]") {
   };
   look(1, 0);
   look(2, 1'000);
-  const std::size_t seen = bench.server.memory_use().voxels;
+  const std::size_t seen = bench.server.memory().voxels;
   CHECK(seen > kBound / 2);
   CHECK(seen < kBound * 3 / 4);  // two thirds for one address
   CHECK(bench.environment.loads.empty());
@@ -159,7 +159,7 @@ TEST_CASE("an address that sees much leaves memory for others", "[world]") {
   look(3, 2'000);
   CHECK(sent(3) > 5);
   CHECK(sent(1) + sent(2) == before);
-  CHECK(bench.server.memory_use().voxels < kBound);
+  CHECK(bench.server.memory().voxels < kBound);
 }
 
 TEST_CASE("edits that wait make chunks without users leave memory", "[world]") {

@@ -1,4 +1,4 @@
-#include "server/world/memory_use.hpp"
+#include "server/world/world_memory.hpp"
 
 #include <algorithm>
 #include <map>
@@ -18,7 +18,7 @@ std::string mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20); }
 
 /// Returns the sessions that may load no chunk because their address sees more than its share.
 /// Cost: O(sessions).
-std::set<SessionId> sessions_over_share(const WorldState& world, const MemoryUse& use) {
+std::set<SessionId> sessions_over_share(const WorldState& world, const WorldMemory& use) {
   const WorldChunks& chunks = world.authority.chunks();
   const std::size_t mean = use.voxels / std::max<std::size_t>(1, chunks.resident_count());
   const std::size_t voxels = std::min(use.voxels, mean * world.interest.used_count());
@@ -41,27 +41,27 @@ std::set<SessionId> sessions_over_share(const WorldState& world, const MemoryUse
 
 }  // namespace
 
-MemoryUse memory_use_of(const WorldState& world) {
+WorldMemory world_memory_of(const WorldState& world) {
   const WorldChunks& chunks = world.authority.chunks();
   return {chunks.resident_bytes(), chunks.stack_bytes(),
           world.authority.queued_bytes() + world.environment.log_queued_bytes()};
 }
 
 bool views_wait_for_memory(const WorldState& world) {
-  return memory_use_of(world).total() > world.config.memory.view_bytes_max;
+  return world_memory_of(world).total() > world.config.memory.view_bytes_max;
 }
 
 bool is_memory_full(const WorldState& world) {
-  return memory_use_of(world).total() > world.config.memory.edit_bytes_max;
+  return world_memory_of(world).total() > world.config.memory.edit_bytes_max;
 }
 
 void keep_memory_bounds(WorldState& world) {
-  const MemoryUse use = memory_use_of(world);
+  const WorldMemory use = world_memory_of(world);
   const std::size_t edits = use.stacked + use.queued;
   const std::size_t idle_max = world.config.memory.idle_bytes_max;
   world.authority.chunks().evict(idle_max - std::min(idle_max, edits), kEvictionStepsPerTick,
                                  [&](const ChunkKey& key) { return world.interest.is_used(key); });
-  world.over_share = sessions_over_share(world, memory_use_of(world));
+  world.over_share = sessions_over_share(world, world_memory_of(world));
   const bool is_short = views_wait_for_memory(world);
   if (std::exchange(world.is_memory_short, is_short) == is_short) return;
   if (!is_short) {

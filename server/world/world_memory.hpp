@@ -1,4 +1,4 @@
-// MemoryUse: the memory that the data of a world take, and what the server refuses when it runs
+// WorldMemory: the memory that the data of a world take, and what the server refuses when it runs
 // out. The three bounds follow each other, so that each kind of use leaves room for the next one:
 //   1. Over idle_bytes_max, chunks that nobody uses leave memory.
 //   2. Over view_bytes_max, no chunk is loaded for a session: its view stays incomplete until other
@@ -11,8 +11,8 @@
 //      with alpha = 2).
 //   3. Over edit_bytes_max, edits are rejected busy.
 // The edits that were accepted already may exceed the last bound, by one commit.
-// Not counted: the queues of the sessions, which have bounds of their own (net_session.hpp), and
-// the version of each chunk that was ever edited.
+// Two things take memory and are not counted. The queues of the sessions have bounds of their own
+// (net_session.hpp). Each chunk that was ever edited has an entry of about 150 bytes.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -33,14 +33,14 @@ constexpr MemoryLimits memory_limits_of(std::size_t bytes) {
   return {bytes / 16 * 14, bytes / 16 * 15, bytes, bytes / 8};
 }
 
-struct MemoryUse {
+struct WorldMemory {
   std::size_t voxels = 0;   // of the chunks in memory
   std::size_t stacked = 0;  // edits that wait for chunks that are not in memory
   std::size_t queued = 0;   // edits that wait for the next commit or for the disk
   std::size_t total() const { return voxels + stacked + queued; }
 };
 /// Cost: O(1).
-MemoryUse memory_use_of(const WorldState& world);
+WorldMemory world_memory_of(const WorldState& world);
 
 /// Returns true if no chunk may be loaded for any session now.
 bool views_wait_for_memory(const WorldState& world);

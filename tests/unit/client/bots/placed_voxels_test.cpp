@@ -1,4 +1,4 @@
-#include "client/bots/edit_ledger.hpp"
+#include "client/bots/placed_voxels.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -24,38 +24,38 @@ EditDescriptor voxel(std::int32_t x, Material material) {
 
 }  // namespace
 
-TEST_CASE("a ledger counts which of its voxels are intact", "[bots]") {
+TEST_CASE("it is known which of the placed voxels are intact", "[bots]") {
   Replica replica;
   load_empty_chunk(replica);
-  EditLedger ledger;
+  PlacedVoxels voxels;
   const auto set = [&](const EditDescriptor& edit) {
     REQUIRE(replica.submit(edit, 0, 0).has_value());
-    ledger.add(edit);
+    voxels.add(edit);
   };
   set(voxel(1, 5));
   set(voxel(2, 5));
   set(voxel(2, 6));                                        // the last edit of a voxel counts
   set(voxel(40, 7));                                       // in a chunk that is not loaded
   REQUIRE(replica.submit(voxel(1, 9), 0, 0).has_value());  // an edit of another author
-  const auto standing = ledger.compare(replica);
+  const auto standing = voxels.compare(replica);
   CHECK(standing.held == 3);
   CHECK(standing.intact == 1);
   CHECK(standing.changed == 1);
   CHECK(standing.unseen == 1);
 }
 
-TEST_CASE("a ledger forgets voxels that other edits may have changed, and rejected ones",
+TEST_CASE("placed voxels are forgotten that other edits may have changed, and rejected ones",
           "[bots]") {
   Replica replica;
   load_empty_chunk(replica);
-  EditLedger ledger;
-  ledger.add(voxel(1, 5));
-  ledger.add(voxel(2, 5));
-  ledger.add(voxel(9, 5));
-  ledger.add({FillBox{{{0, 0, 0}, {2, 4, 4}}}, {}, 3});
-  CHECK(ledger.compare(replica).held == 2);
-  ledger.add({SetVoxel{{2, 1, 1}}, {MaskKind::only_empty, kEmpty}, 3});
-  CHECK(ledger.compare(replica).held == 1);
-  ledger.forget(voxel(9, 5));
-  CHECK(ledger.compare(replica).held == 0);
+  PlacedVoxels voxels;
+  voxels.add(voxel(1, 5));
+  voxels.add(voxel(2, 5));
+  voxels.add(voxel(9, 5));
+  voxels.add({FillBox{{{0, 0, 0}, {2, 4, 4}}}, {}, 3});
+  CHECK(voxels.compare(replica).held == 2);
+  voxels.add({SetVoxel{{2, 1, 1}}, {MaskKind::only_empty, kEmpty}, 3});
+  CHECK(voxels.compare(replica).held == 1);
+  voxels.forget(voxel(9, 5));
+  CHECK(voxels.compare(replica).held == 0);
 }

@@ -1,5 +1,5 @@
-// EditLedger: the voxels that a bot has set one by one, so that it can report at the end which are
-// intact.
+// PlacedVoxels: the voxels that a bot has set one by one, so that it can report at the end which
+// are intact.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace runstone {
 
-class EditLedger {
+class PlacedVoxels {
  public:
   /// Takes a submitted local edit. Keeps a single voxel without a mask. Forgets the voxels that any
   /// other edit may have changed.

@@ -1,10 +1,10 @@
-#include "client/bots/edit_ledger.hpp"
+#include "client/bots/placed_voxels.hpp"
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 
 namespace runstone {
 
-void EditLedger::add(const EditDescriptor& edit) {
+void PlacedVoxels::add(const EditDescriptor& edit) {
   const auto* voxel = std::get_if<SetVoxel>(&edit.shape);
   if (voxel != nullptr && edit.mask.kind == MaskKind::everything) {
     set_[voxel->at] = edit.material;
@@ -13,12 +13,12 @@ void EditLedger::add(const EditDescriptor& edit) {
   forget(edit);
 }
 
-void EditLedger::forget(const EditDescriptor& edit) {
+void PlacedVoxels::forget(const EditDescriptor& edit) {
   const VoxelBox box = bounding_box(edit);
   std::erase_if(set_, [&box](const auto& entry) { return box.contains(entry.first); });
 }
 
-EditLedger::Standing EditLedger::compare(const Replica& replica) const {
+PlacedVoxels::Standing PlacedVoxels::compare(const Replica& replica) const {
   Standing standing;
   standing.held = set_.size();
   for (const auto& [at, material] : set_) {
