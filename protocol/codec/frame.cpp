@@ -57,6 +57,12 @@ Result<void> FrameReader::feed(ByteView bytes, const OnMessage& on_message) {
   return result;
 }
 
+std::size_t FrameReader::completed_bytes_max(std::size_t bytes) const {
+  if (bytes < body_left_) return 0;
+  for (const Partial& partial : partial_) bytes += partial.bytes.size();
+  return bytes;
+}
+
 Result<void> FrameReader::advance(ByteView bytes, const OnMessage& on_message) {
   while (!bytes.empty()) {
     if (body_left_ == 0) {

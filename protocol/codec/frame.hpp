@@ -65,6 +65,8 @@ class FrameReader {
   /// 16-aligned and live until the call returns. It must not feed the same reader.
   using OnMessage = std::function<Result<void>(MessageKind, ByteView)>;
   Result<void> feed(ByteView bytes, const OnMessage& on_message);
+  /// Returns an upper bound of the bytes of messages that the next `bytes` bytes may complete.
+  std::size_t completed_bytes_max(std::size_t bytes) const;
   /// Returns the bytes read of frames of this class, headers and unfinished frames included.
   std::uint64_t frame_bytes(FrameClass frame_class) const {
     return frame_bytes_[static_cast<std::size_t>(frame_class)];

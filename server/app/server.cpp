@@ -11,25 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "common/os/low_priority.hpp"
 #include "common/os/steady_clock.hpp"
 #include "server/admin/control_socket.hpp"
 #include "server/runtime/logging.hpp"
+#include "server/runtime/low_priority_threads.hpp"
 #include "server/runtime/server_core.hpp"
 
 namespace runstone {
 namespace {
-
-/// Makes worker threads of low priority: on a machine with few cores edits run before terrain.
-std::unique_ptr<asio::thread_pool> low_priority_workers(std::size_t count) {
-  std::unique_ptr<asio::thread_pool> workers;
-  const auto start = [&] {
-    lower_priority();  // threads inherit the priority of the thread that starts them
-    workers = std::make_unique<asio::thread_pool>(count);
-  };
-  std::thread(start).join();
-  return workers;
-}
 
 /// Logs what --accept-losses accepted, before anything else can fail.
 void log_losses(const std::vector<std::string>& losses) {
@@ -47,7 +36,7 @@ struct Server::Parts {
   OpenedWorld world;
   asio::io_context io;
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
-  std::unique_ptr<asio::thread_pool> workers;
+  std::unique_ptr<asio::thread_pool> workers, decoders;
   std::vector<std::thread> io_threads;
   std::unique_ptr<ControlSocket> control;  // null if the folder's path is too long
   std::unique_ptr<ServerCore> core;
@@ -76,10 +65,11 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   auto parts = std::make_unique<Parts>();
   parts->config = config;
   parts->world = *std::move(world);
-  parts->workers = low_priority_workers(config.worker_threads);
-  parts->core = std::make_unique<ServerCore>(parts->io, *parts->workers, parts->config,
-                                             *parts->world.store, *parts->world.generator,
-                                             std::move(on_failure), std::move(on_stop));
+  parts->workers = low_priority_threads(config.worker_threads);
+  parts->decoders = low_priority_threads(config.io_threads);
+  parts->core = std::make_unique<ServerCore>(
+      ServerThreads{parts->io, *parts->workers, *parts->decoders}, parts->config,
+      *parts->world.store, *parts->world.generator, std::move(on_failure), std::move(on_stop));
   if (const auto bound = parts->core->listen(config.listen); !bound)
     return Unexpected<std::string>{bound.error()};
   if (const auto recovered = parts->core->recover(); !recovered) {
@@ -139,6 +129,7 @@ StopReport Server::stop() {
   parts.control.reset();  // closes connections that have not read their answer
   parts.work.reset();
   for (std::thread& thread : parts.io_threads) thread.join();
+  parts.decoders->join();
   const StopState state = parts.core->stop_state();
   const auto live = parts.core->edited_chunks();
   parts.core.reset();

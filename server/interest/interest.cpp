@@ -32,7 +32,7 @@ SessionInterest& Interest::at(SessionId session) {
 std::size_t Interest::set_view(SessionId session, const View& view) {
   const SessionInterest::Moved moved = at(session).set_view(view);
   for (const auto& left : moved.left) leave(session, left.key, left.was);
-  return moved.entered;
+  return moved.steps;
 }
 
 template <class IsMeant>
@@ -92,6 +92,14 @@ void Interest::leave(SessionId session, const ChunkKey& key, ChunkInterest was) 
     users_.erase(found);
     released_.push_back(key);
   }
+}
+
+std::vector<ChunkKey> Interest::take_released(std::size_t count) {
+  const auto first =
+      released_.end() - static_cast<std::ptrdiff_t>(std::min(count, released_.size()));
+  std::vector<ChunkKey> out(first, released_.end());
+  released_.erase(first, released_.end());
+  return out;
 }
 
 std::span<const SessionId> Interest::subscribers(const ChunkKey& key) const {

@@ -31,7 +31,7 @@ class Interest {
 
   // The calls down to set_state() require an open session.
 
-  /// Sets the session's view. Returns how many chunks it added.
+  /// Sets the session's view. Returns how many chunks it visited: the cost of the call.
   std::size_t set_view(SessionId session, const View& view);
   /// Makes all chunks wanted again.
   void want_all_again(SessionId session);
@@ -51,8 +51,9 @@ class Interest {
   /// Returns true if a session is subscribed to the chunk or waits for it.
   bool is_used(const ChunkKey& key) const { return users_.contains(key); }
   std::size_t used_count() const { return users_.size(); }
-  /// Returns the chunks that lost their last user since the last call. Some may have a new one.
-  std::vector<ChunkKey> take_released() { return std::exchange(released_, {}); }
+  /// Removes and returns chunks that lost their last user, at most `count`. Some may have a new
+  /// one.
+  std::vector<ChunkKey> take_released(std::size_t count);
 
  private:
   struct Users {

@@ -41,9 +41,10 @@ Result<void, std::string> bind_to(asio::ip::tcp::acceptor& acceptor, const std::
 
 }  // namespace
 
-Listener::Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge,
-                   NetEvents& events)
+Listener::Listener(asio::io_context& io, asio::any_io_executor decoders, const NetLimits& limits,
+                   std::uint16_t chunk_edge, NetEvents& events)
     : io_(io),
+      decoders_(std::move(decoders)),
       limits_(limits),
       budget_(limits.server_bytes_per_second),
       chunk_edge_(chunk_edge),
@@ -110,8 +111,8 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
   auto stream = make_tcp_stream(std::move(socket), limits_.notsent_bytes);
-  auto session = std::make_shared<NetSession>(id, io_, std::move(stream), limits_, chunk_edge_,
-                                              budget_, events_, counters_);
+  auto session = std::make_shared<NetSession>(id, io_, decoders_, std::move(stream), limits_,
+                                              chunk_edge_, budget_, events_, counters_);
   {
     const std::lock_guard lock(mutex_);
     sessions_.emplace(id, session);

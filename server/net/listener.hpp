@@ -25,9 +25,9 @@ Result<void, std::string> can_listen(const std::string& address);
 
 class Listener : public std::enable_shared_from_this<Listener> {
  public:
-  /// `events` must outlive the io_context's threads.
-  Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge,
-           NetEvents& events);
+  /// `events` and the threads of `decoders` must outlive the threads of `io`.
+  Listener(asio::io_context& io, asio::any_io_executor decoders, const NetLimits& limits,
+           std::uint16_t chunk_edge, NetEvents& events);
 
   /// Binds and listens. `address` is of a form that parse_listen_address() reads; port 0 takes a
   /// free one. The error is one line that names the address.
@@ -58,6 +58,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   void end_handshake(SessionId session);
 
   asio::io_context& io_;
+  const asio::any_io_executor decoders_;
   const NetLimits limits_;
   ByteBudget budget_;  // of all sessions
   const std::uint16_t chunk_edge_;

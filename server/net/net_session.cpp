@@ -2,9 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <asio/bind_executor.hpp>
 #include <asio/co_spawn.hpp>
 #include <asio/detached.hpp>
 #include <asio/post.hpp>
+#include <asio/use_awaitable.hpp>
 #include <chrono>
 #include <utility>
 
@@ -20,10 +22,15 @@ namespace {
 // there: a read is short, and unhandled_bytes_max limits the bytes. Bytes are counted, not
 // messages, because the cost of a message grows with its bytes.
 constexpr std::size_t kReadBytes = 4 * 1024;
-// Counted for each message in addition to its bytes.
+// Counted for each message that waits, in addition to its bytes.
 constexpr std::size_t kMessageBytes = 64;
+// Counted as read for each message of the world strand, in addition to its bytes: decoding a byte of
+// a large paste takes 13 ns, and a message takes at least 7 us.
+constexpr std::size_t kMessageReadBytes = 512;
 // Room for a chunk fragment that must be sent although the socket has none.
 constexpr std::size_t kStarvedRoomBytes = 2 * 1024;
+// Messages of more bytes are decoded on the decoders. The largest paste takes half a millisecond.
+constexpr std::size_t kSmallBytes = 2 * kReadBytes;
 constexpr TimeUs kRoomPauseUsMax = 50'000;
 // Part of the read budget that may be used at once, for the list of cached chunks or a large paste.
 constexpr TimeUs kReadBurstUs = 500'000;
@@ -34,15 +41,17 @@ asio::steady_timer::time_point time_point_of(TimeUs us) {
 
 }  // namespace
 
-NetSession::NetSession(SessionId id, asio::io_context& io, std::unique_ptr<ByteStream> stream,
-                       const NetLimits& limits, std::uint16_t chunk_edge, ByteBudget& budget,
-                       NetEvents& events, NetCounters& counters)
+NetSession::NetSession(SessionId id, asio::io_context& io, asio::any_io_executor decoders,
+                       std::unique_ptr<ByteStream> stream, const NetLimits& limits,
+                       std::uint16_t chunk_edge, ByteBudget& budget, NetEvents& events,
+                       NetCounters& counters)
     : id_(id),
       limits_(limits),
       chunk_edge_(chunk_edge),
       events_(events),
       counters_(counters),
       strand_(asio::make_strand(io)),
+      decoders_(std::move(decoders)),
       stream_(std::move(stream)),
       peer_(stream_->peer()),
       address_(stream_->address()),
@@ -190,6 +199,18 @@ asio::awaitable<void> NetSession::wait_for_read_budget(std::size_t bytes_read) {
   (void)error;  // cancelled when the stream is closed; the next read fails then
 }
 
+asio::awaitable<Result<void>> NetSession::feed(std::shared_ptr<NetSession> self, ByteView read) {
+  const FrameReader::OnMessage on_message = [raw = self.get()](MessageKind kind, ByteView body) {
+    return raw->on_message(kind, body);
+  };
+  if (self->reader_.completed_bytes_max(read.size()) <= kSmallBytes)
+    co_return self->reader_.feed(read, on_message);
+  co_await asio::post(asio::bind_executor(self->decoders_, asio::use_awaitable));
+  Result<void> fed = self->reader_.feed(read, on_message);
+  co_await asio::post(asio::bind_executor(self->strand_, asio::use_awaitable));
+  co_return fed;
+}
+
 Result<void> NetSession::on_message(MessageKind kind, ByteView body) {
   counters_.messages_in.fetch_add(1, std::memory_order_relaxed);
   if (!messages_.take(1, steady_now_us())) {
@@ -202,6 +223,7 @@ Result<void> NetSession::on_message(MessageKind kind, ByteView body) {
     return Unexpected<Error>{message.error()};
   }
   if (const auto* ack = std::get_if<ReceiveAck>(&*message)) return on_receive_ack(*ack);
+  charge_reading(kMessageReadBytes);
   unhandled_.fetch_add(body.size() + kMessageBytes);
   events_.on_message(id_, *std::move(message), body.size());
   return {};
@@ -233,9 +255,6 @@ void NetSession::refuse(const Error& error) {
 
 asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
   Bytes buffer(kReadBytes);
-  const FrameReader::OnMessage on_message = [raw = self.get()](MessageKind kind, ByteView body) {
-    return raw->on_message(kind, body);
-  };
   bool refused = false;
   for (;;) {
     const asio::mutable_buffer into = asio::buffer(buffer);
@@ -247,7 +266,8 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
     // connection, and the goodbye would be lost.
     if (refused) continue;
     self->broken_rule_ = GoodbyeReason::malformed_frame;
-    const Result<void> fed = self->reader_.feed(ByteView(buffer.data(), got.bytes), on_message);
+    const ByteView read(buffer.data(), got.bytes);
+    const Result<void> fed = co_await feed(self, read);
     if (!fed) {
       self->refuse(fed.error());
       refused = true;

@@ -1,10 +1,13 @@
 // NetSession: one connection. It reads frames, verifies messages and reports them to NetEvents; it
 // sends queued messages by priority; it ends with a numbered goodbye. A client that breaks a rule
 // ends its own session only.
-// Threads: the two loops run on the session's strand. send(), reserve_chunk(), fill_chunk(),
+// Threads: the two loops run on the session's strand. A read that may complete a large message is
+// decoded on a thread of `decoders`, so that the I/O threads are free for the small messages of
+// others; the read loop waits for it. send(), reserve_chunk(), fill_chunk(),
 // forget_outside(), close(), abort(), handled(), set_encoding() and set_features() may be called
 // from any thread and return at once.
 #pragma once
+#include <asio/any_io_executor.hpp>
 #include <asio/io_context.hpp>
 #include <asio/steady_timer.hpp>
 #include <asio/strand.hpp>
@@ -55,11 +58,11 @@ struct NetCounters {
 
 class NetSession : public std::enable_shared_from_this<NetSession> {
  public:
-  /// `budget` (of the server), `limits`, `events` and `counters` must outlive the session.
-  /// `chunk_edge`: of the world.
-  NetSession(SessionId id, asio::io_context& io, std::unique_ptr<ByteStream> stream,
-             const NetLimits& limits, std::uint16_t chunk_edge, ByteBudget& budget,
-             NetEvents& events, NetCounters& counters);
+  /// `budget` (of the server), `limits`, `events` and `counters` must outlive the session, and the
+  /// threads of `decoders` those of `io`. `chunk_edge`: of the world.
+  NetSession(SessionId id, asio::io_context& io, asio::any_io_executor decoders,
+             std::unique_ptr<ByteStream> stream, const NetLimits& limits, std::uint16_t chunk_edge,
+             ByteBudget& budget, NetEvents& events, NetCounters& counters);
 
   SessionId id() const { return id_; }
   const std::string& peer() const { return peer_; }
@@ -101,6 +104,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   static asio::awaitable<void> read_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> write_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> end_after_linger(std::shared_ptr<NetSession> self);
+  /// Decodes what was read, and reports the messages.
+  static asio::awaitable<Result<void>> feed(std::shared_ptr<NetSession> self, ByteView read);
   Result<void> on_message(MessageKind kind, ByteView body);
   Result<void> on_receive_ack(const ReceiveAck& ack);
   void refuse(const Error& error);
@@ -120,6 +125,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   NetEvents& events_;
   NetCounters& counters_;
   Strand strand_;
+  const asio::any_io_executor decoders_;
   std::unique_ptr<ByteStream> stream_;
   std::string peer_;
   const AddressBlock address_;
@@ -136,7 +142,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   bool is_woken_ = false;  // the writer was woken and has not run yet
   bool is_due_ = false;    // the session is counted in commits_due
 
-  // On the strand from here on.
+  // On the strand from here on, but for what feed() uses.
   asio::steady_timer write_wake_, read_wake_, read_turn_, linger_;
   ByteBudget read_budget_;
   FrameReader reader_;

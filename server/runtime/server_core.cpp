@@ -20,21 +20,21 @@ constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for t
 
 }  // namespace
 
-ServerCore::ServerCore(asio::io_context& io, asio::thread_pool& workers, const ServerConfig& config,
-                       Store& store, const Generator& generator, std::function<void()> on_failure,
+ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,
+                       const Generator& generator, std::function<void()> on_failure,
                        std::function<void()> on_stop)
     : config_(config),
       store_(store),
       generator_(generator),
       on_failure_(std::move(on_failure)),
       on_stop_(std::move(on_stop)),
-      strand_(io, [this] { after_task(); }),
-      listener_(
-          std::make_shared<Listener>(io, net_limits_of(config), store.meta().chunk_edge, *this)),
+      strand_(threads.io, [this] { after_task(); }),
+      listener_(std::make_shared<Listener>(threads.io, threads.decoders.get_executor(),
+                                           net_limits_of(config), store.meta().chunk_edge, *this)),
       sessions_(strand_),
       chunks_(config.world, generator),
-      sender_(workers, chunks_),
-      readers_(strand_, workers, chunks_, config.world, generator),
+      sender_(threads.workers, chunks_),
+      readers_(strand_, threads.workers, chunks_, config.world, generator),
       environment_(sessions_, *listener_, sender_, readers_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
@@ -106,7 +106,8 @@ void ServerCore::tick() {
 }
 
 void ServerCore::after_task() {
-  if (world_->has_queued()) commits_.schedule();
+  if (world_->has_ready_edits(steady_now_us())) commits_.schedule();
+  schedule_delivery();
   finish_stop_if_flushed();
 }
 
@@ -186,6 +187,14 @@ void ServerCore::schedule_turn() {
       handle(*std::move(turn));
     } while (steady_now_us() < end_us);
     schedule_turn();
+  });
+}
+
+void ServerCore::schedule_delivery() {
+  if (!world_->has_deliveries() || std::exchange(is_delivery_posted_, true)) return;
+  strand_.post([this] {
+    is_delivery_posted_ = false;
+    world_->deliver_next(read_clocks());
   });
 }
 

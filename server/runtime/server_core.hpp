@@ -1,7 +1,7 @@
 // ServerCore: connects the parts of a running server around the world strand and starts and stops
 // them. It turns events of sessions and timers into calls of WorldServer. ServerEnvironment is the
 // other direction. Threads: I/O threads run the strands; workers load, generate and encode chunks;
-// readers and the log writer have threads of their own. The world and the connected sessions belong
+// decoders read large messages; readers and the log writer have threads of their own. The world and the connected sessions belong
 // to the world strand.
 #pragma once
 #include <asio/io_context.hpp>
@@ -32,14 +32,21 @@
 
 namespace runstone {
 
+/// The threads of a server. Workers and decoders have a lower priority than the others.
+struct ServerThreads {
+  asio::io_context& io;
+  asio::thread_pool& workers;   // must have ended when the core is destroyed
+  asio::thread_pool& decoders;  // must not end before the threads of `io`
+};
+
 class ServerCore final : public NetEvents {
  public:
-  /// `io`, `workers`, `config`, `store` and `generator` must outlive the core. `store` is of the
+  /// `threads`, `config`, `store` and `generator` must outlive the core. `store` is of the
   /// folder `config.world`. `on_failure` is called at most once, from the log writer's thread, when
   /// the log cannot be written any more. `on_stop` is called on the world strand when an operator
   /// stops the server.
-  ServerCore(asio::io_context& io, asio::thread_pool& workers, const ServerConfig& config,
-             Store& store, const Generator& generator, std::function<void()> on_failure,
+  ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,
+             const Generator& generator, std::function<void()> on_failure,
              std::function<void()> on_stop);
   ~ServerCore() override;
 
@@ -94,6 +101,9 @@ class ServerCore final : public NetEvents {
   /// messages take part in the turns.
   void schedule_turn();
   void handle(MessageTurns::Turn&& turn);
+  /// Posts a task that sends chunks, if a session's delivery is not complete, unless it is posted
+  /// already.
+  void schedule_delivery();
   void finish_stop_if_flushed();
   void write_counters();
 
@@ -104,8 +114,8 @@ class ServerCore final : public NetEvents {
   WorldStrand strand_;
   std::shared_ptr<Listener> listener_;
   ConnectedSessions sessions_;
-  MessageTurns messages_;        // used on the world strand
-  bool is_turn_posted_ = false;  // likewise
+  MessageTurns messages_;                                     // used on the world strand
+  bool is_turn_posted_ = false, is_delivery_posted_ = false;  // likewise
   ChunkSource chunks_;
   ChunkSender sender_;
   WorldReaders readers_;

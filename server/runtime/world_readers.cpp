@@ -37,14 +37,14 @@ void WorldReaders::load_chunk(const ChunkKey& key, std::function<void(StoreResul
 
 void WorldReaders::open_history(const HistoryRequest& request,
                                 std::function<void(OpenedHistoryResult)> then) {
-  asio::post(history_readers_, [this, request, then = std::move(then)] {
+  asio::post(*history_readers_, [this, request, then = std::move(then)] {
     strand_.post([then, opened = open(moments_, request)]() mutable { then(std::move(opened)); });
   });
 }
 
 void WorldReaders::load_history_chunk(Sequence at, const ChunkKey& key,
                                       std::function<void(Result<ChunkPtr, std::string>)> then) {
-  asio::post(history_readers_, [this, at, key, then = std::move(then)] {
+  asio::post(*history_readers_, [this, at, key, then = std::move(then)] {
     auto loaded = moments_.chunk(at, key);
     Result<ChunkPtr, std::string> chunk = ChunkPtr();
     if (!loaded && loaded.error().kind == StoreError::Kind::cancelled) return;  // the server stops
@@ -59,7 +59,7 @@ void WorldReaders::load_history_chunk(Sequence at, const ChunkKey& key,
 
 void WorldReaders::read_log(RollbackService::Workers::Work work,
                             std::function<void(std::string)> then) {
-  asio::post(log_readers_, [this, work = std::move(work), then = std::move(then)] {
+  asio::post(*log_readers_, [this, work = std::move(work), then = std::move(then)] {
     const auto read = chunks_.with_reader([&](WorldReader& reader) { work(reader, generator_); });
     strand_.post([then, error = read ? std::string() : read.error().message()] { then(error); });
   });
@@ -67,10 +67,10 @@ void WorldReaders::read_log(RollbackService::Workers::Work work,
 
 void WorldReaders::stop() {
   moments_.cancel();
-  log_readers_.stop();
-  history_readers_.stop();
-  log_readers_.join();
-  history_readers_.join();
+  log_readers_->stop();
+  history_readers_->stop();
+  log_readers_->join();
+  history_readers_->join();
 }
 
 }  // namespace runstone

@@ -4,6 +4,7 @@
 //   - the workers, shared with encoding, load chunks;
 //   - the history readers open moments of the past and make their chunks;
 //   - the log readers run the queries of commands and rollbacks.
+// All have a low priority.
 // Threads: any, until stop().
 #pragma once
 #include <asio/thread_pool.hpp>
@@ -14,6 +15,7 @@
 #include "server/history/moments.hpp"
 #include "server/rollback/rollback_service.hpp"
 #include "server/runtime/chunk_source.hpp"
+#include "server/runtime/low_priority_threads.hpp"
 #include "server/runtime/world_strand.hpp"
 #include "server/world/world_environment.hpp"
 
@@ -53,8 +55,8 @@ class WorldReaders {
   ChunkSource& chunks_;
   const Generator& generator_;
   Moments moments_;
-  asio::thread_pool log_readers_{kLogReaders};
-  asio::thread_pool history_readers_{kHistoryReaders};
+  const std::unique_ptr<asio::thread_pool> log_readers_ = low_priority_threads(kLogReaders);
+  const std::unique_ptr<asio::thread_pool> history_readers_ = low_priority_threads(kHistoryReaders);
 };
 
 }  // namespace runstone

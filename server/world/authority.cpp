@@ -43,9 +43,9 @@ std::optional<RejectReason> Authority::submit(const EditOffer& offer) {
   return std::nullopt;
 }
 
-std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
+std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t large_room) {
   log_clock_.advance(now);
-  const std::vector<EditOffer> offers = queue_.take();
+  const std::vector<EditOffer> offers = queue_.take(large_room);
   if (offers.empty()) return std::nullopt;
   const TimeUs time_us = log_clock_.stamp();
   OrderedBatch batch;

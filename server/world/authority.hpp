@@ -58,13 +58,10 @@ class Authority {
   /// Resolves an operation that was rejected by a check outside of Authority.
   void reject(const OperationId& op, RejectReason reason) { resolved_.reject(op, reason); }
 
-  std::size_t queued() const { return queue_.size(); }
-  /// Returns the bytes of memory that the queued edits take.
-  std::size_t queued_bytes() const { return queue_.bytes(); }
-  /// Advances the log's time, and orders the queued edits of one commit (EditQueue). Returns nullopt
-  /// if none is queued. Cost: O(runs + edits) for each touched
-  /// chunk.
-  std::optional<OrderedBatch> commit(const Clocks& now);
+  const EditQueue& queue() const { return queue_; }
+  /// Advances the log's time, and orders the edits that EditQueue::take(large_room) returns. Returns
+  /// nullopt if there are none. Cost: O(runs + edits) for each touched chunk.
+  std::optional<OrderedBatch> commit(const Clocks& now, std::uint64_t large_room = kAllLargeEdits);
 
   /// The time of the log, for its warnings.
   LogClock& log_clock() { return log_clock_; }

@@ -88,7 +88,12 @@ void send_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now)
   const Authors authors = authors_of(world, batch.commit);
   for (const auto& [author, session] : authors)
     world.find(session)->awaits_durable = world.authority.head();
-  const std::vector<Audience> audiences = audiences_of(receivers_of(world, authors, batch));
+  const auto receivers = receivers_of(world, authors, batch);
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    const std::size_t work = edit_work(batch.commit.edits[i].edit, world.config.chunk_edge);
+    if (work > kSmallEditWork) world.large_edits.sent(work * receivers[i].size(), now.steady_us);
+  }
+  const std::vector<Audience> audiences = audiences_of(receivers);
   if (audiences.empty()) return;
   const CommitEncoder encoder(batch.commit);
   for (const Audience& audience : audiences) {
@@ -101,10 +106,16 @@ void send_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now)
   }
 }
 
+/// Returns the work of large edits that the next commit may have if every session sees them.
+std::uint64_t large_room_of(const WorldState& world, TimeUs now_us) {
+  return world.large_edits.room(now_us) / std::max<std::size_t>(1, world.sessions.size());
+}
+
 }  // namespace
 
-bool commit_and_broadcast(WorldState& world, const Clocks& now) {
-  auto batch = world.authority.commit(now);
+bool commit_and_broadcast(WorldState& world, LargeEdits large, const Clocks& now) {
+  auto batch = world.authority.commit(
+      now, large == LargeEdits::all ? kAllLargeEdits : large_room_of(world, now.steady_us));
   if (!batch) return false;
   ++world.counters.commits;
   world.counters.edits_ordered += batch->records.size();
@@ -116,6 +127,10 @@ bool commit_and_broadcast(WorldState& world, const Clocks& now) {
       request_load(world, key);
   }
   return true;
+}
+
+bool has_ready_edits(const WorldState& world, TimeUs now_us) {
+  return world.authority.queue().has_ready(large_room_of(world, now_us) > 0);
 }
 
 void send_durable_to_authors(WorldState& world) {

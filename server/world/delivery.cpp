@@ -9,6 +9,9 @@
 namespace runstone {
 namespace {
 
+// What one task of the world strand does at most, so that edits do not wait long: a millisecond.
+constexpr std::size_t kChunksPerDelivery = 512, kReleasedPerTask = 4'096;
+
 bool is_stalled(const WorldState& world, const WorldSession& session, const Clocks& now) {
   return session.stalled_us && now.steady_us - *session.stalled_us < world.config.retry_interval_us;
 }
@@ -182,6 +185,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr || mine->state != SessionStage::open || is_stalled(world, *mine, now)) return;
   mine->stalled_us.reset();
+  world.deliveries.erase(session);
   if (!send_view_states(world, session, now)) return;
   if (mine->history) {
     deliver_history(world, session);
@@ -189,13 +193,19 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
   }
   WorldChunks& chunks = world.authority.chunks();
   const SessionInterest& interest = *world.interest.find(session);
+  std::size_t sent = 0;
   while (interest.count(ChunkInterest::waiting) < world.config.loads_per_session_max) {
     const auto key = world.interest.nearest_wanted(session);
     if (!key) break;
+    if (sent == kChunksPerDelivery) {
+      world.deliveries.insert(session);
+      break;
+    }
     const ChunkPtr chunk = chunks.find(*key);
     const Residency residency = chunks.residency(*key);
     if (chunk != nullptr || residency == Residency::quarantined) {
       if (!send_chunk(world, session, *key, chunk, ChunkInterest::subscribed, now)) break;
+      ++sent;
     } else {
       world.interest.set_state(session, *key, ChunkInterest::waiting);
       if (residency == Residency::absent) world.loads.request(session, *key);
@@ -217,8 +227,17 @@ void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now) {
     } else {
       send_chunk(world, session, key, chunk, ChunkInterest::subscribed, now);
     }
-    deliver(world, session, now);
+    if (!world.deliveries.contains(session)) deliver(world, session, now);
   }
+}
+
+void deliver_next(WorldState& world, const Clocks& now) {
+  auto next = world.deliveries.upper_bound(world.delivered_last);
+  if (next == world.deliveries.end()) next = world.deliveries.begin();
+  if (next == world.deliveries.end()) return;
+  world.delivered_last = *next;
+  world.deliveries.erase(next);
+  deliver(world, world.delivered_last, now);
 }
 
 void mark_stale(WorldState& world, SessionId session, std::span<const ChunkKey> keys,
@@ -234,7 +253,7 @@ void mark_stale(WorldState& world, SessionId session, std::span<const ChunkKey> 
 }
 
 void collect_released(WorldState& world) {
-  for (const ChunkKey& key : world.interest.take_released()) {
+  for (const ChunkKey& key : world.interest.take_released(kReleasedPerTask)) {
     if (!world.interest.is_used(key)) world.authority.chunks().released(key);
   }
 }

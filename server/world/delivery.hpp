@@ -8,8 +8,11 @@
 namespace runstone {
 
 /// Sends the session's wanted chunks, nearest first: chunks in memory at once, the others after a
-/// load. Stops when the session's queue is full or it waits for loads_per_session_max loads.
+/// load. Stops when the session's queue is full or it waits for loads_per_session_max loads. After
+/// some hundred chunks the session goes to WorldState::deliveries.
 void deliver(WorldState& world, SessionId session, const Clocks& now);
+/// Calls deliver() for the next session of WorldState::deliveries. Sessions take turns.
+void deliver_next(WorldState& world, const Clocks& now);
 /// Sends the uniform chunks that are due for the session, in one message. Returns false if its
 /// queue is full; the chunks stay due.
 bool send_uniform(WorldState& world, SessionId session, const Clocks& now);
@@ -35,7 +38,8 @@ void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now);
 /// unsubscribed from them and gets them again as snapshots when its queue has room.
 void mark_stale(WorldState& world, SessionId session, std::span<const ChunkKey> keys,
                 const Clocks& now);
-/// Makes chunks that lost their last user candidates for eviction.
+/// Makes chunks that lost their last user candidates for eviction: some thousands, and the others
+/// with the next calls.
 void collect_released(WorldState& world);
 
 }  // namespace runstone

@@ -11,9 +11,8 @@
 namespace runstone {
 namespace {
 
-// The work of an edit: an upper bound of its bytes in a commit message, in which its chunks weigh
-// more because each of them is swept. A commit that holds a single edit may have more than
-// kWorkMax. With kWorkMax, the slowest commit takes a few milliseconds.
+// The work of a commit. One that holds a single edit may have more. With kWorkMax, the slowest
+// commit takes a few milliseconds.
 constexpr std::size_t kWorkMax = 128 * 1024;
 constexpr std::size_t kEditWork = 128;     // the fields of OrderedEdit without the descriptor
 constexpr std::size_t kChunkWork = 64;     // at least 10, a varint of OrderedEdit::previous
@@ -24,7 +23,13 @@ static_assert(kWorkMax < kServerEditBytesMax / 2 && kEditWork +
                                                         kServerEditBytesMax / 2,
               "every commit fits its message");
 
-std::size_t work_of(const EditDescriptor& edit, std::int32_t chunk_edge) {
+std::size_t memory_of(const EditOffer& offer) {
+  return sizeof(EditOffer) + memory_bytes(offer.edit);
+}
+
+}  // namespace
+
+std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge) {
   const auto* paste = std::get_if<Paste>(&edit.shape);
   const std::size_t descriptor = paste == nullptr
                                      ? descriptor_bytes_max(kind_of(edit))
@@ -34,19 +39,25 @@ std::size_t work_of(const EditDescriptor& edit, std::int32_t chunk_edge) {
   return kEditWork + descriptor + kChunkWork * chunks;
 }
 
-std::size_t memory_of(const EditOffer& offer) {
-  return sizeof(EditOffer) + memory_bytes(offer.edit);
-}
-
-}  // namespace
-
 void EditQueue::push(const EditOffer& offer) {
-  lanes_[{offer.op.author, offer.op.instance}].push_back({offer, work_of(offer.edit, chunk_edge_)});
+  auto& lane = lanes_[{offer.op.author, offer.op.instance}];
+  lane.push_back({offer, edit_work(offer.edit, chunk_edge_)});
+  if (lane.size() == 1 && lane.front().waits_for_room()) ++large_fronts_;
   bytes_ += memory_of(offer);
   ++size_;
 }
 
-std::vector<EditOffer> EditQueue::take() {
+EditQueue::Lanes::iterator EditQueue::pop(Lanes::iterator lane) {
+  std::deque<Waiting>& edits = lane->second;
+  if (edits.front().waits_for_room()) --large_fronts_;
+  edits.pop_front();
+  --size_;
+  if (edits.empty()) return lanes_.erase(lane);
+  if (edits.front().waits_for_room()) ++large_fronts_;
+  return std::next(lane);
+}
+
+std::vector<EditOffer> EditQueue::take(std::uint64_t large_room) {
   std::vector<EditOffer> out;
   std::size_t work = 0;
   std::optional<Client> skipped;
@@ -56,18 +67,19 @@ std::vector<EditOffer> EditQueue::take() {
     for (std::size_t left = lanes_.size(); left > 0 && out.size() < kCommitEditsMax; --left) {
       if (lane == lanes_.end()) lane = lanes_.begin();
       Waiting& next = lane->second.front();
-      if (!out.empty() && work + next.work > kWorkMax) {
+      const bool is_large = next.waits_for_room();
+      const bool has_room = !is_large || large_room > 0;
+      if (!has_room || (!out.empty() && work + next.work > kWorkMax)) {
         if (!skipped) skipped = lane->first;
         ++lane;
         continue;
       }
       has_taken = true;
       work += next.work;
+      if (is_large) large_room -= std::min<std::uint64_t>(large_room, next.work);
       bytes_ -= memory_of(next.offer);
-      --size_;
       out.push_back(std::move(next.offer));
-      lane->second.pop_front();
-      lane = lane->second.empty() ? lanes_.erase(lane) : std::next(lane);
+      lane = pop(lane);
     }
   }
   turn_ = skipped ? *skipped : lane == lanes_.end() ? Client{} : lane->first;

@@ -1,13 +1,15 @@
 // EditQueue: the edits that were accepted and are not ordered yet. Clients take turns with one edit
 // each, and a commit holds a bounded amount of work. So an edit waits for the commit under way and
 // for at most one costly edit of each other client, however many they have sent. The edits of one
-// client keep their order.
+// client keep their order. A large edit of a player also waits until LargeEditPace has room, and
+// those of its client wait behind it.
 // Bound: the caller's (WorldState::environment.log_has_room(), is_memory_full()).
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -24,14 +26,28 @@ struct EditOffer {
   Sequence subject = 0;  // the edit that this rollback, undo or redo is about; 0: none
 };
 
+/// Returns the work of an edit: an upper bound of its bytes in a commit message, in which its chunks
+/// weigh more because each of them is swept. Cost: O(1); stroke: O(points).
+std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge);
+/// An edit with more work is large.
+inline constexpr std::size_t kSmallEditWork = 4 * 1024;
+/// Room for all large edits that wait.
+inline constexpr std::uint64_t kAllLargeEdits = std::numeric_limits<std::uint64_t>::max();
+
 class EditQueue {
  public:
   explicit EditQueue(std::int32_t chunk_edge) : chunk_edge_(chunk_edge) {}
 
   void push(const EditOffer& offer);
-  /// Removes and returns the edits of the next commit, in their order. The result is empty only if
-  /// no edit waits. Cost: O(edits + clients) * log clients.
-  std::vector<EditOffer> take();
+  /// Removes and returns the edits of the next commit, in their order. `large_room` is the work of
+  /// large edits of players that it may have; the last one may exceed it, and at 0 there is none.
+  /// The result is empty only if has_ready(large_room > 0) is false. Cost: O(edits + clients) * log
+  /// clients.
+  std::vector<EditOffer> take(std::uint64_t large_room = kAllLargeEdits);
+  /// Returns true if the next take() returns edits.
+  bool has_ready(bool has_large_room) const {
+    return has_large_room ? size_ > 0 : lanes_.size() > large_fronts_;
+  }
 
   std::size_t size() const { return size_; }
   /// Returns the bytes of memory that the edits take.
@@ -41,12 +57,18 @@ class EditQueue {
   struct Waiting {
     EditOffer offer;
     std::size_t work;
+    bool waits_for_room() const { return work > kSmallEditWork && offer.cause == Cause::player; }
   };
   using Client = std::pair<AuthorId, ClientInstance>;
+  using Lanes = std::map<Client, std::deque<Waiting>>;
+
+  /// Removes the lane's first edit, and the lane if it was the last. Returns the next lane.
+  Lanes::iterator pop(Lanes::iterator lane);
 
   std::int32_t chunk_edge_;
-  std::map<Client, std::deque<Waiting>> lanes_;  // no lane is empty
-  Client turn_{};                                // whose turn begins the next commit
+  Lanes lanes_;                   // no lane is empty
+  std::size_t large_fronts_ = 0;  // lanes whose first edit waits for room
+  Client turn_{};                 // whose turn begins the next commit
   std::size_t size_ = 0, bytes_ = 0;
 };
 

@@ -115,7 +115,7 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
   mine.state = SessionStage::open;
   mine.author = world.players.enter(mine.key, mine.name);
   if (world.players.is_renamed(mine.author) &&
-      world.environment.log_has_room(world.authority.queued() + 1)) {
+      world.environment.log_has_room(world.authority.queue().size() + 1)) {
     world.environment.log_append({*world.players.take_unsaved(mine.author)}, {});
   }
   mine.pose.at = world.config.spawn;

@@ -67,7 +67,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   std::optional<RejectReason> refusal;
   std::string detail;
   const bool has_room = world.accepts_edits && !world.disk_is_full && !is_memory_full(world) &&
-                        world.environment.log_has_room(world.authority.queued() + 1);
+                        world.environment.log_has_room(world.authority.queue().size() + 1);
   if (world.authority.resolved().knows(op)) {
     refusal = world.authority.resolved().answer_to(op);
   } else if (!has_room) {

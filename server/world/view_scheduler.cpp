@@ -31,9 +31,9 @@ void apply_view(WorldState& world, SessionId id, const Clocks& now) {
   mine.has_skipped_too_many = false;
   const std::optional<View>& seen = world.interest.find(id)->view();
   const bool same_chunks = seen && seen->same_chunks(*mine.next_view);
-  const std::size_t entered =
+  const std::size_t visited =
       world.interest.set_view(id, *std::exchange(mine.next_view, std::nullopt));
-  world.view_chunks_left -= std::min(world.view_chunks_left, entered + 1);
+  world.view_chunks_left -= std::min(world.view_chunks_left, visited + 1);
   if (!same_chunks) forget_sent(mine);
   if (!same_chunks || has_skipped) forget_unsent(world, id);
   mine.is_view_complete = false;

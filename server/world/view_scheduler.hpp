@@ -1,6 +1,7 @@
 // View scheduler: decides when a session's view takes effect. Only the newest view of a session
 // waits. A session's view takes effect at most once in view_interval_us, and on one tick the views
-// of all sessions add at most view_chunks_per_tick chunks (the last view may exceed it). So a
+// of all sessions visit at most view_chunks_per_tick chunks: those that they add or leave and those
+// that are not sent yet (the last view may exceed it). So a
 // client that moves its view a thousand times a second costs the world strand no more than one that
 // moves it twenty times.
 #pragma once

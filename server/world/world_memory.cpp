@@ -44,7 +44,7 @@ std::set<SessionId> sessions_over_share(const WorldState& world, const WorldMemo
 WorldMemory world_memory_of(const WorldState& world) {
   const WorldChunks& chunks = world.authority.chunks();
   return {chunks.resident_bytes(), chunks.stack_bytes(),
-          world.authority.queued_bytes() + world.environment.log_queued_bytes()};
+          world.authority.queue().bytes() + world.environment.log_queued_bytes()};
 }
 
 bool views_wait_for_memory(const WorldState& world) {

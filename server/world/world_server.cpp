@@ -143,11 +143,18 @@ void WorldServer::drained(SessionId session, const Clocks& now) {
   deliver(*state_, session, now);
 }
 
-bool WorldServer::has_queued() const { return state_->authority.queued() > 0; }
+bool WorldServer::has_ready_edits(TimeUs now_us) const {
+  return runstone::has_ready_edits(*state_, now_us);
+}
 
-void WorldServer::commit_one(const Clocks& now) { commit_and_broadcast(*state_, now); }
+bool WorldServer::has_deliveries() const { return !state_->deliveries.empty(); }
+void WorldServer::deliver_next(const Clocks& now) { runstone::deliver_next(*state_, now); }
+
+void WorldServer::commit_one(const Clocks& now) {
+  commit_and_broadcast(*state_, LargeEdits::paced, now);
+}
 void WorldServer::commit(const Clocks& now) {
-  while (commit_and_broadcast(*state_, now)) {
+  while (commit_and_broadcast(*state_, LargeEdits::paced, now)) {
   }
 }
 
@@ -320,7 +327,8 @@ void WorldServer::log_failed() { state_->accepts_edits = false; }
 
 void WorldServer::begin_stop(const Clocks& now) {
   WorldState& world = *state_;
-  commit(now);  // orders the edits that were accepted
+  while (commit_and_broadcast(world, LargeEdits::all, now)) {  // the edits that were accepted
+  }
   world.accepts_edits = false;
   world.is_stopping = true;
   world.stop_due_us = now.steady_us + world.config.stop_us_max;
@@ -335,7 +343,7 @@ void WorldServer::begin_stop(const Clocks& now) {
 }
 
 bool WorldServer::is_flushed() const {
-  return state_->authority.queued() == 0 && state_->durable == state_->authority.head() &&
+  return state_->authority.queue().size() == 0 && state_->durable == state_->authority.head() &&
          (state_->checkpointer.is_clean(state_->authority) || is_stop_overdue());
 }
 

@@ -48,12 +48,17 @@ class WorldServer {
   void drained(SessionId session, const Clocks& now);
 
   // Progress.
-  /// Returns true if edits wait for commit().
-  bool has_queued() const;
+  /// Returns true if commit_one() would order edits. Some large edits that are queued may have to
+  /// wait (LargeEditPace).
+  bool has_ready_edits(TimeUs now_us) const;
   /// Orders and sends the queued edits of one commit. Others that are queued may follow later.
   void commit_one(const Clocks& now);
-  /// Orders and sends all queued edits.
+  /// Orders and sends queued edits as long as has_ready_edits().
   void commit(const Clocks& now);
+  /// Returns true if the chunks of a session are to be sent by deliver_next().
+  bool has_deliveries() const;
+  /// Sends some chunks of one session. Sessions take turns.
+  void deliver_next(const Clocks& now);
   /// Does periodic work: timeouts, views, presence, digest checks, retries, checkpoints and
   /// eviction.
   void tick(const Clocks& now);

@@ -55,7 +55,7 @@ void forget_session(WorldState& world, SessionId session) {
 
 void forget_gone_authors(WorldState& world) {
   // A queued edit needs its author's row when it is ordered.
-  if (world.gone_authors.empty() || world.authority.queued() != 0) return;
+  if (world.gone_authors.empty() || world.authority.queue().size() != 0) return;
   std::set<AuthorId> present;
   for (const auto& [id, session] : world.sessions) {
     if (session.state == SessionStage::open) present.insert(session.author);

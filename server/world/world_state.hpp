@@ -10,6 +10,7 @@
 #include "server/limits/edit_ledger.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
+#include "server/world/large_edit_pace.hpp"
 #include "server/world/load_queue.hpp"
 #include "server/world/load_retries.hpp"
 #include "server/world/players.hpp"
@@ -39,6 +40,7 @@ struct WorldState {
   LoadRetries load_retries;
   Players players;
   EditLedger edit_ledger;
+  LargeEditPace large_edits;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
   WorldCounters counters;
@@ -60,8 +62,11 @@ struct WorldState {
   // Digest checks.
   TimeUs digest_checks_us = 0;      // up to this time, all that were due are sent
   SessionId digest_check_last = 0;  // the session served last
+  // Delivery.
+  std::set<SessionId> deliveries;  // sessions whose delivery goes on in a task of its own
+  SessionId delivered_last = 0;    // of those, the session served last
   // Views.
-  std::size_t view_chunks_left;     // that views may still add on this tick
+  std::size_t view_chunks_left;     // that views may still visit on this tick
   bool views_wait = false;          // some views had to wait for the next tick
   SessionId view_applied_last = 0;  // the session whose view took effect last on a tick
   // Time travel.

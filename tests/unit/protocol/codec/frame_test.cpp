@@ -197,6 +197,28 @@ TEST_CASE("a reader counts the frames and their bytes by class", "[protocol]") {
   CHECK(reader.frame_bytes(FrameClass::edits) == 0);
 }
 
+TEST_CASE("a reader bounds the bytes of messages that the next bytes complete", "[protocol]") {
+  constexpr std::size_t kSize = 40'000, kPiece = 1'000;
+  const Bytes stream = frames_of(kKindOf<EditRequest>, kSize);
+  FrameReader reader(Sender::client);
+  std::size_t completed = 0, bounds_above = 0;
+  const FrameReader::OnMessage on_message = [&](MessageKind, ByteView body) -> Result<void> {
+    completed += body.size();
+    return {};
+  };
+  for (ByteView left = stream; !left.empty();) {
+    const ByteView next = left.first(std::min(kPiece, left.size()));
+    const std::size_t bound = reader.completed_bytes_max(next.size());
+    const std::size_t before = completed;
+    REQUIRE(reader.feed(next, on_message));
+    CHECK(completed - before <= bound);
+    if (bound > 2 * kPiece) ++bounds_above;
+    left = left.subspan(next.size());
+  }
+  CHECK(completed == kSize);
+  CHECK(bounds_above <= 3);  // the ends of the three frames
+}
+
 TEST_CASE("an empty piece of a stream is accepted", "[protocol]") {
   FrameReader reader(Sender::client);
   CHECK(reader.feed({}, kIgnore).has_value());

@@ -159,13 +159,13 @@ TEST_CASE("a moved view makes only new chunks wanted and releases the chunks tha
   while (const auto key = interest.nearest_wanted(1))
     interest.set_state(1, *key, ChunkInterest::subscribed);
   const std::size_t all = interest.find(1)->chunks().size();
-  CHECK(interest.take_released().empty());
+  CHECK(interest.take_released(1'000).empty());
 
   interest.set_view(1, {1, {1, 0, 0}, 8, 2});
   const SessionInterest& mine = *interest.find(1);
   const std::size_t shell = 17 * 5;  // one new chunk per row of the disc and height
   CHECK(mine.count(ChunkInterest::subscribed) == all - shell);
-  CHECK(interest.take_released().size() == shell);
+  CHECK(interest.take_released(1'000).size() == shell);
   CHECK_FALSE(interest.subscribes(1, key_of(-8, 0, 0)));
   CHECK(interest.nearest_wanted(1) != key_of(9, 2, 0));
   std::size_t wanted = 0;
@@ -196,9 +196,9 @@ TEST_CASE("subscribers of a chunk are the sessions that got it, until they leave
   CHECK_FALSE(interest.set_state(5, key_of(9, 9, 9), ChunkInterest::subscribed));
 
   interest.close(7);
-  CHECK(interest.take_released().empty());
+  CHECK(interest.take_released(1'000).empty());
   interest.set_state(3, key, ChunkInterest::wanted);  // stale
-  CHECK(interest.take_released() == std::vector<ChunkKey>{key});
+  CHECK(interest.take_released(1'000) == std::vector<ChunkKey>{key});
   CHECK(interest.subscribers(key).empty());
   CHECK_FALSE(interest.is_used(key));
   CHECK(interest.nearest_wanted(3) == key_of(0, 0, 0));

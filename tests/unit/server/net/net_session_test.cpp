@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "protocol/codec/message_table.hpp"
+#include "tests/support/hostile_edits.hpp"
 
 using namespace runstone;
 
@@ -84,18 +85,24 @@ Bytes frames_of(const Message& message, std::size_t count) {
 }
 
 struct Bench {
-  explicit Bench(Bytes received = {}, StreamRoom room = {}) {
+  explicit Bench(Bytes received = {}, StreamRoom room = {}, const NetLimits& limits_ = {})
+      : limits(limits_) {
     auto fed = std::make_unique<FedStream>(io, std::move(received));
     fed->room_now = room;
     stream = fed.get();
-    session = std::make_shared<NetSession>(SessionId{1}, io, std::move(fed), limits,
-                                           std::uint16_t{32}, budget, world, counters);
+    session =
+        std::make_shared<NetSession>(SessionId{1}, io, decoders.get_executor(), std::move(fed),
+                                     limits, std::uint16_t{32}, budget, world, counters);
     session->start();
     io.poll();
   }
   ~Bench() {
     session->abort();
-    io.run();
+    while (!io.stopped()) {
+      decoders.restart();
+      decoders.poll();
+      io.run_for(std::chrono::milliseconds(1));
+    }
   }
   /// Returns the bytes of bodies that the client got, of chunks and of edits.
   std::pair<std::size_t, std::size_t> sent() const {
@@ -121,8 +128,8 @@ struct Bench {
     REQUIRE(session->send({kKindOf<Commit>, std::make_shared<const Bytes>(bytes)}));
     io.poll();
   }
-  asio::io_context io;
-  NetLimits limits;
+  asio::io_context io, decoders;
+  const NetLimits limits;
   ByteBudget budget{0};
   NetCounters counters;
   SlowWorld world;
@@ -156,6 +163,30 @@ TEST_CASE("a session has few unhandled messages, fewer large ones than small one
     REQUIRE_FALSE(bench.world.is_disconnected);
   }
   CHECK(bench.world.most <= in_bound + in_read);
+}
+
+TEST_CASE("a large message is decoded by the decoders, and small ones are not", "[net]") {
+  Bench small(frames_of(Ping{1}, 10));
+  CHECK(small.world.received == 10);
+
+  const EditRequest paste{1, 0, {Paste{{0, 0, 0}, test::long_clipboard(), {}}, {}, kEmpty}};
+  Bench large(frames_of(paste, 1));
+  CHECK(large.world.received == 0);
+  for (int i = 0; i < 100 && large.world.received == 0; ++i) {
+    large.decoders.poll();
+    large.decoders.restart();
+    large.io.poll();
+  }
+  CHECK(large.world.received == 1);
+}
+
+TEST_CASE("each message counts as read with more than its bytes", "[net]") {
+  NetLimits limits;
+  limits.read_bytes_per_second = 1'000'000;  // half of it at once
+  limits.unhandled_bytes_max = 1'000'000;
+  Bench bench(frames_of(Ping{1}, 2'000), {}, limits);
+  CHECK(bench.world.received >= 900);
+  CHECK(bench.world.received < 1'500);
 }
 
 TEST_CASE("without room in the socket edits are sent, and terrain waits with growing pauses",

@@ -119,7 +119,7 @@ TEST_CASE("every rejection is final, also busy, and is repeated when the edit is
   Authority authority(limits(), {1, 0, 0});
   authority.reject(offer(1, box(0, 1), 1).op, RejectReason::busy);
   CHECK(authority.resolved().of(1, 77) == 1);
-  CHECK(authority.queued() == 0);
+  CHECK(authority.queue().size() == 0);
   CHECK(authority.submit(offer(1, box(0, 1), 1)) == RejectReason::busy);
   CHECK_FALSE(authority.submit(offer(2, box(0, 1), 1)).has_value());
   CHECK(authority.submit(offer(1, box(0, 1), 1)) == RejectReason::busy);

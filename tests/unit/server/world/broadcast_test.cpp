@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "tests/support/hostile_edits.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone {
@@ -39,6 +40,36 @@ TEST_CASE("a commit is sent to every session that sees its chunk, and to its aut
   REQUIRE(bench.environment.records.size() == 1);
   CHECK(bench.environment.players.size() == 1);  // only players who edit get a row
   CHECK(bench.environment.players[0].author == 4);
+}
+
+TEST_CASE("large edits that many see are sent at a bounded rate, small edits at once", "[world]") {
+  WorldConfig c = config();
+  c.edit_budget = {};  // no limit
+  Bench bench(c);
+  for (SessionId s = 1; s <= 20; ++s) {
+    bench.join(s, static_cast<std::uint8_t>(s));
+    bench.view(s, kSmall);
+  }
+  constexpr ClientSequence kPastes = 40;
+  const EditShape paste = Paste{{0, 0, 0}, long_clipboard(), {}};
+  for (ClientSequence seq = 1; seq <= kPastes; ++seq) bench.edit(1, seq, paste, kEmpty);
+  const auto paste_count = [&] { return bench.environment.records.size(); };
+  while (bench.server.has_ready_edits(bench.now().steady_us)) bench.server.commit_one(bench.now());
+  const std::size_t burst = paste_count();
+  CHECK(burst >= 1);
+  CHECK(burst <= 4);  // 2 MB each
+  bench.edit(2, 1, kAtOrigin);
+  bench.server.commit(bench.now());
+  CHECK(paste_count() == burst + 1);
+  CHECK(bench.environment.records.back().op.author == 2);
+  bench.edit(1, kPastes + 1, kAtOrigin);
+  bench.server.commit(bench.now());
+  CHECK(paste_count() == burst + 1);          // it waits behind the pastes of its client
+  for (int i = 0; i < 20; ++i) bench.tick();  // a second
+  CHECK(paste_count() > burst + 1);
+  CHECK(paste_count() <= burst + 1 + 5);
+  bench.server.begin_stop(bench.now());
+  CHECK(paste_count() == kPastes + 2);  // a stop orders all that was accepted
 }
 
 TEST_CASE("of a commit, a session gets the edits that it sees or made, and no others", "[world]") {

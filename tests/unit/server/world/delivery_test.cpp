@@ -50,6 +50,37 @@ TEST_CASE("at most the allowed number of loads waits for one session", "[world]"
   CHECK(bench.environment.snapshots.size() == 1);
 }
 
+TEST_CASE("a view of many chunks in memory is sent in several tasks; sessions take turns",
+          "[world]") {
+  WorldConfig c = config();
+  c.view_radius_max = 8;
+  Bench bench(c);
+  for (SessionId s = 1; s <= 3; ++s) bench.join(s, static_cast<std::uint8_t>(s));
+  const View wide{1, {0, 0, 0}, 8, 4};
+  bench.view(1, wide);  // loads the chunks
+  const auto sent_to = [&](SessionId session) {
+    return std::ranges::count(bench.environment.snapshots, session,
+                              &FakeEnvironment::SentSnapshot::session);
+  };
+  const auto all = sent_to(1);
+  bench.send_view(2, wide);
+  bench.send_view(3, wide);
+  const auto first = sent_to(2);
+  CHECK(first > 0);
+  CHECK(3 * first < all);
+  CHECK(sent_to(3) == first);
+  for (int turns = 1; turns <= 2; ++turns) {
+    bench.server.deliver_next(bench.now());
+    bench.server.deliver_next(bench.now());
+    CHECK(sent_to(2) == (1 + turns) * first);
+    CHECK(sent_to(3) == (1 + turns) * first);
+  }
+  bench.answer_loads();
+  CHECK_FALSE(bench.server.has_deliveries());
+  CHECK(sent_to(2) == all);
+  CHECK(sent_to(3) == all);
+}
+
 TEST_CASE("a full queue stops snapshots; they continue with the nearest missing one", "[world]") {
   Bench bench;
   bench.join(1, 1);

@@ -19,9 +19,10 @@ EditOffer costly_offer(AuthorId author, ClientSequence seq) {
   return {{author, 1, seq}, Cause::player, 0, {FillBox{{{0, 0, 0}, {768, 1, 768}}}, {}, 1}, 0};
 }
 
-Operations taken(EditQueue& queue) {
+Operations taken(EditQueue& queue, std::uint64_t large_room = kAllLargeEdits) {
   Operations out;
-  for (const EditOffer& offer : queue.take()) out.emplace_back(offer.op.author, offer.op.seq);
+  for (const EditOffer& offer : queue.take(large_room))
+    out.emplace_back(offer.op.author, offer.op.seq);
   return out;
 }
 
@@ -68,6 +69,32 @@ TEST_CASE("cheap edits without end do not keep a costly one waiting", "[world]")
   queue.push(cheap_offer(1, 2));
   CHECK(taken(queue) == Operations{{2, 1}});
   CHECK(taken(queue) == Operations{{1, 2}});
+}
+
+TEST_CASE("large edits of players wait for room, and their clients' edits wait behind them",
+          "[world]") {
+  EditQueue queue(16);
+  queue.push(cheap_offer(1, 1));
+  queue.push(costly_offer(1, 2));
+  queue.push(cheap_offer(1, 3));
+  queue.push(costly_offer(2, 1));
+  EditOffer rollback = costly_offer(3, 1);
+  rollback.cause = Cause::rollback;
+  queue.push(rollback);
+  CHECK(queue.has_ready(false));
+  CHECK(taken(queue, 0) == Operations{{1, 1}});  // the next two do not fit one commit
+  CHECK(taken(queue, 0) == Operations{{3, 1}});
+  CHECK_FALSE(queue.has_ready(false));
+  CHECK(taken(queue, 0).empty());
+  queue.push(cheap_offer(4, 1));
+  CHECK(queue.has_ready(false));
+  CHECK(taken(queue, 0) == Operations{{4, 1}});
+  CHECK(queue.size() == 3);
+  CHECK(queue.has_ready(true));
+  CHECK(taken(queue, 1) == Operations{{2, 1}});  // room for one
+  CHECK(taken(queue, 1) == Operations{{1, 2}});
+  CHECK(taken(queue, 0) == Operations{{1, 3}});
+  CHECK_FALSE(queue.has_ready(true));
 }
 
 TEST_CASE("a commit has at most as many edits as its message", "[world]") {

@@ -144,6 +144,33 @@ TEST_CASE("views add a limited number of chunks on each tick, and every session 
   CHECK(served == std::set<SessionId>{1, 2, 3, 4});
 }
 
+TEST_CASE("the chunks that a view leaves count like those that it adds", "[world]") {
+  WorldConfig c = config();
+  const View home{1, {0, 0, 0}, 4, 4};
+  c.view_chunks_per_tick = 2 * cells_of(home);
+  WorldBench bench(c);
+  bench.has_empty_base = true;
+  for (SessionId s = 1; s <= 2; ++s) {
+    bench.join(s, static_cast<std::uint8_t>(s));
+    bench.view(s, home);
+    bench.tick();
+  }
+  const auto moved = [&] {
+    std::size_t count = 0;
+    for (const SessionId s : {1U, 2U}) {
+      const auto states = bench.environment.messages<ViewState>(s, kEdge);
+      if (!states.empty() && states.back().view == 2) ++count;
+    }
+    return count;
+  };
+  bench.tick(1'000'000);
+  for (const SessionId s : {1U, 2U}) bench.view(s, {1, {100, 0, 0}, 4, 4});
+  CHECK(moved() == 1);  // it left as many as it added
+  bench.tick();
+  bench.answer_loads();
+  CHECK(moved() == 2);
+}
+
 TEST_CASE("a stop cancels all loads except those that snapshots need", "[world]") {
   WorldConfig c = config();
   c.loads_in_flight_max = 2;

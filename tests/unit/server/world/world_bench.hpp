@@ -74,7 +74,9 @@ struct WorldBench {
     answer_loads();
   }
   void answer_loads() {
-    while (!environment.loads.empty()) {
+    while (!environment.loads.empty() || server.has_deliveries()) {
+      server.deliver_next(now());
+      if (environment.loads.empty()) continue;
       const ChunkKey key = environment.loads.front();
       environment.loads.pop_front();
       server.chunk_loaded(key, has_empty_base ? empty_chunk(kEdge) : dotted_chunk(kEdge), now());

@@ -396,7 +396,7 @@ TEST_CASE("an invalid descriptor is rejected as bad_edit, costs one unit and is 
   CHECK(offer(1) == first);  // costs nothing: the operation is resolved
   CHECK(offer(2).reason == RejectReason::bad_edit);
   CHECK(offer(3).reason == RejectReason::rate_limited);
-  CHECK_FALSE(bench.server.has_queued());
+  CHECK_FALSE(bench.server.has_ready_edits(bench.now().steady_us));
   CHECK(bench.server.resolved(1, 1) == 3);
   CHECK(bench.server.session_count() == 1);
 }
