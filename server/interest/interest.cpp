@@ -36,20 +36,21 @@ std::size_t Interest::set_view(SessionId session, const View& view) {
 }
 
 template <class IsMeant>
-void Interest::want_again(SessionId session, IsMeant is_meant) {
+std::size_t Interest::want_again(SessionId session, IsMeant is_meant) {
   std::vector<ChunkKey> again;
   for (const auto& [key, state] : at(session).chunks()) {
     if (is_meant(key.at)) again.push_back(key);
   }
   for (const ChunkKey& key : again) set_state(session, key, ChunkInterest::wanted);
+  return again.size();
 }
 
-void Interest::want_all_again(SessionId session) {
-  want_again(session, [](ChunkCoord) { return true; });
+std::size_t Interest::want_all_again(SessionId session) {
+  return want_again(session, [](ChunkCoord) { return true; });
 }
 
-void Interest::want_again_outside(SessionId session, std::span<const View> views) {
-  want_again(session, [views](ChunkCoord at) {
+std::size_t Interest::want_again_outside(SessionId session, std::span<const View> views) {
+  return want_again(session, [views](ChunkCoord at) {
     return !std::all_of(views.begin(), views.end(),
                         [at](const View& view) { return view.contains(at); });
   });
@@ -84,34 +85,33 @@ void Interest::enter(SessionId session, const ChunkKey& key, ChunkInterest now) 
 
 void Interest::leave(SessionId session, const ChunkKey& key, ChunkInterest was) {
   if (was != ChunkInterest::subscribed && was != ChunkInterest::waiting) return;
-  const auto found = users_.find(key);
-  RUNSTONE_ASSERT(found != users_.end());
-  std::erase(was == ChunkInterest::subscribed ? found->second.subscribers : found->second.waiting,
-             session);
-  if (found->second.subscribers.empty() && found->second.waiting.empty()) {
-    users_.erase(found);
+  Users* users = users_.find(key);
+  RUNSTONE_ASSERT(users != nullptr);
+  std::erase(was == ChunkInterest::subscribed ? users->subscribers : users->waiting, session);
+  if (users->subscribers.empty() && users->waiting.empty()) {
+    users_.erase(key);
     released_.push_back(key);
   }
 }
 
 std::vector<ChunkKey> Interest::take_released(std::size_t count) {
-  const auto first =
-      released_.end() - static_cast<std::ptrdiff_t>(std::min(count, released_.size()));
-  std::vector<ChunkKey> out(first, released_.end());
-  released_.erase(first, released_.end());
+  const auto end =
+      released_.begin() + static_cast<std::ptrdiff_t>(std::min(count, released_.size()));
+  std::vector<ChunkKey> out(released_.begin(), end);
+  released_.erase(released_.begin(), end);
   return out;
 }
 
 std::span<const SessionId> Interest::subscribers(const ChunkKey& key) const {
-  const auto found = users_.find(key);
-  if (found == users_.end()) return {};
-  return found->second.subscribers;
+  const Users* users = users_.find(key);
+  if (users == nullptr) return {};
+  return users->subscribers;
 }
 
 std::vector<SessionId> Interest::waiting(const ChunkKey& key) const {
-  const auto found = users_.find(key);
-  if (found == users_.end()) return {};
-  return found->second.waiting;
+  const Users* users = users_.find(key);
+  if (users == nullptr) return {};
+  return users->waiting;
 }
 
 bool Interest::subscribes(SessionId session, const ChunkKey& key) const {

@@ -4,16 +4,16 @@
 // world strand that takes the snapshot's version, so it misses no commit after its snapshot. One
 // thread.
 #pragma once
+#include <deque>
 #include <map>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
-#include "server/interest/chunk_key_hash.hpp"
+#include "server/interest/chunk_hash_map.hpp"
 #include "server/interest/session_interest.hpp"
 
 namespace runstone {
@@ -33,11 +33,11 @@ class Interest {
 
   /// Sets the session's view. Returns how many chunks it visited: the cost of the call.
   std::size_t set_view(SessionId session, const View& view);
-  /// Makes all chunks wanted again.
-  void want_all_again(SessionId session);
+  /// Makes all chunks wanted again. Returns their number.
+  std::size_t want_all_again(SessionId session);
   /// Makes the chunks wanted again that lie outside of at least one of these views. It is for a
-  /// client that had these views in between and may have dropped those chunks.
-  void want_again_outside(SessionId session, std::span<const View> views);
+  /// client that had these views in between and may have dropped those chunks. Returns their number.
+  std::size_t want_again_outside(SessionId session, std::span<const View> views);
   std::optional<ChunkKey> nearest_wanted(SessionId session);
   std::optional<ChunkKey> next_for_digest_check(SessionId session);
   /// Moves a chunk to a state. Returns false if it is not in the session's view.
@@ -51,8 +51,8 @@ class Interest {
   /// Returns true if a session is subscribed to the chunk or waits for it.
   bool is_used(const ChunkKey& key) const { return users_.contains(key); }
   std::size_t used_count() const { return users_.size(); }
-  /// Removes and returns chunks that lost their last user, at most `count`. Some may have a new
-  /// one.
+  /// Removes and returns chunks that lost their last user, at most `count`, the earliest first. Some
+  /// may have a new one.
   std::vector<ChunkKey> take_released(std::size_t count);
 
  private:
@@ -65,12 +65,12 @@ class Interest {
   SessionInterest& at(SessionId session);
   /// Makes the chunks wanted again for which `is_meant` returns true; it takes a ChunkCoord.
   template <class IsMeant>
-  void want_again(SessionId session, IsMeant is_meant);
+  std::size_t want_again(SessionId session, IsMeant is_meant);
 
   CoordLimit limit_;
   std::map<SessionId, SessionInterest> sessions_;
-  std::unordered_map<ChunkKey, Users, ChunkKeyHash> users_;  // no entry is empty
-  std::vector<ChunkKey> released_;
+  ChunkHashMap<Users> users_;  // no entry is empty
+  std::deque<ChunkKey> released_;
 };
 
 }  // namespace runstone

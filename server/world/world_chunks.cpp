@@ -22,13 +22,9 @@ std::size_t bytes_of(const Chunk& chunk) {
 
 }  // namespace
 
-WorldChunks::Entry* WorldChunks::entry(const ChunkKey& key) {
-  const auto found = entries_.find(key);
-  return found == entries_.end() ? nullptr : &found->second;
-}
+WorldChunks::Entry* WorldChunks::entry(const ChunkKey& key) { return entries_.find(key); }
 const WorldChunks::Entry* WorldChunks::entry(const ChunkKey& key) const {
-  const auto found = entries_.find(key);
-  return found == entries_.end() ? nullptr : &found->second;
+  return entries_.find(key);
 }
 
 void WorldChunks::set_saved(const ChunkKey& key, Version version) {
@@ -122,9 +118,9 @@ Version WorldChunks::version(const ChunkKey& key) const {
 
 std::vector<std::pair<ChunkKey, ChunkPtr>> WorldChunks::edited() const {
   std::vector<std::pair<ChunkKey, ChunkPtr>> chunks;
-  for (const auto& [key, e] : entries_) {
+  entries_.for_each([&](const ChunkKey& key, const Entry& e) {
     if (e.published != nullptr && e.version != Version{}) chunks.emplace_back(key, e.published);
-  }
+  });
   std::sort(chunks.begin(), chunks.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
   return chunks;

@@ -23,7 +23,7 @@
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/apply/stack_depths.hpp"
 #include "common/runs/chunk.hpp"
-#include "server/interest/chunk_key_hash.hpp"
+#include "server/interest/chunk_hash_map.hpp"
 
 namespace runstone {
 
@@ -112,7 +112,7 @@ class WorldChunks {
   void clear_stack(Entry& e);
 
   std::int32_t edge_;
-  std::unordered_map<ChunkKey, Entry, ChunkKeyHash> entries_;
+  ChunkHashMap<Entry> entries_;
   std::set<ChunkKey> dirty_;
   // The first edit of each quarantined chunk that is not in a snapshot.
   std::unordered_map<ChunkKey, std::optional<Sequence>, ChunkKeyHash> quarantined_;
