@@ -201,17 +201,16 @@ asio::awaitable<void> NetSession::wait_for_read_budget(std::size_t bytes_read) {
 
 asio::awaitable<Result<void>> NetSession::feed(std::shared_ptr<NetSession> self, ByteView read) {
   const FrameReader::OnMessage on_message = [raw = self.get()](MessageKind kind, ByteView body) {
-    return raw->on_message(kind, body);
+    return raw->decode(kind, body);
   };
-  if (self->reader_.completed_bytes_max(read.size()) <= kSmallBytes)
-    co_return self->reader_.feed(read, on_message);
-  co_await asio::post(asio::bind_executor(self->decoders_, asio::use_awaitable));
-  Result<void> fed = self->reader_.feed(read, on_message);
-  co_await asio::post(asio::bind_executor(self->strand_, asio::use_awaitable));
-  co_return fed;
+  const bool is_large = self->reader_.completed_bytes_max(read.size()) > kSmallBytes;
+  if (is_large) co_await asio::post(asio::bind_executor(self->decoders_, asio::use_awaitable));
+  const Result<void> fed = self->reader_.feed(read, on_message);
+  if (is_large) co_await asio::post(asio::bind_executor(self->strand_, asio::use_awaitable));
+  co_return self->handle_decoded(fed);
 }
 
-Result<void> NetSession::on_message(MessageKind kind, ByteView body) {
+Result<void> NetSession::decode(MessageKind kind, ByteView body) {
   counters_.messages_in.fetch_add(1, std::memory_order_relaxed);
   if (!messages_.take(1, steady_now_us())) {
     broken_rule_ = GoodbyeReason::flooding;
@@ -222,11 +221,26 @@ Result<void> NetSession::on_message(MessageKind kind, ByteView body) {
     broken_rule_ = GoodbyeReason::malformed_message;
     return Unexpected<Error>{message.error()};
   }
-  if (const auto* ack = std::get_if<ReceiveAck>(&*message)) return on_receive_ack(*ack);
-  charge_reading(kMessageReadBytes);
-  unhandled_.fetch_add(body.size() + kMessageBytes);
-  events_.on_message(id_, *std::move(message), body.size());
+  decoded_.push_back({*std::move(message), body.size()});
   return {};
+}
+
+Result<void> NetSession::handle_decoded(const Result<void>& fed) {
+  Result<void> result = fed;
+  for (Decoded& decoded : decoded_) {
+    if (const auto* ack = std::get_if<ReceiveAck>(&decoded.message)) {
+      if (auto taken = on_receive_ack(*ack); !taken) {
+        result = std::move(taken);
+        break;
+      }
+      continue;
+    }
+    charge_reading(kMessageReadBytes);
+    unhandled_.fetch_add(decoded.bytes + kMessageBytes);
+    events_.on_message(id_, std::move(decoded.message), decoded.bytes);
+  }
+  decoded_.clear();
+  return result;
 }
 
 Result<void> NetSession::on_receive_ack(const ReceiveAck& ack) {

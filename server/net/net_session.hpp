@@ -16,6 +16,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "common/core/token_bucket.hpp"
 #include "protocol/codec/chunk_entries.hpp"
@@ -106,7 +107,11 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   static asio::awaitable<void> end_after_linger(std::shared_ptr<NetSession> self);
   /// Decodes what was read, and reports the messages.
   static asio::awaitable<Result<void>> feed(std::shared_ptr<NetSession> self, ByteView read);
-  Result<void> on_message(MessageKind kind, ByteView body);
+  /// Decodes a message and appends it to decoded_. Thread: the strand or, while the read loop waits
+  /// for it, a decoder.
+  Result<void> decode(MessageKind kind, ByteView body);
+  /// Handles the messages of decoded_. Fails with the error of one, or otherwise with that of `fed`.
+  Result<void> handle_decoded(const Result<void>& fed);
   Result<void> on_receive_ack(const ReceiveAck& ack);
   void refuse(const Error& error);
   asio::awaitable<void> wait_for_read_budget(std::size_t bytes_read);
@@ -142,11 +147,17 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   bool is_woken_ = false;  // the writer was woken and has not run yet
   bool is_due_ = false;    // the session is counted in commits_due
 
-  // On the strand from here on, but for what feed() uses.
+  // On the strand from here on. A decoder uses reader_, messages_, decoded_ and broken_rule_ while
+  // the read loop waits for it.
   asio::steady_timer write_wake_, read_wake_, read_turn_, linger_;
   ByteBudget read_budget_;
   FrameReader reader_;
   TokenBucket messages_;
+  struct Decoded {
+    Message message;
+    std::size_t bytes;
+  };
+  std::vector<Decoded> decoded_;                                // not handled yet
   GoodbyeReason broken_rule_ = GoodbyeReason::malformed_frame;  // of the error that feed() returns
   int loops_ = 0;
   bool linger_started_ = false;

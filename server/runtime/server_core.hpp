@@ -41,7 +41,7 @@ struct ServerThreads {
 
 class ServerCore final : public NetEvents {
  public:
-  /// `threads`, `config`, `store` and `generator` must outlive the core. `store` is of the
+  /// What `threads` refers to, `config`, `store` and `generator` must outlive the core. `store` is of the
   /// folder `config.world`. `on_failure` is called at most once, from the log writer's thread, when
   /// the log cannot be written any more. `on_stop` is called on the world strand when an operator
   /// stops the server.

@@ -66,8 +66,6 @@ class Authority {
   /// The time of the log, for its warnings.
   LogClock& log_clock() { return log_clock_; }
   Epoch epoch() const { return epoch_; }
-  /// Returns an upper bound of the sequences of all edits that were accepted so far.
-  Sequence sequence_bound() const { return head_ + queue_.size(); }
   /// Returns the last sequence ordered.
   Sequence head() const { return head_; }
 

@@ -91,7 +91,8 @@ void send_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now)
   const auto receivers = receivers_of(world, authors, batch);
   for (std::size_t i = 0; i < receivers.size(); ++i) {
     const std::size_t work = edit_work(batch.commit.edits[i].edit, world.config.chunk_edge);
-    if (work > kSmallEditWork) world.large_edits.sent(work * receivers[i].size(), now.steady_us);
+    if (work > kSmallEditWork && batch.commit.edits[i].cause == Cause::player)
+      world.large_edits.charge(work * receivers[i].size(), now.steady_us);
   }
   const std::vector<Audience> audiences = audiences_of(receivers);
   if (audiences.empty()) return;

@@ -24,7 +24,7 @@ struct CommitSending {
 
 class CommitPace {
  public:
-  /// No edit waits longer for others.
+  /// No commit waits longer.
   static constexpr TimeUs kGatherUsMax = 25'000;
   /// Sending time that may be saved for a burst.
   static constexpr TimeUs kSavedUsMax = 5'000;

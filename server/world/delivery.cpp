@@ -220,6 +220,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
 
 void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now) {
   const ChunkPtr chunk = world.authority.chunks().find(key);
+  bool has_delivered = false;
   for (const SessionId session : world.interest.waiting(key)) {
     world.loads.cancel(session, key);  // the load was requested by another session too
     if (is_stalled(world, *world.find(session), now)) {
@@ -227,7 +228,12 @@ void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now) {
     } else {
       send_chunk(world, session, key, chunk, ChunkInterest::subscribed, now);
     }
-    if (!world.deliveries.contains(session)) deliver(world, session, now);
+    // One delivery in this task, the others in tasks of their own.
+    if (!std::exchange(has_delivered, true)) {
+      deliver(world, session, now);
+    } else {
+      world.deliveries.insert(session);
+    }
   }
 }
 

@@ -23,6 +23,10 @@ static_assert(kWorkMax < kServerEditBytesMax / 2 && kEditWork +
                                                         kServerEditBytesMax / 2,
               "every commit fits its message");
 
+std::tuple<AuthorId, ClientInstance, bool> client_of(const OperationId& op, Cause cause) {
+  return {op.author, op.instance, cause == Cause::player};
+}
+
 std::size_t memory_of(const EditOffer& offer) {
   return sizeof(EditOffer) + memory_bytes(offer.edit);
 }
@@ -40,11 +44,19 @@ std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge) {
 }
 
 void EditQueue::push(const EditOffer& offer) {
-  auto& lane = lanes_[{offer.op.author, offer.op.instance}];
+  auto& lane = lanes_[client_of(offer.op, offer.cause)];
   lane.push_back({offer, edit_work(offer.edit, chunk_edge_)});
   if (lane.size() == 1 && lane.front().waits_for_room()) ++large_fronts_;
   bytes_ += memory_of(offer);
   ++size_;
+}
+
+bool EditQueue::has(const OperationId& op) const {
+  const auto lane = lanes_.find(client_of(op, Cause::player));
+  if (lane == lanes_.end()) return false;
+  const auto seq_of = [](const Waiting& waiting) { return waiting.offer.op.seq; };
+  const auto found = std::ranges::lower_bound(lane->second, op.seq, {}, seq_of);
+  return found != lane->second.end() && seq_of(*found) == op.seq;
 }
 
 EditQueue::Lanes::iterator EditQueue::pop(Lanes::iterator lane) {
@@ -60,7 +72,7 @@ EditQueue::Lanes::iterator EditQueue::pop(Lanes::iterator lane) {
 std::vector<EditOffer> EditQueue::take(std::uint64_t large_room) {
   std::vector<EditOffer> out;
   std::size_t work = 0;
-  std::optional<Client> skipped;
+  std::optional<Client> too_costly, without_room;  // the first lanes that were skipped
   auto lane = lanes_.lower_bound(turn_);
   for (bool has_taken = true; has_taken;) {
     has_taken = false;
@@ -70,6 +82,7 @@ std::vector<EditOffer> EditQueue::take(std::uint64_t large_room) {
       const bool is_large = next.waits_for_room();
       const bool has_room = !is_large || large_room > 0;
       if (!has_room || (!out.empty() && work + next.work > kWorkMax)) {
+        std::optional<Client>& skipped = has_room ? too_costly : without_room;
         if (!skipped) skipped = lane->first;
         ++lane;
         continue;
@@ -82,7 +95,13 @@ std::vector<EditOffer> EditQueue::take(std::uint64_t large_room) {
       lane = pop(lane);
     }
   }
-  turn_ = skipped ? *skipped : lane == lanes_.end() ? Client{} : lane->first;
+  if (too_costly) {
+    turn_ = *too_costly;
+  } else if (out.size() < kCommitEditsMax && without_room) {
+    turn_ = *without_room;
+  } else {
+    turn_ = lane == lanes_.end() ? Client{} : lane->first;
+  }
   return out;
 }
 

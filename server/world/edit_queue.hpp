@@ -11,7 +11,7 @@
 #include <deque>
 #include <limits>
 #include <map>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "common/edits/descriptor/edit_record.hpp"
@@ -49,6 +49,9 @@ class EditQueue {
     return has_large_room ? size_ > 0 : lanes_.size() > large_fronts_;
   }
 
+  /// Returns true if the operation waits. Requires that the operations of a client were pushed in
+  /// ascending order. Cost: O(log edits).
+  bool has(const OperationId& op) const;
   std::size_t size() const { return size_; }
   /// Returns the bytes of memory that the edits take.
   std::size_t bytes() const { return bytes_; }
@@ -59,7 +62,8 @@ class EditQueue {
     std::size_t work;
     bool waits_for_room() const { return work > kSmallEditWork && offer.cause == Cause::player; }
   };
-  using Client = std::pair<AuthorId, ClientInstance>;
+  /// Edits of the server that have a client's author and instance are in a lane of their own.
+  using Client = std::tuple<AuthorId, ClientInstance, bool>;
   using Lanes = std::map<Client, std::deque<Waiting>>;
 
   /// Removes the lane's first edit, and the lane if it was the last. Returns the next lane.

@@ -22,25 +22,24 @@ void apply_view(WorldState& world, SessionId id, const Clocks& now) {
     world.interest.set_state(id, key, ChunkInterest::wanted);
   }
   const bool has_skipped = mine.has_skipped_too_many || !mine.skipped_views.empty();
+  std::size_t visited = 1;
   if (mine.has_skipped_too_many) {
-    world.interest.want_all_again(id);
+    visited += world.interest.want_all_again(id);
   } else if (has_skipped) {
-    world.interest.want_again_outside(id, mine.skipped_views);
+    visited += world.interest.want_again_outside(id, mine.skipped_views);
   }
   mine.skipped_views.clear();
   mine.has_skipped_too_many = false;
   const std::optional<View>& seen = world.interest.find(id)->view();
   const bool same_chunks = seen && seen->same_chunks(*mine.next_view);
-  const std::size_t visited =
-      world.interest.set_view(id, *std::exchange(mine.next_view, std::nullopt));
-  world.view_chunks_left -= std::min(world.view_chunks_left, visited + 1);
+  visited += world.interest.set_view(id, *std::exchange(mine.next_view, std::nullopt));
+  world.view_chunks_left -= std::min(world.view_chunks_left, visited);
   if (!same_chunks) forget_sent(mine);
   if (!same_chunks || has_skipped) forget_unsent(world, id);
   mine.is_view_complete = false;
   mine.complete_due.reset();
   mine.view_applied_us = now.steady_us;
   collect_released(world);
-  deliver(world, id, now);
 }
 
 }  // namespace
@@ -67,6 +66,7 @@ void on_view(WorldState& world, SessionId session, View view, const Clocks& now)
   mine.claims.keep(view);
   if (!world.views_wait && world.view_chunks_left > 0 && is_due(world, mine, now)) {
     apply_view(world, session, now);
+    deliver(world, session, now);
   }
 }
 
@@ -87,6 +87,7 @@ void apply_due_views(WorldState& world, const Clocks& now) {
     }
     world.view_applied_last = id;
     apply_view(world, id, now);
+    world.deliveries.insert(id);
   }
 }
 

@@ -39,7 +39,7 @@ struct WorldConfig {
   std::size_t loads_per_session_max = 64;  // chunks one session may wait for at a time
   std::size_t loads_in_flight_max = 8;     // with the workers at a time, at least 1
   TimeUs view_interval_us = 50'000;        // between two views of a session that take effect
-  // Chunks that views add, all sessions together, at least 1.
+  // Chunks that views visit on a tick, all sessions together, at least 1.
   std::size_t view_chunks_per_tick = 65'536;
   TimeUs handshake_us_max = kHandshakeMsMax * 1'000;
   TimeUs idle_us_max = 60'000'000;                           // without any message; clients ping

@@ -58,7 +58,11 @@ void close_silent_sessions(WorldState& world, const Clocks& now) {
 void retry_pending(WorldState& world, const Clocks& now) {
   for (const SessionId id : world.open_sessions()) {
     send_pending_rejects(world, id);
-    deliver(world, id, now);
+    if (world.find(id) != nullptr && world.interest.nearest_wanted(id)) {
+      world.deliveries.insert(id);
+    } else {
+      deliver(world, id, now);
+    }
     if (world.find(id) == nullptr) continue;
     send_not_modified(world, id, false);  // they wait for more of them until the next tick
     send_uniform(world, id, now);
@@ -173,7 +177,7 @@ WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector
   ServerEditsResult out;
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player);
-    if (!world.environment.log_has_room(out.count + 1)) {
+    if (!world.environment.log_has_room(world.authority.queue().size() + 1)) {
       out.reason = world.disk_is_full ? kDiskIsFull : "the log is full (log_queue_records)";
       break;
     }

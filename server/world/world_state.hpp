@@ -62,6 +62,7 @@ struct WorldState {
   // Digest checks.
   TimeUs digest_checks_us = 0;      // up to this time, all that were due are sent
   SessionId digest_check_last = 0;  // the session served last
+  bool are_runs_short = false;      // not all chunks of the last checks were hashed
   // Delivery.
   std::set<SessionId> deliveries;  // sessions whose delivery goes on in a task of its own
   SessionId delivered_last = 0;    // of those, the session served last

@@ -91,9 +91,15 @@ TEST_CASE("large edits of players wait for room, and their clients' edits wait b
   CHECK(taken(queue, 0) == Operations{{4, 1}});
   CHECK(queue.size() == 3);
   CHECK(queue.has_ready(true));
-  CHECK(taken(queue, 1) == Operations{{2, 1}});  // room for one
-  CHECK(taken(queue, 1) == Operations{{1, 2}});
+  CHECK(queue.has({1, 1, 2}));
+  CHECK(queue.has({1, 1, 3}));
+  CHECK_FALSE(queue.has({1, 1, 1}));  // ordered
+  CHECK_FALSE(queue.has({1, 2, 2}));  // another instance
+  CHECK_FALSE(queue.has({1, 1, 4}));
+  CHECK(taken(queue, 1) == Operations{{1, 2}});  // room for one
+  CHECK_FALSE(queue.has({1, 1, 2}));
   CHECK(taken(queue, 0) == Operations{{1, 3}});
+  CHECK(taken(queue, 1) == Operations{{2, 1}});
   CHECK_FALSE(queue.has_ready(true));
 }
 

@@ -88,6 +88,7 @@ struct WorldBench {
   void tick(TimeUs later_us = 50'000) {
     time_us += later_us;
     server.tick(now());
+    while (server.has_deliveries()) server.deliver_next(now());
   }
   std::vector<Commit> commits(SessionId session) const {
     return environment.messages<Commit>(session, kEdge);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "protocol/codec/handshake.hpp"
+#include "tests/support/hostile_edits.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone {
@@ -19,6 +20,9 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   bench.edit(1, 1, kAtOrigin, 99);
   bench.edit(1, 2, SetVoxel{{100, 0, 0}});
   bench.edit(1, 3, kAtOrigin);
+  bench.edit(1, 3, kAtOrigin);  // it waits: the commit answers both
+  CHECK(bench.environment.messages<Reject>(1, kEdge).size() == 2);
+  bench.server.commit(bench.now());
   bench.edit(1, 3, kAtOrigin);
   bench.environment.log_room = false;
   bench.edit(1, 4, kAtOrigin);
@@ -34,6 +38,58 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   bench.edit(1, 5, kAtOrigin);
   bench.server.commit(bench.now());
   CHECK(bench.environment.records.size() == 2);
+}
+
+TEST_CASE("an edit that is offered again while it waits is answered by its commit", "[world]") {
+  WorldConfig c = config();
+  c.edit_budget = {};  // no limit
+  Bench bench(c);
+  for (SessionId s = 1; s <= 20; ++s) {
+    bench.join(s, static_cast<std::uint8_t>(s));
+    bench.view(s, kSmall);
+  }
+  const EditShape paste = Paste{{0, 0, 0}, long_clipboard(), {}};
+  constexpr ClientSequence kPastes = 10;
+  for (ClientSequence seq = 1; seq <= kPastes; ++seq) bench.edit(1, seq, paste, kEmpty);
+  bench.server.commit(bench.now());
+  bench.edit(2, 1, kAtOrigin);  // ordered before the last pastes
+  bench.server.commit(bench.now());
+  REQUIRE(bench.environment.records.back().op.author == 2);
+  bench.server.disconnected(1);
+  bench.join(21, 1);
+  bench.edit(21, kPastes, paste, kEmpty);
+  CHECK(bench.environment.messages<Reject>(21, kEdge).empty());
+  while (bench.commits(21).empty() || bench.commits(21).back().edits.back().op.seq < kPastes)
+    bench.tick();
+  const Sequence seq = bench.commits(21).back().edits.back().seq;
+  bench.edit(21, kPastes, paste, kEmpty);
+  const auto rejects = bench.environment.messages<Reject>(21, kEdge);
+  REQUIRE(rejects.size() == 1);
+  CHECK(rejects[0].reason == RejectReason::already_resolved);
+  CHECK(rejects[0].seq >= seq);
+}
+
+TEST_CASE("edits of the server leave room in the log for the large edits that wait", "[world]") {
+  WorldConfig c = config();
+  c.edit_budget = {};  // no limit
+  Bench bench(c);
+  for (SessionId s = 1; s <= 20; ++s) {
+    bench.join(s, static_cast<std::uint8_t>(s));
+    bench.view(s, kSmall);
+  }
+  const EditShape paste = Paste{{0, 0, 0}, long_clipboard(), {}};
+  constexpr ClientSequence kPastes = 10;
+  for (ClientSequence seq = 1; seq <= kPastes; ++seq) bench.edit(1, seq, paste, kEmpty);
+  bench.server.commit(bench.now());
+  const std::size_t waiting = kPastes - bench.environment.records.size();
+  REQUIRE(waiting > 0);
+  const AuthorId author = bench.environment.records.front().op.author;
+  const EditOffer undo{{author, 77, 1}, Cause::undo, 0, {kAtOrigin, {}, 1}, 1};
+  bench.environment.log_records_max = kPastes;
+  CHECK(bench.server.order_server_edits({undo}, 0, bench.now()).count == 0);
+  bench.environment.log_records_max = kPastes + 1;
+  CHECK(bench.server.order_server_edits({undo}, 0, bench.now()).count == 1);
+  CHECK(bench.environment.records.back().cause == Cause::undo);
 }
 
 TEST_CASE("rejections and requests for chunks count as much that was read", "[world]") {
