@@ -13,6 +13,10 @@ namespace runstone::bench {
 
 class AttackThread;
 
+/// The edits of each honest bot under attack, as of a player who drags the mouse. They are so many
+/// that a p99 is more than the two slowest edits of some seconds.
+inline constexpr double kAttackedEditsPerSecond = 10;
+
 struct Attack {
   const char* name;
   const char* what;                    // a description for readers

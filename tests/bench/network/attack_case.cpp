@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "tests/bench/network/attack.hpp"
 #include "tests/bench/network/attack_result.hpp"
 #include "tests/bench/network/attack_table.hpp"
+#include "tests/bench/network/attacked_server.hpp"
 #include "tests/bench/network/echo_probe.hpp"
 #include "tests/bench/network/fleet.hpp"
 #include "tests/bench/network/join_probe.hpp"
@@ -24,9 +24,8 @@
 namespace runstone::bench {
 namespace {
 
-constexpr double kLook = 0.02;
 constexpr double kEchoesPerSecond = 100;
-constexpr double kStopPatience = 60;  // seconds until a server that was told to stop has failed
+constexpr double kSecondAttackMax = 60;  // seconds that the attack at the stop may last longer
 
 /// Returns the reasons in the log lines for ended sessions, such as "timed_out: no message for too
 /// long".
@@ -56,11 +55,7 @@ class AttackRun {
       : testbed_(testbed), options_(testbed.options()), link_(link), attack_(attack) {}
 
   Result<AttackResult, std::string> run() {
-    // The server ends a silent session within the attack, not a minute after it.
-    constexpr const char* kIdleSeconds = "5";
-    auto server =
-        testbed_.start_server(link_, testbed_.fresh("world"),
-                              {"--generator", "terrain", "--seed", "7", "--idle-s", kIdleSeconds});
+    auto server = start_attacked_server(testbed_, link_, {});
     if (!server) return Unexpected<std::string>{server.error()};
     server_ = *std::move(server);
     out_.name = attack_.name;
@@ -80,9 +75,11 @@ class AttackRun {
 
   Done play(AttackPhase phase) {
     const double seconds = options_.attack_seconds;
-    // Bots without a replica verify everything they receive.
-    auto fleet = Fleet::join(testbed_, link_, server_.address, options_.attack_bots, seconds,
-                             {"--replicas", "0"});
+    auto fleet = Fleet::join(testbed_, link_, server_.address,
+                             {.clients = options_.attack_bots,
+                              .seconds = seconds,
+                              .edits_per_second = kAttackedEditsPerSecond,
+                              .has_replicas = false});
     if (!fleet) return Unexpected<std::string>{fleet.error()};
     const double cores_before = server_.program->core_seconds();
     const double bots_before = fleet->bots().core_seconds();
@@ -93,20 +90,20 @@ class AttackRun {
       auto started = EchoProbe::start(link_, kEchoesPerSecond);
       if (!started) return Unexpected<std::string>{started.error()};
       echo = *std::move(started);
-      written_before_kb_ = written_kb();
+      written_before_kb_ = written_kb(server_);
       attack.emplace(attack_, plan(seconds, options_.seed));
       probe.emplace(server_.port);
     }
-    double& resident_mb = out_.resident_mb[phase];
-    for (double waited = 0; waited < seconds; waited += kLook) {
+    double& phase_mb = out_.resident_mb[phase];
+    for (double waited = 0; waited < seconds; waited += kLookSeconds) {
       const double now_mb = look();
-      resident_mb = phase == during ? std::max(resident_mb, now_mb) : now_mb;
-      if (!pause_for(kLook)) return Unexpected<std::string>{"interrupted"};
+      phase_mb = phase == during ? std::max(phase_mb, now_mb) : now_mb;
+      if (!pause_for(kLookSeconds)) return Unexpected<std::string>{"interrupted"};
     }
     out_.server_cores[phase] = (server_.program->core_seconds() - cores_before) / seconds;
     if (phase == during) {
       out_.bot_cores = (fleet->bots().core_seconds() - bots_before) / seconds;
-      out_.written_kb = written_kb() - written_before_kb_;
+      out_.written_kb = written_kb(server_) - written_before_kb_;
       const std::vector<double> echoes = echo->stop();
       if (!echoes.empty()) out_.echo_p99_ms = quantile(echoes, 0.99);
       out_.joins = probe->finish();
@@ -121,33 +118,26 @@ class AttackRun {
 
   /// Attacks again, and stops the server meanwhile.
   Done stop() {
-    using Clock = std::chrono::steady_clock;
-    RunningAttack attack(attack_, plan(options_.attack_seconds + kStopPatience, options_.seed + 1));
-    for (double waited = 0; waited < options_.attack_seconds; waited += kLook) {
+    RunningAttack attack(attack_,
+                         plan(options_.attack_seconds + kSecondAttackMax, options_.seed + 1));
+    for (double waited = 0; waited < options_.attack_seconds; waited += kLookSeconds) {
       look();
-      if (!pause_for(kLook)) return Unexpected<std::string>{"interrupted"};
+      if (!pause_for(kLookSeconds)) return Unexpected<std::string>{"interrupted"};
     }
-    const auto began = Clock::now();
-    server_.program->terminate();
-    // The figures of a process disappear with its end, so they are read until then.
-    wait_until(kStopPatience, [this] {
-      look();
-      return server_.program->wait(0).has_value();
-    });
-    out_.stop_s = std::chrono::duration<double>(Clock::now() - began).count();
+    const auto seconds = stop_attacked_server(testbed_, server_, [this] { look(); });
     attack.stop();
     attack.finish();
-    return testbed_.finish(*server_.program, 0);
+    if (!seconds) return Unexpected<std::string>{seconds.error()};
+    out_.stop_s = *seconds;
+    return {};
   }
-
-  double written_kb() const { return static_cast<double>(server_.program->written_bytes()) / 1e3; }
 
   /// Returns the server's memory in MB. Updates the figures that last to the end of the server.
   double look() {
-    const double resident_mb = static_cast<double>(server_.program->resident_bytes()) / 1e6;
-    out_.resident_max_mb = std::max(out_.resident_max_mb, resident_mb);
-    out_.written_all_kb = std::max(out_.written_all_kb, written_kb() - written_before_kb_);
-    return resident_mb;
+    const double now_mb = resident_mb(server_);
+    out_.resident_max_mb = std::max(out_.resident_max_mb, now_mb);
+    out_.written_all_kb = std::max(out_.written_all_kb, written_kb(server_) - written_before_kb_);
+    return now_mb;
   }
 
   Testbed& testbed_;

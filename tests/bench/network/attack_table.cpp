@@ -6,14 +6,14 @@
 #include <iterator>
 #include <map>
 
+#include "tests/bench/network/attacked_server.hpp"
+
 namespace runstone::bench {
 namespace {
 
 constexpr std::array<const char*, 3> kPhaseNames = {"before", "during", "after"};
-// The targets. The server's memory is its setting memory_mib, 512 by default, and what else it may
-// take.
+// The targets.
 constexpr double kOfQuietMax = 2, kAttackedMsMax = 10;
-constexpr double kResidentMbMax = 512 * 1.048576 + 128;
 constexpr double kDiskKbMax = 100;
 constexpr double kStopSecondsMax = 8;
 
@@ -154,7 +154,7 @@ void add_attack_targets(std::span<const AttackResult> results, const NetOptions&
       [](const AttackResult& result) { return result.seen[during].p99_ms; });
   add("the same, against that without an attack", "times", kOfQuietMax,
       [&](const AttackResult& result) { return of_quiet(result, quiet); });
-  add("memory of the server", "MB", kResidentMbMax,
+  add("memory of the server", "MB", kServerMbMax,
       [](const AttackResult& result) { return result.resident_max_mb; });
   add("disk written for each attacker", "KB/s", kDiskKbMax,
       [&](const AttackResult& result) { return disk_kb_s_each(result, quiet, options); });
@@ -195,7 +195,7 @@ std::string attack_tables(std::span<const AttackResult> results, const NetOption
       "reasons in the server's log |\n"
       "|---|---|---|---|---|\n"
       "{}\n{}",
-      options.attack_bots, kFleetEditsPerSecond, options.attack_seconds, options.attackers,
+      options.attack_bots, kAttackedEditsPerSecond, options.attack_seconds, options.attackers,
       options.attacker_addresses, options.attack_seconds, loads, builders, answers, list);
 }
 

@@ -33,6 +33,7 @@ FleetReport fleet_report(const json& report) {
   out.never = number_at(seen, "infinite");
   out.rows = sample_rows(seen);
   const json& edits = report.value("edits", none);
+  out.due = number_at(edits, "due");
   out.samples = out.local_only ? number_at(edits, "confirmed") : number_at(seen, "count");
   out.rejected = number_at(edits, "rejected") + number_at(edits, "refused");
   const json& losses = report.value("losses", none);
@@ -45,20 +46,20 @@ FleetReport fleet_report(const json& report) {
 }
 
 Result<Fleet, std::string> Fleet::join(Testbed& testbed, TestbedLink& link,
-                                       const std::string& address, unsigned clients, double seconds,
-                                       const std::vector<std::string>& flags) {
+                                       const std::string& address, const FleetPlan& plan) {
   Fleet out;
+  out.plan_ = plan;
   out.report_ = testbed.fresh("report.json");
   std::vector<std::string> words = {"--connect",   address,
-                                    "--count",     fmt::to_string(clients),
-                                    "--sites",     "1",
+                                    "--count",     fmt::to_string(plan.clients),
+                                    "--sites",     fmt::to_string(plan.sites),
                                     "--behaviour", "build",
-                                    "--rate",      fmt::to_string(kFleetEditsPerSecond),
-                                    "--duration",  fmt::to_string(seconds),
+                                    "--rate",      fmt::to_string(plan.edits_per_second),
+                                    "--duration",  fmt::to_string(plan.seconds),
                                     "--seed",      fmt::to_string(testbed.options().seed),
                                     "--patience",  fmt::to_string(kPatience),
                                     "--report",    out.report_};
-  words.insert(words.end(), flags.begin(), flags.end());
+  if (!plan.has_replicas) words.insert(words.end(), {"--replicas", "0"});
   auto bots = testbed.start_client(link, "runstone-bot", std::move(words));
   if (!bots) return Unexpected<std::string>{bots.error()};
   out.bots_ = *std::move(bots);
@@ -74,7 +75,10 @@ Result<FleetReport, std::string> Fleet::finish(Testbed& testbed) {
   const auto ended = testbed.finish(*bots_, 2 * kPatience);
   const auto report = read_report(report_);
   if (!report) return Unexpected<std::string>{ended ? report.error() : ended.error()};
-  const FleetReport out = fleet_report(*report);
+  FleetReport out = fleet_report(*report);
+  // In one place, every bot sees every edit that was not rejected.
+  if (plan_.sites == 1 && !out.local_only)
+    out.never = (out.due - out.rejected) * plan_.clients - out.samples;
   const bool broke_rules = out.violations != 0 || out.drifted != 0;
   if (!ended && !broke_rules) return Unexpected<std::string>{ended.error()};
   return out;

@@ -38,7 +38,9 @@ Result<FleetResult, std::string> run_fleet(Testbed& testbed, unsigned clients) {
                              fmt::to_string(clients + kSpareSessions), "--handshakes-per-address",
                              fmt::to_string(clients + kSpareSessions)}));
   if (!server) return failed(server);
-  auto fleet = Fleet::join(testbed, **link, server->address, clients, seconds);
+  auto fleet =
+      Fleet::join(testbed, **link, server->address,
+                  {.clients = clients, .seconds = seconds, .sites = testbed.options().fleet_sites});
   if (!fleet) return failed(fleet);
   FleetResult out;
   out.clients = clients;
@@ -121,7 +123,7 @@ Done measure_fleets(Testbed& testbed, NetFindings& findings) {
     local_only = local_only || result->seen.local_only;
     add_figures(*result, findings.figures);
     write_row(*result, rows);
-    if (clients == kBigFleet) {
+    if (clients == kBigFleet && testbed.options().fleet_sites == 1) {
       findings.targets.push_back(
           {"1,000 clients in one place, 2 edits/s each: due to received and verified, "
            "all subscribers: p99; disconnects",
@@ -141,12 +143,12 @@ Done measure_fleets(Testbed& testbed, NetFindings& findings) {
   }
   findings.tables += fmt::format(
       "\n### Crowds\n\n"
-      "Loopback, {} edits a second each for {} s. Latency from when an edit was due until {}.\n\n"
+      "Loopback, {} place(s), {} edits a second each for {} s. Latency from when an edit was due until {}.\n\n"
       "| clients | joined in s | p50, p90, p99, max ms | samples, never | received KB/s each | "
       "server cores | bots' cores | server MB | edits a commit | send µs a commit | "
       "enqueue µs a receiver | disconnects |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-      kFleetEditsPerSecond, testbed.options().fleet_seconds,
+      testbed.options().fleet_sites, kFleetEditsPerSecond, testbed.options().fleet_seconds,
       local_only ? "its own bot had it confirmed"
                  : "each bot that sees it had received and verified it");
   findings.tables += rows;

@@ -11,6 +11,7 @@
 #include "tests/bench/network/join_case.hpp"
 #include "tests/bench/network/latency_case.hpp"
 #include "tests/bench/network/memory_case.hpp"
+#include "tests/bench/network/siege_case.hpp"
 #include "tests/bench/network/transfer_case.hpp"
 
 namespace runstone::bench {
@@ -20,12 +21,13 @@ struct Experiment {
   const char* name;
   Done (*measure)(Testbed&, NetFindings&);
 };
-constexpr std::array<Experiment, 6> kExperiments = {{{"latency", measure_latency},
+constexpr std::array<Experiment, 7> kExperiments = {{{"latency", measure_latency},
                                                      {"join", measure_joins},
                                                      {"transfer", measure_transfers},
                                                      {"crowd", measure_fleets},
                                                      {"attack", measure_attacks},
-                                                     {"memory", measure_memory}}};
+                                                     {"memory", measure_memory},
+                                                     {"siege", measure_siege}}};
 
 /// Returns TCP's congestion control of this machine, which namespaces on it inherit.
 std::string congestion_control() {

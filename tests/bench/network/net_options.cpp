@@ -17,6 +17,20 @@ void apply_quick(const CLI::App& command, NetOptions& options) {
   if (command.count("--clients") == 0) options.clients = {1, 20};
   if (command.count("--crowd-seconds") == 0) options.fleet_seconds = 3;
   if (command.count("--attack-seconds") == 0) options.attack_seconds = 2;
+  if (command.count("--siege-seconds") == 0) options.siege_seconds = 30;
+}
+
+void add_siege_options(CLI::App& command, NetOptions& options) {
+  command
+      .add_option("--siege-seconds", options.siege_seconds,
+                  "of a siege: ten for each attack in turn, and thirty before and after them")
+      ->capture_default_str()
+      ->check(CLI::Range(20.0, 3600.0));
+  command.add_option("--siege-bots", options.siege_bots, "honest clients in a siege")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--siege-charts", options.siege_charts,
+                     "write the charts of a siege into this folder, as SVG");
 }
 
 }  // namespace
@@ -27,10 +41,10 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
                                      "jitter, rate and loss, and memory");
   std::set<std::string> profiles;
   for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
-  net->add_option("--experiments", options.experiments, "which; all by default")
+  net->add_option("--experiments", options.experiments, "which; all but the siege by default")
       ->delimiter(',')
-      ->check(CLI::IsMember(
-          std::set<std::string>{"latency", "join", "transfer", "crowd", "attack", "memory"}));
+      ->check(CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack",
+                                                  "memory", "siege"}));
   net->add_option("--profiles", options.profiles, "links; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(profiles));
@@ -57,6 +71,9 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--crowd-seconds", options.fleet_seconds, "for which a fleet edits")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 3600.0));
+  net->add_option("--crowd-sites", options.fleet_sites, "places where a fleet builds")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10'000));
   std::set<std::string> attacks;
   for (const Attack& attack : all_attacks()) attacks.emplace(attack.name);
   net->add_option("--attacks", options.attacks, "which; all by default")
@@ -76,6 +93,7 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--attack-bots", options.attack_bots, "honest clients under attack")
       ->capture_default_str()
       ->check(CLI::Range(1, 200));
+  add_siege_options(*net, options);
   net->add_option("--seed", options.seed,
                   "draws losses, jitter, places of edits and what attackers do")
       ->capture_default_str();
@@ -83,7 +101,7 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--json", options.json, "write all figures and targets to this file");
   net->add_flag("--quick", options.quick,
                 "100 edits, one join and transfer, fleets of 1 and 20 for 3 seconds, attacks of 2, "
-                "unless said otherwise");
+                "a siege of 30, unless said otherwise");
   net->callback([net, &options] { apply_quick(*net, options); });
   return net;
 }

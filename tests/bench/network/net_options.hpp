@@ -14,6 +14,7 @@ class App;
 namespace runstone::bench {
 
 struct NetOptions {
+  // All experiments but "siege", which takes ten minutes.
   std::vector<std::string> experiments = {"latency", "join",   "transfer",
                                           "crowd",   "attack", "memory"};
   std::vector<std::string> profiles;  // of the links; empty: all
@@ -24,11 +25,15 @@ struct NetOptions {
   unsigned repetitions = 5;           // joins and transfers
   std::vector<unsigned> clients = {1, 10, 100, 300, 1000};  // sizes of the fleets
   double fleet_seconds = 20;
+  unsigned fleet_sites = 1;          // places where a fleet builds
   std::vector<std::string> attacks;  // empty: all
   double attack_seconds = 8;         // of each attack, and of the phases before and after it
   unsigned attackers = 24;           // threads with a hostile client each
   unsigned attacker_addresses = 1;   // that they come from
   unsigned attack_bots = 20;         // honest clients under attack
+  double siege_seconds = 600;        // of the windows of a siege together
+  unsigned siege_bots = 100;         // honest clients in a siege
+  std::string siege_charts;          // folder for the charts of a siege; empty: none
   std::uint64_t seed = 1;
   bool quick = false;
   std::string csv, json;  // files to write; empty: none

@@ -158,4 +158,33 @@ TEST_CASE(
   CHECK(figure(testbed, "attack", "half-open", "told closed without a word") > 0);
   CHECK(tables.find("view radius exceeds 64 chunks") != std::string::npos);
 }
+
+TEST_CASE("a siege has quiet windows and windows under attack, and writes charts", "[testbed]") {
+  const test::TempFolder folder;
+  const std::string charts = folder / "charts";
+  std::string tables;
+  const json testbed = run_testbed({"--experiments", "siege", "--siege-bots", "3", "--attacks",
+                                    "absurd-views", "--attackers", "2", "--siege-charts", charts},
+                                   tables);
+  for (const char* window : {"window 0 quiet", "window 1 absurd-views", "window 2 quiet"}) {
+    CAPTURE(window);
+    CHECK(figure(testbed, "siege", window, "samples") > 0);
+    CHECK(figure(testbed, "siege", window, "never") == 0);
+    CHECK(figure(testbed, "siege", window, "disconnects") == 0);
+    CHECK(figure(testbed, "siege", window, "rejected") == 0);
+    CHECK(figure(testbed, "siege", window, "violations") == 0);
+    CHECK(figure(testbed, "siege", window, "server_resident_mb") > 0);
+  }
+  CHECK(figure(testbed, "siege", "all", "stop_s") > 0);
+  CHECK(figure(testbed, "siege", "all", "errors_logged") == 0);
+  CHECK(testbed["bars"].size() == 3);
+  CHECK(tables.find("| absurd-views |") != std::string::npos);
+  for (const std::string name : {"siege-p99.svg", "siege-memory.svg", "siege-disk.svg"}) {
+    CAPTURE(name);
+    std::stringstream svg;
+    svg << std::ifstream(charts + "/" + name).rdbuf();
+    CHECK(svg.str().starts_with("<svg "));
+    CHECK(svg.str().find(">absurd-views</text>") != std::string::npos);
+  }
+}
 #endif

@@ -54,6 +54,7 @@ constexpr std::string_view kRules = R"(
 .chart .whisker{stroke:var(--c);stroke-width:1.4}
 .chart .gap{fill:var(--paper)}
 .chart .ink{fill:var(--ink)}
+.chart .shade{fill:var(--rest);opacity:.18}
 .chart .missing{stroke:var(--quiet);stroke-width:1.3;fill:none}
 .chart .no-heat{fill:none;stroke:var(--grid)}
 .chart .arrow{stroke:var(--quiet);stroke-width:1.4;fill:none;stroke-linecap:round;stroke-linejoin:round}

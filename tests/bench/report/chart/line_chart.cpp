@@ -100,6 +100,25 @@ void draw_end_labels(Svg& svg, const LineChart& chart, const Scales& scales,
   }
 }
 
+/// Draws the heading of a chart that has one. Returns where the next element may begin.
+double draw_heading(Svg& svg, const LineChart& chart, double right) {
+  if (!chart.has_heading) return 0;
+  svg.text(2, 13, Anchor::start, shortened(chart.title, kTextSize, (right - 2) / kStrong),
+           "strong");
+  constexpr double kHeadingHeight = 24;
+  return kHeadingHeight;
+}
+
+double draw_line_legend(Svg& svg, const LineChart& chart, const std::vector<std::string>& colours,
+                        double right, double top) {
+  std::vector<LegendEntry> entries;
+  entries.reserve(chart.lines.size());
+  for (std::size_t i = 0; i < chart.lines.size(); ++i) {
+    entries.push_back({chart.lines[i].name, chart.lines[i].role, colours[i], true});
+  }
+  return draw_legend(svg, entries, 2, right, top);
+}
+
 }  // namespace
 
 std::string svg_of(const LineChart& chart, Width width) {
@@ -126,20 +145,15 @@ std::string svg_of(const LineChart& chart, Width width) {
                               static_cast<double>(roles.size() - 1) * kLabelPitch <= height;
 
   Svg svg;
-  double top = 0;
-  if (!has_end_labels) {
-    std::vector<LegendEntry> entries;
-    entries.reserve(roles.size());
-    for (std::size_t i = 0; i < roles.size(); ++i) {
-      entries.push_back({chart.lines[i].name, roles[i], colours[i], true});
-    }
-    top = draw_legend(svg, entries, 2, right, 0);
-  }
+  double top = draw_heading(svg, chart, right);
+  if (!has_end_labels) top = draw_line_legend(svg, chart, colours, right, top);
   const double end = has_end_labels ? right - widest - kLabelGap : right - 14;
-  const Box area{left, top + kAbove, end - left, height};
-  scales.x.lay(area.x, area.x + area.width);
+  scales.x.lay(left, end);
+  const double room = room_of(chart.spans, scales.x);
+  const Box area{left, top + kAbove + room, end - left, height};
   scales.y.lay(area.y + height, area.y);
-  draw_vertical_axis(svg, scales.y, caption_of(chart.y), area);
+  draw_spans(svg, chart.spans, scales.x, area, room);
+  draw_vertical_axis(svg, scales.y, caption_of(chart.y), area, room);
   draw_horizontal_axis(svg, scales.x, caption_of(chart.x), area, width_of(width));
   // The product is drawn last, so that it lies on top.
   for (const bool is_ours : {false, true}) {

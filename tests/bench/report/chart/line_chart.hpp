@@ -6,6 +6,7 @@
 
 #include "tests/bench/report/chart/axis.hpp"
 #include "tests/bench/report/chart/role.hpp"
+#include "tests/bench/report/chart/span.hpp"
 
 namespace runstone::bench::chart {
 
@@ -26,6 +27,8 @@ struct LineChart {
   Axis y = {};
   std::vector<LineSeries> lines = {};
   std::string title = {};
+  std::vector<Span> spans = {};  // along x
+  bool has_heading = false;      // the title is also written above the chart
 };
 
 /// See svg_of(BarChart).

@@ -12,9 +12,10 @@ double tick_room(const Scale& scale) {
   return widest + 12;
 }
 
-void draw_vertical_axis(Svg& svg, const Scale& scale, const std::string& caption, const Box& area) {
-  svg.text(2, area.y - 14, Anchor::start, shortened(caption, kTextSize, area.x + area.width - 2),
-           "quiet");
+void draw_vertical_axis(Svg& svg, const Scale& scale, const std::string& caption, const Box& area,
+                        double room) {
+  svg.text(2, area.y - room - 14, Anchor::start,
+           shortened(caption, kTextSize, area.x + area.width - 2), "quiet");
   for (const Tick& tick : scale.ticks()) {
     const double y = scale.place(tick.value);
     svg.text(area.x - 7, y + 4, Anchor::end, tick.text, "tick");

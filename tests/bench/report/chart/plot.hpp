@@ -14,8 +14,10 @@ double tick_room(const Scale& scale);
 /// that would touch its left neighbour.
 void draw_tick_row(Svg& svg, const Scale& scale, double y, double right);
 
-/// Draws horizontal grid lines through `area`, their ticks at its left, and the caption above.
-void draw_vertical_axis(Svg& svg, const Scale& scale, const std::string& caption, const Box& area);
+/// Draws horizontal grid lines through `area`, their ticks at its left, and the caption above, with
+/// `room` between caption and area.
+void draw_vertical_axis(Svg& svg, const Scale& scale, const std::string& caption, const Box& area,
+                        double room = 0);
 
 /// Draws ticks and the caption below `area`, which needs kBelow units there. `right` is the end of
 /// the chart.

@@ -9,6 +9,7 @@
 #include "tests/bench/report/chart/line_chart.hpp"
 #include "tests/bench/report/chart/scatter_chart.hpp"
 #include "tests/bench/report/chart/svg.hpp"
+#include "tests/bench/report/chart/svg_file.hpp"
 #include "tests/unit/bench/report/chart/svg_reader.hpp"
 
 using namespace runstone::bench::chart;
@@ -83,6 +84,41 @@ TEST_CASE("names stand at the ends of lines, apart, and in a legend where they d
   CHECK(read_svg(svg_of(many_lines(3, std::string(60, 'x')), Width::narrow))
             .with_class("lead")
             .empty());
+}
+
+TEST_CASE("spans are shaded behind a line, with upright names above the plot where they fit",
+          "[chart]") {
+  LineChart chart{{"s"}, {"ms"}, {{"a", Role::ours, {{0, 1}, {100, 2}}}}, "Title", {}, true};
+  chart.spans = {{10, 20, "first"}, {30, 60, "second & last"}, {NAN, 80, "unknown"}};
+  const SvgText svg = read_svg(svg_of(chart));
+  REQUIRE(svg.error.empty());
+  const auto shades = svg.with_class("shade");
+  REQUIRE(shades.size() == 2);
+  CHECK(shades[1].number("width") == Approx(3 * shades[0].number("width")).margin(0.3));
+  CHECK(svg.has_text("Title"));
+  CHECK(svg.has_text("first from 10 to 20"));
+  std::vector<std::string> upright;
+  for (const Element& text : svg.named("text")) {
+    if (text.at("transform").empty()) continue;
+    upright.push_back(text.text);
+    CHECK(text.number("y") - width_of(text.text, kTickSize) > shades[0].number("y"));
+  }
+  CHECK(upright == std::vector<std::string>{"first", "second & last"});
+  chart.spans.push_back({90, 90.1, "narrow"});
+  for (const Element& text : read_svg(svg_of(chart)).named("text"))
+    CHECK(text.at("transform").empty());
+}
+
+TEST_CASE("the file of a chart is the chart with its style sheet", "[chart]") {
+  const LineChart chart{{"s"}, {"ms"}, {{"a", Role::ours, {{0, 1}, {9, 2}}}}, "a > b"};
+  std::string text = svg_file_of(svg_of(chart));
+  std::erase(text, '\n');  // the reader knows no lines
+  const SvgText file = read_svg(text);
+  REQUIRE(file.error.empty());
+  REQUIRE(file.named("style").size() == 1);
+  CHECK(file.named("style")[0].text.find("--paper") != std::string::npos);
+  CHECK(file.elements.front().at("aria-label") == "a > b");
+  CHECK(file.with_class("strong-line").size() == 1);
 }
 
 TEST_CASE("the thesis has dashed lines and hollow points", "[chart]") {

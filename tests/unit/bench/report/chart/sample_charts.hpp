@@ -41,12 +41,14 @@ inline std::vector<std::pair<std::string, std::string>> sample_svgs(const Sample
   std::vector<Series> series;
   for (std::size_t i = 0; i < 5; ++i)
     series.push_back({"series " + std::to_string(i), sample_role(i), values(count)});
-  LineChart lines{axis, axis, {}, "lines"};
+  LineChart lines{axis, axis, {}, "lines", {}, true};
   ScatterChart scatter{axis, axis, {}, true, "scatter"};
   RangeChart ranges{data.names, {}, roles, axis, {"p10", "p50", "p90", "p99"}, "ranges"};
   for (std::size_t i = 0; i < count; ++i) {
     lines.lines.push_back({data.names[i], roles[i], {}});
     for (int k = 0; k < 4; ++k) lines.lines.back().points.push_back({data.value(), data.value()});
+    const auto& points = lines.lines.back().points;
+    lines.spans.push_back({points[0].x, points[1].x, data.names[i]});
     scatter.points.push_back({data.value(), data.value(), data.names[i], roles[i], i % 5 != 4});
     ranges.ranges.push_back({data.value(), data.value(), data.value(), data.value()});
   }
