@@ -26,14 +26,14 @@ double written_kb(const TestbedServer& server) {
 
 Result<double, std::string> stop_attacked_server(Testbed& testbed, TestbedServer& server,
                                                  const std::function<void()>& look) {
-  using Clock = std::chrono::steady_clock;
-  const auto began = Clock::now();
+  const auto began = std::chrono::steady_clock::now();
   server.program->terminate();
   wait_until(kStopPatience, [&] {
     look();
     return server.program->wait(0).has_value();
   });
-  const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   if (const auto ended = testbed.finish(*server.program, 0); !ended)
     return Unexpected<std::string>{ended.error()};
   return seconds;

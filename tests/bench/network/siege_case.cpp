@@ -60,7 +60,7 @@ class SiegeRun {
     auto server = start_attacked_server(testbed_, link_, siege_flags(options_.siege_bots));
     if (!server) return Unexpected<std::string>{server.error()};
     server_ = *std::move(server);
-    began_ = Clock::now();
+    began_ = SteadyClock::now();
     for (std::size_t i = 0; i < windows_; ++i) {
       const Attack* attack = attack_of(i);
       if (const auto done = play(i, attack); !done) {
@@ -76,7 +76,7 @@ class SiegeRun {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using SteadyClock = std::chrono::steady_clock;
 
   /// Returns the attack of a window, or null if the window is quiet.
   const Attack* attack_of(std::size_t index) const {
@@ -118,7 +118,9 @@ class SiegeRun {
             options_.seed + index * options_.attackers};
   }
 
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+  double seconds() const {
+    return std::chrono::duration<double>(SteadyClock::now() - began_).count();
+  }
 
   /// Returns the server's memory in MB.
   double look() {
@@ -133,7 +135,7 @@ class SiegeRun {
   const std::vector<const Attack*> attacks_;
   const std::size_t windows_, quiet_windows_;
   TestbedServer server_;
-  Clock::time_point began_;
+  SteadyClock::time_point began_;
   SiegeResult out_;
 };
 
