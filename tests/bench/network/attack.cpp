@@ -2,6 +2,7 @@
 
 #include <sched.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <string_view>
@@ -52,8 +53,13 @@ constexpr std::array<Attack, 21> kAttacks = {{
 
 AttackOutcome play(const Attack& attack, const AttackPlan& plan, unsigned index,
                    const std::atomic<bool>& is_stopped) {
-  const sched_param none{};
-  (void)::sched_setscheduler(0, SCHED_IDLE, &none);  // below every nice level
+  if (plan.uses_idle_cores) {
+    const sched_param none{};
+    (void)::sched_setscheduler(0, SCHED_IDLE, &none);  // below every nice level
+  } else {
+    constexpr int kLowest = 19;
+    (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kLowest);
+  }
   AttackThread thread(plan, index, is_stopped);
   attack.play(thread);
   rusage used{};

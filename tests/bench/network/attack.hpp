@@ -49,6 +49,9 @@ struct AttackPlan {
   unsigned addresses = 1;  // of which each thread has one
   double seconds = 0;
   std::uint64_t seed = 0;
+  // Attackers use idle cores only. On a busy machine that leaves them nothing; they are as good as
+  // absent then.
+  bool uses_idle_cores = true;
 };
 
 /// A running attack by several clients, each on a thread of its own. The threads have the lowest

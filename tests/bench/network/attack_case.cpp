@@ -70,7 +70,8 @@ class AttackRun {
 
  private:
   AttackPlan plan(double seconds, std::uint64_t seed) const {
-    return {server_.port, options_.attackers, options_.attacker_addresses, seconds, seed};
+    return {server_.port, options_.attackers, options_.attacker_addresses, seconds,
+            seed,         !options_.quick};
   }
 
   Done play(AttackPhase phase) {

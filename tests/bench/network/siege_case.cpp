@@ -114,8 +114,12 @@ class SiegeRun {
 
   /// Returns a plan with keys that no other window uses.
   AttackPlan plan(std::size_t index) const {
-    return {server_.port, options_.attackers, options_.attacker_addresses, kSiegeWindowSeconds,
-            options_.seed + index * options_.attackers};
+    return {server_.port,
+            options_.attackers,
+            options_.attacker_addresses,
+            kSiegeWindowSeconds,
+            options_.seed + index * options_.attackers,
+            !options_.quick};
   }
 
   double seconds() const {
