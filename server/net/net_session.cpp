@@ -229,8 +229,8 @@ Result<void> NetSession::handle_decoded(const Result<void>& fed) {
   Result<void> result = fed;
   for (Decoded& decoded : decoded_) {
     if (const auto* ack = std::get_if<ReceiveAck>(&decoded.message)) {
-      if (auto taken = on_receive_ack(*ack); !taken) {
-        result = std::move(taken);
+      if (const auto taken = on_receive_ack(*ack); !taken) {
+        result = taken;
         break;
       }
       continue;
