@@ -39,7 +39,6 @@ SessionInterest::Moved SessionInterest::set_view(const View& view) {
   cells.clear();
   append_difference(view, view_, limit_, cells);
   for (const ChunkCoord at : cells) queue_.push_back({0, at});
-  moved.entered = cells.size();
   moved.steps += cells.size();
   set_order(view);
   return moved;

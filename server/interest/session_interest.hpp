@@ -43,9 +43,8 @@ class SessionInterest {
     ChunkInterest was;
   };
   struct Moved {
-    std::size_t entered = 0;  // chunks that the view added
-    std::vector<Left> left;   // chunks that left the view and were not wanted
-    std::size_t steps = 0;    // chunks visited: the cost of the call
+    std::vector<Left> left;  // chunks that left the view and were not wanted
+    std::size_t steps = 0;   // chunks visited: the cost of the call
   };
   /// Sets the view: new chunks become wanted, chunks outside are removed, and wanted chunks get the
   /// new order. Cost: O((columns + chunks that change + wanted) * log entries); O(wanted) if only

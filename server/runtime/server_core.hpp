@@ -1,8 +1,9 @@
 // ServerCore: connects the parts of a running server around the world strand and starts and stops
 // them. It turns events of sessions and timers into calls of WorldServer. ServerEnvironment is the
-// other direction. Threads: I/O threads run the strands; workers load, generate and encode chunks;
-// decoders read large messages; readers and the log writer have threads of their own. The world and the connected sessions belong
-// to the world strand.
+// other direction.
+// Threads: I/O threads run the strands; workers load, generate and encode chunks; decoders decode
+// large messages; readers and the log writer have threads of their own. The world and the connected
+// sessions belong to the world strand.
 #pragma once
 #include <asio/io_context.hpp>
 #include <asio/thread_pool.hpp>
@@ -41,10 +42,10 @@ struct ServerThreads {
 
 class ServerCore final : public NetEvents {
  public:
-  /// What `threads` refers to, `config`, `store` and `generator` must outlive the core. `store` is of the
-  /// folder `config.world`. `on_failure` is called at most once, from the log writer's thread, when
-  /// the log cannot be written any more. `on_stop` is called on the world strand when an operator
-  /// stops the server.
+  /// The core keeps references to the members of `threads`, and to `config`, `store` and
+  /// `generator`. All of them must outlive it. `store` is of the folder `config.world`. `on_failure`
+  /// is called at most once, from the log writer's thread, when the log cannot be written any more.
+  /// `on_stop` is called on the world strand when an operator stops the server.
   ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,
              const Generator& generator, std::function<void()> on_failure,
              std::function<void()> on_stop);

@@ -90,8 +90,9 @@ void send_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now)
     world.find(session)->awaits_durable = world.authority.head();
   const auto receivers = receivers_of(world, authors, batch);
   for (std::size_t i = 0; i < receivers.size(); ++i) {
-    const std::size_t work = edit_work(batch.commit.edits[i].edit, world.config.chunk_edge);
-    if (work > kSmallEditWork && batch.commit.edits[i].cause == Cause::player)
+    const OrderedEdit& edit = batch.commit.edits[i];
+    const std::size_t work = edit_work(edit.edit, world.config.chunk_edge);
+    if (waits_for_room(work, edit.cause))
       world.large_edits.charge(work * receivers[i].size(), now.steady_us);
   }
   const std::vector<Audience> audiences = audiences_of(receivers);

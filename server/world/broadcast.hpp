@@ -10,8 +10,9 @@ enum class LargeEdits { paced, all };
 
 /// Orders the queued edits of one commit, appends them to the log, and sends each edit to the
 /// subscribers of the chunks that it touched and to the session of its client. Returns false if no
-/// edit is queued that may be ordered now. Cost: O(edits + subscribers of touched chunks + sessions), because the sessions
-/// of the authors are searched among all, and that of audiences_of().
+/// edit is queued that may be ordered now.
+/// Cost: O(edits + subscribers of touched chunks + sessions), because the sessions of the authors are
+/// searched among all, and that of audiences_of().
 bool commit_and_broadcast(WorldState& world, LargeEdits large, const Clocks& now);
 /// Returns true if commit_and_broadcast() with paced large edits would order edits.
 bool has_ready_edits(const WorldState& world, TimeUs now_us);

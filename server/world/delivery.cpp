@@ -9,7 +9,8 @@
 namespace runstone {
 namespace {
 
-// What one task of the world strand does at most, so that edits do not wait long: a millisecond.
+// The most chunks that one task of the world strand sends, and that it collects. Either takes about
+// a millisecond, so that edits do not wait long for a task.
 constexpr std::size_t kChunksPerDelivery = 512, kReleasedPerTask = 4'096;
 
 bool is_stalled(const WorldState& world, const WorldSession& session, const Clocks& now) {

@@ -46,7 +46,7 @@ std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge) {
 void EditQueue::push(const EditOffer& offer) {
   auto& lane = lanes_[client_of(offer.op, offer.cause)];
   lane.push_back({offer, edit_work(offer.edit, chunk_edge_)});
-  if (lane.size() == 1 && lane.front().waits_for_room()) ++large_fronts_;
+  if (lane.size() == 1 && lane.front().is_large()) ++large_fronts_;
   bytes_ += memory_of(offer);
   ++size_;
 }
@@ -61,11 +61,11 @@ bool EditQueue::has(const OperationId& op) const {
 
 EditQueue::Lanes::iterator EditQueue::pop(Lanes::iterator lane) {
   std::deque<Waiting>& edits = lane->second;
-  if (edits.front().waits_for_room()) --large_fronts_;
+  if (edits.front().is_large()) --large_fronts_;
   edits.pop_front();
   --size_;
   if (edits.empty()) return lanes_.erase(lane);
-  if (edits.front().waits_for_room()) ++large_fronts_;
+  if (edits.front().is_large()) ++large_fronts_;
   return std::next(lane);
 }
 
@@ -79,7 +79,7 @@ std::vector<EditOffer> EditQueue::take(std::uint64_t large_room) {
     for (std::size_t left = lanes_.size(); left > 0 && out.size() < kCommitEditsMax; --left) {
       if (lane == lanes_.end()) lane = lanes_.begin();
       Waiting& next = lane->second.front();
-      const bool is_large = next.waits_for_room();
+      const bool is_large = next.is_large();
       const bool has_room = !is_large || large_room > 0;
       if (!has_room || (!out.empty() && work + next.work > kWorkMax)) {
         std::optional<Client>& skipped = has_room ? too_costly : without_room;

@@ -29,8 +29,11 @@ struct EditOffer {
 /// Returns the work of an edit: an upper bound of its bytes in a commit message, in which its chunks
 /// weigh more because each of them is swept. Cost: O(1); stroke: O(points).
 std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge);
-/// An edit with more work is large.
-inline constexpr std::size_t kSmallEditWork = 4 * 1024;
+/// Returns true if an edit with this work waits for room: a large edit of a player.
+constexpr bool waits_for_room(std::size_t work, Cause cause) {
+  constexpr std::size_t kSmallWork = 4 * 1024;
+  return work > kSmallWork && cause == Cause::player;
+}
 /// Room for all large edits that wait.
 inline constexpr std::uint64_t kAllLargeEdits = std::numeric_limits<std::uint64_t>::max();
 
@@ -60,7 +63,7 @@ class EditQueue {
   struct Waiting {
     EditOffer offer;
     std::size_t work;
-    bool waits_for_room() const { return work > kSmallEditWork && offer.cause == Cause::player; }
+    bool is_large() const { return waits_for_room(work, offer.cause); }
   };
   /// Edits of the server that have a client's author and instance are in a lane of their own.
   using Client = std::tuple<AuthorId, ClientInstance, bool>;

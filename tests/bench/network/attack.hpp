@@ -49,8 +49,8 @@ struct AttackPlan {
   unsigned addresses = 1;  // of which each thread has one
   double seconds = 0;
   std::uint64_t seed = 0;
-  // Attackers use idle cores only. On a busy machine that leaves them nothing; they are as good as
-  // absent then.
+  // Attackers run only while a core has nothing else to do. Other programs on the machine may keep
+  // them from running at all.
   bool uses_idle_cores = true;
 };
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "protocol/codec/handshake.hpp"
-#include "tests/support/hostile_edits.hpp"
+#include "tests/unit/server/world/pasted_crowd.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone {
@@ -41,28 +41,19 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
 }
 
 TEST_CASE("an edit that is offered again while it waits is answered by its commit", "[world]") {
-  WorldConfig c = config();
-  c.edit_budget = {};  // no limit
-  Bench bench(c);
-  for (SessionId s = 1; s <= 20; ++s) {
-    bench.join(s, static_cast<std::uint8_t>(s));
-    bench.view(s, kSmall);
-  }
-  const EditShape paste = Paste{{0, 0, 0}, long_clipboard(), {}};
   constexpr ClientSequence kPastes = 10;
-  for (ClientSequence seq = 1; seq <= kPastes; ++seq) bench.edit(1, seq, paste, kEmpty);
-  bench.server.commit(bench.now());
+  PastedCrowd bench(kPastes);
   bench.edit(2, 1, kAtOrigin);  // ordered before the last pastes
   bench.server.commit(bench.now());
   REQUIRE(bench.environment.records.back().op.author == 2);
   bench.server.disconnected(1);
   bench.join(21, 1);
-  bench.edit(21, kPastes, paste, kEmpty);
+  bench.edit(21, kPastes, bench.paste, kEmpty);
   CHECK(bench.environment.messages<Reject>(21, kEdge).empty());
   while (bench.commits(21).empty() || bench.commits(21).back().edits.back().op.seq < kPastes)
     bench.tick();
   const Sequence seq = bench.commits(21).back().edits.back().seq;
-  bench.edit(21, kPastes, paste, kEmpty);
+  bench.edit(21, kPastes, bench.paste, kEmpty);
   const auto rejects = bench.environment.messages<Reject>(21, kEdge);
   REQUIRE(rejects.size() == 1);
   CHECK(rejects[0].reason == RejectReason::already_resolved);
@@ -70,17 +61,8 @@ TEST_CASE("an edit that is offered again while it waits is answered by its commi
 }
 
 TEST_CASE("edits of the server leave room in the log for the large edits that wait", "[world]") {
-  WorldConfig c = config();
-  c.edit_budget = {};  // no limit
-  Bench bench(c);
-  for (SessionId s = 1; s <= 20; ++s) {
-    bench.join(s, static_cast<std::uint8_t>(s));
-    bench.view(s, kSmall);
-  }
-  const EditShape paste = Paste{{0, 0, 0}, long_clipboard(), {}};
   constexpr ClientSequence kPastes = 10;
-  for (ClientSequence seq = 1; seq <= kPastes; ++seq) bench.edit(1, seq, paste, kEmpty);
-  bench.server.commit(bench.now());
+  PastedCrowd bench(kPastes);
   const std::size_t waiting = kPastes - bench.environment.records.size();
   REQUIRE(waiting > 0);
   const AuthorId author = bench.environment.records.front().op.author;
