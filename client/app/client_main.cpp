@@ -44,6 +44,9 @@ int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop)
     script = std::move(*parsed);
   }
   if (options.list_materials) return list_materials(options, stop);
+  // A write to the connection of a lost display must fail, so that Xlib notices the loss. The
+  // signal would end the process.
+  std::signal(SIGPIPE, SIG_IGN);
   Client client(std::move(options), script ? &*script : nullptr);
   client_runs = true;
   // exit() calls the newest handler first. This one is registered after the driver has loaded,
