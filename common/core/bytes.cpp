@@ -21,7 +21,7 @@ std::uint64_t ByteReader::little_endian(int count) {
   return v;
 }
 
-std::uint64_t ByteReader::varint() {
+std::uint64_t ByteReader::long_varint() {
   if (failed_) return 0;
   std::uint64_t v = 0;
   for (unsigned shift = 0; shift < 64; shift += 7) {
@@ -40,12 +40,6 @@ std::uint64_t ByteReader::varint() {
   }
   reject(ErrorCode::bad_value, "varint exceeds 64 bits");
   return 0;
-}
-
-std::uint64_t ByteReader::varint_max(std::uint64_t max, const char* what) {
-  const std::uint64_t v = varint();
-  if (!failed_ && v > max) reject(ErrorCode::bad_value, what);
-  return failed_ ? 0 : v;
 }
 
 std::int64_t ByteReader::svarint_in(std::int64_t low, std::int64_t high, const char* what) {

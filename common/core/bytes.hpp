@@ -2,6 +2,7 @@
 // byte, low bits first; the high bit is set if another byte follows. Only the shortest encoding is
 // accepted, so equal values have equal bytes. Signed values are zigzag-coded first.
 #pragma once
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,6 +20,11 @@ constexpr std::uint64_t zigzag(std::int64_t v) {
 }
 constexpr std::int64_t unzigzag(std::uint64_t v) {
   return static_cast<std::int64_t>(v >> 1) ^ -static_cast<std::int64_t>(v & 1);
+}
+
+/// Returns the bytes of a varint, 1 .. 10.
+constexpr std::size_t varint_size(std::uint64_t v) {
+  return (static_cast<std::size_t>(std::bit_width(v | 1)) + 6) / 7;
 }
 
 /// Appends to a byte vector. Never fails.
@@ -60,10 +66,18 @@ class ByteReader {
   std::uint16_t u16() { return static_cast<std::uint16_t>(little_endian(2)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(little_endian(4)); }
   std::uint64_t u64() { return little_endian(8); }
-  std::uint64_t varint();
+  std::uint64_t varint() {
+    const bool is_one_byte = !failed_ && at_ < in_.size() && in_[at_] < 0x80;
+    return is_one_byte ? in_[at_++] : long_varint();
+  }
   std::int64_t svarint() { return unzigzag(varint()); }
   /// Reads a varint. Fails if it exceeds `max`.
-  std::uint64_t varint_max(std::uint64_t max, const char* what);
+  std::uint64_t varint_max(std::uint64_t max, const char* what) {
+    const std::uint64_t v = varint();
+    if (v <= max) return v;
+    reject(ErrorCode::bad_value, what);
+    return 0;
+  }
   /// Reads a signed varint. Fails if it lies outside [low, high].
   std::int64_t svarint_in(std::int64_t low, std::int64_t high, const char* what);
   ByteView bytes(std::size_t count);
@@ -74,6 +88,7 @@ class ByteReader {
 
  private:
   std::uint64_t little_endian(int count);
+  std::uint64_t long_varint();
   ByteView in_;
   std::size_t at_ = 0;
   bool failed_ = false;

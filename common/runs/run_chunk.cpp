@@ -3,6 +3,7 @@
 #include <array>
 
 #include "common/core/m61.hpp"
+#include "common/runs/material_factors.hpp"
 #include "common/runs/run_builder.hpp"
 
 namespace runstone {
@@ -145,6 +146,31 @@ class PrefixDigest {
     return out;
   }
 
+  /// Returns the end of the current line: that of the last call of below(), at first the first one.
+  VoxelIndex line_end() const { return (line_ + 1) * e_.f; }
+  /// Adds the voxels [first, last) of the current line, times their material's factors, to the sum
+  /// of the line. The factor that all voxels of the line share is left to take_line().
+  void add_in_line(VoxelIndex first, VoxelIndex last, const MaterialFactors::Lanes& factors) {
+    constexpr std::uint32_t kTermsPerReduction = 32;
+    const VoxelIndex begin = line_ * e_.f;
+    for (std::size_t k = 0; k < kDigestLanes; ++k) {
+      const std::uint64_t* const f = lanes_[k].f;
+      line_sum_[k] += static_cast<m61::Wide>(m61::sub(f[last - begin], f[first - begin])) *
+                      factors[k];
+    }
+    if (++line_terms_ % kTermsPerReduction != 0) return;
+    for (m61::Wide& sum : line_sum_) sum = m61::reduce_wide(sum);
+  }
+  /// Returns the sum of the current line and sets it to zero. Call it before below().
+  Digest take_line() {
+    Digest out;
+    for (std::size_t k = 0; k < kDigestLanes; ++k)
+      out.lane[k] = m61::mul(m61::reduce_wide(line_sum_[k]), lanes_[k].factor);
+    line_sum_ = {};
+    line_terms_ = 0;
+    return out;
+  }
+
  private:
   struct Lane {
     const std::uint64_t *f, *m, *s;  // prefix sums by rank
@@ -168,15 +194,14 @@ class PrefixDigest {
 
   OrderedExtent e_;
   std::uint32_t line_ = 0;
+  std::array<m61::Wide, kDigestLanes> line_sum_{};
+  std::uint32_t line_terms_ = 0;
   std::array<Lane, kDigestLanes> lanes_{};
 };
 
-Digest times_material(const Digest& sum, Material material) {
+Digest times_material(const Digest& sum, const MaterialFactors::Lanes& factors) {
   Digest out;
-  for (int i = 0; i < kDigestLanes; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    out.lane[k] = m61::mul(sum.lane[k], digest_material(i, material));
-  }
+  for (std::size_t k = 0; k < kDigestLanes; ++k) out.lane[k] = m61::mul(sum.lane[k], factors[k]);
   return out;
 }
 
@@ -187,21 +212,30 @@ Digest digest_of_span(const RunChunk& shape, VoxelIndex first, VoxelIndex last, 
   if (first == last || material == kEmpty) return {};
   PrefixDigest prefix(shape.extent, shape.order);
   const Digest before = prefix.below(first);
-  return times_material(prefix.below(last) - before, material);
+  return times_material(prefix.below(last) - before,
+                        {digest_material(0, material), digest_material(1, material)});
 }
 
 Digest digest_of(const RunChunk& chunk) {
   PrefixDigest prefix(chunk.extent, chunk.order);
-  return chunk.runs.visit([&](const auto& runs) {
-    Digest sum;
-    Digest before;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      const Digest below = prefix.below(runs.end(i));
-      if (runs.material(i) != kEmpty) sum = sum + times_material(below - before, runs.material(i));
-      before = below;
+  MaterialFactors factors;
+  Digest sum;
+  chunk.runs.visit([&](const auto& runs) {
+    VoxelIndex begin = 0;
+    for (std::size_t i = 0; i < runs.size(); begin = runs.end(i++)) {
+      const VoxelIndex end = runs.end(i);
+      const Material material = runs.material(i);
+      if (end > prefix.line_end()) {
+        sum = sum + prefix.take_line();
+        const Digest before = prefix.below(begin);
+        const Digest span = prefix.below(end) - before;
+        if (material != kEmpty) sum = sum + times_material(span, factors.of(material));
+      } else if (material != kEmpty) {
+        prefix.add_in_line(begin, end, factors.of(material));
+      }
     }
-    return sum;
   });
+  return sum + prefix.take_line();
 }
 
 }  // namespace runstone

@@ -2,15 +2,14 @@
 // allocates nothing, except for a paste, whose part in the chunk is cut out in each call. Callers
 // make one per thread and pass it in. Only common/edits uses its contents.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "common/core/digest.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/apply/layer_canvas.hpp"
 #include "common/edits/apply/layer_plan.hpp"
 #include "common/edits/descriptor/ordered_shape.hpp"
+#include "common/runs/material_factors.hpp"
 #include "common/runs/run_chunk.hpp"
 
 namespace runstone {
@@ -29,31 +28,6 @@ struct Change {
   VoxelIndex first = 0, last = 0;
   Material material = kEmpty;
   friend bool operator==(const Change&, const Change&) = default;
-};
-
-/// Caches g(material) of both digest lanes for recent materials, direct-mapped by the low bits. All
-/// zero is a valid start: slot 0 then holds g(kEmpty) = 0, and material 0 belongs to slot 0 alone.
-class MaterialFactors {
- public:
-  using Lanes = std::array<std::uint64_t, kDigestLanes>;
-  const Lanes& of(Material material) {
-    Slot& slot = slots_[material % kSlots];
-    if (slot.material != material) {
-      slot.material = material;
-      for (int lane = 0; lane < kDigestLanes; ++lane) {
-        slot.factor[static_cast<std::size_t>(lane)] = digest_material(lane, material);
-      }
-    }
-    return slot.factor;
-  }
-
- private:
-  static constexpr std::size_t kSlots = 128;
-  struct Slot {
-    Material material = kEmpty;
-    Lanes factor{};
-  };
-  std::array<Slot, kSlots> slots_{};
 };
 
 /// Voxels [first, last) of one line that part `part` of the stack covers. `next` chains the entries

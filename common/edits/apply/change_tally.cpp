@@ -36,13 +36,8 @@ const AxisSums& axis_sums() {
   return table;
 }
 
-__extension__ using Wide = unsigned __int128;
-
-constexpr std::uint64_t reduce_wide(Wide v) {
-  const Wide once = (v & m61::kPrime) + (v >> 61);  // < 2^68
-  const auto low = static_cast<std::uint64_t>(once) & m61::kPrime;
-  return m61::add(m61::reduce(low), m61::reduce(static_cast<std::uint64_t>(once >> 61)));
-}
+using m61::reduce_wide;
+using m61::Wide;
 
 // A term is below 2^122, so this many terms and a reduced sum fit in 128 bits.
 constexpr std::uint32_t kTermsPerReduction = 32;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/core/digest.hpp"
+#include "common/core/m61.hpp"
 #include "common/edits/apply/apply_scratch.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/apply/line_bits.hpp"
@@ -65,7 +66,6 @@ class ChangeTally {
   void in_line(std::uint32_t first, std::uint32_t last, Material before, Material after);
   void across_lines(VoxelIndex first, VoxelIndex last, Material before, Material after);
 
-  __extension__ using Wide = unsigned __int128;
   const RunChunk& shape_;
   const AxisSums& sums_;
   const OrderedExtent extent_;
@@ -73,7 +73,7 @@ class ChangeTally {
   std::vector<Change>& changes_;
   MaterialFactors& factors_;
   VoxelIndex line_begin_ = 0, line_end_ = 0;  // the line in which the last stretch began
-  std::array<Wide, kDigestLanes> line_sum_{};
+  std::array<m61::Wide, kDigestLanes> line_sum_{};
   std::uint32_t line_terms_ = 0;
   std::uint32_t layer_ = 0;  // of the last call of line()
   std::array<std::uint64_t, kDigestLanes> layer_sum_{};

@@ -1,6 +1,7 @@
 #include "common/edits/apply/edit_stack.hpp"
 
 #include <algorithm>
+#include <variant>
 
 #include "common/core/assert.hpp"
 #include "common/edits/apply/change_tally.hpp"
@@ -42,23 +43,27 @@ ChangeSearch cheaper_search(std::size_t edits, const RunChunk& chunk,
   return whole ? ChangeSearch::sweep : ChangeSearch::paint;
 }
 
-// Fills the result, and the patch in scratch.runs. The chunk does not change.
-void search_changes(ChangeSearch search, const RunChunk& chunk, Digest& digest,
-                    ApplyScratch& scratch, ApplyResult& result) {
+void search_stack(ChangeSearch search, const RunChunk& chunk, ApplyScratch& scratch,
+                  ChangeTally& tally) {
+  switch (search) {
+    case ChangeSearch::walk:
+      return walk_changes(chunk, scratch, tally);
+    case ChangeSearch::sweep:
+      return sweep_changes(chunk, scratch, tally);
+    case ChangeSearch::paint:
+      return paint_changes(chunk, scratch, tally);
+  }
+}
+
+// Fills the result, and the patch in scratch.runs, with what search(tally) finds. The chunk does
+// not change.
+template <class Search>
+void plan_changes(const RunChunk& chunk, Digest& digest, ApplyScratch& scratch, ApplyResult& result,
+                  Search&& search) {
   scratch.changes.clear();
   scratch.runs.clear();
   ChangeTally tally(chunk, scratch.changes, scratch.factors);
-  switch (search) {
-    case ChangeSearch::walk:
-      walk_changes(chunk, scratch, tally);
-      break;
-    case ChangeSearch::sweep:
-      sweep_changes(chunk, scratch, tally);
-      break;
-    case ChangeSearch::paint:
-      paint_changes(chunk, scratch, tally);
-      break;
-  }
+  search(tally);
   tally.finish();
   if (scratch.changes.empty()) return;
   digest = digest + tally.digest_difference();
@@ -81,9 +86,17 @@ void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
                  std::span<const EditDescriptor> edits, ApplyScratch& scratch,
                  ApplyResult& result) {
   reset(result);
-  const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
-  if (count == 0) return;
-  search_changes(cheaper_search(count, chunk, scratch.stack), chunk, digest, scratch, result);
+  if (edits.size() == 1 && std::holds_alternative<Paste>(edits.front().shape)) {
+    plan_changes(chunk, digest, scratch, result, [&](ChangeTally& tally) {
+      walk_paste(chunk, origin, edits.front(), scratch, tally);
+    });
+  } else {
+    const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
+    if (count == 0) return;
+    plan_changes(chunk, digest, scratch, result, [&](ChangeTally& tally) {
+      search_stack(cheaper_search(count, chunk, scratch.stack), chunk, scratch, tally);
+    });
+  }
   write_patch(chunk, result.areas, scratch.runs, cheaper_write(chunk, result.areas), scratch.whole);
 }
 
@@ -100,7 +113,9 @@ ApplyResult apply_stack_by(ApplyStrategy strategy, RunChunk& chunk, Digest& dige
   const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
   if (count == 0) return result;
   RUNSTONE_ASSERT(count == 1 || strategy.search != ChangeSearch::walk);
-  search_changes(strategy.search, chunk, digest, scratch, result);
+  plan_changes(chunk, digest, scratch, result, [&](ChangeTally& tally) {
+    search_stack(strategy.search, chunk, scratch, tally);
+  });
   write_patch(chunk, result.areas, scratch.runs, strategy.write, scratch.whole);
   return result;
 }

@@ -2,7 +2,7 @@
 // (thesis 9.2, stack-based edit indexing; 7.3.3, edit indices and edit areas). Server commit,
 // client prediction, replay and rollback all call apply_stack(): same code, same result.
 // Three searches find the changes, and all give the same result:
-//   - a single edit is walked span by span (walk_changes() in edit_sweep.hpp);
+//   - a single edit is walked span by span (walk_changes() and walk_paste() in edit_sweep.hpp);
 //   - a stack with an edit that covers whole layers is swept run by run (sweep_changes());
 //   - any other stack is painted layer by layer (layer_painter.hpp).
 #pragma once

@@ -248,18 +248,17 @@ class Sweep {
   LineBuffer before_, after_;
 };
 
-// Applies `part` to the spans. Requires ascending spans, none before the cursor.
+// Gives the voxels of the spans that `mask` admits this material. Requires ascending spans, none
+// before the cursor.
 template <class Runs>
-void walk_spans(RunCursor<Runs>& cursor, const StackPart& part, std::span<const IndexSpan> spans,
-                ChangeTally& tally) {
+void walk_spans(RunCursor<Runs>& cursor, const Mask& mask, Material material,
+                std::span<const IndexSpan> spans, ChangeTally& tally) {
   for (const IndexSpan& span : spans) {
     cursor.seek(span.first);
     for (VoxelIndex at = span.first; at < span.last;) {
       const VoxelIndex end = std::min(cursor.end(), span.last);
       const Material before = cursor.material();
-      if (before != part.material && part.mask.admits(before)) {
-        tally.stretch(at, end, before, part.material);
-      }
+      if (before != material && mask.admits(before)) tally.stretch(at, end, before, material);
       at = end;
       if (at < span.last) cursor.next();
     }
@@ -280,19 +279,35 @@ void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tal
   scratch.spans.clear();
   chunk.runs.visit([&]<class Runs>(Runs runs) {
     RunCursor<Runs> cursor(runs);
-    if (scratch.stack.front().shape.form == OrderedShape::Form::capsule) {
+    const StackPart& front = scratch.stack.front();
+    if (front.shape.form == OrderedShape::Form::capsule) {
       // The segments of a stroke overlap and differ only in shape.
       for (const StackPart& part : scratch.stack) append_spans(part.shape, extent, scratch.spans);
       if (scratch.stack.size() > 1) unite_spans(scratch.spans, 0);
-      walk_spans(cursor, scratch.stack.front(), scratch.spans, tally);
+      walk_spans(cursor, front.mask, front.material, scratch.spans, tally);
       return;
     }
     // The boxes of a paste come in index order. They do not overlap, and each has its material.
     for (const StackPart& part : scratch.stack) {
       scratch.spans.clear();
       append_spans(part.shape, extent, scratch.spans);
-      walk_spans(cursor, part, scratch.spans, tally);
+      walk_spans(cursor, part.mask, part.material, scratch.spans, tally);
     }
+  });
+}
+
+void walk_paste(const RunChunk& chunk, VoxelPos origin, const EditDescriptor& edit,
+                ApplyScratch& scratch, ChangeTally& tally) {
+  const OrderedExtent extent = ordered(chunk.extent, chunk.order);
+  chunk.runs.visit([&]<class Runs>(Runs runs) {
+    RunCursor<Runs> cursor(runs);
+    // The boxes come in index order and do not overlap.
+    for_each_part(edit, origin, chunk.extent, chunk.order,
+                  [&](const OrderedShape& box, Material material) {
+                    scratch.spans.clear();
+                    append_spans(box, extent, scratch.spans);
+                    walk_spans(cursor, edit.mask, material, scratch.spans, tally);
+                  });
   });
 }
 

@@ -9,6 +9,7 @@
 #pragma once
 #include "common/edits/apply/apply_scratch.hpp"
 #include "common/edits/apply/change_tally.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/runs/run_chunk.hpp"
 
 namespace runstone {
@@ -22,5 +23,11 @@ void sweep_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& ta
 /// each span. Cost: O(spans * log(runs between) + runs crossed); for a stroke, also O(n log n) of
 /// the spans of its segments.
 void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally);
+
+/// Does the same for one paste, without a stack: the boxes of a paste may be as many as the voxels
+/// of the chunk. Requires an edit that is a paste. Cost: that of placed_cells(), and O(runs crossed
+/// + lines of boxes that are not whole lines).
+void walk_paste(const RunChunk& chunk, VoxelPos origin, const EditDescriptor& edit,
+                ApplyScratch& scratch, ChangeTally& tally);
 
 }  // namespace runstone
