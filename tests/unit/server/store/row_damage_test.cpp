@@ -246,15 +246,16 @@ TEST_CASE("a page of the database overwritten from outside is noticed", "[store]
   make_world(folder.path());
   const std::string file = folder / "world.sqlite";
   const auto size = std::filesystem::file_size(file);
+  const std::size_t page_bytes = std::stoul(raw_sql(file, "PRAGMA page_size"));
   int noticed = 0, pages = 0;
-  for (std::uintmax_t page = 4096; page < size; page += 4096) {
+  for (std::uintmax_t page = page_bytes; page < size; page += page_bytes) {
     const TempFolder copy;
     std::filesystem::copy_file(file, copy / "world.sqlite");
     {
       std::FILE* out = std::fopen((copy / "world.sqlite").c_str(), "r+b");
       REQUIRE(out != nullptr);
       REQUIRE(std::fseek(out, static_cast<long>(page), SEEK_SET) == 0);
-      const std::vector<char> garbage(4096, '\x5a');
+      const std::vector<char> garbage(page_bytes, '\x5a');
       REQUIRE(std::fwrite(garbage.data(), 1, garbage.size(), out) == garbage.size());
       std::fclose(out);
     }

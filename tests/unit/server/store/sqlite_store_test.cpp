@@ -373,13 +373,16 @@ TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") 
   const TempFolder folder;
   SplitMix64 rng(10);
   std::string file;
-  const auto pages = [&] { return std::stol(raw_sql(file, "PRAGMA page_count")); };
+  const auto bytes_of_file = [&] {
+    return std::stol(
+        raw_sql(file, "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size"));
+  };
   long before = 0;
   constexpr Sequence kEdits = 20'000;
   {
     auto store = filled(folder.path(), rng, 1);
     file = store->file();
-    before = pages();
+    before = bytes_of_file();
     for (Sequence seq = 2; seq < 2 + kEdits; seq += 100) {
       auto records = sample_records(rng, 1, seq, 100);
       for (EditRecord& record : records) {
@@ -393,7 +396,7 @@ TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") 
       REQUIRE(store->append({}, records).has_value());
     }
   }
-  const double bytes = static_cast<double>((pages() - before) * 4096) / kEdits;
+  const double bytes = static_cast<double>(bytes_of_file() - before) / kEdits;
   CAPTURE(bytes);
   CHECK(bytes < 120);
   CHECK(bytes > 40);  // less than the payload would mean that nothing was measured
