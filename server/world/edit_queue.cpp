@@ -43,10 +43,16 @@ std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge) {
   return kEditWork + descriptor + kChunkWork * chunks;
 }
 
+bool EditQueue::has_room_for(const EditDescriptor& edit) const {
+  return large_work_ < kWaitingWorkMax ||
+         !waits_for_room(edit_work(edit, chunk_edge_), Cause::player);
+}
+
 void EditQueue::push(const EditOffer& offer) {
   auto& lane = lanes_[client_of(offer.op, offer.cause)];
   lane.push_back({offer, edit_work(offer.edit, chunk_edge_)});
   if (lane.size() == 1 && lane.front().is_large()) ++large_fronts_;
+  if (lane.back().is_large()) large_work_ += lane.back().work;
   bytes_ += memory_of(offer);
   ++size_;
 }
@@ -59,9 +65,17 @@ bool EditQueue::has(const OperationId& op) const {
   return found != lane->second.end() && seq_of(*found) == op.seq;
 }
 
+bool EditQueue::has_of(AuthorId author) const {
+  const auto lane = lanes_.lower_bound(Client{author, 0, false});
+  return lane != lanes_.end() && std::get<AuthorId>(lane->first) == author;
+}
+
 EditQueue::Lanes::iterator EditQueue::pop(Lanes::iterator lane) {
   std::deque<Waiting>& edits = lane->second;
-  if (edits.front().is_large()) --large_fronts_;
+  if (edits.front().is_large()) {
+    --large_fronts_;
+    large_work_ -= edits.front().work;
+  }
   edits.pop_front();
   --size_;
   if (edits.empty()) return lanes_.erase(lane);

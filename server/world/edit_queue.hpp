@@ -3,7 +3,8 @@
 // for at most one costly edit of each other client, however many they have sent. The edits of one
 // client keep their order. A large edit of a player also waits until LargeEditPace has room, and
 // those of its client wait behind it.
-// Bound: the caller's (WorldState::environment.log_has_room(), is_memory_full()).
+// Bounds: the caller's (WorldState::environment.log_has_room(), is_memory_full()), and for large
+// edits has_room_for().
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -39,8 +40,14 @@ inline constexpr std::uint64_t kAllLargeEdits = std::numeric_limits<std::uint64_
 
 class EditQueue {
  public:
+  static constexpr std::size_t kWaitingWorkMax = 16 * 1024 * 1024;
+
   explicit EditQueue(std::int32_t chunk_edge) : chunk_edge_(chunk_edge) {}
 
+  /// Returns false for a large edit of a player if those that wait have more than kWaitingWorkMax
+  /// work together. Such an edit is refused: nobody knows when it would be ordered, and a stop
+  /// orders all that wait. Cost: that of edit_work().
+  bool has_room_for(const EditDescriptor& edit) const;
   void push(const EditOffer& offer);
   /// Removes and returns the edits of the next commit, in their order. `large_room` is the work of
   /// large edits of players that it may have; the last one may exceed it, and at 0 there is none.
@@ -55,6 +62,8 @@ class EditQueue {
   /// Returns true if the operation waits. Requires that the operations of a client were pushed in
   /// ascending order. Cost: O(log edits).
   bool has(const OperationId& op) const;
+  /// Returns true if an edit of the author waits. Cost: O(log clients).
+  bool has_of(AuthorId author) const;
   std::size_t size() const { return size_; }
   /// Returns the bytes of memory that the edits take.
   std::size_t bytes() const { return bytes_; }
@@ -75,6 +84,7 @@ class EditQueue {
   std::int32_t chunk_edge_;
   Lanes lanes_;                   // no lane is empty
   std::size_t large_fronts_ = 0;  // lanes whose first edit waits for room
+  std::size_t large_work_ = 0;    // of all edits that wait for room
   Client turn_{};                 // whose turn begins the next commit
   std::size_t size_ = 0, bytes_ = 0;
 };

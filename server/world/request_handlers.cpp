@@ -30,9 +30,10 @@ bool is_within_reach(const WorldState& world, WorldSession& session, const EditD
 }
 
 /// Returns the reason for a rejection as busy, for the player. It is empty if it passes soon.
-const char* why_busy(const WorldState& world) {
+const char* why_busy(const WorldState& world, const EditDescriptor& edit) {
   if (world.disk_is_full) return kDiskIsFull;
-  return is_memory_full(world) ? kMemoryIsFull : "";
+  if (is_memory_full(world)) return kMemoryIsFull;
+  return world.authority.queue().has_room_for(edit) ? "" : "too many large edits of players wait";
 }
 
 }  // namespace
@@ -67,7 +68,8 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   std::optional<RejectReason> refusal;
   std::string detail;
   const bool has_room = world.accepts_edits && !world.disk_is_full && !is_memory_full(world) &&
-                        world.environment.log_has_room(world.authority.queue().size() + 1);
+                        world.environment.log_has_room(world.authority.queue().size() + 1) &&
+                        (request.fault || world.authority.queue().has_room_for(request.edit));
   // An edit that waits for its commit is answered by the commit.
   if (world.authority.queue().has(op)) return;
   if (world.authority.resolved().knows(op)) {
@@ -91,7 +93,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   }
   if (!refusal) return;
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
-  if (*refusal == RejectReason::busy) detail = why_busy(world);
+  if (*refusal == RejectReason::busy) detail = why_busy(world, request.edit);
   ++world.counters.edits_rejected;
   // Edits that are offered again after a reconnection are no misuse.
   if (*refusal != RejectReason::already_resolved)

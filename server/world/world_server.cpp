@@ -355,6 +355,9 @@ bool WorldServer::is_stop_overdue() const { return state_->checkpointer.is_aband
 std::size_t WorldServer::dirty_chunks() const { return state_->authority.chunks().dirty().size(); }
 
 bool WorldServer::accepts_edits() const { return state_->accepts_edits; }
+bool WorldServer::has_waiting_edit(AuthorId author) const {
+  return state_->authority.queue().has_of(author);
+}
 Epoch WorldServer::epoch() const { return state_->authority.epoch(); }
 Sequence WorldServer::head() const { return state_->authority.head(); }
 ClientSequence WorldServer::resolved(AuthorId author, ClientInstance instance) const {

@@ -139,6 +139,9 @@ class WorldServer {
   // State.
   /// Returns false if the server stops or the log has failed.
   bool accepts_edits() const;
+  /// Returns true if an accepted edit of the author is not ordered yet: a large edit, or one behind
+  /// it, waits until there is room to send it (EditQueue).
+  bool has_waiting_edit(AuthorId author) const;
   Epoch epoch() const;
   Sequence head() const;
   /// Returns the highest resolved client sequence of the instance, 0 if there is none.

@@ -54,14 +54,18 @@ void forget_session(WorldState& world, SessionId session) {
 }
 
 void forget_gone_authors(WorldState& world) {
-  // A queued edit needs its author's row when it is ordered.
-  if (world.gone_authors.empty() || world.authority.queue().size() != 0) return;
+  if (world.gone_authors.empty()) return;
   std::set<AuthorId> present;
   for (const auto& [id, session] : world.sessions) {
     if (session.state == SessionStage::open) present.insert(session.author);
   }
   for (const AuthorId author : std::exchange(world.gone_authors, {})) {
-    if (present.contains(author) || !world.players.forget_unsaved(author)) continue;
+    if (present.contains(author)) continue;
+    if (world.authority.queue().has_of(author)) {  // the row is needed when the edit is ordered
+      world.gone_authors.push_back(author);
+      continue;
+    }
+    if (!world.players.forget_unsaved(author)) continue;
     world.authority.resolved().forget(author);
   }
 }

@@ -1,5 +1,6 @@
 #include "server/rollback/rollback_service.hpp"
 
+#include "tests/support/hostile_edits.hpp"
 #include "tests/unit/server/rollback/rollback_bench.hpp"
 
 namespace runstone::test {
@@ -328,6 +329,23 @@ TEST_CASE("a player has one undo at a time, and it waits until the edit is on di
   bench.run_all();
   CHECK(bench.answer().is_ok);
   CHECK(bench.at({1, 1, 1}) == kEmpty);
+}
+
+TEST_CASE("an undo is refused while an edit of the player waits, not done to an older edit",
+          "[rollback][undo]") {
+  WorldConfig without_budget = config();
+  without_budget.edit_budget = {};
+  RollbackBench bench(without_budget);
+  const AuthorId ana = bench.join(kBuilder);
+  for (ClientSequence seq = 1; seq <= 100; ++seq)
+    bench.bench.edit(kBuilder, seq, Paste{{0, 0, 0}, long_clipboard(), {}}, kEmpty);
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
+  CHECK_FALSE(bench.answer().is_ok);
+  CHECK(bench.answer().text ==
+        "undo: your last edit still waits for its turn, because it is large");
+  while (bench.bench.server.has_waiting_edit(ana)) bench.tick();
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
+  CHECK(bench.answers.size() == 1);  // it waits for the log, as an undo does
 }
 
 TEST_CASE("a rollback continues if the log has room for fewer edits than a slice", "[rollback]") {

@@ -117,4 +117,31 @@ TEST_CASE("a commit has at most as many edits as its message", "[world]") {
   CHECK(next == 2 * kCommitEditsMax + 1);
 }
 
+TEST_CASE("beyond a bound the queue has no room for large edits, and still for small ones",
+          "[world]") {
+  EditQueue queue(16);
+  const EditDescriptor large = costly_offer(1, 1).edit, small = cheap_offer(1, 1).edit;
+  const std::size_t most = EditQueue::kWaitingWorkMax / edit_work(large, 16) + 1;
+  for (ClientSequence seq = 1; seq <= most; ++seq) {
+    REQUIRE(queue.has_room_for(large));
+    queue.push(costly_offer(1, seq));
+    queue.push(cheap_offer(2, seq));
+  }
+  CHECK_FALSE(queue.has_room_for(large));
+  CHECK(queue.has_room_for(small));
+  CHECK(taken(queue).front() == std::pair<AuthorId, ClientSequence>{1, 1});
+  CHECK(queue.has_room_for(large));
+}
+
+TEST_CASE("a queue knows whose edits wait", "[world]") {
+  EditQueue queue(16);
+  queue.push(costly_offer(5, 1));
+  queue.push(cheap_offer(7, 1));
+  for (const AuthorId author : {4U, 6U, 8U}) CHECK_FALSE(queue.has_of(author));
+  for (const AuthorId author : {5U, 7U}) CHECK(queue.has_of(author));
+  taken(queue, 0);
+  CHECK(queue.has_of(5));
+  CHECK_FALSE(queue.has_of(7));
+}
+
 }  // namespace runstone

@@ -60,6 +60,36 @@ TEST_CASE("an edit that is offered again while it waits is answered by its commi
   CHECK(rejects[0].seq >= seq);
 }
 
+TEST_CASE("large edits beyond what may wait are refused, small edits are not", "[world]") {
+  constexpr ClientSequence kPastes = 400;
+  PastedCrowd bench(kPastes);
+  const auto rejects = bench.environment.messages<Reject>(1, kEdge);
+  REQUIRE_FALSE(rejects.empty());
+  CHECK(rejects.size() < kPastes - 100);
+  CHECK(rejects[0].reason == RejectReason::busy);
+  CHECK(rejects[0].detail == "too many large edits of players wait");
+  bench.edit(2, 1, kAtOrigin);
+  bench.server.commit(bench.now());
+  CHECK(bench.environment.messages<Reject>(2, kEdge).empty());
+  CHECK(bench.environment.records.back().op.author == 2);
+}
+
+TEST_CASE("the row of a player who left is kept while an edit waits, whatever others do",
+          "[world]") {
+  constexpr ClientSequence kPastes = 10;
+  PastedCrowd bench(kPastes);
+  bench.server.disconnected(1);
+  bench.server.disconnected(3);
+  bench.tick();
+  CHECK(bench.server.has_waiting_edit(1));
+  // The player without edits is forgotten although the queue is not empty: the number is free.
+  bench.join(23, 23);
+  while (bench.server.has_waiting_edit(1)) bench.tick();
+  CHECK(bench.environment.records.size() == kPastes);
+  CHECK(bench.environment.players.size() == 1);
+  CHECK(bench.environment.players[0].author == 1);
+}
+
 TEST_CASE("edits of the server leave room in the log for the large edits that wait", "[world]") {
   constexpr ClientSequence kPastes = 10;
   PastedCrowd bench(kPastes);
