@@ -10,14 +10,14 @@
 namespace runstone {
 namespace {
 
-// Estimates: entry, control block, vectors.
-constexpr std::size_t kChunkOverheadBytes = 192;
-constexpr std::size_t kStackOverheadBytes = 256;
-constexpr std::size_t kStackKeptMax =
-    16;  // edits whose room an empty stack keeps for the next ones
+constexpr std::size_t kStackOverheadBytes = 256;  // an estimate
+// Edits whose room the empty stack of a resident chunk keeps for the next ones.
+constexpr std::size_t kStackKeptMax = 16;
 
-std::size_t bytes_of(const Chunk& chunk) {
-  return chunk.voxels.runs.byte_capacity() + kChunkOverheadBytes;
+// Returns the memory that an allocation takes: glibc adds a word, rounds up to 16 bytes and gives no
+// less than 32.
+constexpr std::size_t allocated(std::size_t bytes) {
+  return bytes == 0 ? 0 : std::max<std::size_t>(32, (bytes + sizeof(void*) + 15) / 16 * 16);
 }
 
 }  // namespace
@@ -74,12 +74,24 @@ void WorldChunks::apply_and_publish(const ChunkKey& key, Entry& e, Chunk chunk) 
   e.published = std::make_shared<const Chunk>(std::move(chunk));
   e.residency = Residency::resident;
   ++resident_count_;
-  resident_bytes_ += bytes_of(*e.published);
+  e.resident_bytes = bytes_of(e);
+  resident_bytes_ += e.resident_bytes;
+}
+
+std::size_t WorldChunks::bytes_of(const Entry& e) {
+  // A node of the hash table and its bucket, the key in idle_, and a shared pointer's two counters.
+  constexpr std::size_t kNodeBytes =
+      allocated(sizeof(std::pair<const ChunkKey, Entry>) + 2 * sizeof(void*)) + sizeof(void*);
+  constexpr std::size_t kSharedBytes = allocated(sizeof(Chunk) + 2 * sizeof(void*));
+  return kNodeBytes + sizeof(ChunkKey) + kSharedBytes +
+         allocated(e.published->voxels.runs.byte_capacity()) +
+         allocated(e.stack.capacity() * sizeof(EditDescriptor)) +
+         allocated(e.stack_seqs.capacity() * sizeof(Sequence));
 }
 
 void WorldChunks::unpublish(Entry& e) {
   --resident_count_;
-  resident_bytes_ -= bytes_of(*e.published);
+  resident_bytes_ -= std::exchange(e.resident_bytes, 0);
   e.published = nullptr;
 }
 
@@ -189,6 +201,8 @@ void WorldChunks::evict(std::size_t bytes_max, std::size_t steps_max,
     }
     unpublish(e);
     e.residency = Residency::absent;
+    e.stack.shrink_to_fit();
+    e.stack_seqs.shrink_to_fit();
     if (e.version == Version{}) entries_.erase(key);
   }
 }

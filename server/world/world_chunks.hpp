@@ -89,6 +89,7 @@ class WorldChunks {
   /// Returns the depths of the edit stacks that were applied since the start.
   const StackDepths& stack_depths() const { return stack_depths_; }
   std::size_t resident_count() const { return resident_count_; }
+  /// Returns the memory that the resident chunks take, what the heap adds to each included.
   std::size_t resident_bytes() const { return resident_bytes_; }
   /// Returns the bytes of the edits on all stacks, and of the stacks.
   std::size_t stack_bytes() const { return stack_bytes_; }
@@ -103,7 +104,11 @@ class WorldChunks {
     std::vector<EditDescriptor> stack;
     std::vector<Sequence> stack_seqs;  // of the edits in `stack`
     std::size_t stack_bytes = 0;
+    std::size_t resident_bytes = 0;  // while it is resident
   };
+  /// Returns the memory that a resident chunk takes: the entry, the voxels and the room that its
+  /// stack keeps.
+  static std::size_t bytes_of(const Entry& e);
   Entry* entry(const ChunkKey& key);
   const Entry* entry(const ChunkKey& key) const;
   /// Applies the stack above the chunk's version and publishes the chunk.

@@ -9,7 +9,8 @@ namespace runstone {
 /// The ways to find the changes.
 enum class ChangeSearch : std::uint8_t {
   // Walks the runs span by span. Requires that at most one edit of the stack touches the chunk.
-  // apply_stack() uses it for all such stacks.
+  // apply_stack() uses it for all such stacks; a single paste it walks without a stack
+  // (walk_paste()).
   walk,
   // Sweeps run by run (edit_sweep.hpp). It takes any stack. apply_stack() uses it for several edits
   // if some of them cover whole layers.

@@ -1,9 +1,13 @@
 // The bounds of the memory that the data of a world take.
 #include "server/world/world_memory.hpp"
 
+#include <malloc.h>
+
 #include <catch2/catch.hpp>
+#include <memory>
 
 #include "common/runs/run_builder.hpp"
+#include "server/world/world_chunks.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone {
@@ -27,6 +31,47 @@ WorldConfig with_memory(std::size_t views, std::size_t edits) {
 }
 
 }  // namespace
+
+TEST_CASE("resident chunks count what the heap gives for them", "[world]") {
+  constexpr std::int32_t kSide = 100;
+  const std::size_t before = ::mallinfo2().uordblks;
+  auto chunks = std::make_unique<WorldChunks>(kEdge);
+  for (std::int32_t x = 0; x < kSide; ++x) {
+    for (std::int32_t z = 0; z < kSide; ++z) {
+      const ChunkKey key{0, {x, 0, z}};
+      REQUIRE(chunks->begin_load(key));
+      Chunk chunk;
+      chunk.voxels = uniform_chunk({kEdge, kEdge, kEdge}, kEmpty, AxisOrder::xzy);
+      chunk.voxels.runs.shrink_to_fit();
+      REQUIRE_FALSE(chunks->loaded(key, std::move(chunk)).has_value());
+      chunks->released(key);
+    }
+  }
+  const std::size_t taken = ::mallinfo2().uordblks - before;
+  if (taken == 0) return;  // a sanitizer's heap does not count
+  CAPTURE(taken, chunks->resident_bytes());
+  CHECK(static_cast<double>(chunks->resident_bytes()) > 0.95 * static_cast<double>(taken));
+  CHECK(static_cast<double>(chunks->resident_bytes()) < 1.1 * static_cast<double>(taken));
+}
+
+TEST_CASE("what an edited chunk keeps in memory counts, and leaves with it", "[world]") {
+  WorldChunks chunks(kEdge);
+  const ChunkKey key{0, {0, 0, 0}};
+  REQUIRE(chunks.begin_load(key));
+  Chunk chunk;
+  chunk.voxels = uniform_chunk({kEdge, kEdge, kEdge}, kEmpty, AxisOrder::xzy);
+  REQUIRE_FALSE(chunks.loaded(key, std::move(chunk)).has_value());
+  const std::size_t loaded = chunks.resident_bytes();
+  chunks.push(key, {1, 1}, {SetVoxel{{1, 1, 1}}, {}, 1}, sizeof(EditDescriptor));
+  chunks.publish(key);
+  CHECK(chunks.stack_bytes() == 0);
+  CHECK(chunks.resident_bytes() >= loaded + sizeof(EditDescriptor));
+  chunks.mark_saved(key, {1, 1});
+  chunks.released(key);
+  chunks.evict(0, 10, [](const ChunkKey&) { return false; });
+  CHECK(chunks.resident_count() == 0);
+  CHECK(chunks.resident_bytes() == 0);
+}
 
 TEST_CASE("the edits of a chunk that is not in memory count until it is loaded", "[world]") {
   WorldBench bench;
