@@ -155,8 +155,8 @@ class PrefixDigest {
     const VoxelIndex begin = line_ * e_.f;
     for (std::size_t k = 0; k < kDigestLanes; ++k) {
       const std::uint64_t* const f = lanes_[k].f;
-      line_sum_[k] += static_cast<m61::Wide>(m61::sub(f[last - begin], f[first - begin])) *
-                      factors[k];
+      line_sum_[k] +=
+          static_cast<m61::Wide>(m61::sub(f[last - begin], f[first - begin])) * factors[k];
     }
     if (++line_terms_ % kTermsPerReduction != 0) return;
     for (m61::Wide& sum : line_sum_) sum = m61::reduce_wide(sum);

@@ -113,9 +113,8 @@ ApplyResult apply_stack_by(ApplyStrategy strategy, RunChunk& chunk, Digest& dige
   const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
   if (count == 0) return result;
   RUNSTONE_ASSERT(count == 1 || strategy.search != ChangeSearch::walk);
-  plan_changes(chunk, digest, scratch, result, [&](ChangeTally& tally) {
-    search_stack(strategy.search, chunk, scratch, tally);
-  });
+  plan_changes(chunk, digest, scratch, result,
+               [&](ChangeTally& tally) { search_stack(strategy.search, chunk, scratch, tally); });
   write_patch(chunk, result.areas, scratch.runs, strategy.write, scratch.whole);
   return result;
 }
