@@ -81,7 +81,9 @@ void RollbackService::change_player_actions(AuthorId author, Cause cause, const 
   if (player_changes_.contains(author)) return refuse(reply, name + ": " + busy_text(author));
   world_.commit(now);
   if (world_.has_waiting_edit(author))
-    return refuse(reply, name + ": your last edit still waits for its turn, because it is large");
+    return refuse(
+        reply,
+        name + ": an edit of yours still waits for its turn; it is large, or behind a large one");
   when_durable(now, reply, [this, author, cause, name, reply] {
     if (!player_changes_.insert(author).second)
       return refuse(reply, name + ": " + busy_text(author));

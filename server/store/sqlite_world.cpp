@@ -82,7 +82,7 @@ StoreResult<void> make_folder(const std::string& folder, const std::string& file
 // one of the author index for each player, some of the index by place. With pages of 4 KiB it writes
 // a quarter more. With pages of 1 KiB it writes little less, and chunks need more overflow pages.
 constexpr int kPageBytes = 2'048;
-// Pages of the WAL that start a checkpoint: 4 MiB.
+// Pages of the WAL that start a checkpoint: 4 MiB of a world that was made with these pages.
 constexpr int kCheckpointPages = 2'048;
 
 /// For WAL, EXTRA is the same as FULL. During creation it also syncs the folder after the rollback

@@ -43,9 +43,10 @@ std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge) {
   return kEditWork + descriptor + kChunkWork * chunks;
 }
 
-bool EditQueue::has_room_for(const EditDescriptor& edit) const {
+bool EditQueue::has_room_for(const EditDescriptor& edit, AuthorId author) const {
   return large_work_ < kWaitingWorkMax ||
-         !waits_for_room(edit_work(edit, chunk_edge_), Cause::player);
+         !waits_for_room(edit_work(edit, chunk_edge_), Cause::player) ||
+         (large_work_ < kFirstWaitingWorkMax && !has_of(author));
 }
 
 void EditQueue::push(const EditOffer& offer) {

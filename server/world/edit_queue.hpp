@@ -40,14 +40,17 @@ inline constexpr std::uint64_t kAllLargeEdits = std::numeric_limits<std::uint64_
 
 class EditQueue {
  public:
+  /// The work of large edits that may wait; the last one may exceed it.
   static constexpr std::size_t kWaitingWorkMax = 16 * 1024 * 1024;
+  /// The same for authors of whom no edit waits: many waiting edits of others keep nobody out.
+  static constexpr std::size_t kFirstWaitingWorkMax = 4 * kWaitingWorkMax;
 
   explicit EditQueue(std::int32_t chunk_edge) : chunk_edge_(chunk_edge) {}
 
-  /// Returns false for a large edit of a player if those that wait have more than kWaitingWorkMax
-  /// work together. Such an edit is refused: nobody knows when it would be ordered, and a stop
-  /// orders all that wait. Cost: that of edit_work().
-  bool has_room_for(const EditDescriptor& edit) const;
+  /// Returns false for a large edit of this player if the large edits that wait have too much work
+  /// together. Such an edit is refused: nobody knows when it would be ordered, and a stop orders
+  /// all that wait. Cost: that of edit_work(), O(log clients).
+  bool has_room_for(const EditDescriptor& edit, AuthorId author) const;
   void push(const EditOffer& offer);
   /// Removes and returns the edits of the next commit, in their order. `large_room` is the work of
   /// large edits of players that it may have; the last one may exceed it, and at 0 there is none.

@@ -30,10 +30,12 @@ bool is_within_reach(const WorldState& world, WorldSession& session, const EditD
 }
 
 /// Returns the reason for a rejection as busy, for the player. It is empty if it passes soon.
-const char* why_busy(const WorldState& world, const EditDescriptor& edit) {
+const char* why_busy(const WorldState& world, const EditDescriptor& edit, AuthorId author) {
   if (world.disk_is_full) return kDiskIsFull;
   if (is_memory_full(world)) return kMemoryIsFull;
-  return world.authority.queue().has_room_for(edit) ? "" : "too many large edits of players wait";
+  return world.authority.queue().has_room_for(edit, author)
+             ? ""
+             : "too many large edits of players wait";
 }
 
 }  // namespace
@@ -67,9 +69,10 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
                     : edit_price(request.edit, world.config.chunk_edge, world.config.edit_budget);
   std::optional<RejectReason> refusal;
   std::string detail;
-  const bool has_room = world.accepts_edits && !world.disk_is_full && !is_memory_full(world) &&
-                        world.environment.log_has_room(world.authority.queue().size() + 1) &&
-                        (request.fault || world.authority.queue().has_room_for(request.edit));
+  const bool has_room =
+      world.accepts_edits && !world.disk_is_full && !is_memory_full(world) &&
+      world.environment.log_has_room(world.authority.queue().size() + 1) &&
+      (request.fault || world.authority.queue().has_room_for(request.edit, mine.author));
   // An edit that waits for its commit is answered by the commit.
   if (world.authority.queue().has(op)) return;
   if (world.authority.resolved().knows(op)) {
@@ -93,7 +96,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   }
   if (!refusal) return;
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
-  if (*refusal == RejectReason::busy) detail = why_busy(world, request.edit);
+  if (*refusal == RejectReason::busy) detail = why_busy(world, request.edit, mine.author);
   ++world.counters.edits_rejected;
   // Edits that are offered again after a reconnection are no misuse.
   if (*refusal != RejectReason::already_resolved)

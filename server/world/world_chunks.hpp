@@ -73,8 +73,8 @@ class WorldChunks {
   void quarantine(const ChunkKey& key);
   /// Makes a chunk without users a candidate for eviction.
   void released(const ChunkKey& key);
-  /// Evicts clean chunks without users, longest unused first, until the voxels take at most
-  /// `bytes_max` bytes. Cost: O(steps_max).
+  /// Evicts clean chunks without users, longest unused first, until resident_bytes() is
+  /// at most `bytes_max`. Cost: O(steps_max).
   void evict(std::size_t bytes_max, std::size_t steps_max,
              const std::function<bool(const ChunkKey&)>& is_used);
 

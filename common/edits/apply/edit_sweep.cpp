@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "common/core/assert.hpp"
@@ -298,6 +299,7 @@ void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tal
 
 void walk_paste(const RunChunk& chunk, VoxelPos origin, const EditDescriptor& edit,
                 ApplyScratch& scratch, ChangeTally& tally) {
+  RUNSTONE_DASSERT(std::holds_alternative<Paste>(edit.shape) && validate(edit).has_value());
   const OrderedExtent extent = ordered(chunk.extent, chunk.order);
   chunk.runs.visit([&]<class Runs>(Runs runs) {
     RunCursor<Runs> cursor(runs);

@@ -191,7 +191,7 @@ std::shared_ptr<const Clipboard> read_clipboard(ByteReader& r) {
   }
   RunChunk cells{{sides[0], sides[1], sides[2]}, static_cast<AxisOrder>(order), RunList{}};
   const std::uint32_t volume = cells.volume();
-  // A byte holds at most one run.
+  // Each run takes at least one byte.
   const std::size_t runs_max = std::min<std::size_t>(volume, r.left());
   if (volume <= kNarrowVolumeMax) {
     std::vector<PackedRun> runs;

@@ -117,20 +117,29 @@ TEST_CASE("a commit has at most as many edits as its message", "[world]") {
   CHECK(next == 2 * kCommitEditsMax + 1);
 }
 
-TEST_CASE("beyond a bound the queue has no room for large edits, and still for small ones",
-          "[world]") {
+TEST_CASE(
+    "beyond a bound the queue has room for small edits and the first large edit of each player",
+    "[world]") {
   EditQueue queue(16);
   const EditDescriptor large = costly_offer(1, 1).edit, small = cheap_offer(1, 1).edit;
   const std::size_t most = EditQueue::kWaitingWorkMax / edit_work(large, 16) + 1;
   for (ClientSequence seq = 1; seq <= most; ++seq) {
-    REQUIRE(queue.has_room_for(large));
+    REQUIRE(queue.has_room_for(large, 1));
     queue.push(costly_offer(1, seq));
-    queue.push(cheap_offer(2, seq));
   }
-  CHECK_FALSE(queue.has_room_for(large));
-  CHECK(queue.has_room_for(small));
+  CHECK_FALSE(queue.has_room_for(large, 1));
+  CHECK(queue.has_room_for(small, 1));
   CHECK(taken(queue).front() == std::pair<AuthorId, ClientSequence>{1, 1});
-  CHECK(queue.has_room_for(large));
+  CHECK(queue.has_room_for(large, 1));
+  queue.push(costly_offer(1, most + 1));
+  const std::size_t all = EditQueue::kFirstWaitingWorkMax / edit_work(large, 16) + 1;
+  for (auto author = static_cast<AuthorId>(2); queue.size() < all; ++author) {
+    REQUIRE(queue.has_room_for(large, author));
+    queue.push(costly_offer(author, 1));
+    CHECK_FALSE(queue.has_room_for(large, author));
+  }
+  CHECK_FALSE(queue.has_room_for(large, 1'000'000));
+  CHECK(queue.has_room_for(small, 1'000'000));
 }
 
 TEST_CASE("a queue knows whose edits wait", "[world]") {

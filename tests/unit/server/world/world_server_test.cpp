@@ -60,7 +60,8 @@ TEST_CASE("an edit that is offered again while it waits is answered by its commi
   CHECK(rejects[0].seq >= seq);
 }
 
-TEST_CASE("large edits beyond what may wait are refused, small edits are not", "[world]") {
+TEST_CASE("a player's large edits beyond what may wait are refused, those of others are not",
+          "[world]") {
   constexpr ClientSequence kPastes = 400;
   PastedCrowd bench(kPastes);
   const auto rejects = bench.environment.messages<Reject>(1, kEdge);
@@ -69,9 +70,12 @@ TEST_CASE("large edits beyond what may wait are refused, small edits are not", "
   CHECK(rejects[0].reason == RejectReason::busy);
   CHECK(rejects[0].detail == "too many large edits of players wait");
   bench.edit(2, 1, kAtOrigin);
+  bench.edit(3, 1, bench.paste, kEmpty);
   bench.server.commit(bench.now());
-  CHECK(bench.environment.messages<Reject>(2, kEdge).empty());
+  for (const SessionId session : {2, 3})
+    CHECK(bench.environment.messages<Reject>(session, kEdge).empty());
   CHECK(bench.environment.records.back().op.author == 2);
+  CHECK(bench.server.has_waiting_edit(3));
 }
 
 TEST_CASE("the row of a player who left is kept while an edit waits, whatever others do",
@@ -82,8 +86,9 @@ TEST_CASE("the row of a player who left is kept while an edit waits, whatever ot
   bench.server.disconnected(3);
   bench.tick();
   CHECK(bench.server.has_waiting_edit(1));
-  // The player without edits is forgotten although the queue is not empty: the number is free.
-  bench.join(23, 23);
+  // The player without edits is forgotten although the queue is not empty.
+  REQUIRE(bench.server.visitors().size() == 1);
+  CHECK(bench.server.visitors()[0].author == 3);
   while (bench.server.has_waiting_edit(1)) bench.tick();
   CHECK(bench.environment.records.size() == kPastes);
   CHECK(bench.environment.players.size() == 1);
