@@ -72,7 +72,7 @@ TEST_CASE("a player's large edits beyond what may wait are refused, those of oth
   bench.edit(2, 1, kAtOrigin);
   bench.edit(3, 1, bench.paste, kEmpty);
   bench.server.commit(bench.now());
-  for (const SessionId session : {2, 3})
+  for (const SessionId session : {2U, 3U})
     CHECK(bench.environment.messages<Reject>(session, kEdge).empty());
   CHECK(bench.environment.records.back().op.author == 2);
   CHECK(bench.server.has_waiting_edit(3));
