@@ -3,6 +3,7 @@
 #include <array>
 
 #include "common/core/m61.hpp"
+#include "common/runs/line_digest.hpp"
 #include "common/runs/material_factors.hpp"
 #include "common/runs/run_builder.hpp"
 
@@ -146,30 +147,11 @@ class PrefixDigest {
     return out;
   }
 
-  /// Returns the end of the current line: that of the last call of below(), at first the first one.
+  /// The current line is that of the last call of below(), at first the first one.
   VoxelIndex line_end() const { return (line_ + 1) * e_.f; }
-  /// Adds the voxels [first, last) of the current line, times their material's factors, to the sum
-  /// of the line. The factor that all voxels of the line share is left to take_line().
-  void add_in_line(VoxelIndex first, VoxelIndex last, const MaterialFactors::Lanes& factors) {
-    constexpr std::uint32_t kTermsPerReduction = 32;
-    const VoxelIndex begin = line_ * e_.f;
-    for (std::size_t k = 0; k < kDigestLanes; ++k) {
-      const std::uint64_t* const f = lanes_[k].f;
-      line_sum_[k] +=
-          static_cast<m61::Wide>(m61::sub(f[last - begin], f[first - begin])) * factors[k];
-    }
-    if (++line_terms_ % kTermsPerReduction != 0) return;
-    for (m61::Wide& sum : line_sum_) sum = m61::reduce_wide(sum);
-  }
-  /// Returns the sum of the current line and sets it to zero. Call it before below().
-  Digest take_line() {
-    Digest out;
-    for (std::size_t k = 0; k < kDigestLanes; ++k)
-      out.lane[k] = m61::mul(m61::reduce_wide(line_sum_[k]), lanes_[k].factor);
-    line_sum_ = {};
-    line_terms_ = 0;
-    return out;
-  }
+  VoxelIndex line_begin() const { return line_ * e_.f; }
+  /// Returns the factor that the voxels of the current line share.
+  std::uint64_t line_factor(std::size_t lane) const { return lanes_[lane].factor; }
 
  private:
   struct Lane {
@@ -194,8 +176,6 @@ class PrefixDigest {
 
   OrderedExtent e_;
   std::uint32_t line_ = 0;
-  std::array<m61::Wide, kDigestLanes> line_sum_{};
-  std::uint32_t line_terms_ = 0;
   std::array<Lane, kDigestLanes> lanes_{};
 };
 
@@ -218,24 +198,32 @@ Digest digest_of_span(const RunChunk& shape, VoxelIndex first, VoxelIndex last, 
 
 Digest digest_of(const RunChunk& chunk) {
   PrefixDigest prefix(chunk.extent, chunk.order);
+  LineDigest line(axes_of(chunk.order)[0]);  // of the current line of `prefix`
   MaterialFactors factors;
   Digest sum;
+  const auto close_line = [&] {
+    if (line.is_empty()) return;
+    const LineDigest::Lanes of_line = line.take();
+    for (std::size_t k = 0; k < kDigestLanes; ++k)
+      sum.lane[k] = m61::add(sum.lane[k], m61::mul(of_line[k], prefix.line_factor(k)));
+  };
   chunk.runs.visit([&](const auto& runs) {
     VoxelIndex begin = 0;
     for (std::size_t i = 0; i < runs.size(); begin = runs.end(i++)) {
       const VoxelIndex end = runs.end(i);
       const Material material = runs.material(i);
       if (end > prefix.line_end()) {
-        sum = sum + prefix.take_line();
+        close_line();
         const Digest before = prefix.below(begin);
         const Digest span = prefix.below(end) - before;
         if (material != kEmpty) sum = sum + times_material(span, factors.of(material));
       } else if (material != kEmpty) {
-        prefix.add_in_line(begin, end, factors.of(material));
+        line.add(begin - prefix.line_begin(), end - prefix.line_begin(), factors.of(material));
       }
     }
   });
-  return sum + prefix.take_line();
+  close_line();
+  return sum;
 }
 
 }  // namespace runstone

@@ -7,42 +7,19 @@
 
 namespace runstone {
 
-// The digest's axis sums from 0 up to each coordinate. They are computed once, because the tally
-// needs two per changed stretch.
-struct AxisSums {
-  using PrefixSums = std::array<std::uint64_t, kSideMax + 1>;
-  std::array<std::array<PrefixSums, 3>, kDigestLanes> sums;
-  AxisSums() {
-    for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (unsigned i = 0; i <= kSideMax; ++i) {
-          sums[lane][axis][i] =
-              digest_axis_sum(static_cast<int>(lane), static_cast<Axis>(axis), 0, i);
-        }
-      }
-    }
-  }
-  std::uint64_t between(std::size_t lane, Axis axis, std::uint32_t first,
-                        std::uint32_t last) const {
-    const PrefixSums& prefix = sums[lane][static_cast<std::size_t>(axis)];
-    return m61::sub(prefix[last], prefix[first]);
-  }
-};
-
 namespace {
-
-const AxisSums& axis_sums() {
-  static const AxisSums table;
-  return table;
-}
 
 using m61::reduce_wide;
 using m61::Wide;
 
-// A term is below 2^122, so this many terms and a reduced sum fit in 128 bits.
-constexpr std::uint32_t kTermsPerReduction = 32;
-// The same bound for factors below 2^62.
+// A term with factors below 2^62 is below 2^124, so this many terms and a reduced sum fit in 128
+// bits.
 constexpr std::uint32_t kOpenTermsPerReduction = 8;
+
+// Returns the factor of one coordinate along an axis.
+std::uint64_t factor_at(std::size_t lane, Axis axis, std::uint32_t i) {
+  return digest_axis_sum(static_cast<int>(lane), axis, i, i + 1);
+}
 
 // Returns layers first .. last - 1 of `count`. A `last` beyond the count continues from 0.
 LineBits layers_around(std::uint32_t first, std::uint32_t last, std::uint32_t count) {
@@ -56,11 +33,11 @@ LineBits layers_around(std::uint32_t first, std::uint32_t last, std::uint32_t co
 ChangeTally::ChangeTally(const RunChunk& shape, std::vector<Change>& changes,
                          MaterialFactors& factors)
     : shape_(shape),
-      sums_(axis_sums()),
       extent_(ordered(shape.extent, shape.order)),
       axes_(axes_of(shape.order)),
       changes_(changes),
-      factors_(factors) {
+      factors_(factors),
+      line_digest_(axes_[0]) {
   RUNSTONE_DASSERT(changes.empty());
 }
 
@@ -70,20 +47,16 @@ void ChangeTally::open_line(VoxelIndex first) {
   line_end_ = line_begin_ + extent_.f;
 }
 
-// All stretches of a line share two of the three factors. They are multiplied in here, once.
 void ChangeTally::close_line() {
-  if (line_terms_ == 0) return;
+  if (line_digest_.is_empty()) return;
   const std::uint32_t line = line_begin_ / extent_.f;
   const std::uint32_t s = line / extent_.m;
   const std::uint32_t m = line - s * extent_.m;
-  for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
-    const std::uint64_t across =
-        m61::mul(sums_.between(lane, axes_[1], m, m + 1), sums_.between(lane, axes_[2], s, s + 1));
-    digest_.lane[lane] =
-        m61::add(digest_.lane[lane], m61::mul(reduce_wide(line_sum_[lane]), across));
-    line_sum_[lane] = 0;
+  const LineDigest::Lanes sum = line_digest_.take();
+  for (std::size_t k = 0; k < kDigestLanes; ++k) {
+    const std::uint64_t across = m61::mul(factor_at(k, axes_[1], m), factor_at(k, axes_[2], s));
+    digest_.lane[k] = m61::add(digest_.lane[k], m61::mul(sum[k], across));
   }
-  line_terms_ = 0;
   dirty_[1] = dirty_[1] | bits_between(m, m + 1);
   dirty_[2] = dirty_[2] | bits_between(s, s + 1);
 }
@@ -92,13 +65,9 @@ void ChangeTally::in_line(std::uint32_t first, std::uint32_t last, Material befo
                           Material after) {
   const MaterialFactors::Lanes was = factors_.of(before);  // a copy: both may share a slot
   const MaterialFactors::Lanes& is = factors_.of(after);
-  for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
-    line_sum_[lane] += static_cast<Wide>(sums_.between(lane, axes_[0], first, last)) *
-                       m61::sub(is[lane], was[lane]);
-  }
-  if (++line_terms_ % kTermsPerReduction == 0) {
-    for (Wide& sum : line_sum_) sum = reduce_wide(sum);
-  }
+  LineDigest::Lanes change;
+  for (std::size_t k = 0; k < kDigestLanes; ++k) change[k] = m61::sub(is[k], was[k]);
+  line_digest_.add(first, last, change);
   dirty_[0] = dirty_[0] | bits_between(first, last);
 }
 
@@ -111,7 +80,7 @@ void ChangeTally::line(std::uint32_t m, std::uint32_t s, LineBits changed, LineB
   const VoxelIndex begin = (s * extent_.m + m) * extent_.f;
   std::array<const std::uint64_t*, kDigestLanes> prefix;
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
-    prefix[lane] = sums_.sums[lane][static_cast<std::size_t>(axes_[0])].data();
+    prefix[lane] = digest_axis_prefix(static_cast<int>(lane), axes_[0]).data();
   }
   std::array<Wide, kDigestLanes> sum{};
   std::uint32_t terms = 0;
@@ -137,16 +106,16 @@ void ChangeTally::line(std::uint32_t m, std::uint32_t s, LineBits changed, LineB
     }
   }
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
-    const std::uint64_t at_m = sums_.between(lane, axes_[1], m, m + 1);
-    layer_sum_[lane] = m61::add(layer_sum_[lane], m61::mul(reduce_wide(sum[lane]), at_m));
+    layer_sum_[lane] =
+        m61::add(layer_sum_[lane], m61::mul(reduce_wide(sum[lane]), factor_at(lane, axes_[1], m)));
   }
 }
 
 // All lines of a layer share the third factor.
 void ChangeTally::close_layer() {
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
-    const std::uint64_t at_s = sums_.between(lane, axes_[2], layer_, layer_ + 1);
-    digest_.lane[lane] = m61::add(digest_.lane[lane], m61::mul(layer_sum_[lane], at_s));
+    digest_.lane[lane] =
+        m61::add(digest_.lane[lane], m61::mul(layer_sum_[lane], factor_at(lane, axes_[2], layer_)));
     layer_sum_[lane] = 0;
   }
 }

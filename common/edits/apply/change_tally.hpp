@@ -11,15 +11,13 @@
 #include <vector>
 
 #include "common/core/digest.hpp"
-#include "common/core/m61.hpp"
 #include "common/edits/apply/apply_scratch.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/apply/line_bits.hpp"
+#include "common/runs/line_digest.hpp"
 #include "common/runs/run_chunk.hpp"
 
 namespace runstone {
-
-struct AxisSums;
 
 class ChangeTally {
  public:
@@ -67,15 +65,13 @@ class ChangeTally {
   void across_lines(VoxelIndex first, VoxelIndex last, Material before, Material after);
 
   const RunChunk& shape_;
-  const AxisSums& sums_;
   const OrderedExtent extent_;
   const std::array<Axis, 3> axes_;
   std::vector<Change>& changes_;
   MaterialFactors& factors_;
   VoxelIndex line_begin_ = 0, line_end_ = 0;  // the line in which the last stretch began
-  std::array<m61::Wide, kDigestLanes> line_sum_{};
-  std::uint32_t line_terms_ = 0;
-  std::uint32_t layer_ = 0;  // of the last call of line()
+  LineDigest line_digest_;                    // of that line's stretches
+  std::uint32_t layer_ = 0;                   // of the last call of line()
   std::array<std::uint64_t, kDigestLanes> layer_sum_{};
   std::array<LineBits, 3> dirty_{};  // by f, m, s
   Digest digest_;
