@@ -53,7 +53,7 @@ class ExampleBot {
     const TimeUs now_us = steady_now_us();
     if (const auto* connected = std::get_if<LinkConnected>(&event)) {
       connection_ = connected->connection;
-      session_.connected(random_nonce(), now_us);
+      session_.connected(random_nonce(), connected->binding, now_us);
     } else if (auto* received = std::get_if<LinkReceived>(&event)) {
       session_.receive(std::move(received->message),
                        {received->received_us, received->unpacked_us, now_us});

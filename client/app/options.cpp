@@ -25,14 +25,21 @@ std::string parse_size(const std::string& text, ClientOptions& out) {
 
 /// Values that are converted to options after the whole command line was read.
 struct RawOptions {
-  std::string address, size, encoding = "auto";
+  std::string address, size, encoding = "auto", authorities;
   unsigned view = ClientOptions{}.view_radius, view_v = 0;
-  bool no_render = false, no_cache = false;
+  bool no_render = false, no_cache = false, insecure = false;
 };
 
 void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   app.add_option("--connect", raw.address,
                  "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort));
+  CLI::Option* const insecure =
+      app.add_flag("--insecure", raw.insecure,
+                   "do not encrypt the connection; for servers that run with --insecure");
+  app.add_option("--ca", raw.authorities,
+                 "accept only certificates of these authorities for the server's name: a PEM file, "
+                 "or \"system\". Default: any certificate, because the server's key is checked")
+      ->excludes(insecure);
   app.add_option("--name", out.name, "name shown to others, 1 to 32 bytes")
       ->check([](const std::string& name) {
         if (name.empty() || name.size() > kPlayerNameBytesMax) return "a name has 1 to 32 bytes";
@@ -106,6 +113,13 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
     auto server = parse_host_port(raw.address, kDefaultPort);
     if (!server) throw CLI::ValidationError("--connect", server.error());
     out.server = *std::move(server);
+  }
+  if (raw.insecure) out.tls.reset();
+  if (!raw.authorities.empty()) {
+    auto tls =
+        TlsContext::client_of_authorities(raw.authorities == "system" ? "" : raw.authorities);
+    if (!tls) throw CLI::ValidationError("--ca", tls.error());
+    out.tls = *std::move(tls);
   }
   const std::string wrong_size = raw.size.empty() ? "" : parse_size(raw.size, out);
   if (!wrong_size.empty()) throw CLI::ValidationError("--size", wrong_size);

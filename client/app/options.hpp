@@ -5,12 +5,14 @@
 #include <string>
 
 #include "common/os/host_port.hpp"
+#include "common/tls/tls_context.hpp"
 #include "protocol/default_port.hpp"
 
 namespace runstone {
 
 struct ClientOptions {
   HostPort server{"127.0.0.1", kDefaultPort};
+  std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
   std::string name = "builder";
   std::string key_file;            // empty: a new key, for this process only
   std::uint8_t view_radius = 6;    // chunks, horizontal

@@ -60,6 +60,7 @@ void ThreadedSession::start(TimeUs now_us) {
   LinkConfig net;
   net.host = options_.server.host;
   net.port = options_.server.port;
+  net.tls = options_.tls;
   net_ = std::make_unique<NetClient>(std::move(net), wake_);
 }
 
@@ -79,7 +80,7 @@ void ThreadedSession::receive() {
 
 void ThreadedSession::on_connected(const LinkConnected& event) {
   connection_ = event.connection;
-  session_.connected(random_nonce(), steady_now_us());
+  session_.connected(random_nonce(), event.binding, steady_now_us());
   flush();
 }
 

@@ -37,7 +37,9 @@ class HeadlessSession {
   HeadlessSession(SessionConfig config, FleetStatistics& fleet, TimeUs (*clock)());
 
   // As the functions of ClientSession.
-  void connected(const Nonce& nonce, TimeUs now_us) { connection_.connected(nonce, now_us); }
+  void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us) {
+    connection_.connected(nonce, binding, now_us);
+  }
   void disconnected() { connection_.disconnected(); }
   void receive(Message message, const Arrival& arrival);
   void tick(TimeUs now_us);

@@ -53,6 +53,7 @@ struct BehaviourFleet::Parts {
   explicit Parts(const BotOptions& fleet_options) : options(fleet_options) {
     net.host = options.server.host;
     net.port = options.server.port;
+    net.tls = options.tls;
     // All keys are read or drawn before the first bot connects, so that a missing file fails at the
     // start.
     for (std::size_t i = 0; i < options.count; ++i) configs.push_back(config_of(options, i));

@@ -56,6 +56,9 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   app.add_option("--connect", address,
                  "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort))
       ->required();
+  bool insecure = false;
+  app.add_flag("--insecure", insecure,
+               "do not encrypt connections; for servers that run with --insecure");
   app.add_option("--count", out.count, "bots")->check(CLI::Range(1, 10'000));
   CLI::Option* behaviour =
       app.add_option("--behaviour", role, std::string("what they do: ") + kRoleNames)
@@ -118,6 +121,7 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& e) {
     return {std::nullopt, app.exit(e) == 0 ? 0 : 2};
   }
+  if (insecure) out.tls.reset();
   if (app.count("--mix") == 0) out.roles = {*bot_role(role)};
   if (app.count("--edits") != 0) out.edits = edits;
   if (out.sites == 0) out.sites = out.count;

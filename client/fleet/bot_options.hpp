@@ -7,6 +7,7 @@
 
 #include "client/bots/behaviour.hpp"
 #include "common/os/host_port.hpp"
+#include "common/tls/tls_context.hpp"
 #include "protocol/default_port.hpp"
 
 namespace runstone {
@@ -15,10 +16,11 @@ inline constexpr double kPlaySpeedMax = 1'000'000;
 
 struct BotOptions {
   HostPort server{"127.0.0.1", kDefaultPort};
-  std::size_t count = 1;                          // bots
-  std::vector<BotRole> roles = {BotRole::build};  // bot i has role i modulo their number
-  std::size_t replicas = 20;                      // this many bots, the first ones, keep a replica
-  double join_rate = 100;                         // bots a second that join
+  std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
+  std::size_t count = 1;                                 // bots
+  std::vector<BotRole> roles = {BotRole::build};         // bot i has role i modulo their number
+  std::size_t replicas = 20;           // this many bots, the first ones, keep a replica
+  double join_rate = 100;              // bots a second that join
   std::string name = "bot";            // bots are NAME-1, NAME-2, ...; a single bot is NAME
   std::string key_dir;                 // has a key file for each bot; empty: new keys each time
   double rate = 5;                     // edits (of a join storm: joins) per second and bot

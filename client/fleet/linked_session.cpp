@@ -32,9 +32,10 @@ void LinkedSession<Session>::leave(std::int64_t milliseconds) {
 }
 
 template <class Session>
-void LinkedSession<Session>::on_connected(ConnectionNumber connection) {
+void LinkedSession<Session>::on_connected(ConnectionNumber connection,
+                                          const std::optional<ChannelBinding>& binding) {
   connection_ = connection;
-  session_.connected(random_nonce(), steady_now_us());
+  session_.connected(random_nonce(), binding, steady_now_us());
   flush();
 }
 

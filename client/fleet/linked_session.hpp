@@ -40,7 +40,8 @@ class LinkedSession final : private LinkCallbacks {
   void leave(std::int64_t milliseconds);
 
  private:
-  void on_connected(ConnectionNumber connection) override;
+  void on_connected(ConnectionNumber connection,
+                    const std::optional<ChannelBinding>& binding) override;
   void on_received(LinkReceived received) override;
   Result<bool> on_bytes(MessageKind kind, ByteView body, std::uint16_t chunk_edge,
                         TimeUs received_us) override;

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client/net/link_socket.hpp"
 #include "client/net/receive_ack_scheduler.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/message_table.hpp"
@@ -44,7 +45,7 @@ struct Link::State {
   LinkStats stats;
 
   asio::ip::tcp::resolver resolver{io};
-  asio::ip::tcp::socket socket{io};
+  LinkSocket socket{io};
   asio::steady_timer pause{io};  // between attempts; for the connect timeout; while events are full
   asio::steady_timer work_to_send{io};  // never expires; cancelled when there is something to send
   bool stopping = false;
@@ -129,9 +130,7 @@ void Link::State::enqueue(ConnectionNumber to, const EncodedMessage& message) {
 }
 
 void Link::State::close_socket() {
-  std::error_code ignored;
-  socket.shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
-  socket.close(ignored);
+  socket.close();
   work_to_send.cancel();
 }
 
@@ -144,7 +143,7 @@ asio::awaitable<void> read_messages(State& state) {
   FrameReader reader(Sender::server);
   std::vector<std::uint8_t> buffer(kReadBytes);
   while (true) {
-    const auto [error, count] = co_await state.socket.async_read_some(asio::buffer(buffer), kTuple);
+    const auto [error, count] = co_await state.socket.read_some(asio::buffer(buffer));
     if (error) {
       if (state.why_closed.empty()) state.why_closed = error.message();
       break;
@@ -199,10 +198,24 @@ asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
       co_await state.work_to_send.async_wait(kTuple);
       continue;
     }
-    const auto [error, count] = co_await asio::async_write(state.socket, asio::buffer(out), kTuple);
+    const ByteView bytes(out);
+    const std::error_code error = co_await state.socket.write(bytes);
     if (error) break;  // the reader gets the same error and records the reason
-    state.stats.bytes_sent.fetch_add(count, std::memory_order_relaxed);
+    state.stats.bytes_sent.fetch_add(out.size(), std::memory_order_relaxed);
   }
+}
+
+/// Connects and, unless the link is not encrypted, performs the TLS handshake. Returns as connect().
+template <class State>
+asio::awaitable<std::string> open(State& state,
+                                  const asio::ip::tcp::resolver::results_type& endpoints) {
+  const auto [error, endpoint] =
+      co_await asio::async_connect(state.socket.tcp(), endpoints, kTuple);
+  if (error) co_return "cannot connect: " + error.message();
+  state.socket.set_no_delay();
+  if (!state.config.tls) co_return std::string();
+  std::string failure = co_await state.socket.secure(*state.config.tls, state.config.host);
+  co_return failure;
 }
 
 /// Resolves the host and connects. Returns an empty text if the socket is open, otherwise the
@@ -214,18 +227,15 @@ asio::awaitable<std::string> connect(State& state) {
       co_await state.resolver.async_resolve(state.config.host, port, kTuple);
   if (resolve_error)
     co_return "cannot resolve " + state.config.host + ": " + resolve_error.message();
-  state.socket = asio::ip::tcp::socket(state.io);
+  state.socket.reset();
   state.pause.expires_after(milliseconds(state.config.connect_ms_max));
   State* const raw = &state;
   state.pause.async_wait([raw](const std::error_code& cancelled) {
     if (!cancelled) raw->close_socket();
   });
-  const auto [error, endpoint] = co_await asio::async_connect(state.socket, endpoints, kTuple);
+  std::string failure = co_await open(state, endpoints);
   state.pause.cancel();
-  if (error) co_return "cannot connect: " + error.message();
-  std::error_code ignored;
-  state.socket.set_option(asio::ip::tcp::no_delay(true), ignored);
-  co_return std::string();
+  co_return failure;
 }
 
 template <class State>
@@ -249,7 +259,7 @@ asio::awaitable<void> keep_connected(State& state) {
       state.others.clear();
       state.queued_bytes = 0;
       pause_ms = state.config.pause_ms_first;
-      state.callbacks.on_connected(state.connection);
+      state.callbacks.on_connected(state.connection, state.socket.binding());
       asio::co_spawn(state.io, write_messages(state, state.connection), asio::detached);
       co_await read_messages(state);
       state.callbacks.on_disconnected(state.connection, state.why_closed);

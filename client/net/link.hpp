@@ -9,9 +9,12 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "client/net/traffic_meter.hpp"
+#include "common/core/channel_binding.hpp"
+#include "common/tls/tls_context.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -35,6 +38,8 @@ struct LinkReceived {
 struct LinkConfig {
   std::string host;
   std::uint16_t port = 0;
+  /// nullopt: the connection is not encrypted.
+  std::optional<TlsContext> tls = TlsContext::client();
   // Of NetClient: events that were not taken yet, and the memory of their messages.
   std::size_t events_max = 4096;
   std::size_t event_bytes_max = std::size_t{16} << 20;
@@ -46,7 +51,7 @@ struct LinkConfig {
 
 /// Counts over all connections since the start.
 struct LinkStats {
-  std::atomic<std::uint64_t> bytes_received{0}, bytes_sent{0};  // with frame headers
+  std::atomic<std::uint64_t> bytes_received{0}, bytes_sent{0};  // with frame headers, without TLS
   TrafficMeter received, sent;  // messages; received ones count once they are verified
   std::atomic<std::uint64_t> connections{0};
 };
@@ -55,7 +60,9 @@ struct LinkStats {
 class LinkCallbacks {
  public:
   virtual ~LinkCallbacks() = default;
-  virtual void on_connected(ConnectionNumber connection) = 0;
+  /// `binding` identifies an encrypted connection.
+  virtual void on_connected(ConnectionNumber connection,
+                            const std::optional<ChannelBinding>& binding) = 0;
   virtual void on_received(LinkReceived received) = 0;
   /// Offers a message before it is decoded. `body` is 8-aligned and lives until the call returns.
   /// `chunk_edge` is 0 before Welcome. Returns true if the callee verified and handled the message;

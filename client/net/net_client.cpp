@@ -42,7 +42,10 @@ struct NetClient::State final : private LinkCallbacks {
     }
     wake();
   }
-  void on_connected(ConnectionNumber connection) override { push(LinkConnected{connection}); }
+  void on_connected(ConnectionNumber connection,
+                    const std::optional<ChannelBinding>& binding) override {
+    push(LinkConnected{connection, binding});
+  }
   void on_received(LinkReceived received) override {
     const std::size_t bytes = memory_of(received);
     push(std::move(received), bytes);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -18,6 +19,7 @@ namespace runstone {
 
 struct LinkConnected {
   ConnectionNumber connection = 0;
+  std::optional<ChannelBinding> binding;  // of an encrypted connection
 };
 struct LinkDisconnected {
   ConnectionNumber connection = 0;  // 0: no connection could be made

@@ -14,11 +14,12 @@ Hello make_hello(const SessionConfig& config, const Nonce& nonce) {
 }
 
 std::optional<WelcomeFault> check_welcome(const Hello& hello, const Welcome& welcome,
+                                          const std::optional<ChannelBinding>& binding,
                                           std::map<WorldId, PublicKey>& pinned) {
   if (welcome.protocol != kProtocolVersion) {
     return WelcomeFault{GoodbyeReason::wrong_protocol, "server speaks another protocol version"};
   }
-  if (!verify(welcome.server_key, server_transcript(hello, welcome), welcome.signature)) {
+  if (!verify(welcome.server_key, server_transcript(hello, welcome, binding), welcome.signature)) {
     return WelcomeFault{GoodbyeReason::not_authenticated, "server signature is wrong"};
   }
   if ((welcome.features & ~hello.features) != 0) {

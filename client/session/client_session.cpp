@@ -16,9 +16,10 @@ ClientSession::ClientSession(SessionConfig config) : connection_(std::move(confi
 
 // Connection.
 
-void ClientSession::connected(const Nonce& nonce, TimeUs now_us) {
+void ClientSession::connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding,
+                              TimeUs now_us) {
   disconnected();
-  connection_.connected(nonce, now_us);
+  connection_.connected(nonce, binding, now_us);
 }
 
 void ClientSession::disconnected() {

@@ -52,7 +52,7 @@ class ClientSession {
 
   /// A new byte stream is up. `nonce` must be fresh and random, so that old welcomes cannot be
   /// replayed.
-  void connected(const Nonce& nonce, TimeUs now_us);
+  void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us);
   void disconnected();
   /// Takes one decoded message. After an error wants_close() returns true and a goodbye is queued.
   void receive(Message message, const Arrival& arrival);

@@ -17,10 +17,12 @@ bool is_final(GoodbyeReason reason) {
 
 // Connection.
 
-void ServerConnection::connected(const Nonce& nonce, TimeUs now_us) {
+void ServerConnection::connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding,
+                                 TimeUs now_us) {
   disconnected();
   end_.reset();
   hello_ = make_hello(config_, nonce);
+  binding_ = binding;
   outgoing_.push_back(hello_);
   state_ = SessionState::hello_sent;
   last_message_us_ = now_us;
@@ -67,14 +69,14 @@ SessionStage ServerConnection::stage() const {
 }
 
 ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
-  if (const auto fault = check_welcome(hello_, welcome, config_.pinned)) {
+  if (const auto fault = check_welcome(hello_, welcome, binding_, config_.pinned)) {
     end_ = SessionEnd{fault->reason, fault->text, false, true};
     close(fault->reason, fault->text);
     return Dispatch::handled;
   }
   const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
   if (is_another_world || (welcome_ && welcome_->epoch != welcome.epoch)) clock_.reset();
-  outgoing_.push_back(ClientAuth{sign(config_.keys, client_transcript(hello_, welcome))});
+  outgoing_.push_back(ClientAuth{sign(config_.keys, client_transcript(hello_, welcome, binding_))});
   welcome_ = std::move(welcome);
   state_ = SessionState::authenticating;
   return is_another_world ? Dispatch::another_world : Dispatch::handled;

@@ -45,8 +45,9 @@ class ServerConnection {
   explicit ServerConnection(SessionConfig config) : config_(std::move(config)) {}
 
   /// A new byte stream is up. `nonce` must be fresh and random, so that old welcomes cannot be
-  /// replayed.
-  void connected(const Nonce& nonce, TimeUs now_us);
+  /// replayed. `binding` identifies an encrypted stream; the signatures of both sides hold for it
+  /// alone.
+  void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us);
   void disconnected();
 
   /// How the connection dispatched a message.
@@ -121,6 +122,7 @@ class ServerConnection {
   bool wants_close_ = false;
   std::optional<SessionEnd> end_;
   Hello hello_;
+  std::optional<ChannelBinding> binding_;  // of the current connection
   std::optional<Welcome> welcome_;
   AuthorId author_ = 0;
   std::uint64_t connect_count_ = 0, pongs_ = 0;

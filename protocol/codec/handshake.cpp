@@ -44,7 +44,8 @@ class Transcript {
 };
 
 // The order is that of the schema. docs/protocol.md lists it.
-Bytes transcript_of(std::string_view label, const Hello& hello, const Welcome& welcome) {
+Bytes transcript_of(std::string_view label, const Hello& hello, const Welcome& welcome,
+                    const std::optional<ChannelBinding>& binding) {
   Transcript t(label);
   t.number(hello.protocol, 4);
   t.field(hello.key);
@@ -78,6 +79,7 @@ Bytes transcript_of(std::string_view label, const Hello& hello, const Welcome& w
   t.number(welcome.edit_budget.burst, 8);
   t.number(welcome.view_radius_max, 1);
   t.number(welcome.features, 8);
+  t.field(binding ? ByteView(*binding) : ByteView());
   return t.take();
 }
 
@@ -90,11 +92,13 @@ KeyPair key_pair_of(const KeySeed& seed) {
   return keys;
 }
 
-Bytes server_transcript(const Hello& hello, const Welcome& welcome) {
-  return transcript_of("runstone server v1", hello, welcome);
+Bytes server_transcript(const Hello& hello, const Welcome& welcome,
+                        const std::optional<ChannelBinding>& binding) {
+  return transcript_of("runstone server v2", hello, welcome, binding);
 }
-Bytes client_transcript(const Hello& hello, const Welcome& welcome) {
-  return transcript_of("runstone client v1", hello, welcome);
+Bytes client_transcript(const Hello& hello, const Welcome& welcome,
+                        const std::optional<ChannelBinding>& binding) {
+  return transcript_of("runstone client v2", hello, welcome, binding);
 }
 
 Signature sign(const KeyPair& keys, ByteView transcript) {

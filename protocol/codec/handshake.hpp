@@ -4,14 +4,17 @@
 //   server -> Welcome(server key, challenge, signature over the server transcript)
 //   client -> ClientAuth(signature over the client transcript)
 //   server -> SessionAccepted(author)
-// A transcript contains both keys, both random values, the world, the epoch, the protocol version
-// and the role of its signer. So a signature cannot be replayed in another session or serve as the
-// other side's.
+// A transcript contains both keys, both random values, the world, the epoch, the protocol version,
+// the role of its signer and, if the connection is encrypted, what identifies it. So a signature
+// cannot be replayed in another session, relayed to another connection or serve as the other
+// side's.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "common/core/bytes.hpp"
+#include "common/core/channel_binding.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
@@ -27,11 +30,13 @@ struct KeyPair {
 /// secret.
 KeyPair key_pair_of(const KeySeed& seed);
 
-/// Returns "runstone server v1" and all fields that both sides know after Welcome, without the
-/// signature.
-Bytes server_transcript(const Hello& hello, const Welcome& welcome);
-/// Returns "runstone client v1" and the same fields.
-Bytes client_transcript(const Hello& hello, const Welcome& welcome);
+/// Returns "runstone server v2" and all fields that both sides know after Welcome, without the
+/// signature. `binding` is nullopt if the connection is not encrypted.
+Bytes server_transcript(const Hello& hello, const Welcome& welcome,
+                        const std::optional<ChannelBinding>& binding);
+/// Returns "runstone client v2" and the same fields.
+Bytes client_transcript(const Hello& hello, const Welcome& welcome,
+                        const std::optional<ChannelBinding>& binding);
 
 /// Returns the signature over a transcript.
 Signature sign(const KeyPair& keys, ByteView transcript);

@@ -29,9 +29,13 @@ struct FormField {
   std::optional<std::string> (*set)(ServerConfig& config, const std::string& text);
   std::string (*print)(const ServerConfig& config);
 };
+/// A field that is true or false.
+struct SwitchField {
+  bool ServerConfig::* member;
+};
 struct Field {
   std::string name, help;
-  std::variant<NumberField, TextField, FormField> kind;
+  std::variant<NumberField, TextField, FormField, SwitchField> kind;
 };
 
 template <class Enum>
@@ -74,6 +78,16 @@ FormField choice_field() {
                                 [&](const auto& choice) { return choice.value == config.*Member; })
                 ->name;
           }};
+}
+
+/// A field that takes any text, also none.
+template <std::string ServerConfig::* Member>
+FormField optional_text_field() {
+  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+            config.*Member = text;
+            return std::nullopt;
+          },
+          [](const ServerConfig& config) { return config.*Member; }};
 }
 
 FormField operators_field() {
@@ -141,6 +155,12 @@ const std::vector<Field>& fields() {
       {"world", "folder of the world", TextField{&C::world}},
       {"listen", "HOST, HOST:PORT, [V6]:PORT or :PORT; port 0 takes a free one",
        TextField{&C::listen}},
+      {"insecure", "connections are not encrypted; for 127.0.0.1 and [::1] only",
+       SwitchField{&C::insecure}},
+      {"i_know", "allow insecure on every address", SwitchField{&C::i_know}},
+      {"tls_certificate", "PEM file: certificate chain of an authority; empty: the server's own",
+       optional_text_field<&C::tls_certificate>()},
+      {"tls_key", "PEM file: secret key of tls_certificate", optional_text_field<&C::tls_key>()},
       {"log_level", names_of(kLogLevels), choice_field<&C::log_level, kLogLevels>()},
       number("io_threads", &C::io_threads, 1, 64, "threads for sockets and the world strand"),
       number("worker_threads", &C::worker_threads, 1, 64,
@@ -226,6 +246,11 @@ std::optional<std::string> assign(ServerConfig& config, const Field& field, std:
 std::optional<std::string> assign(ServerConfig& config, const Field& field,
                                   const std::string& value) {
   if (const auto* form = std::get_if<FormField>(&field.kind)) return form->set(config, value);
+  if (const auto* flag = std::get_if<SwitchField>(&field.kind)) {
+    if (value != "true" && value != "false") return "must be true or false: " + field.help;
+    config.*flag->member = value == "true";
+    return std::nullopt;
+  }
   const auto* text = std::get_if<TextField>(&field.kind);
   if (text == nullptr) return "must be a whole number: " + field.help;
   if (value.empty()) return "must not be empty";
@@ -251,7 +276,9 @@ std::string with_replaced(std::string text, char from, char to, bool upper) {
 
 std::vector<ConfigField> config_fields() {
   std::vector<ConfigField> all;
-  for (const Field& field : fields()) all.push_back({field.name, field.help});
+  for (const Field& field : fields()) {
+    all.push_back({field.name, field.help, std::holds_alternative<SwitchField>(field.kind)});
+  }
   return all;
 }
 
@@ -299,6 +326,9 @@ Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view 
     std::optional<std::string> what;
     if (const auto text = node.value_exact<std::string>()) {
       what = assign(read, *field, *text);
+    } else if (const auto flag = node.value_exact<bool>();
+               flag && std::holds_alternative<SwitchField>(field->kind)) {
+      what = assign(read, *field, std::string(*flag ? "true" : "false"));
     } else if (const auto number = node.value_exact<std::int64_t>(); number && *number >= 0) {
       what = assign(read, *field, static_cast<std::uint64_t>(*number));
     } else {
@@ -328,6 +358,8 @@ std::string to_toml(const ServerConfig& config) {
     out += field.name + " = ";
     if (const auto* number = std::get_if<NumberField>(&field.kind)) {
       out += std::to_string(config.*number->member);
+    } else if (const auto* flag = std::get_if<SwitchField>(&field.kind)) {
+      out += config.*flag->member ? "true" : "false";
     } else {
       out += '"';
       for (const char c : text_of(config, field)) {

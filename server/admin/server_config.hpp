@@ -42,6 +42,11 @@ struct ServerConfig {
   std::string world = "world";  // folder
   // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
   std::string listen = "0.0.0.0:" + std::to_string(kDefaultPort);
+  /// Connections are not encrypted. Only for an address of this machine, unless `i_know` is set.
+  bool insecure = false, i_know = false;
+  /// PEM files: a certificate chain of an authority and its secret key. Empty: the server makes a
+  /// certificate of its own.
+  std::string tls_certificate, tls_key;
   LogLevel log_level = LogLevel::info;
   // Threads.
   std::uint64_t io_threads = 2;      // 1..64: sockets and the world strand
@@ -94,8 +99,9 @@ struct ServerConfig {
 };
 
 struct ConfigField {
-  std::string name;  // as in the file
-  std::string help;  // unit and range
+  std::string name;        // as in the file
+  std::string help;        // unit and range
+  bool is_switch = false;  // true or false; its flag needs no value
 };
 /// Returns all settings, in the order of the struct.
 std::vector<ConfigField> config_fields();

@@ -13,6 +13,7 @@
 
 #include "common/os/steady_clock.hpp"
 #include "server/admin/control_socket.hpp"
+#include "server/runtime/encryption.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/runtime/low_priority_threads.hpp"
 #include "server/runtime/server_core.hpp"
@@ -55,10 +56,14 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
                                                            std::function<void()> on_stop,
                                                            bool accept_losses) {
   if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
-  // A start that fails must neither make a new world nor raise the epoch, so the address is checked
-  // first.
-  if (const auto free = can_listen(config.listen); !free)
-    return Unexpected<std::string>{free.error()};
+  // A start that fails must neither make a new world nor raise the epoch, so the address and the
+  // certificate are checked first.
+  const auto address = can_listen(config.listen);
+  if (!address) return failure(address.error());
+  if (const auto allowed = may_listen_at(*address, config); !allowed)
+    return failure(allowed.error());
+  const auto certificate = configured_certificate(config);
+  if (!certificate) return failure(certificate.error());
   auto world = open_or_create_world(config.world, creation, accept_losses);
   if (!world) return Unexpected<std::string>{world.error()};
   if (accept_losses) log_losses(world->losses);
@@ -70,6 +75,10 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   parts->core = std::make_unique<ServerCore>(
       ServerThreads{parts->io, *parts->workers, *parts->decoders}, parts->config,
       *parts->world.store, *parts->world.generator, std::move(on_failure), std::move(on_stop));
+  if (!config.insecure) {
+    const KeySeed& own_key = parts->world.store->meta().server_key_seed;
+    parts->core->set_tls(*certificate ? **certificate : TlsContext::self_signed_server(own_key));
+  }
   if (const auto bound = parts->core->listen(config.listen); !bound)
     return Unexpected<std::string>{bound.error()};
   if (const auto recovered = parts->core->recover(); !recovered) {
@@ -104,8 +113,8 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
     logger("app").info("NEW WORLD: made world={} generator={} seed={}", config.world,
                        creation.generator, creation.seed);
   }
-  logger("app").info("listening port={} world={} new={}", parts->core->port(), config.world,
-                     parts->world.is_new);
+  logger("app").info("listening port={} encryption={} world={} new={}", parts->core->port(),
+                     config.insecure ? "none" : "tls", config.world, parts->world.is_new);
   return std::unique_ptr<Server>(new Server(std::move(parts)));
 }
 

@@ -36,11 +36,12 @@ void add_flags(CLI::App& app, ServerOptions& out) {
                  "new world: edge of a chunk, 16, 32, 64 or 128 voxels");
   app.add_option("--materials", out.creation.materials_file, "new world: TOML file of materials");
   for (const ConfigField& field : config_fields()) {
-    app.add_option_function<std::string>(
-           flag_name(field.name),
-           [&out, name = field.name](const std::string& text) { out.settings[name] = text; },
-           field.help)
-        ->group("Settings");
+    CLI::Option* const flag = app.add_option_function<std::string>(
+        flag_name(field.name),
+        [&out, name = field.name](const std::string& text) { out.settings[name] = text; },
+        field.help);
+    flag->group("Settings");
+    if (field.is_switch) flag->expected(0, 1);  // without a value it is "true"
   }
 }
 

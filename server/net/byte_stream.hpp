@@ -1,6 +1,7 @@
-// ByteStream: the byte stream of a session. TCP implements it.
+// ByteStream: the byte stream of a session. TCP implements it, and TLS over TCP.
 // Threads: the session's strand. At most one read and one write are under way at a time.
 #pragma once
+#include <asio/any_io_executor.hpp>
 #include <asio/awaitable.hpp>
 #include <asio/buffer.hpp>
 #include <asio/error_code.hpp>
@@ -8,10 +9,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/core/bytes.hpp"
+#include "common/core/channel_binding.hpp"
 #include "common/core/ids.hpp"
+#include "common/tls/tls_context.hpp"
 #include "server/limits/address_block.hpp"
 
 namespace runstone {
@@ -21,7 +26,16 @@ namespace runstone {
 struct IoResult {
   asio::error_code error;
   std::size_t bytes = 0;
-  std::int64_t call_ns = 0;  // of a write: processor time of the system calls
+  std::size_t received =
+      0;  // of a read: bytes of the connection, which TLS makes more than `bytes`
+  std::int64_t call_ns = 0;  // of a write: processor time of encryption and system calls
+};
+
+/// How ByteStream::open() ended.
+enum class StreamStart {
+  open,
+  failed,
+  not_encrypted,  // the peer does not speak TLS; it was told so
 };
 
 /// The bytes that may be written and leave at once, without waiting in the kernel.
@@ -33,10 +47,19 @@ struct StreamRoom {
 class ByteStream {
  public:
   virtual ~ByteStream() = default;
-  /// Reads at least one byte. Fails at the end of the stream.
+  /// Makes the stream ready to read and write. It is called once, before the other calls.
+  virtual asio::awaitable<StreamStart> open() = 0;
+  /// Returns why open() failed, for log lines.
+  virtual std::string failure() const { return {}; }
+  /// Returns what identifies an encrypted connection; nullopt without encryption.
+  virtual std::optional<ChannelBinding> binding() const { return std::nullopt; }
+  /// Reads what has come. The result may be empty after bytes that are none of the text. Fails at
+  /// the end of the stream.
   virtual asio::awaitable<IoResult> read_some(asio::mutable_buffer into) = 0;
-  /// Writes all bytes of all buffers. The vector must live until the call ends.
-  virtual asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers) = 0;
+  /// Writes all bytes of all buffers. The vector must live until the call ends. The last
+  /// `terrain_bytes` of them are terrain: the peer need not have them to read those before.
+  virtual asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers,
+                                          std::size_t terrain_bytes) = 0;
   /// Returns the room for terrain. An edit cannot overtake bytes that wait in the kernel. Cost:
   /// about 1 us.
   virtual StreamRoom room() = 0;
@@ -54,5 +77,11 @@ class ByteStream {
 /// terrain waits in the kernel before an edit.
 std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket,
                                             std::size_t notsent_bytes);
+
+/// Makes a stream over TLS and TCP. The costly steps of the handshake run on `handshakes`. A peer
+/// that does not speak TLS gets `plain_answer`, unencrypted.
+std::unique_ptr<ByteStream> make_tls_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
+                                            const TlsContext& context,
+                                            asio::any_io_executor handshakes, Bytes plain_answer);
 
 }  // namespace runstone

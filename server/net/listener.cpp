@@ -39,6 +39,15 @@ Result<void, std::string> bind_to(asio::ip::tcp::acceptor& acceptor, const std::
   return {};
 }
 
+/// Returns the frame that a client gets that does not speak TLS.
+Bytes goodbye_to_plain_client() {
+  Bytes frame;
+  FrameWriter().append(
+      encode_message(Goodbye{GoodbyeReason::wrong_protocol, "this server speaks TLS 1.3 only"}),
+      frame);
+  return frame;
+}
+
 }  // namespace
 
 Listener::Listener(asio::io_context& io, asio::any_io_executor decoders, const NetLimits& limits,
@@ -53,10 +62,14 @@ Listener::Listener(asio::io_context& io, asio::any_io_executor decoders, const N
       acceptor_(strand_),
       pause_(strand_) {}
 
-Result<void, std::string> can_listen(const std::string& address) {
+Result<asio::ip::address, std::string> can_listen(const std::string& address) {
   asio::io_context io;
   asio::ip::tcp::acceptor acceptor(io);
-  return bind_to(acceptor, address);
+  if (const auto bound = bind_to(acceptor, address); !bound) return failure(bound.error());
+  asio::error_code error;
+  const auto end = acceptor.local_endpoint(error);
+  if (error) return failure("cannot listen on \"" + address + "\": " + error.message());
+  return end.address();
 }
 
 Result<void, std::string> Listener::listen(const std::string& address) {
@@ -65,6 +78,11 @@ Result<void, std::string> Listener::listen(const std::string& address) {
   port_ = acceptor_.local_endpoint(error).port();
   if (error) return Unexpected<std::string>{"cannot listen on " + address + ": " + error.message()};
   return {};
+}
+
+void Listener::set_tls(const TlsContext& tls) {
+  const std::lock_guard lock(mutex_);
+  tls_ = tls;
 }
 
 void Listener::start() { asio::co_spawn(strand_, accept_loop(shared_from_this()), asio::detached); }
@@ -110,9 +128,8 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   for (const auto& session : *ended) session->abort();
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
-  auto stream = make_tcp_stream(std::move(socket), limits_.notsent_bytes);
-  auto session = std::make_shared<NetSession>(id, io_, decoders_, std::move(stream), limits_,
-                                              chunk_edge_, budget_, events_, counters_);
+  auto session = std::make_shared<NetSession>(id, io_, decoders_, make_stream(std::move(socket)),
+                                              limits_, chunk_edge_, budget_, events_, counters_);
   {
     const std::lock_guard lock(mutex_);
     sessions_.emplace(id, session);
@@ -120,6 +137,17 @@ void Listener::admit(asio::ip::tcp::socket socket) {
     handshakes_from_[from].insert(id);
   }
   session->start();
+}
+
+std::unique_ptr<ByteStream> Listener::make_stream(asio::ip::tcp::socket socket) {
+  std::optional<TlsContext> tls;
+  {
+    const std::lock_guard lock(mutex_);
+    tls = tls_;
+  }
+  if (!tls) return make_tcp_stream(std::move(socket), limits_.notsent_bytes);
+  return make_tls_stream(std::move(socket), limits_.notsent_bytes, *tls, decoders_,
+                         goodbye_to_plain_client());
 }
 
 std::optional<std::vector<std::shared_ptr<NetSession>>> Listener::make_room(

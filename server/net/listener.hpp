@@ -20,12 +20,13 @@
 
 namespace runstone {
 
-/// Binds the address and releases it. Fails as Listener::listen() would.
-Result<void, std::string> can_listen(const std::string& address);
+/// Binds the address, releases it and returns it. Fails as Listener::listen() would.
+Result<asio::ip::address, std::string> can_listen(const std::string& address);
 
 class Listener : public std::enable_shared_from_this<Listener> {
  public:
-  /// `events` and the threads of `decoders` must outlive the threads of `io`.
+  /// `events` and the threads of `decoders` must outlive the threads of `io`. The connections are
+  /// not encrypted unless set_tls() is called.
   Listener(asio::io_context& io, asio::any_io_executor decoders, const NetLimits& limits,
            std::uint16_t chunk_edge, NetEvents& events);
 
@@ -33,6 +34,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
   /// free one. The error is one line that names the address.
   Result<void, std::string> listen(const std::string& address);
   std::uint16_t port() const { return port_; }
+  /// Encrypts the connections that are accepted from now on.
+  void set_tls(const TlsContext& tls);
   /// Starts to accept connections.
   void start();
   /// Accepts no more connections.
@@ -52,6 +55,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
  private:
   static asio::awaitable<void> accept_loop(std::shared_ptr<Listener> self);
   void admit(asio::ip::tcp::socket socket);
+  std::unique_ptr<ByteStream> make_stream(asio::ip::tcp::socket socket);
   /// Returns the sessions that must be closed so that one more from `from` fits, or nullopt if it
   /// cannot fit. Requires the mutex.
   std::optional<std::vector<std::shared_ptr<NetSession>>> make_room(const asio::ip::address& from);
@@ -70,6 +74,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   std::uint16_t port_ = 0;
   SessionId next_id_ = 1;
   mutable std::mutex mutex_;  // a leaf: guards the members below
+  std::optional<TlsContext> tls_;
   std::map<SessionId, std::shared_ptr<NetSession>> sessions_;
   // Sessions in the handshake that are not being closed, oldest first.
   std::map<SessionId, asio::ip::address> handshakes_;

@@ -9,9 +9,12 @@
 
 namespace runstone {
 
-/// Writes one warning for a session that breaks a rule, at most as many as LineThrottle passes in
-/// the whole process.
-/// Thread: any.
+// Both functions may be called from any thread, and each writes at most as many lines as a
+// LineThrottle passes in the whole process.
+
+/// Writes one line for a connection whose TLS handshake failed.
+void log_failed_handshake(SessionId session, const std::string& peer, const std::string& why);
+/// Writes one warning for a session that breaks a rule.
 void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason reason,
                      const Error& error);
 

@@ -68,14 +68,35 @@ NetSession::NetSession(SessionId id, asio::io_context& io, asio::any_io_executor
   read_wake_.expires_at(asio::steady_timer::time_point::max());
 }
 
-void NetSession::start() {
-  loops_ = 2;
-  const auto begin = [self = shared_from_this()] {
-    self->events_.on_connected(self->id_);
-    asio::co_spawn(self->strand_, read_loop(self), asio::detached);
-    asio::co_spawn(self->strand_, write_loop(self), asio::detached);
-  };
-  asio::post(strand_, begin);
+void NetSession::start() { asio::co_spawn(strand_, run(shared_from_this()), asio::detached); }
+
+asio::awaitable<void> NetSession::run(std::shared_ptr<NetSession> self) {
+  // The timer has no other use before the loops run.
+  self->linger_.expires_after(std::chrono::milliseconds(self->limits_.handshake_ms));
+  self->linger_.async_wait([raw = self.get(), self](const asio::error_code& cancelled) {
+    if (!cancelled) raw->stream_->close();
+  });
+  const StreamStart started = co_await self->stream_->open();
+  self->linger_.cancel();
+  bool is_wanted = started == StreamStart::open;
+  if (is_wanted) {
+    const std::lock_guard lock(self->mutex_);
+    is_wanted = !self->closing_;
+    self->is_open_ = is_wanted;
+  } else {
+    const std::string why =
+        started == StreamStart::not_encrypted ? "no TLS" : self->stream_->failure();
+    log_failed_handshake(self->id_, self->peer_, why);
+  }
+  if (!is_wanted) {
+    self->stream_->close();
+    self->events_.on_refused(self->id_);
+    co_return;
+  }
+  self->events_.on_connected(self->id_, self->stream_->binding());
+  self->loops_ = 2;
+  asio::co_spawn(self->strand_, read_loop(self), asio::detached);
+  asio::co_spawn(self->strand_, write_loop(self), asio::detached);
 }
 
 bool NetSession::send(const EncodedMessage& message) {
@@ -124,14 +145,20 @@ void NetSession::set_features(std::uint64_t features) {
 }
 
 void NetSession::close(GoodbyeReason reason, const std::string& text) {
+  bool is_open = false;
   {
     const std::lock_guard lock(mutex_);
     if (closing_) return;
     closing_ = true;
+    is_open = is_open_;
     queue_.drop_chunks();
     // If the goodbye does not fit, the client has not read for long. It gets only the end of the
     // stream.
     (void)queue_.push(encode_message(Goodbye{reason, text}));
+  }
+  if (!is_open) {
+    asio::post(strand_, [self = shared_from_this()] { self->stream_->close(); });
+    return;
   }
   const auto begin = [self = shared_from_this()] {
     if (std::exchange(self->linger_started_, true)) return;
@@ -274,8 +301,8 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
     const asio::mutable_buffer into = asio::buffer(buffer);
     const IoResult got = co_await self->stream_->read_some(into);
     if (got.error) break;
-    self->counters_.bytes_in.fetch_add(got.bytes, std::memory_order_relaxed);
-    co_await self->wait_for_read_budget(got.bytes);
+    self->counters_.bytes_in.fetch_add(got.received, std::memory_order_relaxed);
+    co_await self->wait_for_read_budget(got.received);
     // While closing, input is read and dropped. Unread input would make the kernel reset the
     // connection, and the goodbye would be lost.
     if (refused) continue;
@@ -353,7 +380,7 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
       buffers.push_back(asio::buffer(piece.header));
       buffers.push_back(asio::buffer(piece.body.data(), piece.body.size()));
     }
-    const IoResult wrote = co_await self->stream_->write(buffers);
+    const IoResult wrote = co_await self->stream_->write(buffers, batch.chunk_bytes);
     if (wrote.error) break;
     self->counters_.bytes_out.fetch_add(wrote.bytes, std::memory_order_relaxed);
     if (batch.has_commits) {

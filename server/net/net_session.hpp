@@ -44,7 +44,8 @@ struct NetLimits {
   std::size_t unhandled_bytes_max = 8 * 1024;
   std::uint64_t messages_per_second = 10'000;  // per session; 0: no limit
   std::uint64_t message_burst = 20'000;
-  std::int64_t linger_ms = 1'000;  // for the goodbye to be sent and the client to close
+  std::int64_t handshake_ms = 10'000;  // for the TLS handshake
+  std::int64_t linger_ms = 1'000;      // for the goodbye to be sent and the client to close
 };
 
 struct NetCounters {
@@ -69,7 +70,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   const std::string& peer() const { return peer_; }
   AddressBlock address() const { return address_; }
 
-  /// Reports on_connected() and starts both loops. Call it once.
+  /// Opens the stream, reports on_connected() and starts both loops. Call it once.
   void start();
 
   /// Queues a message. Returns false if its class is full. After close() the message is dropped,
@@ -88,7 +89,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   void set_features(std::uint64_t features);
 
   /// Drops queued chunks, sends goodbye behind the queued edits and control messages, and closes
-  /// the connection, at the latest after the linger time. Further calls do nothing.
+  /// the connection, at the latest after the linger time. If the stream is not open yet, it is
+  /// closed at once. Further calls do nothing.
   void close(GoodbyeReason reason, const std::string& text);
   /// Reports that a message of NetEvents::on_message() was handled.
   void handled(std::size_t message_bytes);
@@ -102,6 +104,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
 
  private:
   using Strand = asio::strand<asio::io_context::executor_type>;
+  static asio::awaitable<void> run(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> read_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> write_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> end_after_linger(std::shared_ptr<NetSession> self);
@@ -139,9 +142,10 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::atomic<std::size_t> charged_{0};    // bytes to be added to the next read
   std::atomic<bool> reader_paused_{false};
 
-  std::mutex mutex_;  // a leaf: guards the next six
+  std::mutex mutex_;  // a leaf: guards the next seven
   SendQueue queue_;
   ChunkGate gate_;
+  bool is_open_ = false;  // on_connected() was reported
   bool closing_ = false;
   bool writer_idle_ = false;
   bool is_woken_ = false;  // the writer was woken and has not run yet

@@ -158,13 +158,15 @@ void ServerCore::stop_writer() {
   log_->stop();
 }
 
-void ServerCore::on_connected(SessionId session) {
+void ServerCore::on_refused(SessionId session) { listener_->forget(session); }
+
+void ServerCore::on_connected(SessionId session, const std::optional<ChannelBinding>& binding) {
   auto net = listener_->find(session);
   logger("net").debug("session={} peer={} connected", session, net->peer());
-  strand_.post([this, session, net = std::move(net)]() mutable {
+  strand_.post([this, session, net = std::move(net), binding]() mutable {
     const AddressBlock from = net->address();
     sessions_.add(session, std::move(net));
-    world_->connected(session, read_clocks(), from);
+    world_->connected(session, read_clocks(), from, binding);
   });
 }
 

@@ -55,6 +55,8 @@ class ServerCore final : public NetEvents {
   Result<void, std::string> listen(const std::string& address) {
     return listener_->listen(address);
   }
+  /// Encrypts connections from now on. Without this call they are not encrypted. Thread: any.
+  void set_tls(const TlsContext& tls) { listener_->set_tls(tls); }
   /// Reads what the store remembers, raises the epoch, replays the log above the checkpoint, and
   /// starts the log writer.
   Result<void, std::string> recover();
@@ -87,7 +89,8 @@ class ServerCore final : public NetEvents {
   }
 
   // NetEvents: called on session strands.
-  void on_connected(SessionId session) override;
+  void on_refused(SessionId session) override;
+  void on_connected(SessionId session, const std::optional<ChannelBinding>& binding) override;
   void on_message(SessionId session, Message&& message, std::size_t bytes) override;
   void on_drained(SessionId session) override;
   void on_disconnected(SessionId session) override;

@@ -84,9 +84,10 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   welcome.encoding = choose_encoding(world.config, hello.encodings);
   welcome.features = world.config.features & hello.features;
   world.random(welcome.challenge);
-  welcome.signature = sign(world.config.server_keys, server_transcript(hello, welcome));
+  welcome.signature =
+      sign(world.config.server_keys, server_transcript(hello, welcome, mine.binding));
   mine.name = hello.name;
-  mine.auth_transcript = client_transcript(hello, welcome);
+  mine.auth_transcript = client_transcript(hello, welcome, mine.binding);
   mine.durable_sent = welcome.durable;
   mine.state = SessionStage::authenticating;
   mine.features = welcome.features;

@@ -106,9 +106,11 @@ void WorldServer::replay_onto_stack(const EditRecord& record) {
   state_->authority.replay_onto_stack(record);
 }
 
-void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock from) {
+void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock from,
+                            const std::optional<ChannelBinding>& binding) {
   WorldSession fresh;
   fresh.address = from;
+  fresh.binding = binding;
   fresh.connected_us = fresh.last_message_us = now.steady_us;
   const bool is_new = state_->sessions.emplace(session, std::move(fresh)).second;
   RUNSTONE_ASSERT(is_new);

@@ -37,8 +37,9 @@ class WorldServer {
   void replay_onto_stack(const EditRecord& record);
 
   // Sessions.
-  /// Adds a connection from this address.
-  void connected(SessionId session, const Clocks& now, AddressBlock from = {});
+  /// Adds a connection from this address. `binding` identifies it if it is encrypted.
+  void connected(SessionId session, const Clocks& now, AddressBlock from = {},
+                 const std::optional<ChannelBinding>& binding = std::nullopt);
   /// Handles a verified message. Closes the session if its stage does not allow the message:
   /// not_authenticated before session accepted, unexpected_message otherwise. Ignores messages of
   /// closed sessions.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/core/bytes.hpp"
+#include "common/core/channel_binding.hpp"
 #include "common/core/token_bucket.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/interest/cache_claims.hpp"
@@ -45,6 +46,7 @@ struct WorldSession {
   TimeUs connected_us = 0;
   TimeUs last_message_us = 0;
   AddressBlock address{};
+  std::optional<ChannelBinding> binding;  // of an encrypted connection
   PublicKey key{};
   ClientInstance instance = 0;
   std::string name;

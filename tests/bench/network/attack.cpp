@@ -16,7 +16,7 @@
 namespace runstone::bench {
 namespace {
 
-constexpr std::array<Attack, 21> kAttacks = {{
+constexpr std::array<Attack, 22> kAttacks = {{
     {kQuiet, "nobody attacks", stay_away, false},
     {"elsewhere", "as many threads copy bytes in the kernel: no attack, only a busy machine",
      keep_the_machine_busy, false},
@@ -30,6 +30,8 @@ constexpr std::array<Attack, 21> kAttacks = {{
     {"claims", "claims of 29,791 chunks, again and again, and of 117,649", claim_falsely},
     {"half-open", "connections that send nothing or half a hello, from one address and from 250",
      open_halfway},
+    {"handshakes", "TLS handshakes that end when the server has signed, one after another",
+     shake_hands},
     {"garbage",
      "random bytes, frames of 4 GiB, frames cut short, inverted bits, messages without end",
      send_garbage},

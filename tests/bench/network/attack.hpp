@@ -49,6 +49,7 @@ struct AttackPlan {
   unsigned addresses = 1;  // of which each thread has one
   double seconds = 0;
   std::uint64_t seed = 0;
+  bool is_encrypted = true;  // the server speaks TLS
   // Attackers run only while a core has nothing else to do. Other programs on the machine may keep
   // them from running at all.
   bool uses_idle_cores = true;

@@ -70,8 +70,8 @@ class AttackRun {
 
  private:
   AttackPlan plan(double seconds, std::uint64_t seed) const {
-    return {server_.port, options_.attackers, options_.attacker_addresses, seconds,
-            seed,         !options_.quick};
+    return {server_.port,       options_.attackers, options_.attacker_addresses, seconds, seed,
+            !options_.insecure, !options_.quick};
   }
 
   Done play(AttackPhase phase) {
@@ -93,7 +93,7 @@ class AttackRun {
       echo = *std::move(started);
       written_before_kb_ = written_kb(server_);
       attack.emplace(attack_, plan(seconds, options_.seed));
-      probe.emplace(server_.port);
+      probe.emplace(server_.port, !options_.insecure);
     }
     double& phase_mb = out_.resident_mb[phase];
     for (double waited = 0; waited < seconds; waited += kLookSeconds) {

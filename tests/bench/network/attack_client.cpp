@@ -47,7 +47,8 @@ KeyPair key_of(std::uint64_t identity) {
 
 }  // namespace
 
-AttackClient::AttackClient(std::uint16_t port, std::uint32_t from, int receive_bytes)
+AttackClient::AttackClient(std::uint16_t port, std::uint32_t from, const TlsContext* context,
+                           int receive_bytes)
     : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   if (!socket_) return;
   if (receive_bytes > 0) set_option(socket_.get(), SOL_SOCKET, SO_RCVBUF, receive_bytes);
@@ -61,6 +62,9 @@ AttackClient::AttackClient(std::uint16_t port, std::uint32_t from, int receive_b
   is_open_ =
       ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0 ||
       would_block(errno);
+  if (context == nullptr) return;
+  source_ = SocketSource(socket_.get());
+  tls_.emplace(TlsChannel::connect(*context, source_, "127.0.0.1"));
 }
 
 bool AttackClient::open_session(std::uint64_t identity, ClientInstance instance, int wait_ms) {
@@ -80,18 +84,41 @@ bool AttackClient::open_session(std::uint64_t identity, ClientInstance instance,
     if (!came_ || is_proven) continue;
     is_proven = true;
     welcome_ = *came_;
-    queue(ClientAuth{sign(keys, client_transcript(hello, welcome_))});
+    const auto binding = tls_ ? std::optional(tls_->binding()) : std::nullopt;
+    queue(ClientAuth{sign(keys, client_transcript(hello, welcome_, binding))});
   }
   return is_open() && has_session_;
 }
 
 void AttackClient::queue_bytes(ByteView bytes) {
-  out_.insert(out_.end(), bytes.begin(), bytes.end());
+  text_.insert(text_.end(), bytes.begin(), bytes.end());
+}
+
+void AttackClient::encrypt() {
+  if (!tls_) {
+    out_.insert(out_.end(), text_.begin(), text_.end());
+    text_.clear();
+    return;
+  }
+  if (!is_encrypted_) {
+    const TlsChannel::Status status = tls_->handshake();
+    is_encrypted_ = status == TlsChannel::Status::done;
+    if (!is_encrypted_ && status != TlsChannel::Status::wants_input) is_open_ = false;
+  }
+  if (is_encrypted_) {
+    is_open_ = tls_->write(text_) && is_open_;
+    text_.clear();
+  }
+  Bytes& records = tls_->output();
+  out_.insert(out_.end(), records.begin(), records.end());
+  records.clear();
 }
 
 void AttackClient::flush() {
-  while (is_open_ && queued() > 0) {
-    const ssize_t count = ::send(socket_.get(), out_.data() + sent_, queued(), MSG_NOSIGNAL);
+  if (is_open_) encrypt();
+  while (is_open_ && out_.size() > sent_) {
+    const ssize_t count =
+        ::send(socket_.get(), out_.data() + sent_, out_.size() - sent_, MSG_NOSIGNAL);
     if (count < 0) {
       if (would_block(errno) || errno == ENOTCONN) return;
       // The server's goodbye may still be in the socket.
@@ -106,20 +133,43 @@ void AttackClient::flush() {
   sent_ = 0;
 }
 
+std::size_t AttackClient::receive(std::span<std::uint8_t> into, std::size_t& allowed) {
+  if (!tls_) {
+    const ssize_t count = ::recv(socket_.get(), into.data(), std::min(into.size(), allowed), 0);
+    if (count < 0 && (would_block(errno) || errno == ENOTCONN)) return 0;
+    if (count <= 0) is_open_ = false;
+    const std::size_t bytes = count > 0 ? static_cast<std::size_t>(count) : 0;
+    allowed -= bytes;
+    bytes_received_ += bytes;
+    return bytes;
+  }
+  source_.allow(allowed);
+  std::size_t bytes = 0;
+  auto status = TlsChannel::Status::done;
+  if (!is_encrypted_) {
+    status = tls_->handshake();
+    is_encrypted_ = status == TlsChannel::Status::done;
+  }
+  if (is_encrypted_) status = tls_->read(into, bytes);
+  const std::size_t received = source_.take_count();
+  allowed -= received;
+  bytes_received_ += received;
+  const bool is_broken = source_.error() && source_.error().value() != ENOTCONN;
+  if (status == TlsChannel::Status::wants_input) {
+    if (source_.is_at_end() || is_broken) is_open_ = false;
+  } else if (status != TlsChannel::Status::done) {
+    is_open_ = false;
+  }
+  return bytes;
+}
+
 void AttackClient::read(std::size_t bytes_max) {
   std::array<std::uint8_t, 16 * 1024> buffer;
-  for (std::size_t got = 0; is_open_ && got < bytes_max;) {
-    const ssize_t count =
-        ::recv(socket_.get(), buffer.data(), std::min(buffer.size(), bytes_max - got), 0);
-    if (count < 0 && (would_block(errno) || errno == ENOTCONN)) return;
-    if (count <= 0) {
-      is_open_ = false;
-      return;
-    }
-    got += static_cast<std::size_t>(count);
-    bytes_received_ += static_cast<std::uint64_t>(count);
+  for (std::size_t allowed = bytes_max; is_open_ && allowed > 0;) {
+    const std::size_t count = receive(buffer, allowed);
+    if (count == 0) return;
     const auto fed =
-        reader_.feed(ByteView(buffer.data(), static_cast<std::size_t>(count)),
+        reader_.feed(ByteView(buffer.data(), count),
                      [this](MessageKind kind, ByteView body) { return take(kind, body); });
     if (!fed) is_open_ = false;
   }

@@ -1,13 +1,16 @@
 // AttackClient: one raw connection to a server that may do what the product's clients never do:
 // not read, read one byte, send bytes without meaning. It performs the handshake correctly with a
-// key of its own, which anybody can make. It decodes only the handshake and the goodbye. Calls
-// block only for the given times. Thread: one.
+// key of its own, which anybody can make. It decodes only the handshake and the goodbye. The TLS
+// handshake begins with the first flush(). Calls block only for the given times. Thread: one.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "common/tls/socket_source.hpp"
+#include "common/tls/tls_channel.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
 #include "tests/bench/network/descriptor.hpp"
@@ -17,8 +20,10 @@ namespace runstone::bench {
 class AttackClient {
  public:
   /// Starts to connect to 127.0.0.1:`port` from the IPv4 address `from` (host order, of
-  /// 127.0.0.0/8). `receive_bytes` is the size of the socket's buffer; 0 leaves it to the kernel.
-  AttackClient(std::uint16_t port, std::uint32_t from, int receive_bytes = 0);
+  /// 127.0.0.0/8), over TLS if `context` is not null. `receive_bytes` is the size of the socket's
+  /// buffer; 0 leaves it to the kernel.
+  AttackClient(std::uint16_t port, std::uint32_t from, const TlsContext* context,
+               int receive_bytes = 0);
 
   /// Performs the handshake with a key drawn from `identity`, as this instance. It offers commands.
   /// It does not offer receive acknowledgements, so that the server does not pace what it sends.
@@ -31,9 +36,9 @@ class AttackClient {
     if (auto* view = std::get_if<View>(&message)) view->number = ++views_;
     queue(encode_message(message));
   }
-  void queue(const EncodedMessage& message) { frames_.append(message, out_); }
+  void queue(const EncodedMessage& message) { frames_.append(message, text_); }
   void queue_bytes(ByteView bytes);
-  std::size_t queued() const { return out_.size() - sent_; }
+  std::size_t queued() const { return text_.size() + out_.size() - sent_; }
   /// Sends as much as the socket takes now.
   void flush();
   /// Reads what is there now, at most `bytes_max`.
@@ -57,12 +62,21 @@ class AttackClient {
 
  private:
   Result<void> take(MessageKind kind, ByteView body);
+  /// Continues the TLS handshake and encrypts queued text.
+  void encrypt();
+  /// Reads what is there, of `allowed` bytes of the connection. Returns 0 if nothing is, and at the
+  /// end.
+  std::size_t receive(std::span<std::uint8_t> into, std::size_t& allowed);
 
   Descriptor socket_;
   bool is_open_ = false, has_session_ = false;
   std::uint32_t views_ = 0;  // queued
   FrameWriter frames_;
   FrameReader reader_{Sender::server};
+  SocketSource source_;
+  std::optional<TlsChannel> tls_;
+  bool is_encrypted_ = false;  // the TLS handshake is complete
+  Bytes text_;                 // not encrypted yet
   Bytes out_;
   std::size_t sent_ = 0;  // of out_
   std::uint16_t chunk_edge_ = 0;

@@ -24,7 +24,9 @@ AttackThread::AttackThread(const AttackPlan& plan, unsigned index,
       began_(Clock::now()),
       ends_(began_ + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(plan.seconds))),
-      random_(mix64(plan.seed + index)) {}
+      random_(mix64(plan.seed + index)) {
+  if (plan.is_encrypted) tls_ = TlsContext::client();
+}
 
 bool AttackThread::is_over() const { return Clock::now() >= ends_ || is_stopped_ || interrupted(); }
 
@@ -39,7 +41,7 @@ void AttackThread::pause_ms(int ms) const {
 std::unique_ptr<AttackClient> AttackThread::connect(std::uint32_t from, int receive_bytes) {
   if (is_over() || outcome.connections >= kConnectionsMax) return nullptr;
   ++outcome.connections;
-  return std::make_unique<AttackClient>(port_, from, receive_bytes);
+  return std::make_unique<AttackClient>(port_, from, tls_ ? &*tls_ : nullptr, receive_bytes);
 }
 
 std::unique_ptr<AttackClient> AttackThread::join(int receive_bytes) {

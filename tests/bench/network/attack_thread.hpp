@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "common/core/hash.hpp"
 #include "tests/bench/network/attack.hpp"
@@ -58,6 +59,7 @@ class AttackThread {
   const std::atomic<bool>& is_stopped_;
   const Clock::time_point began_, ends_;
   SplitMix64 random_;
+  std::optional<TlsContext> tls_;
 };
 
 /// A step that does nothing.

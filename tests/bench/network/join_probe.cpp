@@ -16,7 +16,8 @@ constexpr double kPauseSeconds = 0.1;
 
 }  // namespace
 
-JoinProbe::JoinProbe(std::uint16_t port) : thread_([this, port] { run(port); }) {}
+JoinProbe::JoinProbe(std::uint16_t port, bool is_encrypted)
+    : thread_([this, port, is_encrypted] { run(port, is_encrypted); }) {}
 
 JoinProbe::~JoinProbe() {
   is_over_ = true;
@@ -29,10 +30,11 @@ JoinProbe::Joins JoinProbe::finish() {
   return joins_;
 }
 
-void JoinProbe::run(std::uint16_t port) {
+void JoinProbe::run(std::uint16_t port, bool is_encrypted) {
+  const TlsContext tls = TlsContext::client();
   for (std::uint64_t who = 0; !is_over_ && !interrupted(); ++who) {
     const auto began = std::chrono::steady_clock::now();
-    AttackClient newcomer(port, kAddress);
+    AttackClient newcomer(port, kAddress, is_encrypted ? &tls : nullptr);
     ++joins_.tried;
     if (newcomer.open_session(mix64(~who), 1, kNewcomerMsMax)) {
       ++joins_.open;

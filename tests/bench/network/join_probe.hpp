@@ -10,7 +10,8 @@ namespace runstone::bench {
 
 class JoinProbe {
  public:
-  explicit JoinProbe(std::uint16_t port);
+  /// `is_encrypted`: the server speaks TLS.
+  JoinProbe(std::uint16_t port, bool is_encrypted);
   ~JoinProbe();
   JoinProbe(const JoinProbe&) = delete;
   JoinProbe& operator=(const JoinProbe&) = delete;
@@ -23,7 +24,7 @@ class JoinProbe {
   Joins finish();
 
  private:
-  void run(std::uint16_t port);
+  void run(std::uint16_t port, bool is_encrypted);
   std::atomic<bool> is_over_{false};
   Joins joins_;
   std::thread thread_;

@@ -99,6 +99,7 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
       ->capture_default_str();
   net->add_option("--csv", options.csv, "write all figures to this file");
   net->add_option("--json", options.json, "write all figures and targets to this file");
+  net->add_flag("--insecure", options.insecure, "connections without encryption, to compare with");
   net->add_flag("--quick", options.quick,
                 "100 edits, one join and transfer, fleets of 1 and 20 for 3 seconds, attacks of 2, "
                 "a siege of 30, unless said otherwise");

@@ -35,6 +35,7 @@ struct NetOptions {
   unsigned siege_bots = 100;         // honest clients in a siege
   std::string siege_charts;          // folder for the charts of a siege; empty: none
   std::uint64_t seed = 1;
+  bool insecure = false;  // without encryption
   bool quick = false;     // small sizes, for tests on a busy machine
   std::string csv, json;  // files to write; empty: none
 };

@@ -121,6 +121,21 @@ void open_halfway(AttackThread& thread) {
   look(true);
 }
 
+void shake_hands(AttackThread& thread) {
+  constexpr int kWaitMs = 200;
+  while (!thread.is_over()) {
+    const auto client = thread.connect();
+    if (client == nullptr) return;
+    for (int ms = 0; ms < kWaitMs && client->is_open() && !thread.is_over(); ++ms) {
+      client->flush();
+      if (client->bytes_received() > 0) break;
+      client->wait(1, true);
+      client->read();
+    }
+    thread.end(*client);
+  }
+}
+
 void send_garbage(AttackThread& thread) {
   constexpr int kWaitMs = 200;
   for (std::uint64_t sort = thread.index(); !thread.is_over(); ++sort) {

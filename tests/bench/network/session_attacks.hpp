@@ -9,6 +9,7 @@ class AttackThread;
 void take_seats(AttackThread& thread);
 void command_too_often(AttackThread& thread);
 void open_halfway(AttackThread& thread);
+void shake_hands(AttackThread& thread);
 void send_garbage(AttackThread& thread);
 /// This is no attack: it copies bytes between two sockets of its own. It shows how the load of the
 /// machine affects the bots.

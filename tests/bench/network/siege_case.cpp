@@ -119,6 +119,7 @@ class SiegeRun {
             options_.attacker_addresses,
             kSiegeWindowSeconds,
             options_.seed + index * options_.attackers,
+            !options_.insecure,
             !options_.quick};
   }
 

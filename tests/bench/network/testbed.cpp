@@ -58,6 +58,7 @@ Result<TestbedServer, std::string> Testbed::start_server(TestbedLink& link,
       program_file("runstone-server"), "--world",     world,    "--create", "--listen",
       link.server_address() + ":0",    "--port-file", port_file};
   words.insert(words.end(), flags.begin(), flags.end());
+  if (options_.insecure) words.insert(words.end(), {"--insecure", "--i-know"});
   auto program = Child::start(link.server_side(), std::move(words), fresh("server.log"));
   if (!program) return failure(program.error());
   TestbedServer out{*std::move(program), "", 0};
@@ -80,6 +81,7 @@ Done Testbed::stop_server(TestbedServer& server) {
 Result<std::unique_ptr<Child>, std::string> Testbed::start_client(
     TestbedLink& link, const std::string& program, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), program_file(program));
+  if (options_.insecure) arguments.emplace_back("--insecure");
   return Child::start(link.client_side(), std::move(arguments), fresh(program + ".log"));
 }
 

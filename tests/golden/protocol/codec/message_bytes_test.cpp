@@ -258,7 +258,8 @@ TEST_CASE("the signature of a recorded welcome holds", "[protocol][golden]") {
   Hello hello = a_hello();
   hello.key = keys_of(2).public_key;
   const Welcome welcome = signed_welcome();
-  CHECK(verify(welcome.server_key, server_transcript(hello, welcome), welcome.signature));
+  CHECK(verify(welcome.server_key, server_transcript(hello, welcome, std::nullopt),
+               welcome.signature));
 }
 
 TEST_CASE("handshake transcripts and signatures are those of the protocol page",
@@ -266,10 +267,11 @@ TEST_CASE("handshake transcripts and signatures are those of the protocol page",
   Hello hello = a_hello();
   hello.key = keys_of(2).public_key;
   const Welcome welcome = a_welcome();
-  const Bytes transcript = server_transcript(hello, welcome);
+  const Bytes transcript = server_transcript(hello, welcome, std::nullopt);
   CHECK(to_hex(transcript) == page_example("transcript"));
   CHECK(to_hex(sign(keys_of(1), transcript)) == kServerSignature);
-  CHECK(to_hex(sign(keys_of(2), client_transcript(hello, welcome))) == kClientSignature);
+  CHECK(to_hex(sign(keys_of(2), client_transcript(hello, welcome, std::nullopt))) ==
+        kClientSignature);
   CHECK(page_example("signatures") == std::string(kServerSignature) + kClientSignature);
 }
 

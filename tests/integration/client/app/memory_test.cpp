@@ -73,7 +73,7 @@ class HostileServer {
       welcome.encoding = ChunkEncoding::packed;
       welcome.view_radius_max = 16;
       welcome.edit_volume_max = 1000;
-      welcome.signature = sign(keys(9), server_transcript(*hello, welcome));
+      welcome.signature = sign(keys(9), server_transcript(*hello, welcome, std::nullopt));
       send(welcome, socket);
     } else if (std::holds_alternative<ClientAuth>(message)) {
       send(SessionAccepted{1, 0}, socket);
@@ -121,11 +121,11 @@ TEST_CASE("a server that sends chunks of the worst case cannot make the client e
   const TempFolder folder;
   HostileServer server;
   // Of 203 chunks in view, each takes 1 MiB of runs and 6 MiB of quads.
-  ChildProcess client(
-      {RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server.port()),
-       "--no-render", "--view", "3", "--view-vertical", "3", "--memory-mib", "128", "--workers",
-       "1", "--report", folder / "report.json", "--exit-on-goodbye"},
-      folder / "output");
+  ChildProcess client({RUNSTONE_CLIENT_PROGRAM, "--insecure", "--connect",
+                       "127.0.0.1:" + std::to_string(server.port()), "--no-render", "--view", "3",
+                       "--view-vertical", "3", "--memory-mib", "128", "--workers", "1", "--report",
+                       folder / "report.json", "--exit-on-goodbye"},
+                      folder / "output");
   server.serve();
   REQUIRE(client.wait(std::chrono::seconds(60)) == 0);
   CHECK(server.views() > 1);

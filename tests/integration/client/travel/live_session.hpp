@@ -68,9 +68,10 @@ class LiveSession final : private LinkCallbacks {
     for (const Message& message : session_.take_outgoing())
       link_.send(connection_, encode_message(message));
   }
-  void on_connected(ConnectionNumber connection) override {
+  void on_connected(ConnectionNumber connection,
+                    const std::optional<ChannelBinding>& binding) override {
     connection_ = connection;
-    session_.connected(random_nonce(), steady_now_us());
+    session_.connected(random_nonce(), binding, steady_now_us());
     flush();
   }
   void on_received(LinkReceived received) override {

@@ -1,6 +1,6 @@
-// RawClient: a blocking socket that sends and receives frames and messages. It does only what the
-// test does, and it can send any bytes, also invalid ones. Reads and writes have a deadline, so a
-// test fails instead of hanging.
+// RawClient: a blocking socket that sends and receives frames and messages, over TLS unless told
+// otherwise. It does only what the test does, and it can send any bytes, also invalid ones. Reads and
+// writes have a deadline, so a test fails instead of hanging.
 #pragma once
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -18,6 +18,8 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "common/tls/socket_source.hpp"
+#include "common/tls/tls_channel.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
@@ -26,15 +28,18 @@ namespace runstone::test {
 
 class RawClient {
  public:
+  enum class Encryption { tls, none };
   /// Connects to a server on this machine from the IPv4 address `from` (host order, of
-  /// 127.0.0.0/8).
-  explicit RawClient(std::uint16_t port, std::uint32_t from = INADDR_LOOPBACK)
+  /// 127.0.0.0/8), and performs the TLS handshake.
+  explicit RawClient(std::uint16_t port, std::uint32_t from = INADDR_LOOPBACK,
+                     Encryption encryption = Encryption::tls)
       : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     const sockaddr_in here = endpoint(from, 0), there = endpoint(INADDR_LOOPBACK, port);
     is_open_ = ::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 &&
                ::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
     const timeval deadline{kSendSeconds, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof deadline);
+    if (is_open_ && encryption == Encryption::tls) is_open_ = secure();
   }
   ~RawClient() { ::close(socket_); }
   RawClient(const RawClient&) = delete;
@@ -42,7 +47,17 @@ class RawClient {
 
   bool is_open() const { return is_open_; }
 
+  /// Identifies the connection if it is encrypted.
+  std::optional<ChannelBinding> binding() const {
+    return tls_ ? std::optional(tls_->binding()) : std::nullopt;
+  }
+
   void send_bytes(ByteView bytes) {
+    if (!tls_) return send_to_socket(bytes);
+    if (is_open_ && tls_->write(bytes)) send_output();
+  }
+  /// Sends bytes past TLS.
+  void send_to_socket(ByteView bytes) {
     while (!bytes.empty()) {
       const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
       if (sent <= 0) {
@@ -134,9 +149,9 @@ class RawClient {
     if (!got) return std::nullopt;
     welcome = *std::move(got);
     chunk_edge_ = welcome.chunk_edge;
-    if (!verify(welcome.server_key, server_transcript(h, welcome), welcome.signature))
+    if (!verify(welcome.server_key, server_transcript(h, welcome, binding()), welcome.signature))
       return std::nullopt;
-    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome))});
+    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome, binding()))});
     return next_of<SessionAccepted>();
   }
 
@@ -147,6 +162,7 @@ class RawClient {
 
  private:
   static constexpr time_t kSendSeconds = 60;
+  static constexpr int kHandshakeMs = 10'000;
 
   static sockaddr_in endpoint(std::uint32_t address, std::uint16_t port) {
     sockaddr_in out{};
@@ -156,13 +172,50 @@ class RawClient {
     return out;
   }
 
+  bool wait_input(int deadline_ms) {
+    pollfd wait{socket_, POLLIN, 0};
+    return ::poll(&wait, 1, deadline_ms) > 0;
+  }
+  void send_output() { send_to_socket(std::exchange(tls_->output(), {})); }
+  bool secure() {
+    source_ = SocketSource(socket_);
+    TlsChannel channel = TlsChannel::connect(TlsContext::client(), source_, "127.0.0.1");
+    tls_.emplace(std::move(channel));
+    for (;;) {
+      const TlsChannel::Status status = tls_->handshake();
+      send_output();
+      if (status == TlsChannel::Status::done) return true;
+      const bool is_over = source_.is_at_end() || source_.error();
+      if (status != TlsChannel::Status::wants_input || is_over) break;
+      if (!wait_input(kHandshakeMs)) break;
+    }
+    tls_.reset();
+    return false;
+  }
+  /// Reads what comes into the buffer. Returns the number of bytes, 0 at the end of the stream, or
+  /// nullopt at the deadline.
+  std::optional<std::size_t> receive(Bytes& buffer, int deadline_ms) {
+    if (!tls_) {
+      if (!wait_input(deadline_ms)) return std::nullopt;
+      const ssize_t got = ::recv(socket_, buffer.data(), buffer.size(), 0);
+      return got > 0 ? static_cast<std::size_t>(got) : 0;
+    }
+    for (;;) {
+      std::size_t bytes = 0;
+      const TlsChannel::Status status = tls_->read(buffer, bytes);
+      if (status == TlsChannel::Status::done) return bytes;
+      const bool is_over = source_.is_at_end() || source_.error();
+      if (status != TlsChannel::Status::wants_input || is_over) return 0;
+      if (!wait_input(deadline_ms)) return std::nullopt;
+    }
+  }
+
   bool read_some(int deadline_ms) {
     if (!is_open_) return false;
-    pollfd wait{socket_, POLLIN, 0};
-    if (::poll(&wait, 1, deadline_ms) <= 0) return false;
     Bytes buffer(65'536);
-    const ssize_t got = ::recv(socket_, buffer.data(), buffer.size(), 0);
-    if (got <= 0) {
+    const auto got = receive(buffer, deadline_ms);
+    if (!got) return false;
+    if (*got == 0) {
       is_open_ = false;
       return false;
     }
@@ -188,14 +241,15 @@ class RawClient {
       arrived_.push_back(*std::move(message));
       return {};
     };
-    const auto fed =
-        reader_.feed(ByteView(buffer.data(), static_cast<std::size_t>(got)), on_message);
+    const auto fed = reader_.feed(ByteView(buffer.data(), *got), on_message);
     RUNSTONE_ASSERT(fed.has_value());  // the server never sends a message that its decoder rejects
     return true;
   }
 
   std::uint32_t views_ = 0;  // sent
   int socket_;
+  SocketSource source_;
+  std::optional<TlsChannel> tls_;
   bool is_open_ = false;
   KeySeed seed_{};
   std::uint16_t chunk_edge_ = 0;

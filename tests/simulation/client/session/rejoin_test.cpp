@@ -47,7 +47,7 @@ class Joined {
     bench.environment.sent.clear();
     bench.environment.snapshots.clear();
     bench.server.connected(id_, bench.now());
-    session_.connected({static_cast<std::uint8_t>(id_)}, bench.time_us);
+    session_.connected({static_cast<std::uint8_t>(id_)}, std::nullopt, bench.time_us);
     exchange();
   }
   void disconnect() {

@@ -145,7 +145,7 @@ class SimClient {
     connection_ = server_.accept(faults_, std::move(end));
     Nonce nonce{};
     for (auto& b : nonce) b = static_cast<std::uint8_t>(rng_.next());
-    session_.connected(nonce, time_.now());
+    session_.connected(nonce, std::nullopt, time_.now());
   }
 
   VirtualTime& time_;

@@ -32,7 +32,7 @@ T sent(ClientSession& session) {
 /// A session in an open world whose server answers no edit.
 struct Fixture {
   Fixture() {
-    session.connected({5}, kNow);
+    session.connected({5}, std::nullopt, kNow);
     const Hello hello = sent<Hello>(session);
     const KeyPair server = keys(9);
     Welcome welcome;
@@ -43,7 +43,7 @@ struct Fixture {
     welcome.challenge = {7};
     welcome.view_radius_max = 8;
     welcome.edit_volume_max = 1000;
-    welcome.signature = sign(server, server_transcript(hello, welcome));
+    welcome.signature = sign(server, server_transcript(hello, welcome, std::nullopt));
     receive(welcome);
     receive(SessionAccepted{6, 0});
     REQUIRE(session.is_open());

@@ -34,7 +34,7 @@ struct Bench {
   }
   /// Opens a new connection. Returns the messages that the session sends then.
   std::vector<Message> greet(Epoch epoch, ClientSequence resolved) {
-    session->connected({5}, clock_us);
+    session->connected({5}, std::nullopt, clock_us);
     const auto hello = std::get<Hello>(session->take_outgoing().at(0));
     Welcome welcome;
     welcome.epoch = epoch;
@@ -43,7 +43,7 @@ struct Bench {
     welcome.materials = default_material_table();
     welcome.server_key = keys.public_key;
     welcome.view_radius_max = 4;
-    welcome.signature = sign(keys, server_transcript(hello, welcome));
+    welcome.signature = sign(keys, server_transcript(hello, welcome, std::nullopt));
     give(welcome);
     REQUIRE(std::holds_alternative<ClientAuth>(session->take_outgoing().at(0)));
     give(SessionAccepted{kAuthor, resolved});

@@ -59,6 +59,7 @@ struct Peer {
 struct Fixture {
   LinkConfig config() const {
     LinkConfig out;
+    out.tls.reset();  // the server of these tests has no TLS
     out.host = "127.0.0.1";
     out.port = peer.port();
     out.pause_ms_first = 1;

@@ -74,7 +74,8 @@ TEST_CASE_METHOD(SessionBench,
   Welcome welcome = server.make_welcome();
   welcome.heights = {-4, 4};
   welcome.edit_volume_max = 27;
-  welcome.signature = sign(server.keys_of_server, server_transcript(server.hello, welcome));
+  welcome.signature =
+      sign(server.keys_of_server, server_transcript(server.hello, welcome, std::nullopt));
   receive(welcome);
   receive(SessionAccepted{6, 0});
   REQUIRE(session.is_open());
@@ -94,7 +95,8 @@ TEST_CASE_METHOD(SessionBench, "a welcome with a feature that hello did not offe
     CHECK(server.hello.features == 0b110);
     Welcome welcome = server.make_welcome();
     welcome.features = features;
-    welcome.signature = sign(server.keys_of_server, server_transcript(server.hello, welcome));
+    welcome.signature =
+        sign(server.keys_of_server, server_transcript(server.hello, welcome, std::nullopt));
     receive(welcome);
     return !session.wants_close();
   };

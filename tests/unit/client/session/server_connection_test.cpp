@@ -32,7 +32,7 @@ struct ConnectionFixture {
     return out;
   }
   void greet() {
-    connection.connected({5}, now);
+    connection.connected({5}, std::nullopt, now);
     const auto hellos = take<Hello>();
     REQUIRE(hellos.size() == 1);
     hello = hellos[0];
@@ -45,7 +45,7 @@ struct ConnectionFixture {
     out.materials = default_material_table();
     out.server_key = server.public_key;
     out.view_radius_max = 4;
-    out.signature = sign(server, server_transcript(hello, out));
+    out.signature = sign(server, server_transcript(hello, out, std::nullopt));
     return out;
   }
   void open() {
@@ -84,7 +84,7 @@ TEST_CASE_METHOD(ConnectionFixture, "a connection opens with the handshake", "[s
   CHECK(connection.state() == SessionState::authenticating);
   const auto proofs = take<ClientAuth>();
   REQUIRE(proofs.size() == 1);
-  CHECK(verify(hello.key, client_transcript(hello, welcome()), proofs[0].signature));
+  CHECK(verify(hello.key, client_transcript(hello, welcome(), std::nullopt), proofs[0].signature));
   CHECK_FALSE(goes_on());
   CHECK(receive(SessionAccepted{6, 0}) == Dispatch::session_accepted);
   CHECK(connection.is_open());
@@ -175,7 +175,7 @@ TEST_CASE_METHOD(ConnectionFixture,
   CHECK(connection.end()->text == "bye");
   CHECK(connection.end()->final == is_final);
   CHECK(connection.take_outgoing().empty());
-  connection.connected({6}, now);
+  connection.connected({6}, std::nullopt, now);
   CHECK_FALSE(connection.end());
   CHECK_FALSE(connection.wants_close());
 }

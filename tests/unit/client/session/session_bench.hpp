@@ -45,7 +45,7 @@ struct Server {
     welcome.view_radius_max = 8;
     welcome.edit_volume_max = 1000;
     welcome.edit_budget = edit_budget;
-    welcome.signature = sign(keys_of_server, server_transcript(hello, welcome));
+    welcome.signature = sign(keys_of_server, server_transcript(hello, welcome, std::nullopt));
     return welcome;
   }
 };
@@ -64,7 +64,7 @@ struct SessionBench {
   std::vector<Message> sent() { return session.take_outgoing(); }
 
   void greet() {
-    session.connected({5}, now);
+    session.connected({5}, std::nullopt, now);
     auto out = sent();
     const auto hellos = take<Hello>(out);
     REQUIRE(hellos.size() == 1);
@@ -76,7 +76,7 @@ struct SessionBench {
     auto out = sent();
     const auto proofs = take<ClientAuth>(out);
     REQUIRE(proofs.size() == 1);
-    CHECK(verify(server.hello.key, client_transcript(server.hello, server.welcome),
+    CHECK(verify(server.hello.key, client_transcript(server.hello, server.welcome, std::nullopt),
                  proofs[0].signature));
     receive(SessionAccepted{6, server.resolved});
     REQUIRE(session.is_open());

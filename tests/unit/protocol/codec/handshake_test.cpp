@@ -30,14 +30,15 @@ struct Exchange {
     sign_both();
   }
   void sign_both() {
-    welcome.signature = sign(server, server_transcript(hello, welcome));
-    proof.signature = sign(client, client_transcript(hello, welcome));
+    welcome.signature = sign(server, server_transcript(hello, welcome, std::nullopt));
+    proof.signature = sign(client, client_transcript(hello, welcome, std::nullopt));
   }
   bool server_proven() const {
-    return verify(welcome.server_key, server_transcript(hello, welcome), welcome.signature);
+    return verify(welcome.server_key, server_transcript(hello, welcome, std::nullopt),
+                  welcome.signature);
   }
   bool client_proven() const {
-    return verify(hello.key, client_transcript(hello, welcome), proof.signature);
+    return verify(hello.key, client_transcript(hello, welcome, std::nullopt), proof.signature);
   }
 };
 

@@ -25,23 +25,25 @@ class FedStream final : public ByteStream {
   FedStream(asio::io_context& io, Bytes bytes) : bytes_(std::move(bytes)), closed_(io) {
     closed_.expires_at(asio::steady_timer::time_point::max());
   }
+  asio::awaitable<StreamStart> open() override { co_return StreamStart::open; }
   asio::awaitable<IoResult> read_some(asio::mutable_buffer into) override {
     const std::size_t count = std::min(into.size(), bytes_.size() - at_);
     if (count == 0) {
       const auto [error] = co_await closed_.async_wait(kTuple);
       (void)error;  // cancelled at the end
-      co_return IoResult{asio::error::operation_aborted, 0, 0};
+      co_return IoResult{asio::error::operation_aborted};
     }
     std::memcpy(into.data(), bytes_.data() + at_, count);
     at_ += count;
-    co_return IoResult{{}, count, 0};
+    co_return IoResult{{}, count, count};
   }
-  asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers) override {
+  asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers,
+                                  std::size_t /*terrain_bytes*/) override {
     for (const asio::const_buffer& buffer : buffers) {
       const auto* bytes = static_cast<const std::uint8_t*>(buffer.data());
       written.insert(written.end(), bytes, bytes + buffer.size());
     }
-    co_return IoResult{{}, asio::buffer_size(buffers), 0};
+    co_return IoResult{{}, asio::buffer_size(buffers)};
   }
   StreamRoom room() override {
     ++asked;
@@ -63,7 +65,9 @@ class FedStream final : public ByteStream {
 
 /// Keeps messages unhandled until the test handles them.
 struct SlowWorld final : NetEvents {
-  void on_connected(SessionId /*session*/) override {}
+  void on_refused(SessionId /*session*/) override { is_refused = true; }
+  void on_connected(SessionId /*session*/,
+                    const std::optional<ChannelBinding>& /*binding*/) override {}
   void on_message(SessionId /*session*/, Message&& /*message*/, std::size_t bytes) override {
     waiting.push_back(bytes);
     most = std::max(most, waiting.size());
@@ -73,7 +77,7 @@ struct SlowWorld final : NetEvents {
   void on_disconnected(SessionId /*session*/) override { is_disconnected = true; }
   std::vector<std::size_t> waiting;
   std::size_t received = 0, most = 0;
-  bool is_disconnected = false;
+  bool is_disconnected = false, is_refused = false;
 };
 
 Bytes frames_of(const Message& message, std::size_t count) {

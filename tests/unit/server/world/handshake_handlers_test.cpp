@@ -24,7 +24,8 @@ TEST_CASE("hello is answered by a signed welcome, and the client's signature ope
   CHECK(welcome.challenge[0] == 9);
   CHECK(welcome.encoding == ChunkEncoding::packed);
   CHECK(bench.environment.encodings.at(1) == ChunkEncoding::packed);
-  CHECK(verify(welcome.server_key, server_transcript(hello, welcome), welcome.signature));
+  CHECK(verify(welcome.server_key, server_transcript(hello, welcome, std::nullopt),
+               welcome.signature));
   CHECK(bench.environment.messages<SessionAccepted>(1, kEdge).empty());
 
   bench.server.received(1, bench.client_auth(1, hello, welcome), bench.now());
@@ -115,7 +116,8 @@ TEST_CASE("a message at the wrong stage closes the session with its reason", "[w
       closes(bench.client_auth(1, hello, other), GoodbyeReason::not_authenticated);
     }
     SECTION("the server's signature") {
-      closes(ClientAuth{sign(key_pair_of(seed_of(1)), server_transcript(hello, welcome))},
+      closes(ClientAuth{sign(key_pair_of(seed_of(1)),
+                             server_transcript(hello, welcome, std::nullopt))},
              GoodbyeReason::not_authenticated);
     }
     SECTION("after client auth") {

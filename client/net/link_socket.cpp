@@ -1,0 +1,103 @@
+#include "client/net/link_socket.hpp"
+
+#include <asio/error.hpp>
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/use_awaitable.hpp>
+#include <asio/write.hpp>
+#include <utility>
+
+namespace runstone {
+namespace {
+
+constexpr auto kSocketTuple = asio::experimental::as_tuple(asio::use_awaitable);
+
+}  // namespace
+
+void LinkSocket::reset() {
+  tls_.reset();
+  binding_.reset();
+  tcp_ = asio::ip::tcp::socket(tcp_.get_executor());
+}
+
+void LinkSocket::set_no_delay() {
+  asio::error_code ignored;
+  tcp_.set_option(asio::ip::tcp::no_delay(true), ignored);
+}
+
+asio::awaitable<std::string> LinkSocket::secure(const TlsContext& context,
+                                                const std::string& host) {
+  source_ = SocketSource(tcp_.native_handle());
+  tls_.emplace(TlsChannel::connect(context, source_, host));
+  for (;;) {
+    const TlsChannel::Status status = tls_->handshake();
+    const asio::error_code unsent = co_await flush();
+    if (status == TlsChannel::Status::done) break;
+    if (status != TlsChannel::Status::wants_input) co_return "TLS: " + tls_->error();
+    if (unsent) co_return "TLS: " + unsent.message();
+    const asio::error_code ended = co_await wait_input();
+    if (ended) co_return "TLS: " + ended.message();
+  }
+  binding_ = tls_->binding();
+  co_return std::string();
+}
+
+asio::awaitable<LinkSocket::Read> LinkSocket::read_some(asio::mutable_buffer into) {
+  Read result;
+  if (!tls_) {
+    const auto [error, bytes] = co_await tcp_.async_read_some(into, kSocketTuple);
+    co_return Read{error, bytes};
+  }
+  for (;;) {
+    const TlsChannel::Status status =
+        tls_->read({static_cast<std::uint8_t*>(into.data()), into.size()}, result.bytes);
+    if (status == TlsChannel::Status::done) break;
+    if (status != TlsChannel::Status::wants_input) {
+      result.error = asio::error::eof;
+      break;
+    }
+    result.error = co_await wait_input();
+    if (result.error) break;
+  }
+  co_return result;
+}
+
+asio::awaitable<asio::error_code> LinkSocket::write(ByteView bytes) {
+  if (!tls_) {
+    const auto [error, count] =
+        co_await asio::async_write(tcp_, asio::buffer(bytes.data(), bytes.size()), kSocketTuple);
+    co_return error;
+  }
+  if (!tls_->write(bytes)) co_return asio::error::connection_aborted;
+  const asio::error_code error = co_await flush();
+  co_return error;
+}
+
+void LinkSocket::close() {
+  asio::error_code ignored;
+  if (tls_ && binding_) {
+    tls_->end();
+    // What the kernel does not take at once is given up: the connection ends anyway.
+    tcp_.non_blocking(true, ignored);
+    tcp_.write_some(asio::buffer(tls_->output()), ignored);
+  }
+  tcp_.shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
+  tcp_.close(ignored);
+}
+
+asio::awaitable<asio::error_code> LinkSocket::flush() {
+  // While the socket takes the bytes, a read may add to the output.
+  sending_.clear();
+  sending_.swap(tls_->output());
+  const auto [error, count] = co_await asio::async_write(
+      tcp_, asio::buffer(sending_.data(), sending_.size()), kSocketTuple);
+  co_return error;
+}
+
+asio::awaitable<asio::error_code> LinkSocket::wait_input() {
+  if (source_.is_at_end()) co_return asio::error::eof;
+  if (source_.error()) co_return source_.error();
+  const auto [error] = co_await tcp_.async_wait(asio::ip::tcp::socket::wait_read, kSocketTuple);
+  co_return error;
+}
+
+}  // namespace runstone

@@ -1,0 +1,56 @@
+// LinkSocket: the socket of a link, with or without TLS.
+// Thread: the one that runs the io_context. At most one read and one write are under way.
+#pragma once
+#include <asio/awaitable.hpp>
+#include <asio/buffer.hpp>
+#include <asio/error_code.hpp>
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "common/core/bytes.hpp"
+#include "common/tls/socket_source.hpp"
+#include "common/tls/tls_channel.hpp"
+
+namespace runstone {
+
+class LinkSocket {
+ public:
+  explicit LinkSocket(asio::io_context& io) : tcp_(io) {}
+
+  /// Replaces the socket by a new one. Bytes are not encrypted before secure() is called.
+  void reset();
+  /// The socket, to be connected.
+  asio::ip::tcp::socket& tcp() { return tcp_; }
+  void set_no_delay();
+  /// Performs the TLS handshake with the server `host`. Returns an empty text, or why it failed.
+  asio::awaitable<std::string> secure(const TlsContext& context, const std::string& host);
+  /// Identifies the connection after secure().
+  const std::optional<ChannelBinding>& binding() const { return binding_; }
+
+  /// Trivially destructible, because g++ 12 destroys other values in a co_await expression twice.
+  struct Read {
+    asio::error_code error;
+    std::size_t bytes = 0;  // at least 1 without an error
+  };
+  asio::awaitable<Read> read_some(asio::mutable_buffer into);
+  /// Writes all bytes, which must live until the call ends.
+  asio::awaitable<asio::error_code> write(ByteView bytes);
+  /// Closes both directions. Calls under way fail.
+  void close();
+
+ private:
+  asio::awaitable<asio::error_code> flush();
+  /// Waits until the socket can be read. Fails at the end of the stream.
+  asio::awaitable<asio::error_code> wait_input();
+
+  asio::ip::tcp::socket tcp_;
+  SocketSource source_;
+  std::optional<TlsChannel> tls_;  // nullopt: no encryption
+  std::optional<ChannelBinding> binding_;
+  Bytes sending_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,221 @@
+#include <asio/bind_executor.hpp>
+#include <asio/error.hpp>
+#include <asio/post.hpp>
+#include <asio/this_coro.hpp>
+#include <utility>
+
+#include "common/os/thread_cpu_ns.hpp"
+#include "common/tls/socket_source.hpp"
+#include "common/tls/tls_channel.hpp"
+#include "server/net/await_tuple.hpp"
+#include "server/net/tcp_stream.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr auto kCanRead = asio::ip::tcp::socket::wait_read;
+/// The first byte of a TLS connection: a record of the type handshake (RFC 8446, 5.1). A client that
+/// does not speak TLS begins with the size of its Hello, which is neither 22 nor 278 bytes.
+constexpr std::uint8_t kHandshakeRecord = 22;
+/// What is kept of the output's memory between two writes.
+constexpr std::size_t kKeptBytes = 2 * 1024;
+/// What a step of the handshake reads at most.
+constexpr std::size_t kHandshakeBytes = 4 * 1024;
+/// What is read of a client that does not speak TLS. Unread input would make the kernel reset the
+/// connection, and the answer would be lost.
+constexpr std::size_t kPlainBytes = 16 * 1024;
+
+/// Text that is gathered for the next record.
+class RecordText {
+ public:
+  explicit RecordText(TlsChannel& channel) : channel_(channel) {}
+  /// Writes a record whenever one is full. Returns false after a failure.
+  bool add(ByteView text) {
+    while (!text.empty()) {
+      // A full record is not copied.
+      if (text_.empty() && text.size() >= kTlsRecordBytesMax) {
+        if (!channel_.write(text.first(kTlsRecordBytesMax))) return false;
+        text = text.subspan(kTlsRecordBytesMax);
+        continue;
+      }
+      const std::size_t taken = std::min(text.size(), kTlsRecordBytesMax - text_.size());
+      text_.insert(text_.end(), text.begin(), text.begin() + static_cast<std::ptrdiff_t>(taken));
+      text = text.subspan(taken);
+      if (text_.size() == kTlsRecordBytesMax && !end()) return false;
+    }
+    return true;
+  }
+  /// Writes what was gathered.
+  bool end() {
+    const bool written = channel_.write(text_);
+    text_.clear();
+    return written;
+  }
+
+ private:
+  TlsChannel& channel_;
+  Bytes text_;
+};
+
+class TlsStream final : public ByteStream {
+ public:
+  TlsStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes, const TlsContext& context,
+            asio::any_io_executor handshakes, Bytes plain_answer)
+      : tcp_(std::move(socket), notsent_bytes),
+        source_(tcp_.socket().native_handle()),
+        channel_(TlsChannel::accept(context, source_)),
+        handshakes_(std::move(handshakes)),
+        plain_answer_(std::move(plain_answer)) {}
+
+  asio::awaitable<StreamStart> open() override {
+    const asio::any_io_executor strand = co_await asio::this_coro::executor;
+    for (;;) {
+      const auto [error] = co_await tcp_.socket().async_wait(kCanRead, kTuple);
+      if (error) co_return StreamStart::failed;
+      if (is_plain()) {
+        co_await answer_plain();
+        co_return StreamStart::not_encrypted;
+      }
+      source_.hold(kHandshakeBytes);
+      co_await asio::post(asio::bind_executor(handshakes_, asio::use_awaitable));
+      const TlsChannel::Status status = channel_.handshake();
+      co_await asio::post(asio::bind_executor(strand, asio::use_awaitable));
+      source_.release();
+      co_await flush();
+      if (status == TlsChannel::Status::done) break;
+      const asio::error_code broken = source_broke();
+      if (status != TlsChannel::Status::wants_input || broken) {
+        failure_ = broken ? broken.message() : channel_.error();
+        co_return StreamStart::failed;
+      }
+    }
+    plain_answer_ = {};
+    binding_ = channel_.binding();
+    co_return StreamStart::open;
+  }
+  std::string failure() const override { return failure_; }
+  std::optional<ChannelBinding> binding() const override { return binding_; }
+
+  asio::awaitable<IoResult> read_some(asio::mutable_buffer into) override {
+    IoResult result;
+    // A record holds its text and a little more. More than two buffers without text are no mistake.
+    source_.allow(2 * into.size() + kTlsRecordExtraBytes);
+    for (;;) {
+      const TlsChannel::Status status =
+          channel_.read({static_cast<std::uint8_t*>(into.data()), into.size()}, result.bytes);
+      result.received += source_.take_count();
+      if (status == TlsChannel::Status::done) break;
+      result.error = status == TlsChannel::Status::wants_input ? source_broke() : asio::error::eof;
+      if (result.error || source_.is_used_up()) break;
+      const auto [error] = co_await tcp_.socket().async_wait(kCanRead, kTuple);
+      result.error = error;
+      if (error) break;
+    }
+    co_return result;
+  }
+
+  asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers,
+                                  std::size_t terrain_bytes) override {
+    IoResult result;
+    const std::int64_t began_ns = thread_cpu_ns();
+    const bool is_encrypted = encrypt(buffers, asio::buffer_size(buffers) - terrain_bytes);
+    const std::int64_t encrypt_ns = thread_cpu_ns() - began_ns;
+    if (is_encrypted) {
+      result = co_await flush();
+    } else {
+      result.error = asio::error::connection_aborted;
+    }
+    result.call_ns += encrypt_ns;
+    co_return result;
+  }
+
+  StreamRoom room() override {
+    StreamRoom room = tcp_.room();
+    const std::size_t records = room.bytes / kTlsRecordBytesMax + 1;
+    room.bytes -= std::min(room.bytes, records * kTlsRecordExtraBytes);
+    return room;
+  }
+  void shutdown_send() override {
+    channel_.end();
+    // What the kernel does not take at once is given up: the peer does not read.
+    asio::error_code ignored;
+    tcp_.socket().write_some(asio::buffer(channel_.output()), ignored);
+    tcp_.shutdown_send();
+  }
+  void close() override { tcp_.close(); }
+  std::string peer() const override { return tcp_.peer(); }
+  AddressBlock address() const override { return tcp_.address(); }
+
+ private:
+  /// Returns true if the first byte of the connection is none of TLS. Leaves it where it is.
+  bool is_plain() {
+    if (std::exchange(is_first_byte_known_, true)) return false;
+    std::uint8_t first = kHandshakeRecord;
+    asio::error_code ignored;
+    tcp_.socket().receive(asio::buffer(&first, 1), asio::socket_base::message_peek, ignored);
+    return first != kHandshakeRecord;
+  }
+  asio::awaitable<void> answer_plain() {
+    channel_.output() = std::exchange(plain_answer_, {});
+    co_await flush();
+    tcp_.shutdown_send();
+    Bytes buffer(1024);
+    for (std::size_t got = 0; got < kPlainBytes;) {
+      const IoResult read = co_await tcp_.read_some(asio::buffer(buffer));
+      if (read.error) break;
+      got += read.bytes;
+    }
+  }
+  asio::error_code source_broke() const {
+    if (source_.is_at_end()) return asio::error::eof;
+    return source_.error();
+  }
+  /// Terrain begins a record of its own, so that the peer can read an edit before the terrain
+  /// behind it has arrived.
+  bool encrypt(const std::vector<asio::const_buffer>& buffers, std::size_t before_terrain) {
+    RecordText record(channel_);
+    std::size_t at = 0;
+    for (const asio::const_buffer& buffer : buffers) {
+      if (at == before_terrain && !record.end()) return false;
+      if (!record.add({static_cast<const std::uint8_t*>(buffer.data()), buffer.size()}))
+        return false;
+      at += buffer.size();
+    }
+    return record.end();
+  }
+  /// Sends the output of the channel.
+  asio::awaitable<IoResult> flush() {
+    // While the socket takes the bytes, a read may add to the output.
+    sending_.swap(channel_.output());
+    buffers_.assign(1, asio::buffer(sending_));
+    const IoResult result = co_await tcp_.write(buffers_, 0);
+    if (sending_.capacity() > kKeptBytes) {
+      sending_ = {};
+    } else {
+      sending_.clear();
+    }
+    co_return result;
+  }
+
+  TcpStream tcp_;
+  SocketSource source_;
+  TlsChannel channel_;
+  const asio::any_io_executor handshakes_;
+  Bytes plain_answer_;
+  Bytes sending_;
+  std::vector<asio::const_buffer> buffers_;  // of the write under way
+  bool is_first_byte_known_ = false;
+  std::optional<ChannelBinding> binding_;
+  std::string failure_;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteStream> make_tls_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
+                                            const TlsContext& context,
+                                            asio::any_io_executor handshakes, Bytes plain_answer) {
+  return std::make_unique<TlsStream>(std::move(socket), notsent_bytes, context,
+                                     std::move(handshakes), std::move(plain_answer));
+}
+
+}  // namespace runstone
