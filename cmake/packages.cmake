@@ -17,6 +17,7 @@ find_package(tomlplusplus REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
+pkg_check_modules(UTF8PROC REQUIRED IMPORTED_TARGET libutf8proc)
 
 # Asio 1.22 comes without a CMake file, and keeps coroutines off under clang unless told otherwise.
 find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)

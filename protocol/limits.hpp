@@ -12,12 +12,14 @@
 
 namespace runstone {
 
-inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint32_t kProtocolVersion = 2;
 
 // Features: optional parts of the protocol, a bit each.
 inline constexpr std::uint64_t kFeatureCommands = 1;    // CommandRequest and CommandOutput
 inline constexpr std::uint64_t kFeatureReceiveAck = 2;  // ReceiveAck, by which terrain is paced
-inline constexpr std::uint64_t kFeaturesKnown = kFeatureCommands | kFeatureReceiveAck;
+inline constexpr std::uint64_t kFeatureNames = 4;  // the client keeps its key: it claims its name
+inline constexpr std::uint64_t kFeaturesKnown =
+    kFeatureCommands | kFeatureReceiveAck | kFeatureNames;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below

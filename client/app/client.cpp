@@ -29,6 +29,7 @@ constexpr TimeUs kRestUsWindow = 2'000;
 /// A view whose chunks have been here for this long is taken as meshed.
 constexpr TimeUs kMeshedUs = 2'000'000;
 constexpr TimeUs kTitleUs = 500'000;
+constexpr TimeUs kPlayerLogUs = 1'000'000;
 /// The log is divided into this many steps of `[` and `]`.
 constexpr Sequence kScrubSteps = 100;
 
@@ -105,6 +106,7 @@ int Client::run_turns(const volatile std::sig_atomic_t& stop) {
     limit_memory(now_us);
     poll_window(now_us);
     pipeline_.take_drawn();
+    log_players(now_us);
     view_.update_completeness(now_us);
     if (runner_) runner_->step(now_us);
     flush();  // local edits go first, because following the player may take long
@@ -225,6 +227,12 @@ void Client::drain_changes() {
   for (const RejectedEdit& reject : changes.rejects) {
     spdlog::info("edit={} rejected: {} {}", reject.seq, to_string(reject.reason), reject.detail);
   }
+}
+
+void Client::log_players(TimeUs now_us) {
+  if (now_us - players_logged_us_ < kPlayerLogUs) return;
+  players_logged_us_ = now_us;
+  player_log_.update(session_.others());
 }
 
 std::vector<Marker> Client::markers() const {

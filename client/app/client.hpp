@@ -14,6 +14,7 @@
 #include "client/app/edit_tool.hpp"
 #include "client/app/options.hpp"
 #include "client/app/player.hpp"
+#include "client/app/player_log.hpp"
 #include "client/app/script_actions.hpp"
 #include "client/app/threaded_session.hpp"
 #include "client/app/view_follower.hpp"
@@ -53,6 +54,8 @@ class Client {
   void limit_memory(TimeUs now_us);
   /// Sends what is queued, and meshes what changed.
   void flush();
+  /// Logs who came and left, once a second.
+  void log_players(TimeUs now_us);
   void drain_changes();
   void draw(TimeUs now_us);
   std::vector<Marker> markers() const;
@@ -84,8 +87,10 @@ class Client {
   TimeUs titled_us_ = 0;             // when the title was last set
   std::uint64_t titled_frames_ = 0;  // frames presented by then
   std::string logged_refusal_;       // of the newest request to see the past
-  bool logged_read_only_ = false;    // the state of the server that was logged last
-  bool end_requested_ = false;       // by the user or a signal
+  PlayerLog player_log_;
+  TimeUs players_logged_us_ = 0;   // when the player log was last updated
+  bool logged_read_only_ = false;  // the state of the server that was logged last
+  bool end_requested_ = false;     // by the user or a signal
 };
 
 }  // namespace runstone

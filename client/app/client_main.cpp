@@ -8,12 +8,15 @@
 #include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "client/app/client.hpp"
+#include "client/app/key_program.hpp"
 #include "client/app/material_list.hpp"
 #include "client/display/draw_program.hpp"
 #include "client/report/exit_code.hpp"
@@ -57,9 +60,19 @@ int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop)
   return code;
 }
 
+int key_program(int argc, const char* const* argv) {
+  const auto parsed = runstone::parse_key_request(argc, argv);
+  if (!parsed.request) return parsed.exit_code;
+  const auto done = runstone::run_key_program(*parsed.request, std::cin, std::cout);
+  if (done) return runstone::kExitOk;
+  std::fprintf(stderr, "runstone-client key: %s\n", done.error().c_str());
+  return runstone::kExitNoStart;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "key") return key_program(argc - 1, argv + 1);
   auto parsed = runstone::parse_options(argc, argv);
   if (!parsed.options) return parsed.exit_code;
   if (parsed.options->draw) {

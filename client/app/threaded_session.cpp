@@ -7,7 +7,9 @@
 #include <variant>
 
 #include "client/net/key_file.hpp"
+#include "common/core/hex.hpp"
 #include "common/os/steady_clock.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
 
 namespace runstone {
 namespace {
@@ -35,7 +37,10 @@ SessionConfig session_config(const ClientOptions& options, bool has_cache) {
   SessionConfig config;
   config.has_cache = has_cache;
   config.keys = options.key_file.empty() ? random_key() : load_or_create_key(options.key_file);
-  if (!options.key_file.empty()) config.pinned = load_pinned_servers(options.key_file);
+  if (!options.key_file.empty()) {
+    config.pinned = load_pinned_servers(options.key_file);
+    config.features |= kFeatureNames;
+  }
   config.name = options.name;
   config.instance = random_instance();
   config.encodings = options.encodings;
@@ -130,8 +135,12 @@ void ThreadedSession::on_world_opened() {
   const Welcome& welcome = *session_.welcome();
   spdlog::info("world open author={} epoch={} head={} durable={} edge={}", session_.author(),
                welcome.epoch, welcome.head, welcome.durable, welcome.chunk_edge);
-  if (!options_.key_file.empty() && session_.pinned().size() != pins_saved_) {
-    save_pinned_servers(options_.key_file, session_.pinned());
+  if (session_.pinned().size() != pins_saved_) {
+    spdlog::warn(
+        "first contact with the server of world {}: its fingerprint is {}; compare it with the one "
+        "that your host sees when the server starts",
+        to_hex(welcome.world_id), key_fingerprint(welcome.server_key));
+    if (!options_.key_file.empty()) save_pinned_servers(options_.key_file, session_.pinned());
     pins_saved_ = session_.pinned().size();
   }
 }

@@ -77,7 +77,7 @@ class ThreadedSession {
   const std::function<void()> wake_;
   std::unique_ptr<CacheThread> cache_;  // null without a cache
   ClientSession session_;
-  std::size_t pins_saved_ = 0;
+  std::size_t pins_saved_ = 0;  // worlds of which the key was shown, and saved with a key file
   SnapshotStats snapshots_;
   std::deque<LinkEvent> events_;     // taken from the network thread, not handled yet
   ConnectionNumber connection_ = 0;  // 0: none

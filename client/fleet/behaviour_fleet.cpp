@@ -34,6 +34,7 @@ BotConfig config_of(const BotOptions& options, std::size_t index) {
           ? random_key()
           : load_or_create_key(
                 (std::filesystem::path(options.key_dir) / (config.session.name + ".key")).string());
+  if (!options.key_dir.empty()) config.session.features |= kFeatureNames;
   config.session.instance = random_instance();
   config.session.view.radius_h = options.view_radius;
   config.session.view.radius_v = options.view_radius_v;

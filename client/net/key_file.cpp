@@ -34,27 +34,27 @@ void need_sodium() {
   if (sodium_init() < 0) throw std::runtime_error("libsodium cannot start");
 }
 
-KeySeed create_seed(const std::string& file) {
-  KeySeed seed;
-  randombytes_buf(seed.data(), seed.size());
-  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (fd < 0) throw_error(file, std::strerror(errno));
-  const std::string text = to_hex(seed) + "\n";
-  const bool written = ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  const bool closed = ::close(fd) == 0;
-  if (!written || !closed) throw_error(file, "cannot be written");
-  return seed;
-}
-
 }  // namespace
 
-KeyPair load_or_create_key(const std::string& file) {
-  need_sodium();
+void write_new_secret_file(const std::string& file, const std::string& text) {
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0) throw_error(file, std::strerror(errno));
+  const bool is_written =
+      ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      ::fsync(fd) == 0;
+  const bool is_closed = ::close(fd) == 0;
+  if (is_written && is_closed) return;
+  ::unlink(file.c_str());
+  throw_error(file, "cannot be written");
+}
+
+void save_new_key(const std::string& file, const KeySeed& seed) {
+  write_new_secret_file(file, to_hex(seed) + "\n");
+}
+
+KeySeed load_key_seed(const std::string& file) {
   struct stat info{};
-  if (::stat(file.c_str(), &info) != 0) {
-    if (errno != ENOENT) throw_error(file, std::strerror(errno));
-    return key_pair_of(create_seed(file));
-  }
+  if (::stat(file.c_str(), &info) != 0) throw_error(file, std::strerror(errno));
   if ((info.st_mode & 077) != 0)
     throw_error(file, "other users may read this key: run chmod 600 on it");
   std::ifstream in(file);
@@ -62,7 +62,19 @@ KeyPair load_or_create_key(const std::string& file) {
   KeySeed seed;
   if (!std::getline(in, line) || !parse_hex(line, seed))
     throw_error(file, "is not a key file (64 hex digits)");
-  return key_pair_of(seed);
+  return seed;
+}
+
+KeyPair load_or_create_key(const std::string& file) {
+  need_sodium();
+  struct stat info{};
+  if (::stat(file.c_str(), &info) != 0 && errno == ENOENT) {
+    KeySeed seed;
+    randombytes_buf(seed.data(), seed.size());
+    save_new_key(file, seed);
+    return key_pair_of(seed);
+  }
+  return key_pair_of(load_key_seed(file));
 }
 
 KeyPair random_key() {

@@ -15,6 +15,12 @@ namespace runstone {
 
 /// Reads the key, or creates the file with a random key. Throws if other users may read the file.
 KeyPair load_or_create_key(const std::string& file);
+/// Reads the seed of a key. Throws if the file is missing, or if other users may read it.
+KeySeed load_key_seed(const std::string& file);
+/// Writes a key file. Throws if the file exists.
+void save_new_key(const std::string& file, const KeySeed& seed);
+/// Writes a file that only its owner may read. It is on disk on return. Throws if the file exists.
+void write_new_secret_file(const std::string& file, const std::string& text);
 /// Returns a random key.
 KeyPair random_key();
 

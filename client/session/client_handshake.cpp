@@ -1,5 +1,7 @@
 #include "client/session/client_handshake.hpp"
 
+#include "protocol/codec/key_fingerprint.hpp"
+
 namespace runstone {
 
 Hello make_hello(const SessionConfig& config, const Nonce& nonce) {
@@ -29,7 +31,9 @@ std::optional<WelcomeFault> check_welcome(const Hello& hello, const Welcome& wel
   const auto [pin, first_use] = pinned.try_emplace(welcome.world_id, welcome.server_key);
   if (!first_use && pin->second != welcome.server_key) {
     return WelcomeFault{GoodbyeReason::not_authenticated,
-                        "server key differs from the one pinned for this world"};
+                        "this server has the key " + key_fingerprint(welcome.server_key) +
+                            ", but the world's key is pinned as " + key_fingerprint(pin->second) +
+                            ": it may be an impostor; ask the host which key is right"};
   }
   return std::nullopt;
 }

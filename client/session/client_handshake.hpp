@@ -16,7 +16,8 @@ struct SessionConfig {
   std::string name = "builder";
   ClientInstance instance = 1;               // random per process
   std::uint8_t encodings = kEncodingsKnown;  // as in Hello
-  std::uint64_t features = kFeaturesKnown;
+  /// kFeatureNames is added if the key is kept for later runs.
+  std::uint64_t features = kFeaturesKnown & ~kFeatureNames;
   View view;                            // requested; the server's limit cuts the radii
   std::map<WorldId, PublicKey> pinned;  // server keys seen before
   bool has_cache = false;               // a ClientSession looks chunks up in a cache

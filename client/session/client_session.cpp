@@ -284,6 +284,7 @@ void ClientSession::on_player_list(const PlayerList& list) {
     if (player.author == author()) continue;
     OtherPlayer& other = others_[player.author];
     other.name = player.name;
+    other.key = player.key;
     if (const auto before = known.find(player.author); before != known.end())
       other.pose = before->second.pose;
   }

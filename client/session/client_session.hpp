@@ -43,6 +43,7 @@ inline constexpr TimeUs kAnswerUsMax = 10'000'000;
 
 struct OtherPlayer {
   std::string name;
+  PublicKey key{};
   std::optional<Pose> pose;
 };
 

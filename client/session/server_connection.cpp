@@ -10,7 +10,8 @@ namespace runstone {
 namespace {
 
 bool is_final(GoodbyeReason reason) {
-  return reason == GoodbyeReason::wrong_protocol || reason == GoodbyeReason::not_authenticated;
+  return reason == GoodbyeReason::wrong_protocol || reason == GoodbyeReason::not_authenticated ||
+         reason == GoodbyeReason::name_refused;
 }
 
 }  // namespace

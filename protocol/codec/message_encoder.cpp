@@ -141,8 +141,11 @@ struct BodyBuilder {
   Offset<wire::PlayerList> operator()(const PlayerList& m) {
     std::vector<Offset<wire::PlayerName>> players;
     players.reserve(m.players.size());
-    for (const PlayerName& p : m.players)
-      players.push_back(wire::CreatePlayerName(b, p.author, b.CreateString(p.name)));
+    for (const PlayerName& p : m.players) {
+      const auto name = b.CreateString(p.name);
+      const auto key = bytes_of(b, p.key);
+      players.push_back(wire::CreatePlayerName(b, p.author, name, key));
+    }
     return wire::CreatePlayerList(b, b.CreateVector(players), m.is_change,
                                   m.is_change ? b.CreateVector(m.left) : 0);
   }

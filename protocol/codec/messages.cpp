@@ -67,6 +67,8 @@ const char* to_string(GoodbyeReason reason) {
       return "flooding";
     case GoodbyeReason::internal:
       return "internal";
+    case GoodbyeReason::name_refused:
+      return "name_refused";
   }
   return "unknown";
 }

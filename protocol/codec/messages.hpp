@@ -340,6 +340,7 @@ struct PlayerPoses {
 struct PlayerName {
   AuthorId author = 0;
   std::string name;
+  PublicKey key{};
   friend bool operator==(const PlayerName&, const PlayerName&) = default;
 };
 /// The players in the world: all of them, or the changes since the last list.
@@ -371,8 +372,9 @@ enum class GoodbyeReason : std::uint16_t {
   timed_out = 9,
   flooding = 10,  // more messages or claims than the limits allow
   internal = 11,
+  name_refused = 12,  // the player may not have this name; text says why
 };
-inline constexpr std::uint16_t kGoodbyeReasonMax = 11;
+inline constexpr std::uint16_t kGoodbyeReasonMax = 12;
 /// Returns the name in docs/protocol.md, or "unknown".
 const char* to_string(GoodbyeReason reason);
 

@@ -143,6 +143,7 @@ Result<Message> BodyReader::read(const wire::PlayerList& t) const {
         !is_plain_name(m.players[i].name)) {
       return bad("player name is not a name of 1 .. 32 bytes");
     }
+    if (!take_exact(p.key(), m.players[i].key)) return bad("player key is not 32 bytes");
   }
   m.is_change = t.change();
   const auto gone =

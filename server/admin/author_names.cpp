@@ -1,10 +1,13 @@
 #include "server/admin/author_names.hpp"
 
+#include "protocol/codec/key_fingerprint.hpp"
+
 namespace runstone {
 
 AuthorNames::AuthorNames(const std::vector<PlayerRow>& rows, const std::vector<UsedName>& used) {
   for (const PlayerRow& row : rows) {
     names_[row.author] = row.name;
+    keys_[row.author] = row.key;
     authors_[row.name].insert(row.author);
   }
   for (const UsedName& name : used) authors_[name.name].insert(name.author);
@@ -14,6 +17,11 @@ std::string AuthorNames::of(AuthorId author) const {
   if (author == 0) return "the server";
   const auto found = names_.find(author);
   return (found == names_.end() ? "" : found->second + " ") + "#" + std::to_string(author);
+}
+
+std::string AuthorNames::with_key(AuthorId author) const {
+  const auto key = keys_.find(author);
+  return of(author) + (key == keys_.end() ? "" : " " + key_fingerprint(key->second));
 }
 
 Result<AuthorId, std::string> AuthorNames::find(const std::string& name) const {

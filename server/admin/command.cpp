@@ -227,10 +227,17 @@ Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us)
     }
     return Command(MaterialsCommand{words->size() == 2 ? (*words)[1] : std::string()});
   }
+  if (name == "names" && words->size() > 1) {
+    if ((*words)[1] != "release") return mistake("names \"" + (*words)[1] + "\": release NAME");
+    if (words->size() != 3)
+      return mistake("names release: one name comes after it, in quotes if it has blanks");
+    return Command(ReleaseNameCommand{(*words)[2]});
+  }
   std::optional<Command> plain;
   if (name == "help") plain = HelpCommand{};
   if (name == "status") plain = StatusCommand{};
   if (name == "players") plain = PlayersCommand{};
+  if (name == "names") plain = NamesCommand{};
   if (name == "stop") plain = StopCommand{};
   if (name == "undo") plain = UndoCommand{false};
   if (name == "redo") plain = UndoCommand{true};
@@ -259,6 +266,9 @@ std::string command_help(bool is_operator) {
          "players                   who is here, who has ever built, "
          "and who else was here since the server started\n"
          "log FILTERS [limit N]     the newest edits, the last one at the bottom\n"
+         "names                     which key owns which name\n"
+         "names release NAME        free a name, so that the next player who joins under it owns "
+         "it\n"
          "rollback preview FILTERS [picture]\n"
          "                          what a rollback of these edits would do; "
          "`picture` draws the area before and after\n"

@@ -57,6 +57,13 @@ struct LogCommand {
   std::uint64_t limit = 20;  // newest edits, 1 .. kLogLinesMax
   friend bool operator==(const LogCommand&, const LogCommand&) = default;
 };
+struct NamesCommand {
+  friend bool operator==(const NamesCommand&, const NamesCommand&) = default;
+};
+struct ReleaseNameCommand {
+  std::string name;
+  friend bool operator==(const ReleaseNameCommand&, const ReleaseNameCommand&) = default;
+};
 struct RollbackPreviewCommand {
   CommandFilter filter;
   bool picture = false;  // draw the area before and after the rollback
@@ -72,8 +79,8 @@ struct RollbackListCommand {
 };
 
 using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand,
-                             StopCommand, UndoCommand, LogCommand, RollbackPreviewCommand,
-                             RollbackCommand, RollbackListCommand>;
+                             StopCommand, UndoCommand, LogCommand, NamesCommand, ReleaseNameCommand,
+                             RollbackPreviewCommand, RollbackCommand, RollbackListCommand>;
 
 /// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate
 /// words; a word that contains blanks stands in double quotes. `now_us` (UTC) is the time to which

@@ -4,9 +4,11 @@
 #include <memory>
 #include <utility>
 
+#include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/author_names.hpp"
 #include "server/admin/log_line.hpp"
 #include "server/admin/material_list.hpp"
+#include "server/admin/name_list.hpp"
 #include "server/admin/player_list.hpp"
 #include "server/draw/preview_pictures.hpp"
 #include "server/rollback/newest_edits.hpp"
@@ -53,6 +55,9 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
     return reply({command_help(caller.is_operator), true, true});
   if (std::holds_alternative<StatusCommand>(*command)) return status(reply);
   if (std::holds_alternative<PlayersCommand>(*command)) return players(reply);
+  if (std::holds_alternative<NamesCommand>(*command)) return names(reply);
+  if (const auto* release = std::get_if<ReleaseNameCommand>(&*command))
+    return release_name(release->name, reply);
   if (const auto* list = std::get_if<MaterialsCommand>(&*command)) {
     return reply({material_list(materials_, list->part), true, true});
   }
@@ -112,6 +117,21 @@ void CommandHandler::players(const CommandReply& reply) {
                });
 }
 
+void CommandHandler::names(const CommandReply& reply) const {
+  std::vector<OwnedName> owned;
+  for (const NameClaim& claim : world_.name_claims())
+    owned.push_back({claim.name, claim.key, world_.author_of(claim.key)});
+  reply({name_list(owned), true, true});
+}
+
+void CommandHandler::release_name(const std::string& name, const CommandReply& reply) {
+  const auto released = world_.release_name(name);
+  if (!released) return refuse(reply, "names release: " + released.error());
+  reply({"\"" + released->name + "\" was owned by " + key_fingerprint(released->key) +
+             "; the next player who joins under it owns it",
+         true, true});
+}
+
 void CommandHandler::resolve(const CommandFilter& filter, const std::string& command,
                              const CommandReply& reply,
                              std::function<void(const SelectionFilter&)> go_on) {
@@ -162,7 +182,7 @@ void CommandHandler::log(const LogCommand& command, const Clocks& now, const Com
                   if (!newest) *wrong = newest.error().message();
                   if (!wrong->empty()) return;
                   for (const EditRecord& record : *newest) {
-                    *text += log_line(record, names->of(record.op.author), materials) + "\n";
+                    *text += log_line(record, names->with_key(record.op.author), materials) + "\n";
                   }
                 },
                 [text, wrong, reply](const std::string& error) {

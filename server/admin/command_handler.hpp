@@ -30,6 +30,8 @@ class CommandHandler {
  private:
   void status(const CommandReply& reply) const;
   void players(const CommandReply& reply);
+  void names(const CommandReply& reply) const;
+  void release_name(const std::string& name, const CommandReply& reply);
   void log(const LogCommand& command, const Clocks& now, const CommandReply& reply);
   void preview(const RollbackPreviewCommand& command, const Clocks& now, const CommandReply& reply);
   /// Looks up the authors that a filter names, on a worker. Calls `go_on` with the result, or

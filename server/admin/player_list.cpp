@@ -7,6 +7,7 @@
 
 #include "common/core/hex.hpp"
 #include "common/core/key_text.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
 
 namespace runstone {
 namespace {
@@ -14,7 +15,8 @@ namespace {
 constexpr std::size_t kAbsentListed = 500;
 
 std::string line_of(const PlayerRow& row) {
-  return row.name + " #" + std::to_string(row.author) + " key " + to_hex(row.key);
+  return row.name + " #" + std::to_string(row.author) + " " + key_fingerprint(row.key) + " key " +
+         to_hex(row.key);
 }
 
 std::int32_t voxel_of(double coordinate) {

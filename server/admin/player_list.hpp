@@ -8,7 +8,7 @@
 
 namespace runstone {
 
-/// Returns one line per player with name, author number and key, ascending by author number. The
+/// Returns one line per player with name, author number, fingerprint and key, ascending by author number. The
 /// line of a player who is present has the position. The line of a visitor says that the visitor
 /// left. Anybody can make any number of keys, so at most 500 players of the store who are not
 /// present are listed; a last line counts the others.

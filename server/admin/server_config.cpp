@@ -9,6 +9,7 @@
 
 #include "common/core/hex.hpp"
 #include "server/admin/operators.hpp"
+#include "server/admin/reserved_names.hpp"
 
 namespace runstone {
 namespace {
@@ -143,6 +144,21 @@ FormField builder_budget_field() {
           }};
 }
 
+FormField reserved_names_field() {
+  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+            auto names = parse_reserved_names(text);
+            if (!names) return names.error();
+            config.reserved_names = *std::move(names);
+            return std::nullopt;
+          },
+          [](const ServerConfig& config) {
+            std::string text;
+            for (const std::string& name : config.reserved_names)
+              text += (text.empty() ? "" : ", ") + name;
+            return text;
+          }};
+}
+
 const std::vector<Field>& fields() {
   using C = ServerConfig;
   const auto number = [](const char* name, std::uint64_t C::* member, std::uint64_t min,
@@ -192,6 +208,12 @@ const std::vector<Field>& fields() {
       {"operators",
        "public keys, in hex, of players who may give every command; separated by blanks or commas",
        operators_field()},
+      number("names_per_key", &C::names_per_key, 1, 16, "names that a player may own"),
+      number("names_per_address", &C::names_per_address, 0, 1'000'000,
+             "names an hour that players of one address may claim, 0: no limit"),
+      {"reserved_names",
+       "names that nobody may have, besides server, admin and the like; separated by commas",
+       reserved_names_field()},
       number("edit_volume_max", &C::edit_volume_max, 1, 1ULL << 40, "voxels per edit"),
       number("height_max", &C::height_max, 1, 1ULL << 29, "voxels above y = 0 where edits may be"),
       number("depth_max", &C::depth_max, 0, 1ULL << 29, "voxels below y = 0 where edits may be"),

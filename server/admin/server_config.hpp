@@ -72,6 +72,10 @@ struct ServerConfig {
   /// it.
   std::uint64_t server_kib_per_second = 0;
   std::set<PublicKey> operators;  // players who may give every command
+  // Names.
+  std::uint64_t names_per_key = 3;          // names that a key may own, 1..16
+  std::uint64_t names_per_address = 64;     // names claimed from one address an hour, 0: no limit
+  std::vector<std::string> reserved_names;  // besides kReservedNames; nobody may have them
   // Edits.
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit, 1..2^40
   std::uint64_t height_max = 1ULL << 29;      // voxels above y = 0 where edits may be, 1..2^29

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "common/os/steady_clock.hpp"
+#include "protocol/codec/handshake.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/control_socket.hpp"
 #include "server/runtime/encryption.hpp"
 #include "server/runtime/logging.hpp"
@@ -113,6 +115,9 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
     logger("app").info("NEW WORLD: made world={} generator={} seed={}", config.world,
                        creation.generator, creation.seed);
   }
+  logger("app").info(
+      "fingerprint={} of this world's key: players compare it at first contact",
+      key_fingerprint(key_pair_of(parts->world.store->meta().server_key_seed).public_key));
   logger("app").info("listening port={} encryption={} world={} new={}", parts->core->port(),
                      config.insecure ? "none" : "tls", config.world, parts->world.is_new);
   return std::unique_ptr<Server>(new Server(std::move(parts)));

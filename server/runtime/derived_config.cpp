@@ -1,5 +1,7 @@
 #include "server/runtime/derived_config.hpp"
 
+#include "server/admin/reserved_names.hpp"
+
 namespace runstone {
 namespace {
 
@@ -25,6 +27,9 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.sessions_max = config.sessions_max;
   world.sessions_per_key = config.sessions_per_key;
   world.sessions_per_address = config.sessions_per_address;
+  world.names_per_key = config.names_per_key;
+  world.names_per_address = config.names_per_address;
+  world.reserved_names = folded_reserved_names(config.reserved_names);
   world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
   world.view_interval_us = static_cast<TimeUs>(config.view_interval_ms) * kUsPerMs;
   world.loads_in_flight_max = kLoadsPerWorker * config.worker_threads;

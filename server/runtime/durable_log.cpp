@@ -24,6 +24,9 @@ DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string&
                                         std::optional<Sequence> /*seq*/) {
     strand_.post([this] { events_.on_snapshots_saved(); });
   };
+  callbacks.on_names_written = [this](std::size_t count) {
+    strand_.post([this, count] { events_.on_names_written(count); });
+  };
   callbacks.on_failed = [this](const StoreError& error) { on_failed(error); };
   callbacks.on_space = [this](DiskSpace space, const std::string& why) { on_space(space, why); };
   callbacks.free_bytes = [folder] { return free_bytes(folder); };

@@ -29,6 +29,8 @@ class DurableLog {
   struct Events {
     /// Reports that every edit up to the sequence is on disk.
     std::function<void(Sequence)> on_durable;
+    /// Reports that so many changes of names are on disk, the oldest first.
+    std::function<void(std::size_t)> on_names_written;
     /// Reports that the snapshots of the oldest save_snapshots() not reported yet are on disk.
     std::function<void()> on_snapshots_saved;
     /// Reports that the disk has no more space for new edits, or has space again.

@@ -28,6 +28,9 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   start.author_max = store.author_max();
   // A write of a player reads the player's names. A damaged one would end the log writer.
   if (const auto names = store.player_names(); !names) return failure(names.error());
+  auto claims = store.name_claims();
+  if (!claims) return failure(claims.error());
+  start.name_claims = *std::move(claims);
   auto watermarks = store.high_waters();
   if (!watermarks) return failure(watermarks.error());
   start.resolved = *std::move(watermarks);

@@ -80,9 +80,12 @@ DurableLog::Events ServerCore::log_events() {
     world_->durable(seq, now);
     commands_->tick(now);
   };
+  events.on_names_written = [this](std::size_t count) {
+    world_->names_durable(count, read_clocks());
+  };
   events.on_snapshots_saved = [this] { world_->snapshots_saved(read_clocks()); };
   events.on_space = [this](DiskSpace space) {
-    world_->set_disk_is_full(space != DiskSpace::enough);
+    world_->set_disk_is_full(space != DiskSpace::enough, read_clocks());
     commands_->tick(read_clocks());
   };
   events.on_failed = [this] {

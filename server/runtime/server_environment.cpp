@@ -65,6 +65,10 @@ void ServerEnvironment::log_append(std::vector<PlayerRow> players,
   log_->writer().append(std::move(players), std::move(records));
 }
 
+void ServerEnvironment::log_names(std::vector<NameChange> changes) {
+  log_->writer().change_names(std::move(changes));
+}
+
 void ServerEnvironment::load_chunk(const ChunkKey& key) {
   readers_.load_chunk(key, [this, key](StoreResult<Chunk> loaded) {
     if (loaded) {

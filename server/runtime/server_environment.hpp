@@ -54,6 +54,7 @@ class ServerEnvironment final : public WorldEnvironment {
   bool log_has_room(std::size_t records) const override;
   std::size_t log_queued_bytes() const override;
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
+  void log_names(std::vector<NameChange> changes) override;
   void load_chunk(const ChunkKey& key) override;
   void open_history(SessionId session, const HistoryRequest& request) override;
   void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,

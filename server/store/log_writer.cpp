@@ -34,15 +34,30 @@ bool LogWriter::has_room(std::size_t records) const {
 
 void LogWriter::append(std::vector<PlayerRow> players, std::vector<EditRecord> records) {
   if (players.empty() && records.empty()) return;
-  const std::size_t bytes = memory_of(records);
+  Batch batch;
+  batch.room = std::max<std::size_t>(records.size(), 1);
+  batch.bytes = memory_of(records);
+  batch.players = std::move(players);
+  batch.records = std::move(records);
+  queue(std::move(batch));
+}
+
+void LogWriter::change_names(std::vector<NameChange> names) {
+  if (names.empty()) return;
+  Batch batch;
+  batch.room = 1;
+  batch.names = std::move(names);
+  queue(std::move(batch));
+}
+
+void LogWriter::queue(Batch batch) {
   {
     const std::lock_guard guard(mutex_);
     if (failed_ || stopping_) return;
-    const std::size_t room = std::max<std::size_t>(records.size(), 1);
-    RUNSTONE_ASSERT(room_taken_ + room <= limits_.queued_records_max);
-    room_taken_ += room;
-    bytes_taken_ += bytes;
-    batches_.push_back({std::move(players), std::move(records), room, bytes});
+    RUNSTONE_ASSERT(room_taken_ + batch.room <= limits_.queued_records_max);
+    room_taken_ += batch.room;
+    bytes_taken_ += batch.bytes;
+    batches_.push_back(std::move(batch));
   }
   work_.notify_one();
 }
@@ -89,6 +104,7 @@ LogWriter::Batch LogWriter::take_group() {
     Batch& next = batches_.front();
     const bool first = group.room == 0;
     if (!first && group.records.size() + next.records.size() > limits_.commit_records_max) break;
+    std::move(next.names.begin(), next.names.end(), std::back_inserter(group.names));
     std::move(next.players.begin(), next.players.end(), std::back_inserter(group.players));
     std::move(next.records.begin(), next.records.end(), std::back_inserter(group.records));
     group.room += next.room;
@@ -148,7 +164,14 @@ bool LogWriter::take_work(Batch& group, std::optional<Job>& job) {
 
 StoreResult<void> LogWriter::write(Batch& group) {
   if (group.room == 0) return {};
-  if (auto appended = world_.append(group.players, group.records); !appended) return appended;
+  if (!group.names.empty()) {
+    if (auto changed = world_.change_names(group.names); !changed) return changed;
+    const std::size_t count = std::exchange(group.names, {}).size();
+    if (callbacks_.on_names_written) callbacks_.on_names_written(count);
+  }
+  if (!group.players.empty() || !group.records.empty()) {
+    if (auto appended = world_.append(group.players, group.records); !appended) return appended;
+  }
   const Batch written = std::exchange(group, {});
   {
     const std::lock_guard guard(mutex_);

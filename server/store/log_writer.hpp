@@ -16,7 +16,7 @@
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
 //     batches are dropped. They were never acknowledged. The program must end and recover from the
 //     log. A keyframe that cannot be written ends only its job.
-// Threads: append(), save_snapshots(), save_keyframe() and has_room() from any thread. The writer
+// Threads: append(), change_names(), save_snapshots(), save_keyframe() and has_room() from any thread. The writer
 // thread calls the callbacks, which must return soon. The mutex is a leaf: no callback and no disk
 // access happens while it is locked.
 #pragma once
@@ -64,6 +64,8 @@ class LogWriter {
     /// Returns the free bytes of the world's disk, or nullopt if they are not known. Empty: nobody
     /// looks at them.
     std::function<std::optional<std::uint64_t>()> free_bytes = {};
+    /// Reports that so many changes of names are on disk, the oldest first.
+    std::function<void(std::size_t)> on_names_written = {};
   };
   struct Counters {
     std::uint64_t commits = 0, records = 0, snapshots = 0, keyframes = 0;  // since the start
@@ -87,6 +89,9 @@ class LogWriter {
   /// players only takes room for one record. Requires has_room() for that. A writer that has failed
   /// or stopped drops the batch.
   void append(std::vector<PlayerRow> players, std::vector<EditRecord> records);
+  /// Queues changes of names likewise. They take room for one record, and are written before all
+  /// records that are queued later.
+  void change_names(std::vector<NameChange> names);
   /// Queues a job. Returns false, and takes nothing, if the queue of jobs is full or the writer has
   /// failed or stopped.
   bool save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint);
@@ -107,6 +112,7 @@ class LogWriter {
 
  private:
   struct Batch {
+    std::vector<NameChange> names;
     std::vector<PlayerRow> players;
     std::vector<EditRecord> records;
     std::size_t room = 0;   // of queued_records_max that the batch takes
@@ -123,6 +129,7 @@ class LogWriter {
   };
 
   bool queue(Job job);
+  void queue(Batch batch);
   void run();
   /// Waits for work and takes it: a group unless one is left to write, and a job unless one is
   /// under way. Returns false if the writer stops and nothing is left. May return without work, so

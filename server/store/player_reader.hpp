@@ -16,6 +16,9 @@ class PlayerReader {
   /// Returns the last kNamesPerAuthorMax names that each player has used, ascending by author, then
   /// by first use.
   virtual StoreResult<std::vector<UsedName>> player_names() = 0;
+  /// Returns the names that keys own, ascending by their folded form. There are none in a world of
+  /// format 2 that is open for reading only. Fails (corrupt) if a row is damaged or missing.
+  virtual StoreResult<std::vector<NameClaim>> name_claims() = 0;
   /// Returns the watermarks of all client instances. Compactions keep them. Fails (corrupt) if a row
   /// is damaged or missing.
   virtual StoreResult<std::vector<HighWater>> high_waters() = 0;

@@ -25,16 +25,6 @@ std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_
       .value();
 }
 
-void add_row(RowFold& fold, std::int64_t checksum) {
-  ++fold.count;
-  fold.sum += static_cast<std::uint64_t>(checksum);
-}
-
-void remove_row(RowFold& fold, std::int64_t checksum) {
-  --fold.count;
-  fold.sum -= static_cast<std::uint64_t>(checksum);
-}
-
 }  // namespace
 
 StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {

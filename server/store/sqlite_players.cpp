@@ -1,8 +1,10 @@
-// The part of SqliteStore that reads, writes and repairs players and watermarks. `meta` holds a
-// fold of each of both tables, which detects rows that are lost.
+// The part of SqliteStore that reads, writes and repairs players, names and watermarks. `meta` holds
+// a fold of each of these tables but `player_name`, which detects rows that are lost.
 #include <algorithm>
+#include <set>
 #include <utility>
 
+#include "common/names/folded_name.hpp"
 #include "server/store/loss_advice.hpp"
 #include "server/store/sqlite_result.hpp"
 #include "server/store/sqlite_store.hpp"
@@ -12,6 +14,7 @@ namespace {
 
 constexpr const char* kPlayers = "player";
 constexpr const char* kWatermarks = "player_instance";
+constexpr const char* kClaims = "name_claim";
 /// A damaged mark does not say how many starts are lost. No more than these, we trust: clients keep
 /// chunks by epoch, so an epoch must not be used twice.
 constexpr Epoch kEpochsSkipped = 10'000;
@@ -50,6 +53,56 @@ StoreResult<std::vector<PlayerRow>> SqliteStore::players() {
 }
 
 StoreResult<std::vector<UsedName>> SqliteStore::player_names() { return names_.names(); }
+
+StoreResult<std::vector<NameClaim>> SqliteStore::name_claims() {
+  if (!claims_) return std::vector<NameClaim>();
+  return at_one_moment<std::vector<NameClaim>>([&]() -> StoreResult<std::vector<NameClaim>> {
+    auto claims = claims_->claims();
+    if (!claims) return failed(claims.error());
+    if (auto sound = check_fold(kClaims, claims->fold); !sound) return failed(sound.error());
+    return std::move(claims->rows);
+  });
+}
+
+StoreResult<void> SqliteStore::change_names(std::span<const NameChange> changes) {
+  return write([&]() -> StoreResult<void> {
+    auto fold = meta_table_.fold(fold_key_of(kClaims));
+    if (!fold) return failed(fold.error());
+    for (const NameChange& change : changes) {
+      const auto owner = claims_->owner(change.claim.folded);
+      if (!owner) return failed(owner.error());
+      if (!change.is_release && *owner && **owner != change.claim.key)
+        return refuse("name_claim name=\"" + change.claim.name + "\"", "another key owns it");
+      if (change.is_release == owner->has_value()) {
+        auto changed = change.is_release ? claims_->remove(change.claim.folded, *fold)
+                                         : claims_->add(change.claim, *fold);
+        if (!changed) return changed;
+      }
+    }
+    return meta_table_.put_fold(fold_key_of(kClaims), *fold);
+  });
+}
+
+StoreResult<void> SqliteStore::add_claims() {
+  auto added = write([&]() -> StoreResult<void> {
+    const auto players = player_table_.players();
+    if (!players) return failed(players.error());
+    if (auto made = add_name_claims(*database_); !made) return made;
+    auto table = ClaimTable::open(*database_);
+    if (!table) return failed(table.error());
+    RowFold fold;
+    std::set<std::string> claimed;
+    for (const PlayerRow& player : players->rows) {  // ascending by author
+      const std::string folded = folded_name(player.name);
+      if (name_fault(player.name) || !claimed.insert(folded).second) continue;
+      if (auto put = table->add({folded, player.name, player.key}, fold); !put) return put;
+    }
+    claims_ = *std::move(table);
+    return meta_table_.put_fold(fold_key_of(kClaims), fold);
+  });
+  if (!added) claims_.reset();
+  return added;
+}
 
 StoreResult<std::vector<HighWater>> SqliteStore::high_waters() {
   return at_one_moment<std::vector<HighWater>>([&]() -> StoreResult<std::vector<HighWater>> {
@@ -97,6 +150,12 @@ StoreResult<void> SqliteStore::accept_lost_rows(std::vector<std::string>& lost) 
   if (const auto sound = check_players(*players); !sound) {
     lost.push_back(sound.error().message());
     if (auto put = meta_table_.put_fold(fold_key_of(kPlayers), players->fold); !put) return put;
+  }
+  const auto claims = claims_->claims();
+  if (!claims) return failed(claims.error());
+  if (const auto sound = check_fold(kClaims, claims->fold); !sound) {
+    lost.push_back(sound.error().message());
+    if (auto put = meta_table_.put_fold(fold_key_of(kClaims), claims->fold); !put) return put;
   }
   const auto found = player_table_.high_waters();
   if (!found) return failed(found.error());

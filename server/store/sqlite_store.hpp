@@ -11,6 +11,7 @@
 #include "common/os/file_lock.hpp"
 #include "common/sqlite/database.hpp"
 #include "server/store/chunk_table.hpp"
+#include "server/store/claim_table.hpp"
 #include "server/store/durable_mark.hpp"
 #include "server/store/keyframe_table.hpp"
 #include "server/store/log_table.hpp"
@@ -73,6 +74,7 @@ class SqliteStore final : public Store {
   // PlayerReader
   StoreResult<std::vector<PlayerRow>> players() override;
   StoreResult<std::vector<UsedName>> player_names() override;
+  StoreResult<std::vector<NameClaim>> name_claims() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
   AuthorId author_max() const override { return state_.author_max; }
 
@@ -83,6 +85,7 @@ class SqliteStore final : public Store {
   // WorldSink
   StoreResult<void> append(std::span<const PlayerRow> players,
                            std::span<const EditRecord> records) override;
+  StoreResult<void> change_names(std::span<const NameChange> changes) override;
   StoreResult<void> save_snapshots(ChunkSpan chunks, std::optional<Sequence> checkpoint) override;
   StoreResult<void> save_keyframe(ChunkSpan chunks,
                                   const std::optional<Keyframe>& keyframe) override;
@@ -107,6 +110,7 @@ class SqliteStore final : public Store {
     MetaTable meta;
     PlayerTable players;
     NameTable names;
+    std::optional<ClaimTable> claims;
     LogTable log;
     SegmentTable segments;
     ChunkTable base, snapshots;
@@ -115,6 +119,9 @@ class SqliteStore final : public Store {
   };
   SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
               Tables tables, WorldMeta meta, std::unique_ptr<DurableMark> mark);
+  /// Converts a world of format 2: the players own their names, and of several players with one
+  /// name the oldest.
+  StoreResult<void> add_claims();
   /// Reads the durable mark, then the numbers of the database, and compares them. Sets loss_. Fails
   /// if the database cannot be repaired, unless it is open for reading only.
   StoreResult<void> read_state();
@@ -165,6 +172,7 @@ class SqliteStore final : public Store {
   MetaTable meta_table_;
   PlayerTable player_table_;
   NameTable names_;
+  std::optional<ClaimTable> claims_;  // nullopt: a world of format 2 that is open for reading only
   LogTable log_;
   SegmentTable segments_;
   ChunkTable base_, snapshots_;

@@ -131,7 +131,8 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
   for (const auto& [key, value] : rows) {
     if (auto put = table->put(key, value); !put) return put;
   }
-  for (const char* key : {"base_fold", "snapshot_fold", "player_fold", "player_instance_fold"}) {
+  for (const char* key :
+       {"base_fold", "snapshot_fold", "player_fold", "player_instance_fold", "name_claim_fold"}) {
     if (auto put = table->put_fold(key, {}); !put) return put;
   }
   if (auto put = table->put_log_head({}); !put) return put;
@@ -176,6 +177,14 @@ StoreResult<SqliteStore::Tables> SqliteStore::Tables::open(sql::Database& databa
   if (!players) return failed(players.error());
   auto names = NameTable::open(database);
   if (!names) return failed(names.error());
+  const auto version = database.integer("PRAGMA user_version");
+  if (!version) return failed(version.error());
+  std::optional<ClaimTable> claims;
+  if (*version == std::int64_t{kWorldFormat}) {
+    auto opened = ClaimTable::open(database);
+    if (!opened) return failed(opened.error());
+    claims = *std::move(opened);
+  }
   auto log = LogTable::open(database);
   if (!log) return failed(log.error());
   auto segments = SegmentTable::open(database);
@@ -186,9 +195,9 @@ StoreResult<SqliteStore::Tables> SqliteStore::Tables::open(sql::Database& databa
   if (!snapshots) return failed(snapshots.error());
   auto keyframes = KeyframeTable::open(database);
   if (!keyframes) return failed(keyframes.error());
-  return Tables{*std::move(meta),      *std::move(players),  *std::move(names),
-                *std::move(log),       *std::move(segments), *std::move(base),
-                *std::move(snapshots), *std::move(keyframes)};
+  return Tables{*std::move(meta),  *std::move(players),   *std::move(names),
+                std::move(claims), *std::move(log),       *std::move(segments),
+                *std::move(base),  *std::move(snapshots), *std::move(keyframes)};
 }
 
 StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder,
@@ -229,6 +238,9 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
                                                      std::move(mark)));
   if (const auto read = store->read_state(); !read) return failed(read.error());
   if (store->loss_ && access == StoreAccess::read_write) return failed(*store->loss_);
+  if (!store->claims_ && access != StoreAccess::read_only) {
+    if (const auto added = store->add_claims(); !added) return failed(added.error());
+  }
   store->database_->keep_wal_on_close(store->loss_.has_value());
   return store;
 }

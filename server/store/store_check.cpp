@@ -123,6 +123,7 @@ StoreResult<void> SqliteStore::check() {
   if (const auto rows = meta_table_.read_all(); !rows) return failed(rows.error());
   if (const auto rows = players(); !rows) return failed(rows.error());
   if (const auto rows = names_.names(); !rows) return failed(rows.error());
+  if (const auto rows = name_claims(); !rows) return failed(rows.error());
   if (const auto seq = checkpoint(); !seq) return failed(seq.error());
   // A watermark that the log proves to be missing is named before the rows are counted.
   if (auto marks = check_marks_cover_log(); !marks) return marks;

@@ -70,6 +70,15 @@ CREATE TABLE player_name(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kNameClaims = R"sql(
+CREATE TABLE name_claim(
+  folded TEXT NOT NULL PRIMARY KEY,
+  name TEXT NOT NULL,
+  key BLOB NOT NULL,
+  checksum INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+)sql";
+
 // There is no index by time: times never fall along the log, so a time is found by bisection.
 // Nearly every edit has cause player, so the index by cause holds the others only.
 constexpr const char* kIndexes = R"sql(
@@ -103,12 +112,17 @@ CREATE INDEX keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, d
 }  // namespace
 
 StoreResult<void> create_schema(sql::Database& database) {
-  const std::string marks = "PRAGMA application_id=" + std::to_string(kApplicationId) +
-                            "; PRAGMA user_version=" + std::to_string(kWorldFormat) + ";";
-  for (const char* part : {marks.c_str(), kTables, kPlayerNames, kIndexes, kKeyframes}) {
+  const std::string mark = "PRAGMA application_id=" + std::to_string(kApplicationId) + ";";
+  for (const char* part : {mark.c_str(), kTables, kPlayerNames, kIndexes, kKeyframes}) {
     if (auto made = database.run(part); !made) return failed(made.error());
   }
-  return {};
+  return add_name_claims(database);
+}
+
+StoreResult<void> add_name_claims(sql::Database& database) {
+  if (auto made = database.run(kNameClaims); !made) return failed(made.error());
+  const std::string mark = "PRAGMA user_version=" + std::to_string(kWorldFormat);
+  return store_result(database.run(mark.c_str()));
 }
 
 StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
@@ -149,7 +163,7 @@ StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
                        "`runstone-replay import` of this program makes a world of it. Nothing was "
                        "changed.");
   }
-  if (version != kWorldFormat)
+  if (version < kWorldFormatConverted)
     return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(version));
   return {};
 }

@@ -1,4 +1,4 @@
-// WorldSink: the writes of a running server: edits, snapshots and keyframes. Each call is one
+// WorldSink: the writes of a running server: edits, names, snapshots and keyframes. Each call is one
 // transaction.
 #pragma once
 #include <optional>
@@ -27,6 +27,9 @@ class WorldSink {
   ///   - the numbers of a record are not valid (validate_numbers()).
   virtual StoreResult<void> append(std::span<const PlayerRow> players,
                                    std::span<const EditRecord> records) = 0;
+  /// Writes claims of names and removes released ones, in this order. All of it is durable on
+  /// return. It may be repeated. Fails (bad_request) if another key owns a claimed name.
+  virtual StoreResult<void> change_names(std::span<const NameChange> changes) = 0;
   /// Replaces the snapshots of these chunks and, if given, moves the checkpoint. Fails
   /// (bad_request) if a chunk or the checkpoint is ahead of the log.
   virtual StoreResult<void> save_snapshots(ChunkSpan chunks,

@@ -1,7 +1,10 @@
 #include "server/world/handshake_handlers.hpp"
 
 #include <string>
+#include <vector>
 
+#include "protocol/codec/key_fingerprint.hpp"
+#include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
 
 namespace runstone {
@@ -67,43 +70,15 @@ bool close_if_no_seat(WorldState& world, SessionId session) {
   return true;
 }
 
-}  // namespace
-
-void on_hello(WorldState& world, SessionId session, const Hello& hello) {
-  WorldSession& mine = *world.find(session);
-  if (hello.protocol != kProtocolVersion) {
-    close_session(world, session, GoodbyeReason::wrong_protocol,
-                  "client speaks protocol " + std::to_string(hello.protocol) + ", server " +
-                      std::to_string(kProtocolVersion));
-    return;
-  }
-  mine.key = hello.key;
-  mine.instance = hello.instance;
-  if (close_if_no_seat(world, session)) return;
-  Welcome welcome = welcome_of(world);
-  welcome.encoding = choose_encoding(world.config, hello.encodings);
-  welcome.features = world.config.features & hello.features;
-  world.random(welcome.challenge);
-  welcome.signature =
-      sign(world.config.server_keys, server_transcript(hello, welcome, mine.binding));
-  mine.name = hello.name;
-  mine.auth_transcript = client_transcript(hello, welcome, mine.binding);
-  mine.durable_sent = welcome.durable;
-  mine.state = SessionStage::authenticating;
-  mine.features = welcome.features;
-  world.environment.set_encoding(session, welcome.encoding);
-  world.environment.set_features(session, welcome.features);
-  send_or_close(world, session, welcome);
+bool close_if_no_name(WorldState& world, SessionId session) {
+  const auto why = name_refusal(world, *world.find(session));
+  if (!why) return false;
+  close_session(world, session, GoodbyeReason::name_refused, *why);
+  return true;
 }
 
-void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth,
-                    const Clocks& now) {
+void open_session(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  if (!verify(mine.key, mine.auth_transcript, auth.signature)) {
-    close_session(world, session, GoodbyeReason::not_authenticated,
-                  "the signature does not match the key");
-    return;
-  }
   for (const auto& [other, theirs] : world.sessions) {
     if (other == session || theirs.state != SessionStage::open) continue;
     if (theirs.key != mine.key || theirs.instance != mine.instance) continue;
@@ -112,7 +87,6 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
     break;  // there is at most one, and closing it invalidates the iterators
   }
   if (close_if_no_seat(world, session)) return;
-  mine.auth_transcript = {};
   mine.state = SessionStage::open;
   mine.author = world.players.enter(mine.key, mine.name);
   if (world.players.is_renamed(mine.author) &&
@@ -127,12 +101,73 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
   world.environment.opened(session);
   ++world.counters.sessions_opened;
   world.environment.report(OperatorLogLevel::info,
-                           "session=" + std::to_string(session) + " open author=" +
-                               std::to_string(mine.author) + " name=\"" + mine.name + "\"");
+                           "session=" + std::to_string(session) +
+                               " open author=" + std::to_string(mine.author) + " name=\"" +
+                               mine.name + "\" key=" + key_fingerprint(mine.key));
   world.player_list_changed = true;
   const SessionAccepted accepted{mine.author,
                                  world.authority.resolved().of(mine.author, mine.instance)};
   if (send_or_close(world, session, accepted)) send_all_poses_to(world, session);
+}
+
+}  // namespace
+
+void on_hello(WorldState& world, SessionId session, const Hello& hello) {
+  WorldSession& mine = *world.find(session);
+  if (hello.protocol != kProtocolVersion) {
+    close_session(world, session, GoodbyeReason::wrong_protocol,
+                  "client speaks protocol " + std::to_string(hello.protocol) + ", server " +
+                      std::to_string(kProtocolVersion));
+    return;
+  }
+  mine.key = hello.key;
+  mine.instance = hello.instance;
+  mine.name = hello.name;
+  mine.features = world.config.features & hello.features;
+  if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
+  Welcome welcome = welcome_of(world);
+  welcome.encoding = choose_encoding(world.config, hello.encodings);
+  welcome.features = mine.features;
+  world.random(welcome.challenge);
+  welcome.signature = sign(world.config.server_keys, server_transcript(hello, welcome, mine.binding));
+  mine.auth_transcript = client_transcript(hello, welcome, mine.binding);
+  mine.durable_sent = welcome.durable;
+  mine.state = SessionStage::authenticating;
+  world.environment.set_encoding(session, welcome.encoding);
+  world.environment.set_features(session, welcome.features);
+  send_or_close(world, session, welcome);
+}
+
+void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth,
+                    const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  if (mine.is_authenticated) {
+    close_session(world, session, GoodbyeReason::unexpected_message, "client auth came twice");
+    return;
+  }
+  if (!verify(mine.key, mine.auth_transcript, auth.signature)) {
+    close_session(world, session, GoodbyeReason::not_authenticated,
+                  "the signature does not match the key");
+    return;
+  }
+  // The name may have been claimed since hello. A session without a seat claims nothing.
+  if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
+  mine.auth_transcript = {};
+  mine.is_authenticated = true;
+  claim_name(world, session, now.steady_us);
+  if (!waits_for_claim(world, mine)) open_session(world, session, now);
+}
+
+void open_authenticated(WorldState& world, const Clocks& now) {
+  std::vector<SessionId> ready;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.state == SessionStage::authenticating && session.is_authenticated &&
+        !waits_for_claim(world, session))
+      ready.push_back(id);
+  }
+  for (const SessionId id : ready) {
+    if (world.find(id) != nullptr) open_session(world, id, now);
+  }
 }
 
 }  // namespace runstone

@@ -6,12 +6,15 @@
 namespace runstone {
 
 /// Sends a signed welcome, or closes the session: wrong_protocol (the text names both versions) or
-/// server_full.
+/// server_full, or name_refused.
 void on_hello(WorldState& world, SessionId session, const Hello& hello);
-/// Opens the session, or closes it: not_authenticated or server_full. Closes an older session of
+/// Opens the session, at once or when the claim of its name is on disk, or closes it:
+/// not_authenticated, server_full or name_refused. Closes an older session of
 /// the same key and client instance (already_connected). The signature shows that both are the same
 /// client, and the older connection is usually dead without a sign of it.
 void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth,
                     const Clocks& now);
+/// Opens the sessions that wait for nothing any more.
+void open_authenticated(WorldState& world, const Clocks& now);
 
 }  // namespace runstone

@@ -1,6 +1,6 @@
-// PlayerRow, UsedName and HighWater: the values about players that the world strand, the store
+// PlayerRow, UsedName, NameClaim and HighWater: the values about players that the world strand, the store
 // and the commands share. PlayerRow maps an author number to a key and a name. UsedName is a name
-// that a player uses or has used. HighWater is the watermark of one client process.
+// that a player uses or has used. NameClaim says which key owns a name. HighWater is the watermark of one client process.
 #pragma once
 #include <string>
 
@@ -18,6 +18,18 @@ struct PlayerRow {
 struct UsedName {
   AuthorId author = 0;
   std::string name;
+};
+
+/// A name that a key owns. At most one claim has a folded form.
+struct NameClaim {
+  std::string folded;  // folded_name() of the name, as it was when the name was claimed
+  std::string name;    // as the owner wrote it
+  PublicKey key{};
+  friend bool operator==(const NameClaim&, const NameClaim&) = default;
+};
+struct NameChange {
+  NameClaim claim;
+  bool is_release = false;  // the name has no owner any more
 };
 
 /// The highest resolved client sequence of a client instance. It survives compaction of the log.

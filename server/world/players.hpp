@@ -64,6 +64,12 @@ class Players {
     if (found == known_.end()) return std::nullopt;
     return found->second.row.key;
   }
+  /// Returns the author number of a key, or nullopt if it has none.
+  std::optional<AuthorId> author_of(const PublicKey& key) const {
+    const auto found = by_key_.find(key);
+    if (found == by_key_.end()) return std::nullopt;
+    return found->second;
+  }
   /// Returns true if the author's row in the store has another name.
   bool is_renamed(AuthorId author) const {
     const auto found = known_.find(author);

@@ -16,20 +16,25 @@ std::map<AuthorId, std::string> names_of(const WorldState& world) {
   return names;
 }
 
-PlayerList full_player_list(const std::map<AuthorId, std::string>& names) {
+PlayerName entry_of(const WorldState& world, AuthorId author, const std::string& name) {
+  return {author, name, world.players.key_of(author).value_or(PublicKey{})};
+}
+
+PlayerList full_player_list(const WorldState& world, const std::map<AuthorId, std::string>& names) {
   PlayerList list;
   list.players.reserve(names.size());
-  for (const auto& [author, name] : names) list.players.push_back({author, name});
+  for (const auto& [author, name] : names) list.players.push_back(entry_of(world, author, name));
   return list;
 }
 
-PlayerList change_between(const std::map<AuthorId, std::string>& before,
+PlayerList change_between(const WorldState& world, const std::map<AuthorId, std::string>& before,
                           const std::map<AuthorId, std::string>& after) {
   PlayerList change;
   change.is_change = true;
   for (const auto& [author, name] : after) {
     const auto known = before.find(author);
-    if (known == before.end() || known->second != name) change.players.push_back({author, name});
+    if (known == before.end() || known->second != name)
+      change.players.push_back(entry_of(world, author, name));
   }
   for (const auto& [author, name] : before) {
     if (!after.contains(author)) change.left.push_back(author);
@@ -43,7 +48,7 @@ void broadcast_player_list(WorldState& world) {
   if (!world.player_list_changed) return;
   world.player_list_changed = false;
   std::map<AuthorId, std::string> names = names_of(world);
-  const PlayerList change = change_between(world.sent_player_list, names);
+  const PlayerList change = change_between(world, world.sent_player_list, names);
   const bool has_change = !change.players.empty() || !change.left.empty();
   const EncodedMessage encoded_change = encode_message(change);
   std::optional<EncodedMessage> encoded_full;  // made only if a session needs it
@@ -51,7 +56,7 @@ void broadcast_player_list(WorldState& world) {
     WorldSession& mine = *world.find(session);
     if (mine.has_player_list && !has_change) continue;
     if (!mine.has_player_list && !encoded_full)
-      encoded_full = encode_message(full_player_list(names));
+      encoded_full = encode_message(full_player_list(world, names));
     mine.has_player_list =
         send_or_skip(world, session, mine.has_player_list ? encoded_change : *encoded_full);
     if (!mine.has_player_list) world.player_list_changed = true;

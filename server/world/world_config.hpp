@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ struct WorldConfig {
   std::size_t sessions_max = 256;             // beyond it: server_full
   std::size_t sessions_per_key = 0;           // likewise; 0: no limit
   std::size_t sessions_per_address = 0;       // likewise; 0: no limit
+  std::size_t names_per_key = 3;              // that a key may own; owned names stay owned
+  std::uint64_t names_per_address = 0;        // claimed within an hour; 0: no limit
+  std::set<std::string> reserved_names;       // folded; nobody may have them
   std::uint8_t view_radius_max = 16;          // chunks; larger views are reduced to it
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit
   double reach_max = 0;                       // voxels from the player to the edit; 0: no limit
@@ -65,6 +69,7 @@ struct WorldStart {
   Sequence checkpoint = 0;
   std::vector<std::pair<ChunkKey, Version>> snapshots;
   std::vector<PlayerRow> players;
+  std::vector<NameClaim> name_claims;
   AuthorId author_max = 0;  // the highest author number ever stored
   std::vector<HighWater> resolved;
 };

@@ -88,6 +88,9 @@ class WorldEnvironment {
   /// Queues records for the log writer, and rows of players to be written with them. There may be
   /// rows without records. Requires log_has_room(). Answer to records: WorldServer::durable().
   virtual void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) = 0;
+  /// Queues changes of names for the log writer, ahead of all records that are queued later.
+  /// Requires log_has_room(1). Answer: WorldServer::names_durable().
+  virtual void log_names(std::vector<NameChange> changes) = 0;
   /// Loads a chunk on a worker: its newest snapshot, else the base, else generated. Called at most
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().
   virtual void load_chunk(const ChunkKey& key) = 0;

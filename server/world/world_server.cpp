@@ -13,6 +13,7 @@
 #include "server/world/delivery.hpp"
 #include "server/world/digest_check_scheduler.hpp"
 #include "server/world/handshake_handlers.hpp"
+#include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
 #include "server/world/request_handlers.hpp"
 #include "server/world/time_travel.hpp"
@@ -223,6 +224,14 @@ std::vector<PlayerRow> WorldServer::visitors() const {
   return {visitors.begin(), visitors.end()};
 }
 
+std::vector<NameClaim> WorldServer::name_claims() const { return state_->names.all(); }
+std::optional<AuthorId> WorldServer::author_of(const PublicKey& key) const {
+  return state_->players.author_of(key);
+}
+Result<NameClaim, std::string> WorldServer::release_name(const std::string& name) {
+  return runstone::release_name(*state_, name);
+}
+
 void WorldServer::step_checkpointer(const Clocks& now) {
   WorldState& world = *state_;
   if (world.is_stopping && now.steady_us >= world.stop_due_us) {
@@ -319,14 +328,20 @@ void WorldServer::durable(Sequence seq, const Clocks& now) {
   step_checkpointer(now);
 }
 
+void WorldServer::names_durable(std::size_t count, const Clocks& now) {
+  state_->names.names_durable(count);
+  open_authenticated(*state_, now);
+}
+
 void WorldServer::snapshots_saved(const Clocks& now) {
   state_->checkpointer.saved(state_->authority.chunks());
   step_checkpointer(now);
 }
 
-void WorldServer::set_disk_is_full(bool is_full) {
+void WorldServer::set_disk_is_full(bool is_full, const Clocks& now) {
   state_->disk_is_full = is_full;
   state_->durable_due_us = 0;  // the watermark tells every session
+  open_authenticated(*state_, now);
 }
 
 void WorldServer::log_failed() { state_->accepts_edits = false; }

@@ -7,6 +7,7 @@
 // calls.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -100,6 +101,12 @@ class WorldServer {
   std::vector<OnlinePlayer> online_players() const;
   /// Returns the players of this run that left without an edit, as Players::visitors() keeps them.
   std::vector<PlayerRow> visitors() const;
+  /// Returns the names that keys own, ascending by folded form.
+  std::vector<NameClaim> name_claims() const;
+  /// Returns the author number of a key, or nullopt if it has none.
+  std::optional<AuthorId> author_of(const PublicKey& key) const;
+  /// Frees a name. Returns the claim that it had, or the reason why nothing changed.
+  Result<NameClaim, std::string> release_name(const std::string& name);
 
   // Answers of WorldEnvironment.
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now);
@@ -115,11 +122,13 @@ class WorldServer {
                             const Result<ChunkPtr, std::string>& chunk, const Clocks& now);
   /// Reports that every edit up to `seq` is on disk.
   void durable(Sequence seq, const Clocks& now);
+  /// Reports that so many more changes of names are on disk, the oldest first.
+  void names_durable(std::size_t count, const Clocks& now);
   /// Reports that the oldest unanswered save_snapshots() is on disk.
   void snapshots_saved(const Clocks& now);
   /// Reports that the disk has no space for new edits, or has space again. Edits are rejected busy
   /// meanwhile.
-  void set_disk_is_full(bool is_full);
+  void set_disk_is_full(bool is_full, const Clocks& now);
   /// Reports that the log cannot be written any more. Edits are rejected busy from now on.
   void log_failed();
 

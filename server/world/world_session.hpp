@@ -50,8 +50,9 @@ struct WorldSession {
   PublicKey key{};
   ClientInstance instance = 0;
   std::string name;
-  Bytes auth_transcript;  // the bytes that the client must sign; empty in other stages
-  AuthorId author = 0;    // valid when open
+  Bytes auth_transcript;          // the bytes that the client must sign; empty in other stages
+  bool is_authenticated = false;  // the session opens when the claim of its name is on disk
+  AuthorId author = 0;            // valid when open
   Pose pose;
   bool pose_changed = false;     // since poses were sent last
   FollowedPosition position;     // the reach of edits is measured from there

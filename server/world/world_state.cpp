@@ -32,11 +32,13 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
       interest(CoordLimit::of(config.chunk_edge)),
       loads(config.loads_in_flight_max),
       edit_ledger(config.edit_budget, config.budgets_per_address),
+      claim_ledger(config.names_per_address),
       durable(start.log.last),
       view_chunks_left(config.view_chunks_per_tick) {
   for (const auto& [key, version] : start.snapshots) authority.chunks().set_saved(key, version);
   for (const PlayerRow& player : start.players) players.restore(player);
   players.begin_above(start.author_max);
+  for (const NameClaim& claim : start.name_claims) names.restore(claim);
   for (const HighWater& watermark : start.resolved)
     authority.resolved().raise({watermark.author, watermark.instance, watermark.resolved});
 }

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "server/interest/interest.hpp"
+#include "server/limits/claim_ledger.hpp"
 #include "server/limits/edit_ledger.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
 #include "server/world/large_edit_pace.hpp"
 #include "server/world/load_queue.hpp"
 #include "server/world/load_retries.hpp"
+#include "server/world/name_claims.hpp"
 #include "server/world/players.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
@@ -39,7 +41,9 @@ struct WorldState {
   LoadQueue loads;
   LoadRetries load_retries;
   Players players;
+  NameClaims names;
   EditLedger edit_ledger;
+  ClaimLedger claim_ledger;
   LargeEditPace large_edits;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick

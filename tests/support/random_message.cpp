@@ -327,7 +327,10 @@ PlayerPoses any_poses(SplitMix64& rng) {
 PlayerList any_player_list(SplitMix64& rng) {
   PlayerList m;
   m.players.resize(rng.below(20));
-  for (PlayerName& p : m.players) p = {rng.below(1000), any_name(rng)};
+  for (PlayerName& p : m.players) {
+    p = {rng.below(1000), any_name(rng), {}};
+    draw(rng, p.key);
+  }
   m.is_change = rng.below(2) == 0;
   if (m.is_change) m.left.resize(rng.below(20));
   for (AuthorId& author : m.left) author = rng.below(1000);

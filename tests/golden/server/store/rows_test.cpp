@@ -1,4 +1,4 @@
-// The bytes of world format 2: columns, row checksums and marks. A change here means a new
+// The bytes of world format 3: columns, row checksums and marks. A change here means a new
 // kWorldFormat.
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -37,6 +37,8 @@ std::string make_world(const TempFolder& folder) {
       {{1, 1}, {1, 0x8000000000000002ULL, 3}, 1'700'000'000'000'000, Cause::player, edit},
       {{1, 2}, {1, 0x8000000000000002ULL, 4}, 1'700'000'000'000'001, Cause::undo, edit, 1}};
   REQUIRE(store->append({&player, 1}, records).has_value());
+  const NameChange claim{{"builder 1", "Builder 1", player.key}};
+  REQUIRE(store->change_names({&claim, 1}).has_value());
   const std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots = {
       {{0, {0, 0, -7}}, golden_chunk(2, {1, 1})}};
   REQUIRE(store->save_snapshots(snapshots, 1).has_value());
@@ -57,15 +59,15 @@ std::string columns(const std::string& file, const std::string& table) {
 
 }  // namespace
 
-TEST_CASE("the marks of a world are where format 1 has them", "[store][golden]") {
+TEST_CASE("the marks of a world are where format 3 has them", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(raw_sql(file, "PRAGMA application_id") == "1383427667");
-  CHECK(raw_sql(file, "PRAGMA user_version") == "2");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "3");
   CHECK(raw_sql(file, "PRAGMA journal_mode") == "wal");
 }
 
-TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
+TEST_CASE("the tables have the columns of format 3", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
@@ -87,6 +89,7 @@ TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
         "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, seq INTEGER5, epoch INTEGER0, "
         "digest0 INTEGER0, digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "player") == "author INTEGER1, key BLOB0, name TEXT0, checksum INTEGER0");
+  CHECK(columns(file, "name_claim") == "folded TEXT1, name TEXT0, key BLOB0, checksum INTEGER0");
   CHECK(columns(file, "player_name") ==
         "author INTEGER1, number INTEGER2, name TEXT0, checksum INTEGER0");
   CHECK(
@@ -96,7 +99,7 @@ TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
                 "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master "
                 "WHERE type = 'table' ORDER BY name)") ==
         "base edit_log keyframe keyframe_chunk log_box log_box_node log_box_parent log_box_rowid "
-        "meta player player_instance player_name snapshot");
+        "meta name_claim player player_instance player_name snapshot");
   CHECK(
       raw_sql(
           file,
@@ -110,13 +113,14 @@ TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
                 "SELECT first_seq || ' ' || last_seq || ' ' || author || ' ' || min_x || ' ' || "
                 "min_y || ' ' || min_z || ' ' || max_x || ' ' || max_y || ' ' || max_z "
                 "FROM log_box") == "1 2 1 -4 5 6 7 8 9");
-  CHECK(raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
-        "author_max base_fold checkpoint chunk_edge epoch generator generator_parameters "
-        "generator_version log_head log_last materials player_fold player_instance_fold seed "
-        "server_key_seed snapshot_fold spawn world_id");
+  CHECK(
+      raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
+      "author_max base_fold checkpoint chunk_edge epoch generator generator_parameters "
+      "generator_version log_head log_last materials name_claim_fold player_fold player_instance_fold seed "
+      "server_key_seed snapshot_fold spawn world_id");
 }
 
-TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
+TEST_CASE("rows have the bytes and checksums of format 3", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   const auto value = [&](const std::string& column, const std::string& from) {
@@ -147,6 +151,8 @@ TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
   CHECK(value("checksum", "player") == "-8523557106004048105");
   CHECK(value("author || ' ' || number || ' ' || name", "player_name") == "1 1 builder 1");
   CHECK(value("checksum", "player_name") == "8744597731677023775");
+  CHECK(value("folded || ', ' || name", "name_claim") == "builder 1, Builder 1");
+  CHECK(value("checksum", "name_claim") == "-5687735127959943699");
   CHECK(value("epoch || ' ' || seq", "base") == "0 0");
   CHECK(value("epoch || ' ' || seq", "snapshot") == "1 1");
   CHECK(value("decided || ' ' || last_us", "player_instance") == "4 1700000000000001");
@@ -168,6 +174,8 @@ TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
         "01000000000000001747DFC9F83DB689");
   CHECK(value("hex(value)", "meta WHERE key = 'player_instance_fold'") ==
         "0100000000000000785F9C1512C7903C");
+  CHECK(value("hex(value)", "meta WHERE key = 'name_claim_fold'") ==
+        "0100000000000000EDC56F39091B11B1");
 }
 
 TEST_CASE("the mark of the durable log has the bytes of format 1", "[store][golden]") {

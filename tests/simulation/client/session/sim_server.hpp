@@ -249,6 +249,12 @@ class SimServer final : public WorldEnvironment {
       if (!batches_.empty()) write_later();
     });
   }
+  void log_names(std::vector<NameChange> changes) override {
+    later(500, 20'000, [this, changes = std::move(changes)] {
+      done(store_->change_names(changes));
+      world_->names_durable(changes.size(), now());
+    });
+  }
   void load_chunk(const ChunkKey& key) override {
     later(100, 50'000, [this, key] {
       auto snapshot = value(store_->load_snapshot(key));

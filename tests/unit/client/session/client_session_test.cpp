@@ -496,7 +496,7 @@ TEST_CASE_METHOD(SessionBench, "poses are sent when they change, at most twenty 
 TEST_CASE_METHOD(SessionBench, "other players come from the player list and their poses",
                  "[session]") {
   static_cast<void>(open());
-  receive(PlayerList{{{6, "ada"}, {7, "bob"}}, false, {}});
+  receive(PlayerList{{{6, "ada", {}}, {7, "bob", {}}}, false, {}});
   REQUIRE(session.others().size() == 1);
   CHECK(session.others().at(7).name == "bob");
   Pose pose;
@@ -504,17 +504,17 @@ TEST_CASE_METHOD(SessionBench, "other players come from the player list and thei
   receive(PlayerPoses{{{7, pose}, {6, pose}}});
   CHECK(session.others().at(7).pose == pose);
   CHECK(session.others().size() == 1);
-  receive(PlayerList{{{6, "ada"}, {7, "bob"}, {8, "eve"}}, false, {}});
+  receive(PlayerList{{{6, "ada", {}}, {7, "bob", {}}, {8, "eve", {}}}, false, {}});
   CHECK(session.others().at(7).pose == pose);
-  receive(PlayerList{{{9, "mallory"}, {8, "eva"}}, true, {7}});
+  receive(PlayerList{{{9, "mallory", {}}, {8, "eva", {}}}, true, {7}});
   REQUIRE(session.others().size() == 2);
   CHECK(session.others().at(8).name == "eva");
   CHECK(session.others().at(9).name == "mallory");
   receive(PlayerPoses{{{9, pose}}});
-  receive(PlayerList{{{9, "trudy"}}, true, {}});
+  receive(PlayerList{{{9, "trudy", {}}}, true, {}});
   CHECK(session.others().at(9).pose == pose);
   CHECK(session.others().size() == 2);
-  receive(PlayerList{{{6, "ada"}}, false, {}});
+  receive(PlayerList{{{6, "ada", {}}}, false, {}});
   CHECK(session.others().empty());
 }
 

@@ -32,16 +32,18 @@ TEST_CASE("answers and texts are refused outside their bounds", "[protocol]") {
       [](auto& b) { return wire::CreateGoodbye(b, 1); }));  // an absent text is empty
 
   CHECK_FALSE(passes<Durable>([](auto& b) { return wire::CreateDurable(b, 0, 5); }));
-  const auto list = [](const std::string& name) {
+  const auto list = [](const std::string& name, unsigned key_bytes = 32) {
     return passes<PlayerList>([&](auto& b) {
+      const auto text = b.CreateString(name);
       const std::vector<Offset<wire::PlayerName>> names{
-          wire::CreatePlayerName(b, 1, b.CreateString(name))};
+          wire::CreatePlayerName(b, 1, text, filled(b, key_bytes))};
       return wire::CreatePlayerList(b, b.CreateVector(names));
     });
   };
   CHECK(list("bo"));
   CHECK_FALSE(list(""));
   CHECK_FALSE(list(std::string(33, 'b')));
+  CHECK_FALSE(list("bo", 31));
 }
 
 TEST_CASE("the encoder cuts texts that are too long, between two characters", "[protocol]") {

@@ -74,13 +74,13 @@ TEST_CASE("hello is refused with a field of the wrong size or range", "[protocol
 TEST_CASE("a hello of another protocol decodes to its version alone, so that it can be answered",
           "[protocol]") {
   HelloFields other;
-  other.protocol = 2;
+  other.protocol = kProtocolVersion + 1;
   other.key = 48;
   other.name = "";
   const auto hello = received<Hello>(other);
   REQUIRE(hello.has_value());
   Hello expected;
-  expected.protocol = 2;
+  expected.protocol = kProtocolVersion + 1;
   CHECK(*hello == Message(expected));
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("the longest player list and the longest list of poses fit their class
   PlayerList list;
   PlayerPoses poses;
   for (unsigned i = 0; i < kPlayersMax; ++i) {
-    list.players.push_back({i, std::string(kPlayerNameBytesMax, 'n')});
+    list.players.push_back({i, std::string(kPlayerNameBytesMax, 'n'), {}});
     poses.players.push_back({i, {}});
   }
   for (const Message& message : {Message(list), Message(poses)}) {

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "protocol/codec/key_fingerprint.hpp"
+
 using namespace runstone;
 
 TEST_CASE("a name finds its author, or nobody if several authors have it", "[server]") {
@@ -9,6 +11,9 @@ TEST_CASE("a name finds its author, or nobody if several authors have it", "[ser
   CHECK(names.of(0) == "the server");
   CHECK(names.of(3) == "ana #3");
   CHECK(names.of(9) == "bob #9");
+  CHECK(names.with_key(9) == "bob #9 " + key_fingerprint({}));
+  CHECK(names.with_key(5) == "#5");
+  CHECK(names.with_key(0) == "the server");
   CHECK(names.of(5) == "#5");
   CHECK(*names.find("ana") == 3);
   REQUIRE_FALSE(names.find("an").has_value());

@@ -28,6 +28,8 @@ std::string mistake(const std::string& line) {
 
 TEST_CASE("commands without arguments are parsed", "[admin][command]") {
   parsed<HelpCommand>("help");
+  parsed<NamesCommand>("names");
+  CHECK(parsed<ReleaseNameCommand>("names release \"the mole\"").name == "the mole");
   parsed<StatusCommand>("  status ");
   parsed<PlayersCommand>("players");
   CHECK(parsed<MaterialsCommand>("materials").part.empty());
@@ -69,6 +71,9 @@ TEST_CASE("a rollback command takes one id", "[admin][command]") {
 
 TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]") {
   CHECK(mistake("") == "no command: `help` names them");
+  CHECK(mistake("names free ana") == "names \"free\": release NAME");
+  CHECK(mistake("names release the mole") ==
+        "names release: one name comes after it, in quotes if it has blanks");
   CHECK(mistake("rolback") == "\"rolback\" is no command: `help` names them");
   CHECK(mistake("rollback") == "rollback: preview, apply, cancel, undo or list is missing");
   CHECK(mistake("rollback revert p1") ==

@@ -3,12 +3,16 @@
 #include <catch2/catch.hpp>
 
 #include "common/core/hex.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
 
 using namespace runstone;
 
 namespace {
 
 PublicKey key_of(std::uint8_t first) { return PublicKey{first}; }
+
+/// Returns how a line shows a key: "9M1Q-Z7CR-04KD key 0a0b...".
+std::string shown(const PublicKey& key) { return key_fingerprint(key) + " key " + to_hex(key); }
 
 }  // namespace
 
@@ -18,9 +22,9 @@ TEST_CASE("players lists builders, visitors and those who are here", "[admin]") 
       {9, 2, "ben", key_of(2), {1.5, 64.0, -0.5}}, {10, 4, "dan", key_of(4), {0, 0, 0}}};
   const std::vector<PlayerRow> visitors = {{3, key_of(3), "cleo"}};
   CHECK(player_list(stored, present, visitors) ==
-        "ana #1 key " + to_hex(key_of(1)) + "\nben #2 key " + to_hex(key_of(2)) +
-            " is here, at 1 64 -1\ncleo #3 key " + to_hex(key_of(3)) +
-            " left without an edit\ndan #4 key " + to_hex(key_of(4)) + " is here, at 0 0 0");
+        "ana #1 " + shown(key_of(1)) + "\nben #2 " + shown(key_of(2)) +
+            " is here, at 1 64 -1\ncleo #3 " + shown(key_of(3)) + " left without an edit\ndan #4 " +
+            shown(key_of(4)) + " is here, at 0 0 0");
   CHECK(player_list({}, {}, {}) == "nobody has ever been here");
 }
 

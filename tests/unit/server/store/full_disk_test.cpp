@@ -25,6 +25,11 @@ class FillingSink final : public WorldSink {
     for (const EditRecord& record : records) written.push_back(record.version.seq);
     return {};
   }
+  StoreResult<void> change_names(std::span<const NameChange> changes) override {
+    if (is_full) return no_room();
+    names += changes.size();
+    return {};
+  }
   StoreResult<void> save_snapshots(ChunkSpan /*chunks*/,
                                    std::optional<Sequence> /*checkpoint*/) override {
     return is_full || is_full_for_snapshots ? no_room() : StoreResult<void>{};
@@ -36,6 +41,7 @@ class FillingSink final : public WorldSink {
 
   std::atomic<bool> is_full{false}, is_full_for_snapshots{false};
   std::vector<Sequence> written;  // read it after stop()
+  std::size_t names = 0;          // likewise
 
  private:
   static StoreResult<void> no_room() {

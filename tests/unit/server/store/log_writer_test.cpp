@@ -21,11 +21,15 @@ class FakeSink final : public WorldSink {
     std::size_t chunks = 0;
     std::optional<Sequence> checkpoint;
     std::optional<Keyframe> keyframe = {};
+    std::vector<NameChange> names = {};
   };
 
   StoreResult<void> append(std::span<const PlayerRow> players,
                            std::span<const EditRecord> records) override {
     return commit({{players.begin(), players.end()}, {records.begin(), records.end()}, 0, {}});
+  }
+  StoreResult<void> change_names(std::span<const NameChange> changes) override {
+    return commit({{}, {}, 0, {}, {}, {changes.begin(), changes.end()}});
   }
   StoreResult<void> save_snapshots(ChunkSpan chunks, std::optional<Sequence> checkpoint) override {
     return commit({{}, {}, chunks.size(), checkpoint});

@@ -42,6 +42,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::vector<Closed> closed;
   std::vector<PlayerRow> players;
   std::vector<EditRecord> records;
+  std::vector<NameChange> names;
   std::deque<ChunkKey> loads;
   struct HistoryLoad {
     SessionId session = 0;
@@ -104,6 +105,9 @@ class FakeEnvironment : public WorldEnvironment {
                   std::vector<EditRecord> new_records) override {
     players.insert(players.end(), new_players.begin(), new_players.end());
     records.insert(records.end(), new_records.begin(), new_records.end());
+  }
+  void log_names(std::vector<NameChange> changes) override {
+    names.insert(names.end(), changes.begin(), changes.end());
   }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
   void command(SessionId /*session*/, AuthorId /*author*/, const PublicKey& /*key*/,

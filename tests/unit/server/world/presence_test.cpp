@@ -73,7 +73,9 @@ TEST_CASE("the player list is sent in full once, then as changes, and in full af
   REQUIRE(lists.size() == 2);
   CHECK_FALSE(lists[0].is_change);
   CHECK(lists[1].is_change);
-  CHECK(lists[1].players == std::vector<PlayerName>{{2, "player2"}, {3, "player3"}});
+  CHECK(lists[1].players ==
+        std::vector<PlayerName>{{2, "player2", key_pair_of(seed_of(2)).public_key},
+                                {3, "player3", key_pair_of(seed_of(3)).public_key}});
   lists = bench.environment.messages<PlayerList>(3, kEdge);
   REQUIRE(lists.size() == 1);
   CHECK_FALSE(lists[0].is_change);

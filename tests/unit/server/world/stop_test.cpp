@@ -73,14 +73,14 @@ TEST_CASE(
   };
   bench.tick();
   CHECK(told(2) == -1);
-  bench.server.set_disk_is_full(true);
+  bench.server.set_disk_is_full(true, bench.now());
   bench.tick();
   CHECK(told(1) == 1);
   CHECK(told(2) == 1);
   bench.join(3, 3);
   bench.tick(1'100'000);
   CHECK(told(3) == 1);
-  bench.server.set_disk_is_full(false);
+  bench.server.set_disk_is_full(false, bench.now());
   bench.tick();
   for (const SessionId session : {1U, 2U, 3U}) CHECK(told(session) == 0);
   const std::size_t sent = bench.environment.messages<Durable>(1, kEdge).size();
@@ -93,7 +93,7 @@ TEST_CASE("while the disk is full edits are rejected with that reason, and accep
   WorldBench bench;
   bench.join(1, 1);
   bench.edit(1, 1, kAtOrigin);
-  bench.server.set_disk_is_full(true);
+  bench.server.set_disk_is_full(true, bench.now());
   bench.edit(1, 2, kAtOrigin);
   CHECK(bench.environment.messages<Reject>(1, kEdge) ==
         std::vector<Reject>{{2, RejectReason::busy, "the world's disk is full", 0}});
@@ -104,7 +104,7 @@ TEST_CASE("while the disk is full edits are rejected with that reason, and accep
   CHECK(std::string(busy.reason) == "the world's disk is full");
   CHECK(bench.environment.records.size() == 1);  // the edit that was accepted before
   bench.environment.log_room = true;
-  bench.server.set_disk_is_full(false);
+  bench.server.set_disk_is_full(false, bench.now());
   bench.edit(1, 3, kAtOrigin);
   bench.server.commit(bench.now());
   CHECK(bench.environment.records.size() == 2);

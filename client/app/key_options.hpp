@@ -1,0 +1,24 @@
+// KeyRequest: the command line of `runstone-client key` as a value.
+#pragma once
+#include <optional>
+#include <string>
+
+namespace runstone {
+
+struct KeyRequest {
+  enum class Verb { show, export_key, import_key } verb{};
+  std::string key_file;
+  std::string file;             // exported to, or imported from; empty: the terminal
+  std::string passphrase_file;  // empty: the passphrase is asked for
+};
+
+/// The request, or the exit code of a program that has nothing more to do: 0 after help, 2 after an
+/// error. The help text or the error was printed.
+struct ParsedKeyRequest {
+  std::optional<KeyRequest> request;
+  int exit_code = 0;
+};
+/// Parses the words from "key" on.
+ParsedKeyRequest parse_key_request(int argc, const char* const* argv);
+
+}  // namespace runstone

@@ -1,0 +1,19 @@
+// runstone-client key: shows a player's key, exports it as a line of text, and imports it.
+#pragma once
+#include <iosfwd>
+
+#include "client/app/key_options.hpp"
+#include "client/net/sealed_key.hpp"
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+/// Passphrases of fewer bytes are refused for an export.
+inline constexpr std::size_t kPassphraseBytesMin = 8;
+
+/// Carries out the request. `in` is read by an import without a file; `cost` is that of an export.
+/// No file is overwritten. The error is one line.
+Result<void, std::string> run_key_program(const KeyRequest& request, std::istream& in,
+                                          std::ostream& out, SealCost cost = {});
+
+}  // namespace runstone

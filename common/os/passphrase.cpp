@@ -1,0 +1,65 @@
+#include "common/os/passphrase.hpp"
+
+#include <fcntl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace runstone {
+namespace {
+
+/// The terminal of the process, also when standard input and output are files.
+class Terminal {
+ public:
+  Terminal() : fd_(::open("/dev/tty", O_RDWR | O_CLOEXEC)) {
+    if (fd_ < 0 || ::tcgetattr(fd_, &shown_) != 0) return;
+    termios hidden = shown_;
+    hidden.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+    hidden.c_lflag |= ECHONL;
+    is_hidden_ = ::tcsetattr(fd_, TCSAFLUSH, &hidden) == 0;
+  }
+  ~Terminal() {
+    if (is_hidden_) ::tcsetattr(fd_, TCSAFLUSH, &shown_);
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  bool is_hidden() const { return is_hidden_; }
+  bool print(const std::string& text) const {
+    return ::write(fd_, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  }
+  bool read_line(std::string& line) const {
+    for (char c = 0; ::read(fd_, &c, 1) == 1; line += c) {
+      if (c == '\n') return true;
+    }
+    return false;
+  }
+
+ private:
+  int fd_ = -1;
+  termios shown_{};
+  bool is_hidden_ = false;
+};
+
+}  // namespace
+
+Result<std::string, std::string> ask_passphrase(const std::string& prompt) {
+  const Terminal terminal;
+  if (!terminal.is_hidden() || !terminal.print(prompt))
+    return Unexpected<std::string>{"there is no terminal to ask for the passphrase"};
+  std::string line;
+  if (!terminal.read_line(line)) return Unexpected<std::string>{"no passphrase was typed"};
+  return line;
+}
+
+Result<std::string, std::string> read_passphrase(const std::string& file) {
+  std::ifstream in(file);
+  std::string line;
+  if (!std::getline(in, line) || line.empty())
+    return Unexpected<std::string>{file + ": cannot be read, or its first line is empty"};
+  return line;
+}
+
+}  // namespace runstone

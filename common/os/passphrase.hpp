@@ -1,0 +1,16 @@
+// Passphrases: typed at the terminal without being shown, or read from a file.
+#pragma once
+#include <string>
+
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+/// Prints the prompt on the terminal of the process and reads a line that is not shown. Fails if the
+/// process has no terminal, or if the input ends.
+Result<std::string, std::string> ask_passphrase(const std::string& prompt);
+
+/// Returns the first line of a file. Fails if the file cannot be read or its first line is empty.
+Result<std::string, std::string> read_passphrase(const std::string& file);
+
+}  // namespace runstone

@@ -1,0 +1,106 @@
+#include "client/app/key_program.hpp"
+
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "client/net/key_file.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr SealCost kCheap{1, 8};
+using Verb = KeyRequest::Verb;
+
+/// Runs one request. Returns its output, or "ERROR: " and the error.
+std::string run(const KeyRequest& request, const std::string& input = "") {
+  std::istringstream in(input);
+  std::ostringstream out;
+  const auto done = run_key_program(request, in, out, kCheap);
+  return done ? out.str() : "ERROR: " + done.error();
+}
+
+void write(const std::string& file, const std::string& text) { std::ofstream(file) << text; }
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a key is shown, exported and imported", "[client][key]") {
+  const TempFolder folder;
+  const std::string key = folder / "ana.key", words = folder / "words", copy = folder / "copy.key",
+                    file = folder / "exported";
+  load_or_create_key(key);
+  write(words, "one two three\n");
+  const std::string shown = run({Verb::show, key, "", ""});
+  CHECK(shown.starts_with("public key  "));
+  CHECK(shown.find("\nfingerprint ") != std::string::npos);
+  SECTION("through a file") {
+    CHECK(run({Verb::export_key, key, file, words}) == shown);
+    struct stat info{};
+    REQUIRE(::stat(file.c_str(), &info) == 0);
+    CHECK((info.st_mode & 0777) == 0600);
+    CHECK(run({Verb::export_key, key, file, words}).starts_with("ERROR: " + file));
+    CHECK(run({Verb::import_key, copy, file, words}) == shown);
+  }
+  SECTION("through the terminal") {
+    const std::string line = run({Verb::export_key, key, "", words});
+    CHECK(line.starts_with("runstone-key-1:"));
+    CHECK(run({Verb::import_key, copy, "", words}, line) == shown);
+  }
+  CHECK(text_of(copy) == text_of(key));
+  CHECK(run({Verb::show, copy, "", ""}) == shown);
+}
+
+TEST_CASE("an import overwrites nothing and says what is wrong", "[client][key]") {
+  const TempFolder folder;
+  const std::string key = folder / "ana.key", words = folder / "words", other = folder / "other";
+  load_or_create_key(key);
+  write(words, "one two three\n");
+  write(other, "one two four\n");
+  const std::string line = run({Verb::export_key, key, "", words});
+  const std::string before = text_of(key);
+  CHECK(run({Verb::import_key, key, "", words}, line) == "ERROR: " + key + ": File exists");
+  CHECK(text_of(key) == before);
+  const std::string copy = folder / "copy.key";
+  CHECK(run({Verb::import_key, copy, "", other}, line) ==
+        "ERROR: the passphrase is wrong, or the exported key is damaged");
+  CHECK(run({Verb::import_key, copy, "", words}, "hello\n") ==
+        "ERROR: this is no exported key of version 1: it begins with \"runstone-key-1:\"");
+  CHECK(run({Verb::import_key, copy, "", words}) ==
+        "ERROR: standard input: cannot be read, or its first line is empty");
+  CHECK(run({Verb::import_key, copy, folder / "none", words})
+            .starts_with("ERROR: " + (folder / "none")));
+  CHECK(run({Verb::import_key, copy, "", folder / "none"}, line)
+            .starts_with("ERROR: " + (folder / "none")));
+  CHECK(run({Verb::show, copy, "", ""}).starts_with("ERROR: " + copy));
+  write(words, "short\n");
+  CHECK(run({Verb::export_key, key, "", words}) ==
+        "ERROR: the passphrase has fewer than 8 bytes: take some words");
+}
+
+TEST_CASE("the command line of key names a verb and a key", "[client][key]") {
+  const char* shown[] = {"key", "show", "--key", "a.key"};
+  const auto parsed = parse_key_request(4, shown);
+  REQUIRE(parsed.request);
+  CHECK(parsed.request->verb == Verb::show);
+  CHECK(parsed.request->key_file == "a.key");
+  const char* imported[] = {"key", "import", "--key", "a.key", "--in", "f", "--passphrase-file",
+                            "p"};
+  const auto more = parse_key_request(8, imported);
+  REQUIRE(more.request);
+  CHECK(more.request->verb == Verb::import_key);
+  CHECK(more.request->file == "f");
+  CHECK(more.request->passphrase_file == "p");
+  CHECK(parse_key_request(1, shown).exit_code == 2);
+  CHECK(parse_key_request(2, shown).exit_code == 2);
+}
+
+}  // namespace runstone::test
