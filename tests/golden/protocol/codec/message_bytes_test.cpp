@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <numeric>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -77,11 +79,18 @@ PublicKey key_from(std::uint8_t first) {
 }
 
 constexpr const char* kServerSignature =
-    "41bde761ed482b057df0dd32120aa2b61b45bbe35ca6348b353e5a1d8199b0ee"
-    "78d3120243deae2788ba4191234ad3e33438a6ef77b08c188b46e8628ce9b009";
+    "d0b130d035d47ca403d7c40fe190cb0a1b4a8d58fbef99a938fd6a5b766784c2"
+    "870800cedb5f9126ed3bd9d47ab11bc7c55a8fe429bf35dd1138d4bce1bb4206";
 constexpr const char* kClientSignature =
-    "7dddb45e41e93809a739fba1edb83660ad8087543b1b7a81a8478204fcd652a5"
-    "a5b3ee2dd4461e8ba4132df3c03dc0d70ff07303ad5deec80eccbd0b8cea4403";
+    "f15ec6aea8b7891b16dbba402be7e5af49e9feedc34dfa72f493b677296a2a57"
+    "23fbd7570cedb382866bb9b9b99f0caaf84345fb7ca1ee15e703b0e2400c8105";
+
+/// The channel binding of the protocol page: c0, c1 and so on.
+std::optional<ChannelBinding> page_binding() {
+  ChannelBinding binding{};
+  std::iota(binding.begin(), binding.end(), std::uint8_t{0xc0});
+  return binding;
+}
 
 Welcome signed_welcome() {
   Welcome m = a_welcome();
@@ -139,18 +148,18 @@ std::vector<GoldenMessage> golden_messages() {
        "f400000003000000c0ffffffc0000000000000000000e03f0000000000805140"
        "000000000000d0bfe0000000a40000007c00000034000000e001000000000000"
        "f30100000000000040420f00000000006400000000000000a00f000000000000"
-       "05000000000000004000000041bde761ed482b057df0dd32120aa2b61b45bbe3"
-       "5ca6348b353e5a1d8199b0ee78d3120243deae2788ba4191234ad3e33438a6ef"
-       "77b08c188b46e8628ce9b00920000000404142434445464748494a4b4c4d4e4f"
+       "050000000000000040000000d0b130d035d47ca403d7c40fe190cb0a1b4a8d58"
+       "fbef99a938fd6a5b766784c2870800cedb5f9126ed3bd9d47ab11bc7c55a8fe4"
+       "29bf35dd1138d4bce1bb420620000000404142434445464748494a4b4c4d4e4f"
        "505152535455565758595a5b5c5d5e5f200000008a88e3dd7409f195fd52db2d"
        "3cba5d72ca6709bf1d94121bf3748801b40f6f5c100000001011121314151617"
        "18191a1b1c1d1e1f02000000340000001000000000000a00100008000c000700"
        "0a0000000000000108000000808080ff0500000073746f6e6500060008000400"
        "06000000040000000300000061697200"},
       {ClientAuth{signature_of(kClientSignature)},
-       "0c00000000000600080004000600000004000000400000007dddb45e41e93809"
-       "a739fba1edb83660ad8087543b1b7a81a8478204fcd652a5a5b3ee2dd4461e8b"
-       "a4132df3c03dc0d70ff07303ad5deec80eccbd0b8cea4403"},
+       "0c0000000000060008000400060000000400000040000000f15ec6aea8b7891b"
+       "16dbba402be7e5af49e9feedc34dfa72f493b677296a2a5723fbd7570cedb382"
+       "866bb9b9b99f0caaf84345fb7ca1ee15e703b0e2400c8105"},
       {SessionAccepted{7, 41}, "1000000000000000080010000400080008000000070000002900000000000000"},
       {View{12, {1, -2, 3}, 6, 3, 16'384, -4'096, 8'192},
        "1c000000000016001c000c0010001400180004000500060008000a0016000000"
@@ -268,7 +277,7 @@ TEST_CASE("the signature of a recorded welcome holds", "[protocol][golden]") {
   Hello hello = a_hello();
   hello.key = keys_of(2).public_key;
   const Welcome welcome = signed_welcome();
-  CHECK(verify(welcome.server_key, server_transcript(hello, welcome, std::nullopt),
+  CHECK(verify(welcome.server_key, server_transcript(hello, welcome, page_binding()),
                welcome.signature));
 }
 
@@ -277,10 +286,10 @@ TEST_CASE("handshake transcripts and signatures are those of the protocol page",
   Hello hello = a_hello();
   hello.key = keys_of(2).public_key;
   const Welcome welcome = a_welcome();
-  const Bytes transcript = server_transcript(hello, welcome, std::nullopt);
+  const Bytes transcript = server_transcript(hello, welcome, page_binding());
   CHECK(to_hex(transcript) == page_example("transcript"));
   CHECK(to_hex(sign(keys_of(1), transcript)) == kServerSignature);
-  CHECK(to_hex(sign(keys_of(2), client_transcript(hello, welcome, std::nullopt))) ==
+  CHECK(to_hex(sign(keys_of(2), client_transcript(hello, welcome, page_binding()))) ==
         kClientSignature);
   CHECK(page_example("signatures") == std::string(kServerSignature) + kClientSignature);
 }
