@@ -50,6 +50,11 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
   import->add_option("--luanti", out.luanti, "folder that holds map.sqlite")->required();
   import->add_option("--world", out.world, "folder of the new world")->required();
   import->add_option("--edge", out.edge, "edge of a chunk, 16, 32, 64 or 128 voxels");
+  import
+      ->add_option_function<std::string>(
+          "--palette", [&out](const std::string& text) { out.palette = text == "default"; },
+          "default: add the built-in materials that the world lacks; none: add nothing")
+      ->check(CLI::IsMember({"default", "none"}));
   import->add_flag("--keep-all", out.keep_all, "keep plants, torches and the like as cubes");
   return import;
 }

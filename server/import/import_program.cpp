@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/materials/palette.hpp"
 #include "server/import/import_luanti.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_folder.hpp"
@@ -42,12 +43,23 @@ class BaseWriter {
   std::string error_;
 };
 
+/// Returns the materials of the new world: those of the imported one, and the palette.
+Result<MaterialTable, std::string> materials_of(const ImportRequest& request,
+                                                const LuantiImportReport& survey) {
+  MaterialTable materials = survey.materials;
+  if (request.palette && !append_palette(materials, default_material_table())) {
+    return failure(request.luanti + ": its " + std::to_string(survey.materials.size()) +
+                   " materials leave no room for the builders' palette: add --palette none");
+  }
+  return materials;
+}
+
 Result<void, std::string> fill(const ImportRequest& request, const LuantiImportReport& survey,
-                               const std::string& folder) {
+                               const MaterialTable& materials, const std::string& folder) {
   WorldMeta meta;
   meta.chunk_edge = request.edge;
   meta.generator.name = "empty";
-  meta.materials = survey.materials;
+  meta.materials = materials;
   meta.spawn = {survey.spawn.x + 0.5, static_cast<double>(survey.spawn.y), survey.spawn.z + 0.5};
   draw_identity(meta);
   auto store = create_world(folder, meta);
@@ -68,10 +80,12 @@ Result<void, std::string> fill(const ImportRequest& request, const LuantiImportR
   return {};
 }
 
-void print(const LuantiImportReport& report, const ImportRequest& request, std::ostream& out) {
+void print(const LuantiImportReport& report, const ImportRequest& request,
+           const MaterialTable& materials, std::ostream& out) {
   out << request.world << ": " << report.blocks << " blocks became " << report.chunks
       << " chunks of edge " << request.edge << " with " << report.runs << " runs and "
-      << report.materials.size() << " materials, " << report.damaged.size()
+      << report.materials.size() << " materials, to which the builders' palette adds "
+      << materials.size() - report.materials.size() << ", " << report.damaged.size()
       << " damaged blocks left empty\n";
   for (std::size_t i = 0; i < report.damaged.size() && i < kDamagedListed; ++i) {
     const DamagedBlock& block = report.damaged[i];
@@ -105,16 +119,18 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
                    first.error.what);
   }
 
+  const auto materials = materials_of(request, *survey);
+  if (!materials) return failure(materials.error());
   const std::string unfinished = request.world + ".importing";
   fs::remove_all(unfinished, error);  // of an interrupted import
-  if (const auto filled = fill(request, *survey, unfinished); !filled) {
+  if (const auto filled = fill(request, *survey, *materials, unfinished); !filled) {
     fs::remove_all(unfinished, error);
     return failure(filled.error());
   }
   fs::remove(request.world, error);  // only an empty folder can be here
   fs::rename(unfinished, request.world, error);
   if (error) return failure(request.world + ": " + error.message());
-  print(*survey, request, out);
+  print(*survey, request, *materials, out);
   return {};
 }
 

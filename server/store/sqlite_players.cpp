@@ -87,6 +87,10 @@ StoreResult<void> SqliteStore::add_claims() {
   auto added = write([&]() -> StoreResult<void> {
     const auto players = player_table_.players();
     if (!players) return failed(players.error());
+    // A world that lacks players stays as it is, until its losses are accepted.
+    if (access_ == StoreAccess::read_write) {
+      if (auto sound = check_players(*players); !sound) return sound;
+    }
     if (auto made = add_name_claims(*database_); !made) return made;
     auto table = ClaimTable::open(*database_);
     if (!table) return failed(table.error());

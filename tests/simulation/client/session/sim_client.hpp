@@ -81,7 +81,8 @@ class SimClient {
     seed[0] = static_cast<std::uint8_t>(number_);
     c.has_cache = cache_ != nullptr;
     c.keys = key_pair_of(seed);
-    c.name = "replica " + std::to_string(number);
+    c.name = "replica " + std::to_string(number_);
+    if (number % 2 == 0) c.features |= kFeatureNames;
     instance_ = c.instance = 1000 + number;
     c.encodings = number % 2 == 0 ? 1 : 2;
     c.view = {1, {0, 0, 0}, 2, 1};

@@ -67,6 +67,7 @@ class SimServer final : public WorldEnvironment {
     start.checkpoint = value(store_->checkpoint());
     start.snapshots = value(store_->snapshot_keys());
     start.players = value(store_->players());
+    start.name_claims = value(store_->name_claims());
     start.author_max = store_->author_max();
     start.resolved = value(store_->high_waters());
     std::vector<EditRecord> tail;

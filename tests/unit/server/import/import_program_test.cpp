@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <sstream>
 
+#include "common/materials/material_lookup.hpp"
+#include "server/import/import_luanti.hpp"
+#include "server/store/store.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -27,4 +30,37 @@ TEST_CASE("an import of which every block is damaged fails and makes no world",
   CHECK(imported.error().find("each of its 384 blocks is damaged, the first at pos ") !=
         std::string::npos);
   CHECK_FALSE(std::filesystem::exists(request.world));
+}
+
+TEST_CASE("an imported world has the builders' palette, unless the request says none",
+          "[server][import]") {
+  const TempFolder folder;
+  ImportRequest request;
+  request.luanti = std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/luanti_v7_small";
+  request.world = folder / "world";
+  request.palette = GENERATE(true, false);
+  std::ostringstream out;
+  const auto imported = import_world(request, out);
+  INFO((imported ? "" : imported.error()));
+  REQUIRE(imported.has_value());
+  LuantiImportSink sink;
+  sink.materials = [](const MaterialTable&) {};
+  sink.chunk = [](const ChunkKey&, RunChunk&&) { return true; };
+  const auto source = import_luanti(request.luanti, {}, sink);
+  REQUIRE(source.has_value());
+  const auto store = open_world(request.world, StoreAccess::read_only);
+  REQUIRE(store.has_value());
+  const MaterialTable& materials = (*store)->meta().materials;
+  REQUIRE(materials.size() >= source->materials.size());
+  for (std::size_t id = 0; id < source->materials.size(); ++id)
+    CHECK(materials.rows()[id].name == source->materials.rows()[id].name);
+  if (!request.palette) {
+    CHECK(materials.size() == source->materials.size());
+    CHECK(out.str().find("the builders' palette adds 0, ") != std::string::npos);
+    return;
+  }
+  for (const MaterialInfo& info : default_material_table().rows()) {
+    CAPTURE(info.name);
+    CHECK(find_material(materials, info.name).has_value());
+  }
 }

@@ -1,0 +1,17 @@
+// Palette: materials for builders that a world may lack, for example an imported one.
+#pragma once
+#include <cstddef>
+
+#include "common/core/result.hpp"
+#include "common/materials/material_table.hpp"
+
+namespace runstone {
+
+/// Appends the materials of `palette` that find_material() does not find in `table`, in their
+/// order, and returns how many these are. The ids of the table's own materials stay. So every name
+/// of the palette is understood afterwards, and a world with "default:glass" gets no second glass.
+/// Fails with limit_exceeded, and appends nothing, if not all of them fit. Cost: O(materials of
+/// both, multiplied).
+Result<std::size_t> append_palette(MaterialTable& table, const MaterialTable& palette);
+
+}  // namespace runstone
