@@ -1,4 +1,5 @@
-// runstone-server: runs a world, imports one, compacts one, or gives a running server a command.
+// runstone-server: runs a world, imports, compacts, backs up or restores one, or gives a running
+// server a command.
 // Exit codes: 0 stopped, and every edit is in the log (control: the command succeeded), 1 failed
 // while running, 2 could not start (docs/server-reference.md).
 #include <spdlog/spdlog.h>
@@ -188,20 +189,21 @@ int run(const ServerOptions& options) {
 int server_program(int argc, char** argv) {
   const auto [options, exit_code] = parse_server_options(argc, argv);
   if (!options) return exit_code;
-  if (options->compact) {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    const TimeUs now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-    const auto compacted = compact_world(*options->compact, now_us, std::cout);
-    return compacted ? static_cast<int>(kStopped) : cannot_start(compacted.error());
-  }
+  const auto exit_code_of = [](const Result<void, std::string>& done) {
+    return done ? static_cast<int>(kStopped) : cannot_start(done.error());
+  };
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const TimeUs now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+  if (options->compact) return exit_code_of(compact_world(*options->compact, now_us, std::cout));
+  if (options->backup) return exit_code_of(back_up(*options->backup, now_us, std::cout));
+  if (options->restore) return exit_code_of(restore(*options->restore, now_us, std::cout));
   if (options->control) {
     const auto done = control_server(*options->control, std::cout);
     if (!done) return cannot_start(done.error());
     return *done ? kStopped : kFailed;
   }
   if (!options->import) return run(*options);
-  const auto imported = import_world(*options->import, std::cout);
-  return imported ? static_cast<int>(kStopped) : cannot_start(imported.error());
+  return exit_code_of(import_world(*options->import, std::cout));
 }
 
 }  // namespace
