@@ -49,9 +49,10 @@ TEST_CASE("a mistyped subcommand is the argument that the error names", "[server
   const auto parsed = parse({"contrl", "status"});
   std::cerr.rdbuf(before);
   CHECK(parsed.exit_code == 2);
-  CHECK(text.str() ==
-        "runstone-server: \"contrl\" is no subcommand (import, compact, control) and no flag; "
-        "--help lists the flags\n");
+  CHECK(
+      text.str() ==
+      "runstone-server: \"contrl\" is no subcommand (import, compact, backup, restore, control) and no flag; "
+      "--help lists the flags\n");
 }
 
 TEST_CASE("losses are accepted on request", "[server_options]") {
