@@ -43,6 +43,10 @@ constexpr std::array<Choice<LogLevel>, 4> kLogLevels = {{{"debug", LogLevel::deb
                                                          {"info", LogLevel::info},
                                                          {"warn", LogLevel::warn},
                                                          {"error", LogLevel::error}}};
+constexpr std::array<Choice<LogFormat>, 2> kLogFormats = {
+    {{"text", LogFormat::text}, {"json", LogFormat::json}}};
+constexpr std::array<Choice<AddressForm>, 3> kAddressForms = {
+    {{"full", AddressForm::full}, {"short", AddressForm::prefix}, {"none", AddressForm::none}}};
 constexpr std::array<Choice<ChunkEncoding>, 3> kEncodings = {{{"packed", ChunkEncoding::packed},
                                                               {"raw", ChunkEncoding::raw},
                                                               {"coded", ChunkEncoding::coded}}};
@@ -142,6 +146,10 @@ const std::vector<Field>& fields() {
       {"listen", "HOST, HOST:PORT, [V6]:PORT or :PORT; port 0 takes a free one",
        TextField{&C::listen}},
       {"log_level", names_of(kLogLevels), choice_field<&C::log_level, kLogLevels>()},
+      {"log_format", names_of(kLogFormats) + " (one object a line)",
+       choice_field<&C::log_format, kLogFormats>()},
+      {"log_addresses", names_of(kAddressForms) + "; short: the /24 of IPv4, the /48 of IPv6",
+       choice_field<&C::log_addresses, kAddressForms>()},
       number("io_threads", &C::io_threads, 1, 64, "threads for sockets and the world strand"),
       number("worker_threads", &C::worker_threads, 1, 64,
              "threads that generate, load and encode chunks"),
@@ -202,7 +210,7 @@ const std::vector<Field>& fields() {
       number("digest_check_chunks", &C::digest_check_chunks, 0, 1'024,
              "digests per check, 0: none"),
       number("counters_s", &C::counters_s, 0, 86'400,
-             "seconds between two lines of counters, 0: never"),
+             "seconds between two lines of activity, 0: never"),
   };
   return all;
 }

@@ -21,7 +21,9 @@
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/default_port.hpp"
+#include "server/admin/log_format.hpp"
 #include "server/admin/log_level.hpp"
+#include "server/limits/address_form.hpp"
 
 namespace runstone {
 
@@ -43,6 +45,8 @@ struct ServerConfig {
   // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
   std::string listen = "0.0.0.0:" + std::to_string(kDefaultPort);
   LogLevel log_level = LogLevel::info;
+  LogFormat log_format = LogFormat::text;
+  AddressForm log_addresses = AddressForm::full;  // of players, in log lines
   // Threads.
   std::uint64_t io_threads = 2;      // 1..64: sockets and the world strand
   std::uint64_t worker_threads = 2;  // 1..64: generate, load, encode
@@ -89,7 +93,7 @@ struct ServerConfig {
   std::uint64_t stop_s = 8;
   std::uint64_t digest_check_ms = 1'000;  // between two digest checks of a session, 10..3600000
   std::uint64_t digest_check_chunks = 8;  // digests per check, 0: none .. 1024
-  std::uint64_t counters_s = 60;          // seconds between two lines of counters, 0: never
+  std::uint64_t counters_s = 60;          // seconds between two lines of activity, 0: never
   friend bool operator==(const ServerConfig&, const ServerConfig&) = default;
 };
 

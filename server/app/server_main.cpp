@@ -135,7 +135,7 @@ int run(const ServerOptions& options) {
   if (const auto allowed = allow_new_world(config->world, options.create); !allowed) {
     return cannot_start(allowed.error());
   }
-  start_logging(config->log_level);
+  start_logging(config->log_level, config->log_format);
   if (!options.port_file.empty()) {  // before the world is opened
     if (const auto written = write_output_file(options.port_file, ""); !written) {
       return cannot_start(written.error());

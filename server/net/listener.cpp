@@ -110,7 +110,7 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   for (const auto& session : *ended) session->abort();
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
-  auto stream = make_tcp_stream(std::move(socket), limits_.notsent_bytes);
+  auto stream = make_tcp_stream(std::move(socket), limits_.notsent_bytes, limits_.log_addresses);
   auto session = std::make_shared<NetSession>(id, io_, decoders_, std::move(stream), limits_,
                                               chunk_edge_, budget_, events_, counters_);
   {

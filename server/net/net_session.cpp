@@ -128,6 +128,7 @@ void NetSession::close(GoodbyeReason reason, const std::string& text) {
     const std::lock_guard lock(mutex_);
     if (closing_) return;
     closing_ = true;
+    end_ = {reason, text};
     queue_.drop_chunks();
     // If the goodbye does not fit, the client has not read for long. It gets only the end of the
     // stream.
@@ -139,6 +140,11 @@ void NetSession::close(GoodbyeReason reason, const std::string& text) {
   };
   asio::post(strand_, begin);
   wake_writer();
+}
+
+SessionEnd NetSession::end() {
+  const std::lock_guard lock(mutex_);
+  return end_;
 }
 
 void NetSession::handled(std::size_t message_bytes) {

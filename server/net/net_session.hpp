@@ -45,6 +45,7 @@ struct NetLimits {
   std::uint64_t messages_per_second = 10'000;  // per session; 0: no limit
   std::uint64_t message_burst = 20'000;
   std::int64_t linger_ms = 1'000;  // for the goodbye to be sent and the client to close
+  AddressForm log_addresses = AddressForm::full;
 };
 
 struct NetCounters {
@@ -55,6 +56,12 @@ struct NetCounters {
   std::atomic<std::uint64_t> commit_sends{0};
   // Sessions with a queued commit whose writer was woken and has not run yet.
   std::atomic<std::uint64_t> commits_due{0};
+};
+
+/// Why a session ended: the first reason that either side had.
+struct SessionEnd {
+  GoodbyeReason reason = GoodbyeReason::closing;
+  std::string text;
 };
 
 class NetSession : public std::enable_shared_from_this<NetSession> {
@@ -68,6 +75,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   SessionId id() const { return id_; }
   const std::string& peer() const { return peer_; }
   AddressBlock address() const { return address_; }
+  /// Returns why close() was called first. Requires that it was called. Thread: any.
+  SessionEnd end();
 
   /// Reports on_connected() and starts both loops. Call it once.
   void start();
@@ -139,10 +148,11 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::atomic<std::size_t> charged_{0};    // bytes to be added to the next read
   std::atomic<bool> reader_paused_{false};
 
-  std::mutex mutex_;  // a leaf: guards the next six
+  std::mutex mutex_;  // a leaf: guards the next seven
   SendQueue queue_;
   ChunkGate gate_;
   bool closing_ = false;
+  SessionEnd end_;  // valid when closing
   bool writer_idle_ = false;
   bool is_woken_ = false;  // the writer was woken and has not run yet
   bool is_due_ = false;    // the session is counted in commits_due

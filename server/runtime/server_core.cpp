@@ -38,7 +38,7 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       environment_(sessions_, *listener_, sender_, readers_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
-      counters_(strand_, std::chrono::seconds(config.counters_s), [this] { write_counters(); }) {}
+      activity_(strand_, std::chrono::seconds(config.counters_s), [this] { write_activity(); }) {}
 
 ServerCore::~ServerCore() = default;
 
@@ -96,7 +96,7 @@ DurableLog::Events ServerCore::log_events() {
 void ServerCore::start() {
   listener_->start();
   ticks_.start();
-  if (config_.counters_s > 0) counters_.start();
+  if (config_.counters_s > 0) activity_.start();
 }
 
 void ServerCore::tick() {
@@ -119,6 +119,15 @@ void ServerCore::write_counters() {
   const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000};
   logger("app").info(
       "{}", counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime));
+}
+
+void ServerCore::write_activity() {
+  ActivitySample sample =
+      sample_activity(*world_, listener_->counters(), log_->writer().counters());
+  const ActivityNow now{world_->online_players().size(), world_->memory().total()};
+  const std::string line = activity_line(sampled_, sample, now, config_.counters_s);
+  sampled_ = std::move(sample);
+  if (!line.empty()) logger("app").info("{}", line);
 }
 
 std::future<void> ServerCore::begin_stop() {
@@ -144,7 +153,7 @@ void ServerCore::finish_stop_if_flushed() {
   const bool gives_up = log_->has_failed() || (log_->is_full() && world_->is_stop_overdue());
   if (!gives_up && !world_->is_flushed()) return;
   ticks_.stop();
-  counters_.stop();
+  activity_.stop();
   stopping_->set_value();
   stopping_.reset();
 }

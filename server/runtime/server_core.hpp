@@ -16,6 +16,7 @@
 
 #include "server/admin/server_config.hpp"
 #include "server/net/listener.hpp"
+#include "server/runtime/activity_line.hpp"
 #include "server/runtime/chunk_sender.hpp"
 #include "server/runtime/chunk_source.hpp"
 #include "server/runtime/command_runner.hpp"
@@ -78,7 +79,7 @@ class ServerCore final : public NetEvents {
   std::vector<std::pair<ChunkKey, ChunkPtr>> edited_chunks() const {
     return world_->edited_chunks();
   }
-  /// Writes one line of counters at info. Thread: any.
+  /// Writes one line of all counters at info. Thread: any.
   void log_counters();
   /// Carries out a command of the console or the control socket. The replies come on the world
   /// strand. Thread: any.
@@ -107,6 +108,8 @@ class ServerCore final : public NetEvents {
   void schedule_delivery();
   void finish_stop_if_flushed();
   void write_counters();
+  /// Logs what happened since the last call, if anything did.
+  void write_activity();
 
   const ServerConfig& config_;
   Store& store_;
@@ -122,7 +125,8 @@ class ServerCore final : public NetEvents {
   WorldReaders readers_;
   ServerEnvironment environment_;
   CommitScheduler commits_;
-  PeriodicTask ticks_, counters_;
+  PeriodicTask ticks_, activity_;
+  ActivitySample sampled_;  // at the last write_activity(). Used on the world strand
   // The answer of begin_stop(), set while it waits. Used on the world strand.
   std::shared_ptr<std::promise<void>> stopping_;
 

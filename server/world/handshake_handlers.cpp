@@ -125,9 +125,7 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
   world.interest.open(session);
   world.environment.opened(session);
   ++world.counters.sessions_opened;
-  world.environment.report(OperatorLogLevel::info,
-                           "session=" + std::to_string(session) + " open author=" +
-                               std::to_string(mine.author) + " name=\"" + mine.name + "\"");
+  world.environment.player_came(visit_of(world, session, mine));
   world.player_list_changed = true;
   const SessionAccepted accepted{mine.author,
                                  world.authority.resolved().of(mine.author, mine.instance)};
