@@ -7,6 +7,7 @@
 #include <charconv>
 #include <variant>
 
+#include "common/core/assert.hpp"
 #include "common/core/hex.hpp"
 #include "server/admin/operators.hpp"
 
@@ -268,6 +269,18 @@ std::string environment_name(const std::string& field) {
 }
 std::string flag_name(const std::string& field) {
   return "--" + with_replaced(field, '_', '-', false);
+}
+
+std::string config_text(const ServerConfig& config, const std::string& name) {
+  const Field* field = find(name);
+  RUNSTONE_ASSERT(field != nullptr);
+  const auto* number = std::get_if<NumberField>(&field->kind);
+  return number != nullptr ? std::to_string(config.*number->member) : text_of(config, *field);
+}
+
+void copy_config(ServerConfig& config, const ServerConfig& from, const std::string& name) {
+  const auto copied = set_config(config, name, config_text(from, name));
+  RUNSTONE_ASSERT(copied.has_value());
 }
 
 Result<void, std::string> set_config(ServerConfig& config, const std::string& name,

@@ -107,6 +107,11 @@ std::vector<ConfigField> config_fields();
 std::string environment_name(const std::string& field);
 std::string flag_name(const std::string& field);
 
+/// Returns the value of a field as text. Two values are equal if their texts are.
+std::string config_text(const ServerConfig& config, const std::string& field);
+/// Sets one field to its value in `from`.
+void copy_config(ServerConfig& config, const ServerConfig& from, const std::string& field);
+
 /// Sets one field from the text of a flag or variable. The error names the field and says what is
 /// wrong.
 Result<void, std::string> set_config(ServerConfig& config, const std::string& field,

@@ -13,8 +13,10 @@
 #include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <iterator>
+#include <memory>
 #include <new>
 #include <optional>
 #include <string>
@@ -24,6 +26,7 @@
 #include "common/os/output_file.hpp"
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
+#include "server/app/backup_child.hpp"
 #include "server/app/new_world.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
@@ -73,24 +76,29 @@ void allow_files_for(const ServerConfig& config) {
       config.sessions_max, needed, allowed);
 }
 
-/// The signals that end the loop, and the one that logs the counters. It is made before the server
-/// starts, so that a signal during the start is handled afterwards; the first process of a
-/// container would otherwise ignore it.
+/// The signals that end the loop, and those that log the counters and read the settings again. It is
+/// made before the server starts, so that a signal during the start is handled afterwards; the first
+/// process of a container would otherwise ignore it.
 class Signals {
  public:
   explicit Signals(asio::io_context& loop)
-      : loop_(loop), stop_(loop, SIGINT, SIGTERM), counters_(loop, SIGUSR1) {}
+      : loop_(loop),
+        stop_(loop, SIGINT, SIGTERM),
+        counters_(loop, SIGUSR1),
+        reload_(loop, SIGHUP) {}
 
   /// Runs until a signal comes or the failure callback stops the loop.
-  void wait_for_the_end(Server& server) {
+  void wait_for_the_end(Server& server, const std::function<void()>& reload) {
     stop_.async_wait([this](const asio::error_code& error, int /*signal*/) {
       if (!error) loop_.stop();
     });
     wait_for_counters(server);
+    wait_for_reload(reload);
     loop_.run();
     // The signals get their default effect again, so a second one ends the process at once.
     stop_.clear();
     counters_.clear();
+    reload_.clear();
   }
 
  private:
@@ -102,8 +110,16 @@ class Signals {
     });
   }
 
+  void wait_for_reload(const std::function<void()>& reload) {
+    reload_.async_wait([this, &reload](const asio::error_code& error, int /*signal*/) {
+      if (error) return;
+      reload();
+      wait_for_reload(reload);
+    });
+  }
+
   asio::io_context& loop_;
-  asio::signal_set stop_, counters_;
+  asio::signal_set stop_, counters_, reload_;
 };
 
 /// Logs what the operator must know about a stop that left something undone.
@@ -145,12 +161,25 @@ int run(const ServerOptions& options) {
   asio::io_context main_loop;
   Signals signals(main_loop);
   const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };
-  auto server = Server::start(*config, options.creation, end, end, options.accept_losses);
+  std::unique_ptr<Server> running;
+  BackupChild backup(config->world);
+  OperatorActions actions;
+  actions.stop = end;
+  actions.reload = [&](CommandReply reply) {
+    asio::post(main_loop, [&running, &options, reply = std::move(reply)]() mutable {
+      if (running) running->reload(read_config(options), std::move(reply));
+    });
+  };
+  actions.back_up = [&backup](const std::string& folder, CommandReply reply) {
+    backup.start(folder, std::move(reply));
+  };
+  auto server = Server::start(*config, options.creation, end, actions, options.accept_losses);
   if (!server) return cannot_start(server.error());
+  running = *std::move(server);
   std::shared_ptr<Console> console;
   if (options.console || ::isatty(STDIN_FILENO) == 1) {
-    const auto run_line = [&server](const std::string& line, CommandReply reply) {
-      (*server)->command(line, std::move(reply));
+    const auto run_line = [&running](const std::string& line, CommandReply reply) {
+      running->command(line, std::move(reply));
     };
     auto opened = Console::open(main_loop, run_line, [](const std::string& failure) {
       logger("app").error("{}", failure);
@@ -160,13 +189,16 @@ int run(const ServerOptions& options) {
   }
   if (!options.port_file.empty()) {
     const auto written =
-        write_output_file(options.port_file, std::to_string((*server)->port()) + "\n");
+        write_output_file(options.port_file, std::to_string(running->port()) + "\n");
     if (!written) return cannot_start(written.error());
   }
-  signals.wait_for_the_end(**server);
+  signals.wait_for_the_end(*running, [&] {
+    running->reload(read_config(options), [](const CommandAnswer& /*the log has it*/) {});
+  });
+  backup.stop();
   if (console) console->close();
   logger("app").info("stopping");
-  const StopReport report = (*server)->stop();
+  const StopReport report = running->stop();
   log_stop(report, *config);
   bool is_written = true;
   if (!options.digests_file.empty()) {

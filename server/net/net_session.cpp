@@ -142,7 +142,7 @@ void NetSession::close(GoodbyeReason reason, const std::string& text) {
   wake_writer();
 }
 
-SessionEnd NetSession::end() {
+EndCause NetSession::end() {
   const std::lock_guard lock(mutex_);
   return end_;
 }

@@ -59,7 +59,7 @@ struct NetCounters {
 };
 
 /// Why a session ended: the first reason that either side had.
-struct SessionEnd {
+struct EndCause {
   GoodbyeReason reason = GoodbyeReason::closing;
   std::string text;
 };
@@ -76,7 +76,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   const std::string& peer() const { return peer_; }
   AddressBlock address() const { return address_; }
   /// Returns why close() was called first. Requires that it was called. Thread: any.
-  SessionEnd end();
+  EndCause end();
 
   /// Reports on_connected() and starts both loops. Call it once.
   void start();
@@ -152,7 +152,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   SendQueue queue_;
   ChunkGate gate_;
   bool closing_ = false;
-  SessionEnd end_;  // valid when closing
+  EndCause end_;  // valid when closing
   bool writer_idle_ = false;
   bool is_woken_ = false;  // the writer was woken and has not run yet
   bool is_due_ = false;    // the session is counted in commits_due

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "common/os/steady_clock.hpp"
+#include "server/admin/config_reload.hpp"
 #include "server/runtime/counters_line.hpp"
 #include "server/runtime/derived_config.hpp"
 #include "server/runtime/logging.hpp"
@@ -22,12 +23,13 @@ constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for t
 
 ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,
                        const Generator& generator, std::function<void()> on_failure,
-                       std::function<void()> on_stop)
+                       OperatorActions actions)
     : config_(config),
       store_(store),
       generator_(generator),
       on_failure_(std::move(on_failure)),
-      on_stop_(std::move(on_stop)),
+      actions_(std::move(actions)),
+      running_(config),
       strand_(threads.io, [this] { after_task(); }),
       listener_(std::make_shared<Listener>(threads.io, threads.decoders.get_executor(),
                                            net_limits_of(config), store.meta().chunk_edge, *this)),
@@ -57,7 +59,7 @@ Result<void, std::string> ServerCore::recover() {
   if (!replayed) return Unexpected<std::string>{replayed.error()};
 
   commands_ = std::make_unique<CommandRunner>(strand_, *world_, readers_, config_.operators,
-                                              meta.materials, config_.world, on_stop_);
+                                              meta.materials, config_.world, actions_);
   DurableLog::Options options;
   options.queued_records_max = config_.log_queue_records;
   options.reserve_bytes = config_.disk_reserve_mib << 20;
@@ -119,6 +121,22 @@ void ServerCore::write_counters() {
   const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000};
   logger("app").info(
       "{}", counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime));
+}
+
+void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply reply) {
+  strand_.post([this, read = std::move(read), reply = std::move(reply)] {
+    if (!read) {
+      logger("app").error("reload: {}: all settings stay as they were", read.error());
+      return refuse(reply, "reload: " + read.error() + ": all settings stay as they were");
+    }
+    ConfigReload reloaded = reload_config(running_, *read);
+    running_ = std::move(reloaded.config);
+    start_logging(running_.log_level, running_.log_format);
+    world_->reconfigure(world_config_of(running_, store_.meta()));
+    commands_->set_operators(running_.operators);
+    logger("app").info("reload: {}", reloaded.text());
+    reply({reloaded.text(), true, true});
+  });
 }
 
 void ServerCore::write_activity() {

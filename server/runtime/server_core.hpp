@@ -46,10 +46,9 @@ class ServerCore final : public NetEvents {
   /// The core keeps references to the members of `threads`, and to `config`, `store` and
   /// `generator`. All of them must outlive it. `store` is of the folder `config.world`. `on_failure`
   /// is called at most once, from the log writer's thread, when the log cannot be written any more.
-  /// `on_stop` is called on the world strand when an operator stops the server.
+  /// `actions`: the commands that the program carries out.
   ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,
-             const Generator& generator, std::function<void()> on_failure,
-             std::function<void()> on_stop);
+             const Generator& generator, std::function<void()> on_failure, OperatorActions actions);
   ~ServerCore() override;
 
   /// Binds the address. Does not touch the world.
@@ -87,6 +86,10 @@ class ServerCore final : public NetEvents {
     commands_->run(line, std::move(reply));
   }
 
+  /// Takes over the settings that a running server may change, logs which, and replies. `read` is the
+  /// new configuration, or why there is none. Thread: any.
+  void reload(Result<ServerConfig, std::string> read, CommandReply reply);
+
   // NetEvents: called on session strands.
   void on_connected(SessionId session) override;
   void on_message(SessionId session, Message&& message, std::size_t bytes) override;
@@ -114,7 +117,9 @@ class ServerCore final : public NetEvents {
   const ServerConfig& config_;
   Store& store_;
   const Generator& generator_;
-  const std::function<void()> on_failure_, on_stop_;
+  const std::function<void()> on_failure_;
+  const OperatorActions actions_;
+  ServerConfig running_;  // config_ with what was reloaded. Used on the world strand
   WorldStrand strand_;
   std::shared_ptr<Listener> listener_;
   ConnectedSessions sessions_;

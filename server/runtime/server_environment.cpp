@@ -115,7 +115,7 @@ void ServerEnvironment::player_came(const PlayerVisit& visit) {
 
 void ServerEnvironment::player_left(const PlayerVisit& visit) {
   const auto& net = sessions_.find(visit.session);
-  lines_.write(OperatorLogLevel::info, left_line(visit, net == nullptr ? SessionEnd{} : net->end()),
+  lines_.write(OperatorLogLevel::info, left_line(visit, net == nullptr ? EndCause{} : net->end()),
                read_clocks().steady_us);
 }
 

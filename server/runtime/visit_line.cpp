@@ -28,7 +28,7 @@ std::string came_line(const PlayerVisit& visit, const std::string& address) {
   return with_field(std::move(line), "session", std::uint64_t{visit.session});
 }
 
-std::string left_line(const PlayerVisit& visit, const SessionEnd& end) {
+std::string left_line(const PlayerVisit& visit, const EndCause& end) {
   std::string line =
       with_field(visit_line("left", visit), "reason", std::string_view(to_string(end.reason)));
   line = with_field(std::move(line), "why", end.text);

@@ -9,7 +9,7 @@ namespace runstone {
 
 /// Return payloads (log_payload.hpp). `address` is peer_text() of the player's connection.
 std::string came_line(const PlayerVisit& visit, const std::string& address);
-std::string left_line(const PlayerVisit& visit, const SessionEnd& end);
+std::string left_line(const PlayerVisit& visit, const EndCause& end);
 
 /// Returns the first 16 hexadecimal digits of a key: enough to tell players apart, and to find one
 /// in the list of the command `players`.
