@@ -1,7 +1,9 @@
 #include "server/app/server_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
+#include <string_view>
 
 #include "common/os/output_file.hpp"
 #include "protocol/limits.hpp"
@@ -97,6 +99,17 @@ CLI::App* add_control(CLI::App& app, ControlRequest& out) {
   return control;
 }
 
+/// Returns the number of arguments up to the command behind `control`, or `argc` if there is no
+/// command. The parser must not see the command: it takes the word `backup` for the subcommand.
+int arguments_before_command(int argc, const char* const* argv) {
+  if (argc < 2 || std::string_view(argv[1]) != "control") return argc;
+  int next = 2;
+  while (next < argc && std::string_view(argv[next]).starts_with('-')) {
+    next += std::string_view(argv[next]) == "--world" ? 2 : 1;
+  }
+  return std::min(next, argc);
+}
+
 /// Prints the first argument that the parser did not understand. CLI11 lists all of them in reverse
 /// order.
 void print_unknown_argument(const CLI::App& app) {
@@ -124,8 +137,9 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   const CLI::App* const backup = add_backup(app, backup_request);
   const CLI::App* const restore = add_restore(app, restore_request);
   const CLI::App* const control = add_control(app, control_request);
+  const int parsed = arguments_before_command(argc, argv);
   try {
-    app.parse(argc, argv);
+    app.parse(parsed, argv);
   } catch (const CLI::ExtrasError&) {
     print_unknown_argument(app);
     return {std::nullopt, 2};
@@ -138,6 +152,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   if (restore->parsed()) out.restore = restore_request;
   if (control->parsed()) {
     control_request.words = control->remaining();
+    control_request.words.insert(control_request.words.end(), argv + parsed, argv + argc);
     if (control_request.words.empty()) {
       std::cerr << "control: the command is missing, such as `control help`\n";
       return {std::nullopt, 2};
