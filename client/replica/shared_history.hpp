@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "common/core/epoch_branch.hpp"
 #include "common/core/ids.hpp"
 
 namespace runstone {
@@ -26,13 +27,14 @@ class SharedHistory {
     // Of the edits of an earlier epoch, only those known to be durable survived for sure. The log
     // may have grown past its old end since, with other edits.
     common_ = before ? std::min(before->durable, now.durable) : 0;
-    // Epochs and durable sequences decrease only where a backup was restored. Then no sequence is
-    // common for sure.
-    went_back_ = before && (now.epoch < before->epoch || now.durable < before->durable ||
+    // A restored backup is another branch of the log. Durable sequences also decrease where an
+    // operator accepted the loss of edits. Then no sequence is common for sure.
+    went_back_ = before && (!is_same_branch(now.epoch, before->epoch) ||
+                            now.epoch < before->epoch || now.durable < before->durable ||
                             (now.epoch == before->epoch && now.head < before->head));
   }
 
-  /// Returns true if the server stands on a restored backup.
+  /// Returns true if the server stands on a restored backup, or has lost edits.
   bool went_back() const { return went_back_; }
   /// Returns the newest sequence of an earlier epoch that is common for sure.
   Sequence common() const { return common_; }

@@ -55,6 +55,7 @@ Result<pid_t, int> start_program(ChildProgram program) {
   SpawnSettings settings;
   settings.give(program.in, STDIN_FILENO, O_RDONLY);
   settings.give(program.out, STDOUT_FILENO, O_WRONLY);
+  if (program.errors >= 0) settings.give(program.errors, STDERR_FILENO, O_WRONLY);
   // Libraries may have opened descriptors without FD_CLOEXEC.
   ::posix_spawn_file_actions_addclosefrom_np(&settings.files, STDERR_FILENO + 1);
   if (!program.folder.empty()) {

@@ -13,6 +13,7 @@ struct ChildProgram {
   std::vector<std::string> words;  // program, searched on PATH if it has no '/', and arguments
   int in = -1, out = -1;           // descriptors of its standard input and output; -1: /dev/null
   std::string folder;              // its working directory; empty: that of this process
+  int errors = -1;                 // of its standard error; -1: that of this process
 };
 
 /// Returns the path of a program to start: `wanted` if it is not empty, otherwise the value of the
@@ -22,7 +23,7 @@ std::string sibling_program(const std::string& wanted, const char* variable,
                             const std::string& name);
 
 /// Starts a child and returns its process id, or the errno value of the failure. The child inherits
-/// the environment and standard error, but no other descriptor. No signal is blocked or ignored in
+/// the environment, but no descriptor other than these. No signal is blocked or ignored in
 /// it. The caller must wait for it.
 Result<pid_t, int> start_program(ChildProgram program);
 

@@ -49,6 +49,7 @@ class Database {
   const std::string& file() const { return file_; }
 
  private:
+  friend class OnlineCopy;
   /// Returns the statement at its first row. Fails if there is no row.
   Result<Statement> first_row(std::string_view sql);
 

@@ -233,12 +233,17 @@ Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us)
       return mistake("names release: one name comes after it, in quotes if it has blanks");
     return Command(ReleaseNameCommand{(*words)[2]});
   }
+  if (name == "backup") {
+    if (words->size() != 2) return mistake("backup: the new folder comes after it");
+    return Command(BackupCommand{(*words)[1]});
+  }
   std::optional<Command> plain;
   if (name == "help") plain = HelpCommand{};
   if (name == "status") plain = StatusCommand{};
   if (name == "players") plain = PlayersCommand{};
   if (name == "names") plain = NamesCommand{};
   if (name == "stop") plain = StopCommand{};
+  if (name == "reload") plain = ReloadCommand{};
   if (name == "undo") plain = UndoCommand{false};
   if (name == "redo") plain = UndoCommand{true};
   if (!plain) return mistake("\"" + name + "\" is no command: `help` names them");
@@ -277,6 +282,8 @@ std::string command_help(bool is_operator) {
          "rollback cancel ID        stop it, or forget a preview\n"
          "rollback undo ID          take a rollback back\n"
          "rollback list             previews, and the rollbacks so far\n"
+         "backup DIR                copy the world to a new folder, while people go on playing\n"
+         "reload                    read the settings again\n"
          "stop                      stop the server\n"
          "FILTERS, any of: author NAME or author #N (several: any of them), "
          "since 1h or since 2026-11-21T23:57:42Z,\n"

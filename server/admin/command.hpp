@@ -44,6 +44,13 @@ struct MaterialsCommand {
   std::string part;  // lists the names that contain it; empty: all
   friend bool operator==(const MaterialsCommand&, const MaterialsCommand&) = default;
 };
+struct ReloadCommand {
+  friend bool operator==(const ReloadCommand&, const ReloadCommand&) = default;
+};
+struct BackupCommand {
+  std::string folder;  // the new one
+  friend bool operator==(const BackupCommand&, const BackupCommand&) = default;
+};
 struct StopCommand {
   friend bool operator==(const StopCommand&, const StopCommand&) = default;
 };
@@ -79,7 +86,8 @@ struct RollbackListCommand {
 };
 
 using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand,
-                             StopCommand, UndoCommand, LogCommand, NamesCommand, ReleaseNameCommand,
+                             StopCommand, ReloadCommand, BackupCommand, UndoCommand, LogCommand,
+                             NamesCommand, ReleaseNameCommand,
                              RollbackPreviewCommand, RollbackCommand, RollbackListCommand>;
 
 /// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate

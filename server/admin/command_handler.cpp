@@ -35,13 +35,36 @@ StoreResult<AuthorNames> read_author_names(WorldReader& reader) {
 
 CommandHandler::CommandHandler(WorldServer& world, RollbackService& rollback,
                                RollbackService::Workers& workers, MaterialTable materials,
-                               std::string world_folder, std::function<void()> stop)
+                               std::string world_folder, OperatorActions actions)
     : world_(world),
       rollback_(rollback),
       workers_(workers),
       materials_(std::move(materials)),
       world_folder_(std::move(world_folder)),
-      stop_(std::move(stop)) {}
+      actions_(std::move(actions)) {}
+
+bool CommandHandler::run_action(const CommandCaller& caller, const Command& command,
+                                const CommandReply& reply) {
+  if (std::holds_alternative<StopCommand>(command)) {
+    reply({"the server stops", true, true});
+    if (actions_.stop) actions_.stop();
+    return true;
+  }
+  const auto* backup = std::get_if<BackupCommand>(&command);
+  const bool is_reload = std::holds_alternative<ReloadCommand>(command);
+  if (backup == nullptr && !is_reload) return false;
+  // Both use files of the machine, which a key of the game must not give access to.
+  if (caller.author != 0) {
+    refuse(reply, "this command is for the console and `runstone-server control`");
+  } else if (is_reload ? !actions_.reload : !actions_.back_up) {
+    refuse(reply, "this server cannot do that");
+  } else if (is_reload) {
+    actions_.reload(reply);
+  } else {
+    actions_.back_up(backup->folder, reply);
+  }
+  return true;
+}
 
 void CommandHandler::run(const CommandCaller& caller, const std::string& line, const Clocks& now,
                          CommandReply reply) {
@@ -61,10 +84,7 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
   if (const auto* list = std::get_if<MaterialsCommand>(&*command)) {
     return reply({material_list(materials_, list->part), true, true});
   }
-  if (std::holds_alternative<StopCommand>(*command)) {
-    reply({"the server stops", true, true});
-    return stop_();
-  }
+  if (run_action(caller, *command, reply)) return;
   if (const auto* undo = std::get_if<UndoCommand>(&*command)) {
     if (caller.author == 0) {
       return refuse(

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "server/admin/command.hpp"
+#include "server/admin/operator_actions.hpp"
 #include "server/rollback/rollback_service.hpp"
 #include "server/world/world_server.hpp"
 
@@ -19,15 +20,17 @@ struct CommandCaller {
 
 class CommandHandler {
  public:
-  /// The references must outlive the handler. `stop` makes the program stop the server.
+  /// The references must outlive the handler.
   CommandHandler(WorldServer& world, RollbackService& rollback, RollbackService::Workers& workers,
-                 MaterialTable materials, std::string world_folder, std::function<void()> stop);
+                 MaterialTable materials, std::string world_folder, OperatorActions actions);
 
   /// Carries out one line. `reply` is called on the world strand and must not call this object.
   void run(const CommandCaller& caller, const std::string& line, const Clocks& now,
            CommandReply reply);
 
  private:
+  /// Carries out a command of the program around the server. Returns false if it is another one.
+  bool run_action(const CommandCaller& caller, const Command& command, const CommandReply& reply);
   void status(const CommandReply& reply) const;
   void players(const CommandReply& reply);
   void names(const CommandReply& reply) const;
@@ -44,7 +47,7 @@ class CommandHandler {
   RollbackService::Workers& workers_;
   MaterialTable materials_;
   const std::string world_folder_;  // for the pictures of previews
-  std::function<void()> stop_;
+  const OperatorActions actions_;
 };
 
 }  // namespace runstone

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <variant>
 
+#include "common/core/assert.hpp"
 #include "common/core/hex.hpp"
 #include "server/admin/operators.hpp"
 #include "server/admin/reserved_names.hpp"
@@ -48,6 +49,10 @@ constexpr std::array<Choice<LogLevel>, 4> kLogLevels = {{{"debug", LogLevel::deb
                                                          {"info", LogLevel::info},
                                                          {"warn", LogLevel::warn},
                                                          {"error", LogLevel::error}}};
+constexpr std::array<Choice<LogFormat>, 2> kLogFormats = {
+    {{"text", LogFormat::text}, {"json", LogFormat::json}}};
+constexpr std::array<Choice<AddressForm>, 3> kAddressForms = {
+    {{"full", AddressForm::full}, {"short", AddressForm::prefix}, {"none", AddressForm::none}}};
 constexpr std::array<Choice<ChunkEncoding>, 3> kEncodings = {{{"packed", ChunkEncoding::packed},
                                                               {"raw", ChunkEncoding::raw},
                                                               {"coded", ChunkEncoding::coded}}};
@@ -178,6 +183,10 @@ const std::vector<Field>& fields() {
        optional_text_field<&C::tls_certificate>()},
       {"tls_key", "PEM file: secret key of tls_certificate", optional_text_field<&C::tls_key>()},
       {"log_level", names_of(kLogLevels), choice_field<&C::log_level, kLogLevels>()},
+      {"log_format", names_of(kLogFormats) + " (one object a line)",
+       choice_field<&C::log_format, kLogFormats>()},
+      {"log_addresses", names_of(kAddressForms) + "; short: the /24 of IPv4, the /48 of IPv6",
+       choice_field<&C::log_addresses, kAddressForms>()},
       number("io_threads", &C::io_threads, 1, 64, "threads for sockets and the world strand"),
       number("worker_threads", &C::worker_threads, 1, 64,
              "threads that generate, load and encode chunks"),
@@ -244,7 +253,7 @@ const std::vector<Field>& fields() {
       number("digest_check_chunks", &C::digest_check_chunks, 0, 1'024,
              "digests per check, 0: none"),
       number("counters_s", &C::counters_s, 0, 86'400,
-             "seconds between two lines of counters, 0: never"),
+             "seconds between two lines of activity, 0: never"),
   };
   return all;
 }
@@ -309,6 +318,18 @@ std::string environment_name(const std::string& field) {
 }
 std::string flag_name(const std::string& field) {
   return "--" + with_replaced(field, '_', '-', false);
+}
+
+std::string config_text(const ServerConfig& config, const std::string& name) {
+  const Field* field = find(name);
+  RUNSTONE_ASSERT(field != nullptr);
+  const auto* number = std::get_if<NumberField>(&field->kind);
+  return number != nullptr ? std::to_string(config.*number->member) : text_of(config, *field);
+}
+
+void copy_config(ServerConfig& config, const ServerConfig& from, const std::string& name) {
+  const auto copied = set_config(config, name, config_text(from, name));
+  RUNSTONE_ASSERT(copied.has_value());
 }
 
 Result<void, std::string> set_config(ServerConfig& config, const std::string& name,

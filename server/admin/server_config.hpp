@@ -21,7 +21,9 @@
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/default_port.hpp"
+#include "server/admin/log_format.hpp"
 #include "server/admin/log_level.hpp"
+#include "server/limits/address_form.hpp"
 
 namespace runstone {
 
@@ -48,6 +50,8 @@ struct ServerConfig {
   /// certificate of its own.
   std::string tls_certificate, tls_key;
   LogLevel log_level = LogLevel::info;
+  LogFormat log_format = LogFormat::text;
+  AddressForm log_addresses = AddressForm::full;  // of players, in log lines
   // Threads.
   std::uint64_t io_threads = 2;      // 1..64: sockets and the world strand
   std::uint64_t worker_threads = 2;  // 1..64: generate, load, encode
@@ -98,7 +102,7 @@ struct ServerConfig {
   std::uint64_t stop_s = 8;
   std::uint64_t digest_check_ms = 1'000;  // between two digest checks of a session, 10..3600000
   std::uint64_t digest_check_chunks = 8;  // digests per check, 0: none .. 1024
-  std::uint64_t counters_s = 60;          // seconds between two lines of counters, 0: never
+  std::uint64_t counters_s = 60;          // seconds between two lines of activity, 0: never
   friend bool operator==(const ServerConfig&, const ServerConfig&) = default;
 };
 
@@ -112,6 +116,11 @@ std::vector<ConfigField> config_fields();
 /// Return "RUNSTONE_SESSIONS_MAX" and "--sessions-max" for "sessions_max".
 std::string environment_name(const std::string& field);
 std::string flag_name(const std::string& field);
+
+/// Returns the value of a field as text. Two values are equal if their texts are.
+std::string config_text(const ServerConfig& config, const std::string& field);
+/// Sets one field to its value in `from`.
+void copy_config(ServerConfig& config, const ServerConfig& from, const std::string& field);
 
 /// Sets one field from the text of a flag or variable. The error names the field and says what is
 /// wrong.

@@ -55,7 +55,7 @@ Server::~Server() {
 Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& config,
                                                            const WorldCreation& creation,
                                                            std::function<void()> on_failure,
-                                                           std::function<void()> on_stop,
+                                                           OperatorActions actions,
                                                            bool accept_losses) {
   if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
   // A start that fails must neither make a new world nor raise the epoch, so the address and the
@@ -76,7 +76,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   parts->decoders = low_priority_threads(config.io_threads);
   parts->core = std::make_unique<ServerCore>(
       ServerThreads{parts->io, *parts->workers, *parts->decoders}, parts->config,
-      *parts->world.store, *parts->world.generator, std::move(on_failure), std::move(on_stop));
+      *parts->world.store, *parts->world.generator, std::move(on_failure), std::move(actions));
   if (!config.insecure) {
     const KeySeed& own_key = parts->world.store->meta().server_key_seed;
     parts->core->set_tls(*certificate ? **certificate : TlsContext::self_signed_server(own_key));
@@ -126,6 +126,9 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
 std::uint16_t Server::port() const { return parts_->core->port(); }
 void Server::command(const std::string& line, CommandReply reply) {
   parts_->core->command(line, std::move(reply));
+}
+void Server::reload(Result<ServerConfig, std::string> read, CommandReply reply) {
+  parts_->core->reload(std::move(read), std::move(reply));
 }
 void Server::log_counters() { parts_->core->log_counters(); }
 

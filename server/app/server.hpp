@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/core/result.hpp"
+#include "server/admin/operator_actions.hpp"
 #include "server/admin/server_config.hpp"
 #include "server/app/stop_report.hpp"
 #include "server/rollback/rollback_service.hpp"
@@ -18,12 +19,13 @@ class Server {
  public:
   /// Opens or makes the world, binds the port, recovers, and runs. The error is one line for the
   /// operator; after an error nothing was overwritten. `on_failure` is called once, from another
-  /// thread, if the log cannot be written any more; the caller then stops the server. `on_stop` is
-  /// called in the same way when an operator gives the command `stop`. `accept_losses`: a world
+  /// thread, if the log cannot be written any more; the caller then stops the server. `actions` are
+  /// called in the same way when an operator gives their commands; their replies must end before the
+  /// server is destroyed. `accept_losses`: a world
   /// that has lost edits, players or watermarks is repaired, and each loss is logged.
   static Result<std::unique_ptr<Server>, std::string> start(
       const ServerConfig& config, const WorldCreation& creation,
-      std::function<void()> on_failure = [] {}, std::function<void()> on_stop = [] {},
+      std::function<void()> on_failure = [] {}, OperatorActions actions = {},
       bool accept_losses = false);
   /// Calls stop() unless it was called.
   ~Server();
@@ -33,6 +35,9 @@ class Server {
   /// Carries out a command as an operator. Replies come from another thread; the last one has
   /// is_done. A server that stops may leave out replies.
   void command(const std::string& line, CommandReply reply);
+  /// Takes over the settings of `read` that a running server may change, or reports why there are
+  /// none. The reply comes from another thread.
+  void reload(Result<ServerConfig, std::string> read, CommandReply reply);
   /// Sends a goodbye to all sessions, waits for the log, writes snapshots for at most `stop_s`, and
   /// ends all threads. Blocks. Call it once.
   StopReport stop();

@@ -1,4 +1,5 @@
-// runstone-server: runs a world, imports one, compacts one, or gives a running server a command.
+// runstone-server: runs a world, imports, compacts, backs up or restores one, or gives a running
+// server a command.
 // Exit codes: 0 stopped, and every edit is in the log (control: the command succeeded), 1 failed
 // while running, 2 could not start (docs/server-reference.md).
 #include <spdlog/spdlog.h>
@@ -12,8 +13,10 @@
 #include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <iterator>
+#include <memory>
 #include <new>
 #include <optional>
 #include <string>
@@ -23,6 +26,7 @@
 #include "common/os/output_file.hpp"
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
+#include "server/app/backup_child.hpp"
 #include "server/app/new_world.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
@@ -72,24 +76,29 @@ void allow_files_for(const ServerConfig& config) {
       config.sessions_max, needed, allowed);
 }
 
-/// The signals that end the loop, and the one that logs the counters. It is made before the server
-/// starts, so that a signal during the start is handled afterwards; the first process of a
-/// container would otherwise ignore it.
+/// The signals that end the loop, and those that log the counters and read the settings again. It is
+/// made before the server starts, so that a signal during the start is handled afterwards; the first
+/// process of a container would otherwise ignore it.
 class Signals {
  public:
   explicit Signals(asio::io_context& loop)
-      : loop_(loop), stop_(loop, SIGINT, SIGTERM), counters_(loop, SIGUSR1) {}
+      : loop_(loop),
+        stop_(loop, SIGINT, SIGTERM),
+        counters_(loop, SIGUSR1),
+        reload_(loop, SIGHUP) {}
 
   /// Runs until a signal comes or the failure callback stops the loop.
-  void wait_for_the_end(Server& server) {
+  void wait_for_the_end(Server& server, const std::function<void()>& reload) {
     stop_.async_wait([this](const asio::error_code& error, int /*signal*/) {
       if (!error) loop_.stop();
     });
     wait_for_counters(server);
+    wait_for_reload(reload);
     loop_.run();
     // The signals get their default effect again, so a second one ends the process at once.
     stop_.clear();
     counters_.clear();
+    reload_.clear();
   }
 
  private:
@@ -101,8 +110,16 @@ class Signals {
     });
   }
 
+  void wait_for_reload(const std::function<void()>& reload) {
+    reload_.async_wait([this, &reload](const asio::error_code& error, int /*signal*/) {
+      if (error) return;
+      reload();
+      wait_for_reload(reload);
+    });
+  }
+
   asio::io_context& loop_;
-  asio::signal_set stop_, counters_;
+  asio::signal_set stop_, counters_, reload_;
 };
 
 /// Logs what the operator must know about a stop that left something undone.
@@ -134,7 +151,7 @@ int run(const ServerOptions& options) {
   if (const auto allowed = allow_new_world(config->world, options.create); !allowed) {
     return cannot_start(allowed.error());
   }
-  start_logging(config->log_level);
+  start_logging(config->log_level, config->log_format);
   if (!options.port_file.empty()) {  // before the world is opened
     if (const auto written = write_output_file(options.port_file, ""); !written) {
       return cannot_start(written.error());
@@ -144,12 +161,25 @@ int run(const ServerOptions& options) {
   asio::io_context main_loop;
   Signals signals(main_loop);
   const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };
-  auto server = Server::start(*config, options.creation, end, end, options.accept_losses);
+  std::unique_ptr<Server> running;
+  BackupChild backup(config->world);
+  OperatorActions actions;
+  actions.stop = end;
+  actions.reload = [&](CommandReply reply) {
+    asio::post(main_loop, [&running, &options, reply = std::move(reply)]() mutable {
+      if (running) running->reload(read_config(options), std::move(reply));
+    });
+  };
+  actions.back_up = [&backup](const std::string& folder, CommandReply reply) {
+    backup.start(folder, std::move(reply));
+  };
+  auto server = Server::start(*config, options.creation, end, actions, options.accept_losses);
   if (!server) return cannot_start(server.error());
+  running = *std::move(server);
   std::shared_ptr<Console> console;
   if (options.console || ::isatty(STDIN_FILENO) == 1) {
-    const auto run_line = [&server](const std::string& line, CommandReply reply) {
-      (*server)->command(line, std::move(reply));
+    const auto run_line = [&running](const std::string& line, CommandReply reply) {
+      running->command(line, std::move(reply));
     };
     auto opened = Console::open(main_loop, run_line, [](const std::string& failure) {
       logger("app").error("{}", failure);
@@ -159,13 +189,16 @@ int run(const ServerOptions& options) {
   }
   if (!options.port_file.empty()) {
     const auto written =
-        write_output_file(options.port_file, std::to_string((*server)->port()) + "\n");
+        write_output_file(options.port_file, std::to_string(running->port()) + "\n");
     if (!written) return cannot_start(written.error());
   }
-  signals.wait_for_the_end(**server);
+  signals.wait_for_the_end(*running, [&] {
+    running->reload(read_config(options), [](const CommandAnswer& /*the log has it*/) {});
+  });
+  backup.stop();
   if (console) console->close();
   logger("app").info("stopping");
-  const StopReport report = (*server)->stop();
+  const StopReport report = running->stop();
   log_stop(report, *config);
   bool is_written = true;
   if (!options.digests_file.empty()) {
@@ -188,20 +221,21 @@ int run(const ServerOptions& options) {
 int server_program(int argc, char** argv) {
   const auto [options, exit_code] = parse_server_options(argc, argv);
   if (!options) return exit_code;
-  if (options->compact) {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    const TimeUs now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-    const auto compacted = compact_world(*options->compact, now_us, std::cout);
-    return compacted ? static_cast<int>(kStopped) : cannot_start(compacted.error());
-  }
+  const auto exit_code_of = [](const Result<void, std::string>& done) {
+    return done ? static_cast<int>(kStopped) : cannot_start(done.error());
+  };
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const TimeUs now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+  if (options->compact) return exit_code_of(compact_world(*options->compact, now_us, std::cout));
+  if (options->backup) return exit_code_of(back_up(*options->backup, now_us, std::cout));
+  if (options->restore) return exit_code_of(restore(*options->restore, now_us, std::cout));
   if (options->control) {
     const auto done = control_server(*options->control, std::cout);
     if (!done) return cannot_start(done.error());
     return *done ? kStopped : kFailed;
   }
   if (!options->import) return run(*options);
-  const auto imported = import_world(*options->import, std::cout);
-  return imported ? static_cast<int>(kStopped) : cannot_start(imported.error());
+  return exit_code_of(import_world(*options->import, std::cout));
 }
 
 }  // namespace

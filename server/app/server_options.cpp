@@ -1,7 +1,9 @@
 #include "server/app/server_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
+#include <string_view>
 
 #include "common/os/output_file.hpp"
 #include "protocol/limits.hpp"
@@ -75,6 +77,26 @@ CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
   return compact;
 }
 
+CLI::App* add_backup(CLI::App& app, BackupRequest& out) {
+  CLI::App* const backup = app.add_subcommand(
+      "backup", "copy a world, also while a server runs it, and verify the copy");
+  backup->add_option("--world", out.world, "folder of the world")->required();
+  backup->add_option("--to", out.to, "the new folder; empty, or not there")->required();
+  backup->add_flag("--progress", out.progress,
+                   "print progress even if standard error is no terminal");
+  return backup;
+}
+
+CLI::App* add_restore(CLI::App& app, RestoreRequest& out) {
+  CLI::App* const restore = app.add_subcommand("restore", "make a world of a backup");
+  restore->add_option("--from", out.from, "folder of the backup")->required();
+  restore->add_option("--world", out.world, "folder of the new world; empty, or not there")
+      ->required();
+  restore->add_flag("--progress", out.progress,
+                    "print progress even if standard error is no terminal");
+  return restore;
+}
+
 CLI::App* add_control(CLI::App& app, ControlRequest& out) {
   CLI::App* const control =
       app.add_subcommand("control", "give a running server a command, such as `control help`");
@@ -83,12 +105,23 @@ CLI::App* add_control(CLI::App& app, ControlRequest& out) {
   return control;
 }
 
+/// Returns the number of arguments up to the command behind `control`, or `argc` if there is no
+/// command. The parser must not see the command: it takes the word `backup` for the subcommand.
+int arguments_before_command(int argc, const char* const* argv) {
+  if (argc < 2 || std::string_view(argv[1]) != "control") return argc;
+  int next = 2;
+  while (next < argc && std::string_view(argv[next]).starts_with('-')) {
+    next += std::string_view(argv[next]) == "--world" ? 2 : 1;
+  }
+  return std::min(next, argc);
+}
+
 /// Prints the first argument that the parser did not understand. CLI11 lists all of them in reverse
 /// order.
 void print_unknown_argument(const CLI::App& app) {
   std::cerr
       << "runstone-server: \"" << app.remaining(true).front()
-      << "\" is no subcommand (import, compact, control) and no flag; --help lists the flags\n";
+      << "\" is no subcommand (import, compact, backup, restore, control) and no flag; --help lists the flags\n";
 }
 
 }  // namespace
@@ -97,6 +130,8 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   ServerOptions out;
   ImportRequest import_request;
   CompactRequest compact_request;
+  BackupRequest backup_request;
+  RestoreRequest restore_request;
   ControlRequest control_request;
   CLI::App app{"Runstone world server"};
   // The last value wins, so that arguments appended to a fixed command line (a container's) change
@@ -105,9 +140,12 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   add_flags(app, out);
   const CLI::App* const import = add_import(app, import_request);
   const CLI::App* const compact = add_compact(app, compact_request);
+  const CLI::App* const backup = add_backup(app, backup_request);
+  const CLI::App* const restore = add_restore(app, restore_request);
   const CLI::App* const control = add_control(app, control_request);
+  const int parsed = arguments_before_command(argc, argv);
   try {
-    app.parse(argc, argv);
+    app.parse(parsed, argv);
   } catch (const CLI::ExtrasError&) {
     print_unknown_argument(app);
     return {std::nullopt, 2};
@@ -116,8 +154,11 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   }
   if (import->parsed()) out.import = import_request;
   if (compact->parsed()) out.compact = compact_request;
+  if (backup->parsed()) out.backup = backup_request;
+  if (restore->parsed()) out.restore = restore_request;
   if (control->parsed()) {
     control_request.words = control->remaining();
+    control_request.words.insert(control_request.words.end(), argv + parsed, argv + argc);
     if (control_request.words.empty()) {
       std::cerr << "control: the command is missing, such as `control help`\n";
       return {std::nullopt, 2};

@@ -18,6 +18,7 @@
 #include "common/core/ids.hpp"
 #include "common/tls/tls_context.hpp"
 #include "server/limits/address_block.hpp"
+#include "server/limits/address_form.hpp"
 
 namespace runstone {
 
@@ -67,21 +68,21 @@ class ByteStream {
   virtual void shutdown_send() = 0;
   /// Closes both directions. Calls under way fail.
   virtual void close() = 0;
-  /// Returns the address for log lines, such as "127.0.0.1:40312".
+  /// Returns the address for log lines, such as "127.0.0.1:40312" (peer_text.hpp).
   virtual std::string peer() const = 0;
   /// Returns the address that pays for the connection.
   virtual AddressBlock address() const { return {}; }
 };
 
 /// Makes a stream over TCP with TCP_NODELAY and TCP_NOTSENT_LOWAT = `notsent_bytes`, so that little
-/// terrain waits in the kernel before an edit.
-std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket,
-                                            std::size_t notsent_bytes);
+/// terrain waits in the kernel before an edit. `log_form`: of peer().
+std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
+                                            AddressForm log_form);
 
 /// Makes a stream over TLS and TCP. The costly steps of the handshake run on `handshakes`. A peer
 /// that does not speak TLS gets `plain_answer`, unencrypted.
 std::unique_ptr<ByteStream> make_tls_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
-                                            const TlsContext& context,
+                                            AddressForm log_form, const TlsContext& context,
                                             asio::any_io_executor handshakes, Bytes plain_answer);
 
 }  // namespace runstone

@@ -145,8 +145,8 @@ std::unique_ptr<ByteStream> Listener::make_stream(asio::ip::tcp::socket socket) 
     const std::lock_guard lock(mutex_);
     tls = tls_;
   }
-  if (!tls) return make_tcp_stream(std::move(socket), limits_.notsent_bytes);
-  return make_tls_stream(std::move(socket), limits_.notsent_bytes, *tls, decoders_,
+  if (!tls) return make_tcp_stream(std::move(socket), limits_.notsent_bytes, limits_.log_addresses);
+  return make_tls_stream(std::move(socket), limits_.notsent_bytes, limits_.log_addresses, *tls, decoders_,
                          goodbye_to_plain_client());
 }
 

@@ -151,6 +151,7 @@ void NetSession::close(GoodbyeReason reason, const std::string& text) {
     if (closing_) return;
     closing_ = true;
     is_open = is_open_;
+    end_ = {reason, text};
     queue_.drop_chunks();
     // If the goodbye does not fit, the client has not read for long. It gets only the end of the
     // stream.
@@ -166,6 +167,11 @@ void NetSession::close(GoodbyeReason reason, const std::string& text) {
   };
   asio::post(strand_, begin);
   wake_writer();
+}
+
+EndCause NetSession::end() {
+  const std::lock_guard lock(mutex_);
+  return end_;
 }
 
 void NetSession::handled(std::size_t message_bytes) {

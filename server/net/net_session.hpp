@@ -46,6 +46,7 @@ struct NetLimits {
   std::uint64_t message_burst = 20'000;
   std::int64_t handshake_ms = 10'000;  // for the TLS handshake
   std::int64_t linger_ms = 1'000;      // for the goodbye to be sent and the client to close
+  AddressForm log_addresses = AddressForm::full;
 };
 
 struct NetCounters {
@@ -56,6 +57,12 @@ struct NetCounters {
   std::atomic<std::uint64_t> commit_sends{0};
   // Sessions with a queued commit whose writer was woken and has not run yet.
   std::atomic<std::uint64_t> commits_due{0};
+};
+
+/// Why a session ended: the first reason that either side had.
+struct EndCause {
+  GoodbyeReason reason = GoodbyeReason::closing;
+  std::string text;
 };
 
 class NetSession : public std::enable_shared_from_this<NetSession> {
@@ -69,6 +76,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   SessionId id() const { return id_; }
   const std::string& peer() const { return peer_; }
   AddressBlock address() const { return address_; }
+  /// Returns why close() was called first. Requires that it was called. Thread: any.
+  EndCause end();
 
   /// Opens the stream, reports on_connected() and starts both loops. Call it once.
   void start();
@@ -147,6 +156,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   ChunkGate gate_;
   bool is_open_ = false;  // on_connected() was reported
   bool closing_ = false;
+  EndCause end_;  // valid when closing
   bool writer_idle_ = false;
   bool is_woken_ = false;  // the writer was woken and has not run yet
   bool is_due_ = false;    // the session is counted in commits_due

@@ -9,6 +9,7 @@
 
 #include "common/os/thread_cpu_ns.hpp"
 #include "server/net/await_tuple.hpp"
+#include "server/net/peer_text.hpp"
 #include "server/net/tcp_room.hpp"
 
 namespace runstone {
@@ -18,14 +19,13 @@ constexpr TimeUs kAgainUsMin = 1'000, kAgainUsMax = 20'000;
 
 }  // namespace
 
-TcpStream::TcpStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes)
+TcpStream::TcpStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes, AddressForm log_form)
     : socket_(std::move(socket)) {
   asio::error_code ignored;
   const auto end = socket_.remote_endpoint(ignored);
   if (!ignored) {
     const bool v6 = end.address().is_v6();
-    peer_ = (v6 ? "[" : "") + end.address().to_string() + (v6 ? "]:" : ":") +
-            std::to_string(end.port());
+    peer_ = peer_text(end, log_form);
     address_ = v6 ? address_block_v6(end.address().to_v6().to_bytes())
                   : address_block_v4(end.address().to_v4().to_uint());
   }
@@ -87,9 +87,9 @@ void TcpStream::close() {
   socket_.close(ignored);
 }
 
-std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket,
-                                            std::size_t notsent_bytes) {
-  return std::make_unique<TcpStream>(std::move(socket), notsent_bytes);
+std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
+                                            AddressForm log_form) {
+  return std::make_unique<TcpStream>(std::move(socket), notsent_bytes, log_form);
 }
 
 }  // namespace runstone

@@ -11,7 +11,7 @@ namespace runstone {
 class TcpStream final : public ByteStream {
  public:
   /// See make_tcp_stream().
-  TcpStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes);
+  TcpStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes, AddressForm log_form);
 
   asio::awaitable<StreamStart> open() override;
   asio::awaitable<IoResult> read_some(asio::mutable_buffer into) override;

@@ -59,9 +59,9 @@ class RecordText {
 
 class TlsStream final : public ByteStream {
  public:
-  TlsStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes, const TlsContext& context,
-            asio::any_io_executor handshakes, Bytes plain_answer)
-      : tcp_(std::move(socket), notsent_bytes),
+  TlsStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes, AddressForm log_form,
+            const TlsContext& context, asio::any_io_executor handshakes, Bytes plain_answer)
+      : tcp_(std::move(socket), notsent_bytes, log_form),
         source_(tcp_.socket().native_handle()),
         channel_(TlsChannel::accept(context, source_)),
         handshakes_(std::move(handshakes)),
@@ -212,9 +212,9 @@ class TlsStream final : public ByteStream {
 }  // namespace
 
 std::unique_ptr<ByteStream> make_tls_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
-                                            const TlsContext& context,
+                                            AddressForm log_form, const TlsContext& context,
                                             asio::any_io_executor handshakes, Bytes plain_answer) {
-  return std::make_unique<TlsStream>(std::move(socket), notsent_bytes, context,
+  return std::make_unique<TlsStream>(std::move(socket), notsent_bytes, log_form, context,
                                      std::move(handshakes), std::move(plain_answer));
 }
 

@@ -23,18 +23,41 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+/// Returns the actions with replies that may be called from any thread.
+OperatorActions on_strand(WorldStrand& strand, const OperatorActions& actions) {
+  const auto posted = [&strand](CommandReply reply) -> CommandReply {
+    return [&strand, reply = std::move(reply)](const CommandAnswer& answer) {
+      strand.post([reply, answer] { reply(answer); });
+    };
+  };
+  OperatorActions out = actions;
+  if (actions.reload) {
+    out.reload = [posted, reload = actions.reload](CommandReply reply) {
+      reload(posted(std::move(reply)));
+    };
+  }
+  if (actions.back_up) {
+    out.back_up = [posted, back_up = actions.back_up](const std::string& folder,
+                                                      CommandReply reply) {
+      back_up(folder, posted(std::move(reply)));
+    };
+  }
+  return out;
+}
+
 }  // namespace
 
 CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReaders& readers,
                              std::set<PublicKey> operators, MaterialTable materials,
-                             const std::string& world_folder, std::function<void()> on_stop)
+                             const std::string& world_folder, const OperatorActions& actions)
     : strand_(strand),
       world_(world),
       readers_(readers),
       operators_(std::move(operators)),
       rollback_(world, *this,
                 [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); }),
-      handler_(world, rollback_, *this, std::move(materials), world_folder, std::move(on_stop)) {}
+      handler_(world, rollback_, *this, std::move(materials), world_folder,
+               on_strand(strand, actions)) {}
 
 void CommandRunner::run(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)] {

@@ -17,11 +17,10 @@ namespace runstone {
 class CommandRunner final : private RollbackService::Workers {
  public:
   /// `strand`, `world` and `readers` must outlive the object. `operators`: the keys of the players
-  /// who may give every command. `on_stop` is called on the world strand when an operator stops the
-  /// server.
+  /// who may give every command.
   CommandRunner(WorldStrand& strand, WorldServer& world, WorldReaders& readers,
                 std::set<PublicKey> operators, MaterialTable materials,
-                const std::string& world_folder, std::function<void()> on_stop);
+                const std::string& world_folder, const OperatorActions& actions);
 
   /// Carries out a command of the console or the control socket. The replies come on the world
   /// strand.
@@ -30,6 +29,7 @@ class CommandRunner final : private RollbackService::Workers {
   /// task.
   void run(SessionId session, AuthorId author, const PublicKey& key, const std::string& text);
 
+  void set_operators(std::set<PublicKey> operators) { operators_ = std::move(operators); }
   /// Lets rollback jobs go on. Call it on every tick, and when the log became durable or failed.
   void tick(const Clocks& now) { rollback_.tick(now); }
   /// Makes jobs and workers end soon. Call it when the server stops.
@@ -41,7 +41,7 @@ class CommandRunner final : private RollbackService::Workers {
   WorldStrand& strand_;
   WorldServer& world_;
   WorldReaders& readers_;
-  const std::set<PublicKey> operators_;
+  std::set<PublicKey> operators_;
   RollbackService rollback_;
   CommandHandler handler_;
 };

@@ -55,6 +55,7 @@ NetLimits net_limits_of(const ServerConfig& config) {
   limits.send.control_bytes = config.control_queue_kib * kKib;
   limits.send.edit_bytes = config.edit_queue_kib * kKib;
   limits.send.chunk_bytes = config.chunk_queue_kib * kKib;
+  limits.log_addresses = config.log_addresses;
   limits.bytes_per_second = config.session_kib_per_second * kKib;
   limits.server_bytes_per_second = config.server_kib_per_second * kKib;
   limits.read_bytes_per_second = config.read_kib_per_second * kKib;

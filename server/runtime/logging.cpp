@@ -4,6 +4,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 
 #include "common/core/assert.hpp"
+#include "server/runtime/log_formatter.hpp"
 
 namespace runstone {
 namespace {
@@ -24,7 +25,7 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
 
 }  // namespace
 
-void start_logging(LogLevel level) {
+void start_logging(LogLevel level, LogFormat format) {
   // Logging must not delay the world strand: lines wait in a bounded queue. If the reader of stderr
   // is too slow, the oldest lines are dropped.
   constexpr std::size_t kQueuedLinesMax = 8192;
@@ -35,9 +36,9 @@ void start_logging(LogLevel level) {
     if (found == nullptr) {
       found = std::make_shared<spdlog::async_logger>(module, sink, spdlog::thread_pool(),
                                                      spdlog::async_overflow_policy::overrun_oldest);
-      found->set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %n: %v");
       spdlog::register_logger(found);
     }
+    found->set_formatter(make_log_formatter(format));
     found->set_level(spdlog_level(level));
     found->flush_on(spdlog::level::info);
   }

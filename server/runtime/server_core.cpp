@@ -6,6 +6,7 @@
 #include <span>
 
 #include "common/os/steady_clock.hpp"
+#include "server/admin/config_reload.hpp"
 #include "server/runtime/counters_line.hpp"
 #include "server/runtime/derived_config.hpp"
 #include "server/runtime/logging.hpp"
@@ -22,12 +23,13 @@ constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for t
 
 ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,
                        const Generator& generator, std::function<void()> on_failure,
-                       std::function<void()> on_stop)
+                       OperatorActions actions)
     : config_(config),
       store_(store),
       generator_(generator),
       on_failure_(std::move(on_failure)),
-      on_stop_(std::move(on_stop)),
+      actions_(std::move(actions)),
+      running_(config),
       strand_(threads.io, [this] { after_task(); }),
       listener_(std::make_shared<Listener>(threads.io, threads.decoders.get_executor(),
                                            net_limits_of(config), store.meta().chunk_edge, *this)),
@@ -38,7 +40,7 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       environment_(sessions_, *listener_, sender_, readers_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
-      counters_(strand_, std::chrono::seconds(config.counters_s), [this] { write_counters(); }) {}
+      activity_(strand_, std::chrono::seconds(config.counters_s), [this] { write_activity(); }) {}
 
 ServerCore::~ServerCore() = default;
 
@@ -57,7 +59,7 @@ Result<void, std::string> ServerCore::recover() {
   if (!replayed) return Unexpected<std::string>{replayed.error()};
 
   commands_ = std::make_unique<CommandRunner>(strand_, *world_, readers_, config_.operators,
-                                              meta.materials, config_.world, on_stop_);
+                                              meta.materials, config_.world, actions_);
   DurableLog::Options options;
   options.queued_records_max = config_.log_queue_records;
   options.reserve_bytes = config_.disk_reserve_mib << 20;
@@ -99,7 +101,7 @@ DurableLog::Events ServerCore::log_events() {
 void ServerCore::start() {
   listener_->start();
   ticks_.start();
-  if (config_.counters_s > 0) counters_.start();
+  if (config_.counters_s > 0) activity_.start();
 }
 
 void ServerCore::tick() {
@@ -122,6 +124,31 @@ void ServerCore::write_counters() {
   const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000};
   logger("app").info(
       "{}", counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime));
+}
+
+void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply reply) {
+  strand_.post([this, read = std::move(read), reply = std::move(reply)] {
+    if (!read) {
+      logger("app").error("reload: {}: all settings stay as they were", read.error());
+      return refuse(reply, "reload: " + read.error() + ": all settings stay as they were");
+    }
+    ConfigReload reloaded = reload_config(running_, *read);
+    running_ = std::move(reloaded.config);
+    start_logging(running_.log_level, running_.log_format);
+    world_->reconfigure(world_config_of(running_, store_.meta()));
+    commands_->set_operators(running_.operators);
+    logger("app").info("reload: {}", reloaded.text());
+    reply({reloaded.text(), true, true});
+  });
+}
+
+void ServerCore::write_activity() {
+  ActivitySample sample =
+      sample_activity(*world_, listener_->counters(), log_->writer().counters());
+  const ActivityNow now{world_->online_players().size(), world_->memory().total()};
+  const std::string line = activity_line(sampled_, sample, now, config_.counters_s);
+  sampled_ = std::move(sample);
+  if (!line.empty()) logger("app").info("{}", line);
 }
 
 std::future<void> ServerCore::begin_stop() {
@@ -147,7 +174,7 @@ void ServerCore::finish_stop_if_flushed() {
   const bool gives_up = log_->has_failed() || (log_->is_full() && world_->is_stop_overdue());
   if (!gives_up && !world_->is_flushed()) return;
   ticks_.stop();
-  counters_.stop();
+  activity_.stop();
   stopping_->set_value();
   stopping_.reset();
 }

@@ -16,6 +16,7 @@
 
 #include "server/admin/server_config.hpp"
 #include "server/net/listener.hpp"
+#include "server/runtime/activity_line.hpp"
 #include "server/runtime/chunk_sender.hpp"
 #include "server/runtime/chunk_source.hpp"
 #include "server/runtime/command_runner.hpp"
@@ -45,10 +46,9 @@ class ServerCore final : public NetEvents {
   /// The core keeps references to the members of `threads`, and to `config`, `store` and
   /// `generator`. All of them must outlive it. `store` is of the folder `config.world`. `on_failure`
   /// is called at most once, from the log writer's thread, when the log cannot be written any more.
-  /// `on_stop` is called on the world strand when an operator stops the server.
+  /// `actions`: the commands that the program carries out.
   ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,
-             const Generator& generator, std::function<void()> on_failure,
-             std::function<void()> on_stop);
+             const Generator& generator, std::function<void()> on_failure, OperatorActions actions);
   ~ServerCore() override;
 
   /// Binds the address. Does not touch the world.
@@ -80,13 +80,17 @@ class ServerCore final : public NetEvents {
   std::vector<std::pair<ChunkKey, ChunkPtr>> edited_chunks() const {
     return world_->edited_chunks();
   }
-  /// Writes one line of counters at info. Thread: any.
+  /// Writes one line of all counters at info. Thread: any.
   void log_counters();
   /// Carries out a command of the console or the control socket. The replies come on the world
   /// strand. Thread: any.
   void command(const std::string& line, CommandReply reply) {
     commands_->run(line, std::move(reply));
   }
+
+  /// Takes over the settings that a running server may change, logs which, and replies. `read` is the
+  /// new configuration, or why there is none. Thread: any.
+  void reload(Result<ServerConfig, std::string> read, CommandReply reply);
 
   // NetEvents: called on session strands.
   void on_refused(SessionId session) override;
@@ -110,11 +114,15 @@ class ServerCore final : public NetEvents {
   void schedule_delivery();
   void finish_stop_if_flushed();
   void write_counters();
+  /// Logs what happened since the last call, if anything did.
+  void write_activity();
 
   const ServerConfig& config_;
   Store& store_;
   const Generator& generator_;
-  const std::function<void()> on_failure_, on_stop_;
+  const std::function<void()> on_failure_;
+  const OperatorActions actions_;
+  ServerConfig running_;  // config_ with what was reloaded. Used on the world strand
   WorldStrand strand_;
   std::shared_ptr<Listener> listener_;
   ConnectedSessions sessions_;
@@ -125,7 +133,8 @@ class ServerCore final : public NetEvents {
   WorldReaders readers_;
   ServerEnvironment environment_;
   CommitScheduler commits_;
-  PeriodicTask ticks_, counters_;
+  PeriodicTask ticks_, activity_;
+  ActivitySample sampled_;  // at the last write_activity(). Used on the world strand
   // The answer of begin_stop(), set while it waits. Used on the world strand.
   std::shared_ptr<std::promise<void>> stopping_;
 

@@ -3,6 +3,7 @@
 #include "common/core/assert.hpp"
 #include "common/os/thread_cpu_ns.hpp"
 #include "server/runtime/read_clocks.hpp"
+#include "server/runtime/visit_line.hpp"
 
 namespace runstone {
 
@@ -108,6 +109,18 @@ void ServerEnvironment::save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>
 void ServerEnvironment::command(SessionId session, AuthorId author, const PublicKey& key,
                                 const std::string& text) {
   commands_->run(session, author, key, text);
+}
+
+void ServerEnvironment::player_came(const PlayerVisit& visit) {
+  const auto& net = sessions_.find(visit.session);
+  lines_.write(OperatorLogLevel::info, came_line(visit, net == nullptr ? "-" : net->peer()),
+               read_clocks().steady_us);
+}
+
+void ServerEnvironment::player_left(const PlayerVisit& visit) {
+  const auto& net = sessions_.find(visit.session);
+  lines_.write(OperatorLogLevel::info, left_line(visit, net == nullptr ? EndCause{} : net->end()),
+               read_clocks().steady_us);
 }
 
 void ServerEnvironment::report(OperatorLogLevel level, const std::string& line) {

@@ -63,6 +63,8 @@ class ServerEnvironment final : public WorldEnvironment {
                       Sequence checkpoint) override;
   void command(SessionId session, AuthorId author, const PublicKey& key,
                const std::string& text) override;
+  void player_came(const PlayerVisit& visit) override;
+  void player_left(const PlayerVisit& visit) override;
   void report(OperatorLogLevel level, const std::string& line) override;
 
  private:

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "common/core/epoch_branch.hpp"
 #include "common/core/key_text.hpp"
 #include "server/store/log_search.hpp"
 #include "server/store/sqlite_result.hpp"
@@ -60,9 +61,15 @@ void SqliteStore::committed(const DurableState& state) {
   static_cast<void>(mark_->write(state).has_value());
 }
 
-StoreResult<Epoch> SqliteStore::raise_epoch() {
+StoreResult<Epoch> SqliteStore::raise_epoch() { return set_epoch(state_.epoch + 1); }
+
+StoreResult<Epoch> SqliteStore::begin_branch(TimeUs now_us) {
+  return set_epoch(next_branch(state_.epoch, now_us));
+}
+
+StoreResult<Epoch> SqliteStore::set_epoch(Epoch epoch) {
   DurableState next = state_;
-  ++next.epoch;
+  next.epoch = epoch;
   const auto written = write([&] { return meta_table_.put("epoch", std::int64_t{next.epoch}); });
   if (!written) return failed(written.error());
   state_ = next;

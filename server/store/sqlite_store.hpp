@@ -101,6 +101,7 @@ class SqliteStore final : public Store {
 
   // Store
   StoreResult<Epoch> raise_epoch() override;
+  StoreResult<Epoch> begin_branch(TimeUs now_us) override;
   Epoch epoch() const override { return state_.epoch; }
   StoreResult<std::vector<std::string>> accept_losses() override;
 
@@ -125,6 +126,8 @@ class SqliteStore final : public Store {
   /// Reads the durable mark, then the numbers of the database, and compares them. Sets loss_. Fails
   /// if the database cannot be repaired, unless it is open for reading only.
   StoreResult<void> read_state();
+  /// Makes `epoch` the world's, in database and mark. Both are on disk on return.
+  StoreResult<Epoch> set_epoch(Epoch epoch);
   /// Follows a commit that changed the state. A mark that cannot be written lags.
   void committed(const DurableState& state);
   /// Calls `body` in one transaction and commits. If the disk is full, nothing is written, and the

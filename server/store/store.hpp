@@ -58,6 +58,10 @@ class Store : public WorldReader, public WorldSink, public ImportSink, public Ma
   /// Raises the epoch by one and returns it. It is durable on return. A server calls it once per
   /// start.
   virtual StoreResult<Epoch> raise_epoch() = 0;
+  /// Raises the epoch to the first one of a new branch (common/core/epoch_branch.hpp) and returns
+  /// it. It is durable on return. A copy of a world begins with it, because its log and that of the
+  /// original go on with different edits. `now_us` is the time in UTC.
+  virtual StoreResult<Epoch> begin_branch(TimeUs now_us) = 0;
   /// Returns the epoch of the last start, or 0 if the world was never started. It is not lower if
   /// that start is lost.
   virtual Epoch epoch() const = 0;

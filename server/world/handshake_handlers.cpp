@@ -100,10 +100,7 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   world.interest.open(session);
   world.environment.opened(session);
   ++world.counters.sessions_opened;
-  world.environment.report(OperatorLogLevel::info,
-                           "session=" + std::to_string(session) +
-                               " open author=" + std::to_string(mine.author) + " name=\"" +
-                               mine.name + "\" key=" + key_fingerprint(mine.key));
+  world.environment.player_came(visit_of(world, session, mine));
   world.player_list_changed = true;
   const SessionAccepted accepted{mine.author,
                                  world.authority.resolved().of(mine.author, mine.instance)};

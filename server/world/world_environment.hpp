@@ -23,6 +23,15 @@ enum class OperatorLogLevel { debug, info, warn, error };
 /// Identifies a history view among all of the server, from 1. Answers of workers carry it.
 enum class HistoryNumber : std::uint32_t {};
 
+/// A session of a player, for the operator's log.
+struct PlayerVisit {
+  SessionId session = 0;
+  AuthorId author = 0;
+  std::string name;
+  PublicKey key{};
+  std::size_t players = 0;  // open sessions, this one included if it is open
+};
+
 /// The place in the log where a view of the past ends.
 struct OpenedHistory {
   Sequence seq = 0;   // the last edit that the view contains; 0: none
@@ -114,6 +123,10 @@ class WorldEnvironment {
   virtual void command(SessionId /*session*/, AuthorId /*author*/, const PublicKey& /*key*/,
                        const std::string& /*text*/) {}
 
+  /// Reports that a player has joined or left. A session that leaves is closed, or its connection has
+  /// ended.
+  virtual void player_came(const PlayerVisit& /*visit*/) {}
+  virtual void player_left(const PlayerVisit& /*visit*/) {}
   /// Writes one line for the operator, with fields as in "session=7 chunk=1,0,-3 seq=9120".
   virtual void report(OperatorLogLevel /*level*/, const std::string& /*line*/) {}
 };

@@ -107,6 +107,15 @@ void WorldServer::replay_onto_stack(const EditRecord& record) {
   state_->authority.replay_onto_stack(record);
 }
 
+void WorldServer::reconfigure(const WorldConfig& config) {
+  WorldConfig& mine = state_->config;
+  mine.sessions_per_key = config.sessions_per_key;
+  mine.sessions_per_address = config.sessions_per_address;
+  mine.idle_us_max = config.idle_us_max;
+  mine.reach_max = config.reach_max;
+  mine.speed_max = config.speed_max;
+}
+
 void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock from,
                             const std::optional<ChannelBinding>& binding) {
   WorldSession fresh;

@@ -55,6 +55,9 @@ class WorldServer {
   bool has_ready_edits(TimeUs now_us) const;
   /// Orders and sends the queued edits of one commit. Others that are queued may follow later.
   void commit_one(const Clocks& now);
+  /// Takes over the limits that may change while the world runs: sessions of a key and of an
+  /// address, the time without a message, reach and speed. Sessions that are open stay.
+  void reconfigure(const WorldConfig& config);
   /// Orders and sends queued edits as long as has_ready_edits().
   void commit(const Clocks& now);
   /// Returns true if the chunks of a session are to be sent by deliver_next().

@@ -1,5 +1,6 @@
 #include "server/world/world_state.hpp"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -43,14 +44,23 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
     authority.resolved().raise({watermark.author, watermark.instance, watermark.resolved});
 }
 
+PlayerVisit visit_of(const WorldState& world, SessionId session, const WorldSession& mine) {
+  const auto players =
+      std::count_if(world.sessions.begin(), world.sessions.end(),
+                    [](const auto& s) { return s.second.state == SessionStage::open; });
+  return {session, mine.author, mine.name, mine.key, static_cast<std::size_t>(players)};
+}
+
 void forget_session(WorldState& world, SessionId session) {
   const auto found = world.sessions.find(session);
   if (found == world.sessions.end()) return;
-  if (found->second.state == SessionStage::open) {
+  const bool was_open = found->second.state == SessionStage::open;
+  if (was_open) {
     world.player_list_changed = true;
     world.gone_authors.push_back(found->second.author);
   }
-  world.sessions.erase(found);
+  const auto gone = world.sessions.extract(found);
+  if (was_open) world.environment.player_left(visit_of(world, session, gone.mapped()));
   world.interest.close(session);
   world.loads.cancel(session);
 }
@@ -76,13 +86,13 @@ void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
                    const std::string& text) {
   if (world.find(session) == nullptr) return;
   ++world.counters.sessions_closed;
+  world.environment.close(session, reason, text);
   const auto level =
       reason == GoodbyeReason::closing ? OperatorLogLevel::debug : OperatorLogLevel::warn;
   world.environment.report(level, "session=" + std::to_string(session) + " closed reason=" +
                                       std::to_string(static_cast<unsigned>(reason)) + " (" +
                                       to_string(reason) + ") text=\"" + text + "\"");
   forget_session(world, session);
-  world.environment.close(session, reason, text);
 }
 
 bool send_or_close(WorldState& world, SessionId session, const Message& message) {

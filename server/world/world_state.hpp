@@ -102,7 +102,9 @@ void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
 /// Removes authors without a row and without a session from players and watermarks. Does nothing
 /// while edits are queued.
 void forget_gone_authors(WorldState& world);
-/// Removes a session that has disconnected.
+/// Describes an open session for the operator's log.
+PlayerVisit visit_of(const WorldState& world, SessionId session, const WorldSession& mine);
+/// Removes a session that has disconnected, or is closed.
 void forget_session(WorldState& world, SessionId session);
 /// Sends a message that the session must not miss. Closes the session if its queue is full. Returns
 /// true if the message is queued.

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "tests/bench/network/attack_case.hpp"
+#include "tests/bench/network/backup_case.hpp"
 #include "tests/bench/network/fleet_case.hpp"
 #include "tests/bench/network/join_case.hpp"
 #include "tests/bench/network/latency_case.hpp"
@@ -21,13 +22,14 @@ struct Experiment {
   const char* name;
   Done (*measure)(Testbed&, NetFindings&);
 };
-constexpr std::array<Experiment, 7> kExperiments = {{{"latency", measure_latency},
+constexpr std::array<Experiment, 8> kExperiments = {{{"latency", measure_latency},
                                                      {"join", measure_joins},
                                                      {"transfer", measure_transfers},
                                                      {"crowd", measure_fleets},
                                                      {"attack", measure_attacks},
                                                      {"memory", measure_memory},
-                                                     {"siege", measure_siege}}};
+                                                     {"siege", measure_siege},
+                                                     {"backup", measure_backup}}};
 
 /// Returns TCP's congestion control of this machine, which namespaces on it inherit.
 std::string congestion_control() {

@@ -18,6 +18,8 @@ void apply_quick(const CLI::App& command, NetOptions& options) {
   if (command.count("--crowd-seconds") == 0) options.fleet_seconds = 3;
   if (command.count("--attack-seconds") == 0) options.attack_seconds = 2;
   if (command.count("--siege-seconds") == 0) options.siege_seconds = 30;
+  if (command.count("--backup-mib") == 0) options.backup_mib = 8;
+  if (command.count("--backup-rounds") == 0) options.backup_rounds = 1;
 }
 
 void add_siege_options(CLI::App& command, NetOptions& options) {
@@ -33,6 +35,18 @@ void add_siege_options(CLI::App& command, NetOptions& options) {
                      "write the charts of a siege into this folder, as SVG");
 }
 
+void add_backup_options(CLI::App& command, NetOptions& options) {
+  command
+      .add_option("--backup-mib", options.backup_mib, "size of the world that is backed up, in MiB")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000));
+  command
+      .add_option("--backup-rounds", options.backup_rounds,
+                  "windows of --crowd-seconds with backups, and as many without")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+}
+
 }  // namespace
 
 CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
@@ -41,10 +55,11 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
                                      "jitter, rate and loss, and memory");
   std::set<std::string> profiles;
   for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
-  net->add_option("--experiments", options.experiments, "which; all but the siege by default")
+  net->add_option("--experiments", options.experiments,
+                  "which; all but siege and backup by default")
       ->delimiter(',')
       ->check(CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack",
-                                                  "memory", "siege"}));
+                                                  "memory", "siege", "backup"}));
   net->add_option("--profiles", options.profiles, "links; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(profiles));
@@ -93,6 +108,7 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--attack-bots", options.attack_bots, "honest clients under attack")
       ->capture_default_str()
       ->check(CLI::Range(1, 200));
+  add_backup_options(*net, options);
   add_siege_options(*net, options);
   net->add_option("--seed", options.seed,
                   "draws losses, jitter, places of edits and what attackers do")

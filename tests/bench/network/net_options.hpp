@@ -14,7 +14,7 @@ class App;
 namespace runstone::bench {
 
 struct NetOptions {
-  // All experiments but "siege", which takes ten minutes.
+  // All experiments but "siege", which takes ten minutes, and "backup", which writes some GB.
   std::vector<std::string> experiments = {"latency", "join",   "transfer",
                                           "crowd",   "attack", "memory"};
   std::vector<std::string> profiles;  // of the links; empty: all
@@ -34,6 +34,8 @@ struct NetOptions {
   double siege_seconds = 600;        // of the windows of a siege together
   unsigned siege_bots = 100;         // honest clients in a siege
   std::string siege_charts;          // folder for the charts of a siege; empty: none
+  unsigned backup_mib = 1024;        // size of the world that is backed up
+  unsigned backup_rounds = 5;        // windows with backups, and as many without
   std::uint64_t seed = 1;
   bool insecure = false;  // without encryption
   bool quick = false;     // small sizes, for tests on a busy machine

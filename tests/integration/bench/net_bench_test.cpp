@@ -190,4 +190,18 @@ TEST_CASE("a siege has quiet windows and windows under attack, and writes charts
     CHECK(svg.str().find(">absurd-views</text>") != std::string::npos);
   }
 }
+
+TEST_CASE("backups take turns with quiet windows and disturb nobody's connection", "[testbed]") {
+  std::string tables;
+  const json testbed = run_testbed({"--experiments", "backup", "--backup-mib", "2"}, tables);
+  for (const char* window : {"0 quiet", "1 backups"}) {
+    CAPTURE(window);
+    CHECK(figure(testbed, "backup", window, "samples") > 0);
+    CHECK(figure(testbed, "backup", window, "disconnects") == 0);
+    CHECK(figure(testbed, "backup", window, "violations") == 0);
+  }
+  CHECK(figure(testbed, "backup", "0 quiet", "backups") == 0);
+  CHECK(figure(testbed, "backup", "1 backups", "backups") > 0);
+  CHECK(testbed["bars"].size() == 1);
+}
 #endif

@@ -35,8 +35,7 @@ inline WorldCreation flat_creation() {
 inline std::unique_ptr<Server> start_server(const ServerConfig& config,
                                             const WorldCreation& creation,
                                             bool accept_losses = false) {
-  const auto ignore = [] {};
-  auto server = Server::start(config, creation, ignore, ignore, accept_losses);
+  auto server = Server::start(config, creation, [] {}, {}, accept_losses);
   INFO((server ? std::string() : server.error()));
   REQUIRE(server.has_value());
   return *std::move(server);

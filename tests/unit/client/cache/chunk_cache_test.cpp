@@ -119,6 +119,9 @@ TEST_CASE("after a restart of the server only common history is found", "[cache]
   SECTION("a restored backup: no edited chunk is common") {
     CHECK(cache->find({world_at(1, 80, 80), keys_of(0, 3)}).size() == 1);
   }
+  SECTION("a restored backup whose log has grown past all that was seen") {
+    CHECK(cache->find({world_at(1 + kEpochsPerBranch, 900, 900), keys_of(0, 3)}).size() == 1);
+  }
   SECTION("a world made anew with other chunks") {
     CachedWorld other = world_at(1, 104, 130);
     other.chunk_edge = 32;

@@ -121,6 +121,10 @@ TEST_CASE_METHOD(ReplicaBench, "after a restored backup no edited chunk is trust
     restored.head = 1;
     restored.durable = 2;
   }
+  SECTION("another branch, whose log is longer than what we saw") {
+    restored.epoch += kEpochsPerBranch;
+    restored.durable = restored.head = 1000;
+  }
   CHECK(replica.open(restored).empty());  // the local edit was durable and is not offered again
   CHECK(replica.confirmed(kHere) == nullptr);
   CHECK(replica.confirmed(kRight) == nullptr);

@@ -102,6 +102,8 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("log \"a") == "a \" is missing at the end");
   CHECK(mistake("materials wool red") ==
         "materials \"red\": at most one word comes after materials");
+  CHECK(mistake("backup") == "backup: the new folder comes after it");
+  CHECK(mistake("reload now") == "reload \"now\": nothing comes after reload");
   CHECK(mistake("undo it") == "undo \"it\": nothing comes after undo");
   CHECK(mistake("help\n") == "a command is printable UTF-8 text");
   CHECK(mistake(std::string(kCommandBytesMax + 1, 'a')) == "a command has at most 1024 bytes");
@@ -111,8 +113,8 @@ TEST_CASE("everybody may undo, redo, list materials and ask for help; the rest i
           "[admin][command]") {
   for (const char* line : {"help", "materials", "undo", "redo"})
     CHECK(is_for_everybody(*parse_command(line, kNow)));
-  for (const char* line : {"status", "players", "stop", "log", "rollback list", "rollback apply p1",
-                           "rollback preview since 1h"}) {
+  for (const char* line : {"status", "players", "stop", "reload", "backup copy", "log",
+                           "rollback list", "rollback apply p1", "rollback preview since 1h"}) {
     CHECK_FALSE(is_for_everybody(*parse_command(line, kNow)));
   }
   CHECK(command_help(true).starts_with(command_help(false)));

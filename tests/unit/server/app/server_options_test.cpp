@@ -38,6 +38,17 @@ TEST_CASE("the arguments after control are the command, whatever they look like"
   CHECK(parsed.options->control->world == "valley");
   CHECK(parsed.options->control->words ==
         std::vector<std::string>{"log", "box", "-1", "2", "3", "-4", "5", "6"});
+  for (const char* world : {"--world=valley", "--world"}) {
+    std::vector<const char*> words = {"control", world};
+    if (std::string(world) == "--world") words.push_back("valley");
+    words.insert(words.end(), {"backup", "--to", "control"});
+    const auto backup = parse(words);
+    REQUIRE(backup.options);
+    CHECK_FALSE(backup.options->backup);
+    REQUIRE(backup.options->control);
+    CHECK(backup.options->control->world == "valley");
+    CHECK(backup.options->control->words == std::vector<std::string>{"backup", "--to", "control"});
+  }
   const auto none = parse({"control", "--world", "valley"});
   CHECK_FALSE(none.options);
   CHECK(none.exit_code == 2);
@@ -49,9 +60,10 @@ TEST_CASE("a mistyped subcommand is the argument that the error names", "[server
   const auto parsed = parse({"contrl", "status"});
   std::cerr.rdbuf(before);
   CHECK(parsed.exit_code == 2);
-  CHECK(text.str() ==
-        "runstone-server: \"contrl\" is no subcommand (import, compact, control) and no flag; "
-        "--help lists the flags\n");
+  CHECK(
+      text.str() ==
+      "runstone-server: \"contrl\" is no subcommand (import, compact, backup, restore, control) and no flag; "
+      "--help lists the flags\n");
 }
 
 TEST_CASE("losses are accepted on request", "[server_options]") {
@@ -76,4 +88,17 @@ TEST_CASE("an unknown flag ends the program with 2", "[server_options]") {
   const auto parsed = parse({"--worlds", "/world"});
   CHECK_FALSE(parsed.options);
   CHECK(parsed.exit_code == 2);
+}
+
+TEST_CASE("backup and restore name both folders", "[server_options]") {
+  const auto backup = parse({"backup", "--world", "a", "--to", "b"});
+  REQUIRE(backup.options->backup);
+  CHECK(backup.options->backup->world == "a");
+  CHECK(backup.options->backup->to == "b");
+  const auto restore = parse({"restore", "--from", "b", "--world", "c"});
+  REQUIRE(restore.options->restore);
+  CHECK(restore.options->restore->from == "b");
+  CHECK(restore.options->restore->world == "c");
+  CHECK(parse({"backup", "--world", "a"}).exit_code == 2);
+  CHECK(parse({"restore", "--world", "a"}).exit_code == 2);
 }

@@ -54,6 +54,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::deque<std::pair<SessionId, HistoryRequest>> history_requests;
   std::deque<HistoryLoad> history_loads;
   std::vector<std::string> lines;
+  std::vector<PlayerVisit> came, left;
   std::vector<std::string> commands;
   std::map<SessionId, ChunkEncoding> encodings;
   std::set<SessionId> full;          // sessions whose queue is full
@@ -125,6 +126,8 @@ class FakeEnvironment : public WorldEnvironment {
                       Sequence checkpoint) override {
     saves.push_back({std::move(chunks), checkpoint});
   }
+  void player_came(const PlayerVisit& visit) override { came.push_back(visit); }
+  void player_left(const PlayerVisit& visit) override { left.push_back(visit); }
   void report(OperatorLogLevel /*level*/, const std::string& line) override {
     lines.push_back(line);
   }

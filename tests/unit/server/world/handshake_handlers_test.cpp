@@ -39,6 +39,32 @@ TEST_CASE("hello is answered by a signed welcome, and the client's signature ope
   CHECK(lists[0].players.at(0).name == "player1");
 }
 
+TEST_CASE("the operator learns of each player who comes and leaves, and of no other connection",
+          "[world]") {
+  Bench bench;
+  bench.server.connected(9, bench.now());  // it never authenticates
+  bench.join(1, 1);
+  bench.join(2, 2);
+  REQUIRE(bench.environment.came.size() == 2);
+  CHECK(bench.environment.came[1].session == 2);
+  CHECK(bench.environment.came[1].author == 2);
+  CHECK(bench.environment.came[1].name == "player2");
+  CHECK(bench.environment.came[1].key == bench.hello(2).key);
+  CHECK(bench.environment.came[1].players == 2);
+  CHECK(bench.environment.left.empty());
+
+  bench.server.disconnected(1);
+  bench.server.disconnected(1);
+  bench.server.disconnected(9);
+  REQUIRE(bench.environment.left.size() == 1);
+  CHECK(bench.environment.left[0].name == "player1");
+  CHECK(bench.environment.left[0].players == 1);
+  bench.server.received(2, Goodbye{GoodbyeReason::closing, "bye"}, bench.now());
+  bench.server.disconnected(2);
+  REQUIRE(bench.environment.left.size() == 2);
+  CHECK(bench.environment.left[1].players == 0);
+}
+
 TEST_CASE("a client that reads only raw chunks gets raw chunks", "[world]") {
   Bench bench;
   bench.server.connected(1, bench.now());

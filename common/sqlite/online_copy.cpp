@@ -1,0 +1,37 @@
+#include "common/sqlite/online_copy.hpp"
+
+#include <sqlite3.h>
+
+namespace runstone::sql {
+
+void OnlineCopy::Finish::operator()(sqlite3_backup* handle) const { sqlite3_backup_finish(handle); }
+
+Result<OnlineCopy> OnlineCopy::begin(Database& from, Database& to) {
+  if (sqlite3_txn_state(from.handle_.get(), "main") == SQLITE_TXN_NONE) {
+    return Unexpected<Error>{
+        {Error::Kind::bad_statement, from.file(), "has no read transaction to copy"}};
+  }
+  sqlite3_backup* handle =
+      sqlite3_backup_init(to.handle_.get(), "main", from.handle_.get(), "main");
+  if (handle == nullptr) return failure(to.handle_.get(), sqlite3_errcode(to.handle_.get()));
+  return OnlineCopy(handle, to);
+}
+
+Result<bool> OnlineCopy::step(int pages) {
+  const int code = sqlite3_backup_step(handle_.get(), pages);
+  if (code == SQLITE_OK) return true;
+  if (code == SQLITE_DONE) return false;
+  // SQLite reports the message with the connection of the copy only when the copy is finished.
+  handle_.reset();
+  return failure(to_->handle_.get(), code);
+}
+
+std::uint64_t OnlineCopy::pages_left() const {
+  return static_cast<std::uint64_t>(sqlite3_backup_remaining(handle_.get()));
+}
+
+std::uint64_t OnlineCopy::page_count() const {
+  return static_cast<std::uint64_t>(sqlite3_backup_pagecount(handle_.get()));
+}
+
+}  // namespace runstone::sql

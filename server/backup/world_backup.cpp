@@ -1,0 +1,144 @@
+#include "server/backup/world_backup.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "server/store/sqlite_store.hpp"
+#include "server/store/world_schema.hpp"
+
+namespace runstone {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view kDatabase = "world.sqlite", kMark = "world.durable";
+/// Files that a running server or reader makes. They mean nothing in a copy.
+constexpr std::array<std::string_view, 4> kMadeAnew = {"world.sqlite-wal", "world.sqlite-shm",
+                                                       "world.lock", "control.sock"};
+constexpr std::uintmax_t kConfigurationBytesMax = 1 << 20;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Copies a small file and makes the copy readable for its owner only.
+Result<void, std::string> copy_small(const fs::path& from, const fs::path& to) {
+  std::ifstream in(from, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (!in) return failure(from.string() + ": cannot be read");
+  const int made = ::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (made < 0) {
+    return failure(to.string() + ": cannot be made: " + std::generic_category().message(errno));
+  }
+  ::close(made);
+  std::ofstream out(to, std::ios::binary | std::ios::trunc);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) return failure(to.string() + ": cannot be written: the disk may be full");
+  return {};
+}
+
+bool is_configuration(const fs::directory_entry& entry) {
+  std::error_code error;
+  return !entry.is_symlink(error) && entry.is_regular_file(error) &&
+         entry.path().extension() == ".toml" && entry.file_size(error) <= kConfigurationBytesMax;
+}
+
+/// Copies the configuration. Returns the names of what is left out.
+Result<std::vector<std::string>, std::string> copy_configuration(const fs::path& from,
+                                                                 const fs::path& to) {
+  std::vector<std::string> left_out;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(from, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name == kDatabase || name == kMark ||
+        std::find(kMadeAnew.begin(), kMadeAnew.end(), name) != kMadeAnew.end())
+      continue;
+    if (!is_configuration(entry)) {
+      left_out.push_back(name);
+    } else if (auto copied = copy_small(entry.path(), to / name); !copied) {
+      return failure(copied.error());
+    }
+  }
+  if (error) return failure(from.string() + ": cannot be read: " + error.message());
+  std::sort(left_out.begin(), left_out.end());
+  return left_out;
+}
+
+/// Verifies the copy in `folder` and begins its branch. Completes `backup`.
+StoreResult<void> verify(const std::string& folder, TimeUs now_us, WorldBackup& backup) {
+  // This fails if the copied mark is ahead of the copied log: then the source has lost edits.
+  auto store = open_world(folder, StoreAccess::read_write);
+  if (!store) return Unexpected<StoreError>{store.error()};
+  const auto range = (*store)->log_range();
+  if (!range) return Unexpected<StoreError>{range.error()};
+  if (range->last.version.seq != backup.moment.seq) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::corrupt, (*store)->file(), "edit_log",
+         "ends at seq=" + std::to_string(range->last.version.seq) +
+             ", and the copied moment is seq=" + std::to_string(backup.moment.seq)}};
+  }
+  const auto epoch = (*store)->begin_branch(now_us);
+  if (!epoch) return Unexpected<StoreError>{epoch.error()};
+  if (auto sound = (*store)->check(); !sound) return sound;
+  backup.world = (*store)->meta().world_id;
+  backup.new_epoch = *epoch;
+  backup.edits = range->last.version.seq + 1 - range->first;
+  return {};
+}
+
+}  // namespace
+
+Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUse use,
+                                               const std::string& to, TimeUs now_us,
+                                               const BackupPace& pace,
+                                               const BackupProgress& progress) {
+  const fs::path source(from), target(to);
+  const std::string database = (source / kDatabase).string();
+  std::error_code error;
+  if (!fs::exists(database, error)) return failure(from + ": holds no world");
+  if (const auto marked = check_marks(database, ""); !marked)
+    return failure(marked.error().message());
+  WorldBackup backup;
+  const auto begun = Clock::now();
+  // The mark is read first: a running server raises the database before the mark, so the mark is
+  // not ahead of the moment.
+  if (fs::exists(source / kMark, error)) {
+    if (auto copied = copy_small(source / kMark, target / kMark); !copied)
+      return failure(copied.error());
+  }
+  const auto moment = copy_database(database, use, (target / kDatabase).string(), pace, progress);
+  if (!moment) return failure(moment.error().message());
+  backup.moment = *moment;
+  auto left_out = copy_configuration(source, target);
+  if (!left_out) return failure(left_out.error());
+  backup.left_out = *std::move(left_out);
+  backup.copy_s = seconds_since(begun);
+  const auto checked = Clock::now();
+  if (auto verified = verify(to, now_us, backup); !verified)
+    return failure("the copy is not sound, and is removed: " + verified.error().message());
+  backup.check_s = seconds_since(checked);
+  for (const std::string_view name : kMadeAnew) fs::remove(target / name, error);
+  return backup;
+}
+
+bool is_inside(const std::string& inner, const std::string& outer) {
+  std::error_code error;
+  const auto in = fs::weakly_canonical(fs::absolute(inner, error), error) / "";
+  const auto out = fs::weakly_canonical(fs::absolute(outer, error), error) / "";
+  const auto difference = in.lexically_normal().lexically_relative(out.lexically_normal());
+  return !difference.empty() && *difference.begin() != "..";
+}
+
+}  // namespace runstone

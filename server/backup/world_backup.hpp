@@ -1,0 +1,38 @@
+// The copy of a world's folder, and its verification. Backup and restore are both such a copy. It
+// holds
+//   - the database, which has the world, the players and the server's secret key;
+//   - the durable mark;
+//   - configuration: the files *.toml that lie in the folder.
+// Locks, sockets, pictures of previews and files that Runstone does not know are not copied.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "common/core/result.hpp"
+#include "server/backup/database_backup.hpp"
+#include "server/store/world_info.hpp"
+
+namespace runstone {
+
+struct WorldBackup {
+  WorldId world{};
+  BackupMoment moment;                // of the source
+  Epoch new_epoch = 0;                // of the copy: the first one of a new branch
+  std::uint64_t edits = 0;            // in the log of the copy
+  std::vector<std::string> left_out;  // names in the source's folder that are not copied
+  double copy_s = 0, check_s = 0;
+};
+
+/// Copies the world in the folder `from` to the empty folder `to`, begins a new branch in the copy,
+/// and verifies all of the copy: the database's own check, every row, and the log without gaps up to
+/// the moment. All bytes are on disk on return. `now_us` is the time in UTC. The error is one line;
+/// `to` is then to be thrown away.
+Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUse use,
+                                               const std::string& to, TimeUs now_us,
+                                               const BackupPace& pace,
+                                               const BackupProgress& progress);
+
+/// Returns true if the folder `inner` is `outer` or lies in it. Symbolic links are resolved.
+bool is_inside(const std::string& inner, const std::string& outer);
+
+}  // namespace runstone
