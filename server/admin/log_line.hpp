@@ -7,9 +7,10 @@
 
 namespace runstone {
 
-/// Returns a line such as "9120 2026-11-21T23:57:42Z ana #3 player box 1 2 3 to 4 5 6 := stone";
-/// both corners are inside. `author` is a text of AuthorNames. For an undo, redo or rollback the
-/// line names the edit that it refers to instead of a kind: "undo of 9100 restored 1 2 3". The
+/// Returns a line such as
+///   "9120 2026-11-21T23:57:42Z ana #3 9M1Q-Z7CR-04KD player box 1 2 3 to 4 5 6 := stone"
+/// where both corners are inside. `author` is a text of AuthorNames. For an undo, redo or rollback
+/// the line names the edit that it refers to instead of a kind: "undo of 9100 restored 1 2 3". The
 /// material is left out if the edit restores voxels or pastes a clipboard, and if the table does
 /// not have it.
 std::string log_line(const EditRecord& record, const std::string& author,

@@ -98,7 +98,6 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   mine.position.start(world.config.spawn, now.steady_us);
   mine.last_message_us = now.steady_us;
   world.interest.open(session);
-  world.environment.opened(session);
   ++world.counters.sessions_opened;
   world.environment.player_came(visit_of(world, session, mine));
   world.player_list_changed = true;
@@ -151,6 +150,7 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
   if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
   mine.auth_transcript = {};
   mine.is_authenticated = true;
+  world.environment.opened(session);  // connections without a key no longer replace it
   claim_name(world, session, now.steady_us);
   if (!waits_for_claim(world, mine)) open_session(world, session, now);
 }

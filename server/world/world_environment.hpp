@@ -66,7 +66,8 @@ class WorldEnvironment {
   /// Sets the optional parts of the protocol in force with a session. Called once, before session
   /// accepted.
   virtual void set_features(SessionId /*session*/, std::uint64_t /*features*/) {}
-  /// Reports that the session has authenticated its key.
+  /// Reports that the session has authenticated its key. It may still wait for the claim of its
+  /// name.
   virtual void opened(SessionId /*session*/) {}
   /// Encodes a snapshot on a worker in the session's encoding and queues it like send(), as an
   /// answer to the view of this number. Returns false as send() does. WorldServer::drained() is

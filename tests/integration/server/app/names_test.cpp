@@ -1,6 +1,8 @@
 // Names that keys own, with a real server: refusals, a crash after the first join, commands.
 #include <catch2/catch.hpp>
+#include <future>
 #include <string>
+#include <vector>
 
 #include "protocol/codec/key_fingerprint.hpp"
 #include "tests/integration/server/app/raw_client.hpp"
@@ -77,14 +79,18 @@ TEST_CASE("the host lists and releases names", "[integration][names]") {
 
 TEST_CASE("many players claim their names at once", "[integration][names]") {
   const TempFolder folder;
-  const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   constexpr std::uint8_t kPlayers = 100;
-  std::vector<std::unique_ptr<NamedClient>> clients;
+  ServerConfig config = quiet_config(folder / "world");
+  config.handshakes_per_address = kPlayers;
+  const auto server = start_server(config, flat_creation());
+  std::vector<std::future<bool>> joins;
   for (std::uint8_t who = 1; who <= kPlayers; ++who) {
-    clients.push_back(
-        std::make_unique<NamedClient>(server->port(), "player " + std::to_string(who)));
-    REQUIRE(clients.back()->join(who).has_value());
+    joins.push_back(std::async(std::launch::async, [who, port = server->port()] {
+      NamedClient client(port, "player " + std::to_string(who));
+      return client.join(who).has_value();
+    }));
   }
+  for (std::future<bool>& joined : joins) CHECK(joined.get());
   CHECK(server->stop().is_clean);
   const auto store = open_world(folder / "world", StoreAccess::read_only);
   REQUIRE(store.has_value());

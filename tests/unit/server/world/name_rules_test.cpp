@@ -169,7 +169,7 @@ TEST_CASE("reserved names and names with a fault are refused", "[world][names]")
   CHECK(bench.environment.names.empty());
 }
 
-TEST_CASE("an address claims so many names an hour; its other players play without",
+TEST_CASE("an address claims so many names an hour, and its other players play without",
           "[world][names]") {
   WorldConfig c = config();
   c.names_per_address = 2;
