@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "common/core/epoch_branch.hpp"
 #include "common/names/folded_name.hpp"
 #include "server/store/loss_advice.hpp"
 #include "server/store/sqlite_result.hpp"
@@ -179,6 +180,8 @@ StoreResult<std::vector<std::string>> SqliteStore::accept_losses() {
   std::vector<std::string> lost;
   if (loss_) lost.push_back(loss_->message());
   if (is_mark_damaged_) state_.epoch += kEpochsSkipped;
+  // The lost sequences go to other edits. Every epoch that is lost is on the old branch.
+  if (loss_) state_.epoch = next_branch(state_.epoch, 0);
   const auto written = write([&]() -> StoreResult<void> {
     if (auto put = meta_table_.put("epoch", std::int64_t{state_.epoch}); !put) return put;
     if (auto put = meta_table_.put("author_max", std::int64_t{state_.author_max}); !put) return put;

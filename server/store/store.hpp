@@ -67,8 +67,8 @@ class Store : public WorldReader, public WorldSink, public ImportSink, public Ma
   virtual Epoch epoch() const = 0;
   /// Makes a world usable that has lost edits, players or watermarks. Requires StoreAccess::repair.
   /// Returns a line for each loss; there are none if nothing is lost.
-  ///   - Lost edits: the world stays as the rest of the log makes it. The next raise_epoch() ends
-  ///     the loss.
+  ///   - Lost edits: the world stays as the rest of the log makes it. The epoch becomes that
+  ///     of a new branch, and the next raise_epoch() ends the loss.
   ///   - Lost players: the rest is counted anew. Their numbers are not given again.
   ///   - Lost watermarks: those of edits in the log are made again, and all are counted anew.
   virtual StoreResult<std::vector<std::string>> accept_losses() = 0;

@@ -78,7 +78,7 @@ TEST_CASE("edits due soon after the start are made on time, not with the next pi
   CHECK(report.counts.due >= 4);
 }
 
-TEST_CASE("bots with the behaviours brush and griefer edit; those with idle and walk do not",
+TEST_CASE("bots with the behaviours brush and griefer edit, and those with idle and walk do not",
           "[bots]") {
   const FlatServer flat;
   for (const BotRole role : {BotRole::brush, BotRole::grief}) {

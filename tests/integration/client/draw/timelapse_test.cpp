@@ -235,7 +235,7 @@ TEST_CASE("a timelapse of a world without edits needs a camera path", "[integrat
   CHECK(is_green(bare.frame(1).mean(0.5, 0.5)));
 }
 
-TEST_CASE("ffmpeg joins the frames if it is installed; otherwise its command is printed",
+TEST_CASE("ffmpeg joins the frames if it is installed, and otherwise its command is printed",
           "[integration][draw]") {
   if (no_opengl()) return;
   const RedCarpet carpet;

@@ -83,7 +83,7 @@ TEST_CASE("a client sees its view as it was after any edit, and the live world a
   server->stop();
 }
 
-TEST_CASE("scrubbing sends the changed chunks; a view that moves in the past shows the past",
+TEST_CASE("scrubbing sends the changed chunks, and a view that moves in the past shows the past",
           "[travel]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());

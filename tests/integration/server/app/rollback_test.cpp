@@ -38,7 +38,7 @@ std::string replayed(const std::string& world) {
 
 }  // namespace
 
-TEST_CASE("players undo and redo by a command; other commands are for operators",
+TEST_CASE("players undo and redo by a command, and other commands are for operators",
           "[integration][rollback]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");

@@ -114,7 +114,7 @@ TEST_CASE("a result of another form counts as not measured") {
 }
 
 TEST_CASE(
-    "frames are compared over the worlds that most meshers drew; "
+    "frames are compared over the worlds that most meshers drew, and "
     "a mesher that drew fewer is named") {
   const test::TempFolder folder;
   Finding frames = edits_finding();

@@ -15,7 +15,7 @@ const nlohmann::json kRows = nlohmann::json::parse(R"([
   {"mesher": "simple", "part": "1", "ns": null, "edge": 32},
   "no row"])");
 
-TEST_CASE("rows are selected by text and number; missing values are not measured") {
+TEST_CASE("rows are selected by text and number, and missing values are not measured") {
   const Rows rows(kRows);
   CHECK(rows.size() == 3);
   CHECK(rows.where("mesher", "rdm").size() == 2);

@@ -58,7 +58,7 @@ TEST_CASE("a client that lists materials draws nothing and plays no script", "[c
   CHECK(refused({"--draw", "--materials"}) == 2);
 }
 
-TEST_CASE("a client with a window has a cache; other clients have one if an option asks for it",
+TEST_CASE("a client with a window has a cache, and other clients have one if an option asks for it",
           "[client_app]") {
   CHECK(accepted({"--connect", "a:1"}).cache);
   CHECK(accepted({"--connect", "a:1"}).cache_mib == 256);

@@ -84,7 +84,7 @@ TEST_CASE("builders and brushes stay on their site", "[bots]") {
   }
 }
 
-TEST_CASE("a builder waits until it sees its plot; idlers and walkers edit nothing", "[bots]") {
+TEST_CASE("a builder waits until it sees its plot, and idlers and walkers edit nothing", "[bots]") {
   const BotPlace place{{0, 8, 0}, 0, 1};
   Replica far;
   load_flat_world(far, {40, 0, 40}, 1);

@@ -82,7 +82,7 @@ TEST_CASE("the report has the times at which parts of the first view were meshed
   CHECK(near["all_ms"].is_null());
 }
 
-TEST_CASE("the report has the durations of frames; so has the table of a client that draws",
+TEST_CASE("the report has the durations of frames, and so has the table of a client that draws",
           "[client_app]") {
   const ClientSession session(SessionConfig{});
   ClientReport report = sample();

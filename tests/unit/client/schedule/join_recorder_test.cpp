@@ -51,7 +51,8 @@ TEST_CASE("a join reports when four fifths and all of the first view are meshed"
   CHECK(report.near.all_us < 1470);
 }
 
-TEST_CASE("an unfinished join reports how far it came; a later view changes nothing", "[join]") {
+TEST_CASE("an unfinished join reports how far it came, and a later view changes nothing",
+          "[join]") {
   JoinRecorder join;
   join.begin(kView, 0);
   join.begin({1, {0, 0, 0}, 1, 0}, 50);

@@ -304,8 +304,9 @@ TEST_CASE_METHOD(ScriptBench,
   CHECK(host.edits.size() == 1);
 }
 
-TEST_CASE("a command waits for its answer; a refused command is a failure, and the script goes on",
-          "[bots]") {
+TEST_CASE(
+    "a command waits for its answer, and a refused command is a failure, and the script goes on",
+    "[bots]") {
   const auto script = *parse_script(
       "command rollback preview author #3  # all\nset 1 2 3 stone\nundo\nset 1 2 3 sand\n", "t");
   FakeScriptHost host;
@@ -336,7 +337,7 @@ TEST_CASE("a command of too many bytes, or none, is a mistake of the script", "[
   CHECK_FALSE(parse_script("undo 2", "t").has_value());
 }
 
-TEST_CASE("travel waits until the moment is here; a refused travel ends the script", "[bots]") {
+TEST_CASE("travel waits until the moment is here, and a refused travel ends the script", "[bots]") {
   const auto script = *parse_script("travel -2\nset 1 2 3 stone\ntravel 7\nset 1 2 3 sand\n", "t");
   FakeScriptHost host;
   host.is_travelling = true;

@@ -62,7 +62,7 @@ auto commit_of(const Bytes& list) {
 }  // namespace
 
 TEST_CASE(
-    "an edit request with an invalid descriptor decodes to a fault; one without a sequence is "
+    "an edit request with an invalid descriptor decodes to a fault, and one without a sequence is "
     "refused",
     "[protocol]") {
   const auto request = [](std::uint64_t seq, const Bytes& edit, TimeUs submitted_us = 0) {

@@ -109,8 +109,9 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake(std::string(kCommandBytesMax + 1, 'a')) == "a command has at most 1024 bytes");
 }
 
-TEST_CASE("everybody may undo, redo, list materials and ask for help; the rest is for operators",
-          "[admin][command]") {
+TEST_CASE(
+    "everybody may undo, redo, list materials and ask for help, and the rest is for operators",
+    "[admin][command]") {
   for (const char* line : {"help", "materials", "undo", "redo"})
     CHECK(is_for_everybody(*parse_command(line, kNow)));
   for (const char* line : {"status", "players", "stop", "reload", "backup copy", "log",

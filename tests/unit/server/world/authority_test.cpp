@@ -301,7 +301,7 @@ TEST_CASE(
   CHECK(authority.chunks().dirty().empty());
 }
 
-TEST_CASE("a commit never exceeds its limits; the rest is in the next one", "[world]") {
+TEST_CASE("a commit never exceeds its limits, and the rest is in the next one", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   for (ClientSequence seq = 1; seq <= kCommitEditsMax + 5; ++seq) {
     REQUIRE_FALSE(authority.submit(offer(seq, SetVoxel{{0, 0, 0}}, 1)).has_value());

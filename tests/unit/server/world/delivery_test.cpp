@@ -50,7 +50,7 @@ TEST_CASE("at most the allowed number of loads waits for one session", "[world]"
   CHECK(bench.environment.snapshots.size() == 1);
 }
 
-TEST_CASE("a view of many chunks in memory is sent in several tasks; sessions take turns",
+TEST_CASE("a view of many chunks in memory is sent in several tasks, and sessions take turns",
           "[world]") {
   WorldConfig c = config();
   c.view_radius_max = 8;
@@ -81,7 +81,8 @@ TEST_CASE("a view of many chunks in memory is sent in several tasks; sessions ta
   CHECK(sent_to(3) == all);
 }
 
-TEST_CASE("a full queue stops snapshots; they continue with the nearest missing one", "[world]") {
+TEST_CASE("a full queue stops snapshots, and they continue with the nearest missing one",
+          "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.environment.snapshot_room[1] = 2;

@@ -202,7 +202,7 @@ TEST_CASE("silent sockets keep no player out", "[world]") {
   CHECK(bench.environment.closed.empty());
 }
 
-TEST_CASE("the same key and instance again closes the older session; another instance does not",
+TEST_CASE("the same key and instance again closes the older session, and another instance does not",
           "[world]") {
   Bench bench;
   const SessionAccepted first = bench.join(1, 1, 50);
@@ -246,7 +246,7 @@ TEST_CASE("a client that cannot take its welcome is closed", "[world]") {
   CHECK(bench.environment.closed[0].reason == GoodbyeReason::timed_out);
 }
 
-TEST_CASE("features that both sides know are in force; others are ignored", "[world]") {
+TEST_CASE("features that both sides know are in force, and others are ignored", "[world]") {
   WorldConfig c = config();
   c.features = 0b0110;
   Bench bench(c);

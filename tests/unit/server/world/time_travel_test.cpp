@@ -186,7 +186,7 @@ TEST_CASE("a full queue delays the view state and its chunks, and loses none", "
 }
 
 TEST_CASE(
-    "a history request that fails changes no view; a chunk that cannot be read is unavailable",
+    "a history request that fails changes no view, and a chunk that cannot be read is unavailable",
     "[world]") {
   HistoryBench bench;
   bench.join(1, 1);

@@ -152,7 +152,7 @@ TEST_CASE("names of points do not overlap, and the product's name is always show
   }
 }
 
-TEST_CASE("points lie at their values; labels and the arrow to the good corner are optional",
+TEST_CASE("points lie at their values, and labels and the arrow to the good corner are optional",
           "[chart]") {
   ScatterChart chart{{"x"},
                      {"y"},
