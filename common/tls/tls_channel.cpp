@@ -157,6 +157,15 @@ void TlsChannel::end() {
 Bytes& TlsChannel::output() { return state_->output; }
 const std::string& TlsChannel::error() const { return state_->error; }
 
+Bytes TlsChannel::peer_certificate() const {
+  const X509* const certificate = SSL_get0_peer_certificate(state_->ssl.get());
+  if (certificate == nullptr) return {};
+  Bytes der(static_cast<std::size_t>(i2d_X509(certificate, nullptr)));
+  std::uint8_t* into = der.data();
+  i2d_X509(certificate, &into);
+  return der;
+}
+
 ChannelBinding TlsChannel::binding() const {
   ChannelBinding binding{};
   const int made =

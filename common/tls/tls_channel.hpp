@@ -63,6 +63,8 @@ class TlsChannel {
   Bytes& output();
   /// Returns why the channel failed, such as "wrong version number".
   const std::string& error() const;
+  /// Returns the other end's certificate in DER form; empty if it has shown none.
+  Bytes peer_certificate() const;
   /// Returns "tls-exporter" of RFC 9266. Requires the end of the handshake.
   ChannelBinding binding() const;
 

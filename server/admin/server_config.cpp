@@ -195,6 +195,8 @@ const std::vector<Field>& fields() {
              "sessions of one player, 0: no limit"),
       number("sessions_per_address", &C::sessions_per_address, 0, 65'536,
              "sessions from one address, 0: no limit"),
+      number("connections_per_second", &C::connections_per_second, 0, 1'000'000,
+             "connections a second from one address, ten times as many at once, 0: no limit"),
       number("handshakes_per_address", &C::handshakes_per_address, 1, 65'536,
              "connections from one address that have not authenticated"),
       number("view_radius_max", &C::view_radius_max, 0, 64, "chunks; larger views are cut to it"),
@@ -289,9 +291,13 @@ std::optional<std::string> assign(ServerConfig& config, const Field& field,
   return std::nullopt;
 }
 
-/// Returns the text of a field that is no number.
+/// Returns the text of a field.
 std::string text_of(const ServerConfig& config, const Field& field) {
   if (const auto* form = std::get_if<FormField>(&field.kind)) return form->print(config);
+  if (const auto* flag = std::get_if<SwitchField>(&field.kind))
+    return config.*flag->member ? "true" : "false";
+  if (const auto* number = std::get_if<NumberField>(&field.kind))
+    return std::to_string(config.*number->member);
   return config.*std::get<TextField>(field.kind).member;
 }
 
@@ -323,8 +329,7 @@ std::string flag_name(const std::string& field) {
 std::string config_text(const ServerConfig& config, const std::string& name) {
   const Field* field = find(name);
   RUNSTONE_ASSERT(field != nullptr);
-  const auto* number = std::get_if<NumberField>(&field->kind);
-  return number != nullptr ? std::to_string(config.*number->member) : text_of(config, *field);
+  return text_of(config, *field);
 }
 
 void copy_config(ServerConfig& config, const ServerConfig& from, const std::string& name) {
@@ -399,10 +404,9 @@ std::string to_toml(const ServerConfig& config) {
   std::string out;
   for (const Field& field : fields()) {
     out += field.name + " = ";
-    if (const auto* number = std::get_if<NumberField>(&field.kind)) {
-      out += std::to_string(config.*number->member);
-    } else if (const auto* flag = std::get_if<SwitchField>(&field.kind)) {
-      out += config.*flag->member ? "true" : "false";
+    if (std::holds_alternative<NumberField>(field.kind) ||
+        std::holds_alternative<SwitchField>(field.kind)) {
+      out += text_of(config, field);
     } else {
       out += '"';
       for (const char c : text_of(config, field)) {

@@ -31,6 +31,13 @@ void log_losses(const std::vector<std::string>& losses) {
   }
 }
 
+/// Encrypts connections with this certificate or, if there is none, with one of the world's key.
+void use_certificate(ServerCore& core, const std::optional<TlsContext>& certificate,
+                     const OpenedWorld& world) {
+  const KeySeed& own_key = world.store->meta().server_key_seed;
+  core.set_tls(certificate ? *certificate : TlsContext::self_signed_server(own_key));
+}
+
 }  // namespace
 
 // Members are destroyed in reverse order: the core before the objects that it refers to.
@@ -77,10 +84,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   parts->core = std::make_unique<ServerCore>(
       ServerThreads{parts->io, *parts->workers, *parts->decoders}, parts->config,
       *parts->world.store, *parts->world.generator, std::move(on_failure), std::move(actions));
-  if (!config.insecure) {
-    const KeySeed& own_key = parts->world.store->meta().server_key_seed;
-    parts->core->set_tls(*certificate ? **certificate : TlsContext::self_signed_server(own_key));
-  }
+  if (!config.insecure) use_certificate(*parts->core, *certificate, parts->world);
   if (const auto bound = parts->core->listen(config.listen); !bound)
     return Unexpected<std::string>{bound.error()};
   if (const auto recovered = parts->core->recover(); !recovered) {
@@ -128,6 +132,15 @@ void Server::command(const std::string& line, CommandReply reply) {
   parts_->core->command(line, std::move(reply));
 }
 void Server::reload(Result<ServerConfig, std::string> read, CommandReply reply) {
+  if (read && !parts_->config.insecure) {
+    // A certificate is renewed in the same file, so it is read whether a setting has changed or not.
+    const auto certificate = configured_certificate(*read);
+    if (certificate) {
+      use_certificate(*parts_->core, *certificate, parts_->world);
+    } else {
+      read = failure(certificate.error());
+    }
+  }
   parts_->core->reload(std::move(read), std::move(reply));
 }
 void Server::log_counters() { parts_->core->log_counters(); }

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "common/os/host_port.hpp"
+#include "common/os/steady_clock.hpp"
 #include "protocol/default_port.hpp"
+#include "server/net/address_block_of.hpp"
 #include "server/net/await_tuple.hpp"
 
 namespace runstone {
@@ -60,7 +62,8 @@ Listener::Listener(asio::io_context& io, asio::any_io_executor decoders, const N
       events_(events),
       strand_(asio::make_strand(asio::any_io_executor(io.get_executor()))),
       acceptor_(strand_),
-      pause_(strand_) {}
+      pause_(strand_),
+      connections_(limits.connections_per_second) {}
 
 Result<asio::ip::address, std::string> can_listen(const std::string& address) {
   asio::io_context io;
@@ -115,6 +118,10 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   asio::error_code gone;
   const asio::ip::address from = socket.remote_endpoint(gone).address();
   if (gone) return;
+  if (!connections_.take(address_block(from), steady_now_us())) {
+    counters_.refused.fetch_add(1);
+    return;  // the destructor closes the socket
+  }
   std::optional<std::vector<std::shared_ptr<NetSession>>> ended;
   {
     const std::lock_guard lock(mutex_);
@@ -146,8 +153,8 @@ std::unique_ptr<ByteStream> Listener::make_stream(asio::ip::tcp::socket socket) 
     tls = tls_;
   }
   if (!tls) return make_tcp_stream(std::move(socket), limits_.notsent_bytes, limits_.log_addresses);
-  return make_tls_stream(std::move(socket), limits_.notsent_bytes, limits_.log_addresses, *tls, decoders_,
-                         goodbye_to_plain_client());
+  return make_tls_stream(std::move(socket), limits_.notsent_bytes, limits_.log_addresses, *tls,
+                         decoders_, goodbye_to_plain_client());
 }
 
 std::optional<std::vector<std::shared_ptr<NetSession>>> Listener::make_room(

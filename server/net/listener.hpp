@@ -1,6 +1,7 @@
 // Listener: accepts connections and keeps the sessions by number. Sockets that never authenticate
 // cannot keep players out: if there is no room for a new connection, it replaces the oldest one in
-// the handshake, and one address may have only handshakes_per_address of those.
+// the handshake, and one address may have only handshakes_per_address of those. An address that
+// connects more often than connections_per_second is refused before any handshake.
 // Threads: the accept loop runs on its own strand. listen() is called before start(); the other
 // functions may be called from any thread.
 #pragma once
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
+#include "server/limits/connection_ledger.hpp"
 #include "server/net/net_session.hpp"
 
 namespace runstone {
@@ -71,6 +73,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   asio::strand<asio::any_io_executor> strand_;
   asio::ip::tcp::acceptor acceptor_;
   asio::steady_timer pause_;
+  ConnectionLedger connections_;  // used on the strand
   std::uint16_t port_ = 0;
   SessionId next_id_ = 1;
   mutable std::mutex mutex_;  // a leaf: guards the members below

@@ -38,6 +38,8 @@ struct NetLimits {
   std::uint64_t read_bytes_per_second = 0;
   std::size_t notsent_bytes = 16 * 1024;  // TCP_NOTSENT_LOWAT
   std::size_t connections_max = 512;      // sockets, in any state
+  // Connections a second of one address; 0: no limit.
+  std::uint64_t connections_per_second = 0;
   // Sockets of one address that have not authenticated yet.
   std::size_t handshakes_per_address = 32;
   // Unhandled bytes for each session; each message counts 64 more. Beyond it, reading pauses.

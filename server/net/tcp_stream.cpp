@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/os/thread_cpu_ns.hpp"
+#include "server/net/address_block_of.hpp"
 #include "server/net/await_tuple.hpp"
 #include "server/net/peer_text.hpp"
 #include "server/net/tcp_room.hpp"
@@ -24,10 +25,8 @@ TcpStream::TcpStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes, Ad
   asio::error_code ignored;
   const auto end = socket_.remote_endpoint(ignored);
   if (!ignored) {
-    const bool v6 = end.address().is_v6();
     peer_ = peer_text(end, log_form);
-    address_ = v6 ? address_block_v6(end.address().to_v6().to_bytes())
-                  : address_block_v4(end.address().to_v4().to_uint());
+    address_ = address_block(end.address());
   }
   socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
   // Both options only make edits faster. The server works without them.

@@ -114,6 +114,8 @@ void declare_play(SubcommandOptions& command_line, PlayOptions& options) {
         return {};
       },
       "2 is twice as fast as recorded; 0 or max is as fast as the server accepts it; default 1");
+  command_line.flag("--insecure", options.insecure,
+                    "do not encrypt the connection; for a server that runs with --insecure");
   command_line.text("--bot", options.bot,
                     "path of runstone-bot; default: RUNSTONE_BOT, or runstone-bot beside this one");
 }
@@ -136,6 +138,7 @@ Result<int, std::string> run_play(const PlayOptions& options, std::ostream& out)
   const std::string program = sibling_program(options.bot, "RUNSTONE_BOT", "runstone-bot");
   std::vector<std::string> words = {program,         "--play",  file,         "--connect",
                                     options.connect, "--speed", options.speed};
+  if (options.insecure) words.emplace_back("--insecure");
   if (!options.common.json.empty()) {
     words.insert(words.end(), {"--report", options.common.json});
   }

@@ -17,6 +17,7 @@ struct PlayOptions {
   std::optional<NamedMoment> at;  // last edit; default: the end of the log
   std::string speed = "1";        // times the recorded speed, or "max"; runstone-bot parses it too
   std::string bot;                // path of runstone-bot; empty: see sibling_program()
+  bool insecure = false;          // the live server does not encrypt
 };
 
 void declare_play(SubcommandOptions& command_line, PlayOptions& options);

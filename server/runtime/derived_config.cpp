@@ -60,6 +60,7 @@ NetLimits net_limits_of(const ServerConfig& config) {
   limits.server_bytes_per_second = config.server_kib_per_second * kKib;
   limits.read_bytes_per_second = config.read_kib_per_second * kKib;
   limits.connections_max = config.sessions_max + kHandshakesMax;
+  limits.connections_per_second = config.connections_per_second;
   limits.handshakes_per_address = config.handshakes_per_address;
   limits.messages_per_second = config.messages_per_second;
   limits.message_burst = 2 * config.messages_per_second;

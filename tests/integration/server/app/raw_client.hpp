@@ -32,14 +32,16 @@ class RawClient {
   /// Connects to a server on this machine from the IPv4 address `from` (host order, of
   /// 127.0.0.0/8), and performs the TLS handshake.
   explicit RawClient(std::uint16_t port, std::uint32_t from = INADDR_LOOPBACK,
-                     Encryption encryption = Encryption::tls)
+                     Encryption encryption = Encryption::tls,
+                     const TlsContext& context = TlsContext::client(),
+                     const std::string& host = "127.0.0.1")
       : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     const sockaddr_in here = endpoint(from, 0), there = endpoint(INADDR_LOOPBACK, port);
     is_open_ = ::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 &&
                ::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
     const timeval deadline{kSendSeconds, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof deadline);
-    if (is_open_ && encryption == Encryption::tls) is_open_ = secure();
+    if (is_open_ && encryption == Encryption::tls) is_open_ = secure(context, host);
   }
   ~RawClient() { ::close(socket_); }
   RawClient(const RawClient&) = delete;
@@ -47,6 +49,8 @@ class RawClient {
 
   bool is_open() const { return is_open_; }
 
+  /// Returns the server's certificate in DER form; empty without TLS.
+  Bytes certificate() const { return tls_ ? tls_->peer_certificate() : Bytes(); }
   /// Identifies the connection if it is encrypted.
   std::optional<ChannelBinding> binding() const {
     return tls_ ? std::optional(tls_->binding()) : std::nullopt;
@@ -143,6 +147,11 @@ class RawClient {
   }
   /// Does the whole handshake. Returns nullopt if the server closed.
   std::optional<SessionAccepted> join(std::uint8_t who, ClientInstance instance = 1) {
+    return join_as_on(who, instance, binding());
+  }
+  /// The same with signatures over another connection, as of somebody who relays a handshake.
+  std::optional<SessionAccepted> join_as_on(std::uint8_t who, ClientInstance instance,
+                                            const std::optional<ChannelBinding>& signed_binding) {
     const Hello h = hello(who, instance);
     send(h);
     auto got = next_of<Welcome>();
@@ -151,7 +160,7 @@ class RawClient {
     chunk_edge_ = welcome.chunk_edge;
     if (!verify(welcome.server_key, server_transcript(h, welcome, binding()), welcome.signature))
       return std::nullopt;
-    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome, binding()))});
+    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome, signed_binding))});
     return next_of<SessionAccepted>();
   }
 
@@ -177,9 +186,9 @@ class RawClient {
     return ::poll(&wait, 1, deadline_ms) > 0;
   }
   void send_output() { send_to_socket(std::exchange(tls_->output(), {})); }
-  bool secure() {
+  bool secure(const TlsContext& context, const std::string& host) {
     source_ = SocketSource(socket_);
-    TlsChannel channel = TlsChannel::connect(TlsContext::client(), source_, "127.0.0.1");
+    TlsChannel channel = TlsChannel::connect(context, source_, host);
     tls_.emplace(std::move(channel));
     for (;;) {
       const TlsChannel::Status status = tls_->handshake();

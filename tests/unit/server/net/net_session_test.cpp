@@ -25,7 +25,12 @@ class FedStream final : public ByteStream {
   FedStream(asio::io_context& io, Bytes bytes) : bytes_(std::move(bytes)), closed_(io) {
     closed_.expires_at(asio::steady_timer::time_point::max());
   }
-  asio::awaitable<StreamStart> open() override { co_return StreamStart::open; }
+  asio::awaitable<StreamStart> open() override {
+    if (start == StreamStart::open) co_return start;
+    const auto [error] = co_await closed_.async_wait(kTuple);
+    (void)error;  // cancelled when the stream is closed
+    co_return start;
+  }
   asio::awaitable<IoResult> read_some(asio::mutable_buffer into) override {
     const std::size_t count = std::min(into.size(), bytes_.size() - at_);
     if (count == 0) {
@@ -53,6 +58,7 @@ class FedStream final : public ByteStream {
   void close() override { closed_.cancel(); }
   std::string peer() const override { return "test"; }
   std::size_t read() const { return at_; }
+  StreamStart start = StreamStart::open;  // otherwise open() waits until the stream is closed
   StreamRoom room_now;
   std::size_t asked = 0;
   Bytes written;
@@ -67,7 +73,9 @@ class FedStream final : public ByteStream {
 struct SlowWorld final : NetEvents {
   void on_refused(SessionId /*session*/) override { is_refused = true; }
   void on_connected(SessionId /*session*/,
-                    const std::optional<ChannelBinding>& /*binding*/) override {}
+                    const std::optional<ChannelBinding>& /*binding*/) override {
+    is_connected = true;
+  }
   void on_message(SessionId /*session*/, Message&& /*message*/, std::size_t bytes) override {
     waiting.push_back(bytes);
     most = std::max(most, waiting.size());
@@ -77,7 +85,7 @@ struct SlowWorld final : NetEvents {
   void on_disconnected(SessionId /*session*/) override { is_disconnected = true; }
   std::vector<std::size_t> waiting;
   std::size_t received = 0, most = 0;
-  bool is_disconnected = false, is_refused = false;
+  bool is_connected = false, is_disconnected = false, is_refused = false;
 };
 
 Bytes frames_of(const Message& message, std::size_t count) {
@@ -89,10 +97,12 @@ Bytes frames_of(const Message& message, std::size_t count) {
 }
 
 struct Bench {
-  explicit Bench(Bytes received = {}, StreamRoom room = {}, const NetLimits& limits_ = {})
+  explicit Bench(Bytes received = {}, StreamRoom room = {}, const NetLimits& limits_ = {},
+                 StreamStart start = StreamStart::open)
       : limits(limits_) {
     auto fed = std::make_unique<FedStream>(io, std::move(received));
     fed->room_now = room;
+    fed->start = start;
     stream = fed.get();
     session =
         std::make_shared<NetSession>(SessionId{1}, io, decoders.get_executor(), std::move(fed),
@@ -167,6 +177,24 @@ TEST_CASE("a session has few unhandled messages, fewer large ones than small one
     REQUIRE_FALSE(bench.world.is_disconnected);
   }
   CHECK(bench.world.most <= in_bound + in_read);
+}
+
+TEST_CASE("a connection whose handshake does not end is closed, and nobody hears of it", "[net]") {
+  NetLimits limits;
+  limits.handshake_ms = 5;
+  Bench bench({}, {}, limits, StreamStart::failed);
+  CHECK_FALSE(bench.world.is_refused);
+  while (!bench.world.is_refused) REQUIRE(bench.io.run_one() == 1);
+  CHECK_FALSE(bench.world.is_connected);
+  CHECK_FALSE(bench.world.is_disconnected);
+}
+
+TEST_CASE("closing a session during its handshake closes the connection at once", "[net]") {
+  Bench bench({}, {}, {}, StreamStart::failed);
+  bench.session->close(GoodbyeReason::closing, "the server stops");
+  bench.io.poll();
+  CHECK(bench.world.is_refused);
+  CHECK_FALSE(bench.world.is_connected);
 }
 
 TEST_CASE("a large message is decoded by the decoders, and small ones are not", "[net]") {
