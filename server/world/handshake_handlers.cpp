@@ -125,7 +125,8 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   welcome.encoding = choose_encoding(world.config, hello.encodings);
   welcome.features = mine.features;
   world.random(welcome.challenge);
-  welcome.signature = sign(world.config.server_keys, server_transcript(hello, welcome, mine.binding));
+  welcome.signature =
+      sign(world.config.server_keys, server_transcript(hello, welcome, mine.binding));
   mine.auth_transcript = client_transcript(hello, welcome, mine.binding);
   mine.durable_sent = welcome.durable;
   mine.state = SessionStage::authenticating;
