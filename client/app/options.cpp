@@ -115,7 +115,8 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
     out.server = *std::move(server);
   }
   if (raw.insecure) out.tls.reset();
-  if (!raw.authorities.empty()) {
+  if (app.count("--ca") != 0) {
+    if (raw.authorities.empty()) throw CLI::ValidationError("--ca", "names no file");
     auto tls =
         TlsContext::client_of_authorities(raw.authorities == "system" ? "" : raw.authorities);
     if (!tls) throw CLI::ValidationError("--ca", tls.error());

@@ -1,5 +1,6 @@
 #include "client/net/link_socket.hpp"
 
+#include <algorithm>
 #include <asio/error.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/use_awaitable.hpp>
@@ -10,6 +11,7 @@ namespace runstone {
 namespace {
 
 constexpr auto kSocketTuple = asio::experimental::as_tuple(asio::use_awaitable);
+constexpr std::size_t kReceiveBytes = kTlsRecordBytesMax + kTlsRecordExtraBytes;
 
 }  // namespace
 
@@ -26,15 +28,16 @@ void LinkSocket::set_no_delay() {
 
 asio::awaitable<std::string> LinkSocket::secure(const TlsContext& context,
                                                 const std::string& host) {
-  source_ = SocketSource(tcp_.native_handle());
-  tls_.emplace(TlsChannel::connect(context, source_, host));
+  records_.buffer.resize(kReceiveBytes);
+  records_.unread = {};
+  tls_.emplace(TlsChannel::connect(context, records_, host));
   for (;;) {
     const TlsChannel::Status status = tls_->handshake();
     const asio::error_code unsent = co_await flush();
     if (status == TlsChannel::Status::done) break;
     if (status != TlsChannel::Status::wants_input) co_return "TLS: " + tls_->error();
     if (unsent) co_return "TLS: " + unsent.message();
-    const asio::error_code ended = co_await wait_input();
+    const asio::error_code ended = co_await receive();
     if (ended) co_return "TLS: " + ended.message();
   }
   binding_ = tls_->binding();
@@ -55,7 +58,7 @@ asio::awaitable<LinkSocket::Read> LinkSocket::read_some(asio::mutable_buffer int
       result.error = asio::error::eof;
       break;
     }
-    result.error = co_await wait_input();
+    result.error = co_await receive();
     if (result.error) break;
   }
   co_return result;
@@ -73,6 +76,7 @@ asio::awaitable<asio::error_code> LinkSocket::write(ByteView bytes) {
 }
 
 void LinkSocket::close() {
+  if (!tcp_.is_open()) return;
   asio::error_code ignored;
   if (tls_ && binding_) {
     tls_->end();
@@ -93,11 +97,18 @@ asio::awaitable<asio::error_code> LinkSocket::flush() {
   co_return error;
 }
 
-asio::awaitable<asio::error_code> LinkSocket::wait_input() {
-  if (source_.is_at_end()) co_return asio::error::eof;
-  if (source_.error()) co_return source_.error();
-  const auto [error] = co_await tcp_.async_wait(asio::ip::tcp::socket::wait_read, kSocketTuple);
+asio::awaitable<asio::error_code> LinkSocket::receive() {
+  const auto [error, bytes] =
+      co_await tcp_.async_read_some(asio::buffer(records_.buffer), kSocketTuple);
+  records_.unread = ByteView(records_.buffer).first(bytes);
   co_return error;
+}
+
+std::size_t LinkSocket::Records::receive(std::span<std::uint8_t> into) {
+  const std::size_t count = std::min(into.size(), unread.size());
+  std::copy_n(unread.begin(), count, into.begin());
+  unread = unread.subspan(count);
+  return count;
 }
 
 }  // namespace runstone

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "common/core/bytes.hpp"
-#include "common/tls/socket_source.hpp"
 #include "common/tls/tls_channel.hpp"
 
 namespace runstone {
@@ -42,12 +41,18 @@ class LinkSocket {
   void close();
 
  private:
+  /// The records that were received and not read yet.
+  struct Records final : TlsSource {
+    Bytes buffer;
+    ByteView unread;
+    std::size_t receive(std::span<std::uint8_t> into) override;
+  };
   asio::awaitable<asio::error_code> flush();
-  /// Waits until the socket can be read. Fails at the end of the stream.
-  asio::awaitable<asio::error_code> wait_input();
+  /// Receives records. Requires that all earlier ones were read.
+  asio::awaitable<asio::error_code> receive();
 
   asio::ip::tcp::socket tcp_;
-  SocketSource source_;
+  Records records_;
   std::optional<TlsChannel> tls_;  // nullopt: no encryption
   std::optional<ChannelBinding> binding_;
   Bytes sending_;

@@ -14,6 +14,7 @@ std::size_t SocketSource::receive(std::span<std::uint8_t> into) {
     got = std::min(wanted, held_.size());
     std::copy_n(held_.begin(), got, into.begin());
     held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(got));
+    if (held_.empty()) held_ = {};  // an idle connection keeps no memory
   } else if (!is_held_) {
     got = receive_from_socket(into.first(wanted));
   }
@@ -30,7 +31,8 @@ void SocketSource::hold(std::size_t bytes) {
 }
 
 std::size_t SocketSource::receive_from_socket(std::span<std::uint8_t> into) {
-  if (into.empty()) return 0;
+  if (socket_ < 0) is_at_end_ = true;
+  if (into.empty() || is_at_end_) return 0;
   const ssize_t got = ::recv(socket_, into.data(), into.size(), MSG_DONTWAIT);
   if (got > 0) return static_cast<std::size_t>(got);
   if (got == 0) {

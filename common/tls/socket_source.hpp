@@ -18,6 +18,9 @@ class SocketSource final : public TlsSource {
   /// Uses another socket, which must stay open while the source is used.
   explicit SocketSource(int socket) : socket_(socket) {}
 
+  /// Uses the socket no more, because it is closed: its number may be another connection's soon.
+  void disconnect() { socket_ = -1; }
+
   /// Never waits, whether the socket is blocking or not.
   std::size_t receive(std::span<std::uint8_t> into) override;
   /// Takes up to `bytes` bytes that have arrived. From now on receive() returns only these, without

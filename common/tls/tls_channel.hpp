@@ -36,8 +36,9 @@ class TlsChannel {
  public:
   /// Makes the server's end.
   static TlsChannel accept(const TlsContext& context, TlsSource& source);
-  /// Makes the client's end. `host` is the name or the address of the server: it is sent to the
-  /// server if it is a name, and compared with the certificate if the context has authorities.
+  /// Makes the client's end. `host` is the name or the address of the server, not empty: it is sent
+  /// to the server if it is a name, and compared with the certificate if the context has
+  /// authorities.
   static TlsChannel connect(const TlsContext& context, TlsSource& source, const std::string& host);
   ~TlsChannel();
   TlsChannel(TlsChannel&&) noexcept;
@@ -51,7 +52,8 @@ class TlsChannel {
   };
   /// Continues the handshake. Cost, once for each connection: about 0.3 ms.
   Status handshake();
-  /// Reads up to `into.size()` bytes; `bytes` is their number if the status is done.
+  /// Reads up to `into.size()` bytes; `bytes` is their number if the status is done. Fails if the
+  /// peer changes its keys more than 32 times.
   Status read(std::span<std::uint8_t> into, std::size_t& bytes);
   /// Encrypts the text as records of at most kTlsRecordBytesMax bytes of it. Requires the end of
   /// the handshake. Returns false after a failure.
@@ -63,8 +65,6 @@ class TlsChannel {
   Bytes& output();
   /// Returns why the channel failed, such as "wrong version number".
   const std::string& error() const;
-  /// Returns the other end's certificate in DER form; empty if it has shown none.
-  Bytes peer_certificate() const;
   /// Returns "tls-exporter" of RFC 9266. Requires the end of the handshake.
   ChannelBinding binding() const;
 

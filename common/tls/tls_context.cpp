@@ -10,6 +10,7 @@
 #include "common/core/assert.hpp"
 #include "common/tls/openssl_error.hpp"
 #include "common/tls/openssl_ptr.hpp"
+#include "common/tls/record_memory.hpp"
 #include "common/tls/self_signed_certificate.hpp"
 
 namespace runstone {
@@ -25,6 +26,7 @@ constexpr const char* kCipherSuites =
 constexpr const char* kGroups = "X25519:P-256";
 
 std::shared_ptr<SSL_CTX> make_context(const SSL_METHOD* method) {
+  recycle_record_memory();
   std::shared_ptr<SSL_CTX> context(SSL_CTX_new(method), SSL_CTX_free);
   RUNSTONE_ASSERT(context != nullptr);
   SSL_CTX* const raw = context.get();
@@ -44,7 +46,13 @@ BioPtr reader_of(const std::string& text) {
   return BioPtr(BIO_new_mem_buf(text.data(), static_cast<int>(text.size())));
 }
 
-/// Uses the certificates of a chain, the server's own first. Returns false if there is none.
+bool clear_errors() {
+  ERR_clear_error();
+  return true;
+}
+
+/// Uses the certificates of a chain, the server's own first. Returns false if there is none, or one
+/// is damaged.
 bool use_chain(SSL_CTX* context, const std::string& pem) {
   const BioPtr in = reader_of(pem);
   const CertificatePtr own(PEM_read_bio_X509_AUX(in.get(), nullptr, nullptr, nullptr));
@@ -52,8 +60,8 @@ bool use_chain(SSL_CTX* context, const std::string& pem) {
   while (const CertificatePtr next{PEM_read_bio_X509(in.get(), nullptr, nullptr, nullptr)}) {
     if (SSL_CTX_add1_chain_cert(context, next.get()) != 1) return false;
   }
-  ERR_clear_error();  // the end of the text is an error for OpenSSL
-  return true;
+  // The end of the text is an error for OpenSSL, too.
+  return ERR_GET_REASON(ERR_peek_last_error()) == PEM_R_NO_START_LINE && clear_errors();
 }
 
 /// A key with a passphrase is refused, because a server starts without anybody who types one.

@@ -137,6 +137,7 @@ void Server::reload(Result<ServerConfig, std::string> read, CommandReply reply) 
     const auto certificate = configured_certificate(*read);
     if (certificate) {
       use_certificate(*parts_->core, *certificate, parts_->world);
+      if (*certificate) logger("app").info("the certificate was read again");
     } else {
       read = failure(certificate.error());
     }

@@ -40,7 +40,9 @@ void add_flags(CLI::App& app, ServerOptions& out) {
   for (const ConfigField& field : config_fields()) {
     CLI::Option* const flag = app.add_option_function<std::string>(
         flag_name(field.name),
-        [&out, name = field.name](const std::string& text) { out.settings[name] = text; },
+        [&out, name = field.name, is_switch = field.is_switch](const std::string& text) {
+          out.settings[name] = is_switch && text.empty() ? "true" : text;
+        },
         field.help);
     flag->group("Settings");
     if (field.is_switch) flag->expected(0, 1);  // without a value it is "true"

@@ -95,8 +95,6 @@ PartialFolder::~PartialFolder() {
 
 Made PartialFolder::finish() {
   std::error_code error;
-  fs::remove(lock_in(path_), error);
-  if (error) return failure(lock_in(path_) + ": cannot be removed: " + error.message());
   for (const auto& file : fs::directory_iterator(path_, error)) {
     if (auto synced = sync(file.path()); !synced) return synced;
   }
@@ -106,6 +104,10 @@ Made PartialFolder::finish() {
     return failure(target_ + ": cannot be made: " + std::generic_category().message(errno));
   }
   path_.clear();
+  // While the lock is there, a folder that keeps its old name is known as what is left of a backup.
+  fs::remove(lock_in(target_), error);
+  if (error) return failure(lock_in(target_) + ": cannot be removed: " + error.message());
+  if (auto synced = sync(target_); !synced) return synced;
   return sync(fs::path(target_).parent_path());
 }
 

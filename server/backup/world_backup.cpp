@@ -129,6 +129,11 @@ Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUs
   if (auto verified = verify(to, now_us, backup); !verified)
     return failure("the copy is not sound, and is removed: " + verified.error().message());
   backup.check_s = seconds_since(checked);
+  // SQLite moves the write-ahead log into the database when the copy is closed, and says nothing if
+  // it could not.
+  const fs::path wal = target / "world.sqlite-wal";
+  if (fs::exists(wal, error) && fs::file_size(wal, error) != 0)
+    return failure(wal.string() + ": SQLite could not move it into the database");
   for (const std::string_view name : kMadeAnew) fs::remove(target / name, error);
   return backup;
 }

@@ -139,6 +139,7 @@ void Listener::admit(asio::ip::tcp::socket socket) {
                                               limits_, chunk_edge_, budget_, events_, counters_);
   {
     const std::lock_guard lock(mutex_);
+    if (is_stopped_) return;
     sessions_.emplace(id, session);
     handshakes_.emplace(id, from);
     handshakes_from_[from].insert(id);
@@ -212,6 +213,7 @@ void Listener::close_all(GoodbyeReason reason, const std::string& text) {
   std::vector<std::shared_ptr<NetSession>> sessions;
   {
     const std::lock_guard lock(mutex_);
+    is_stopped_ = true;
     for (const auto& [id, session] : sessions_) sessions.push_back(session);
   }
   for (const auto& session : sessions) session->close(reason, text);

@@ -51,6 +51,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   /// Removes a session that has reported on_disconnected().
   void forget(SessionId session);
   std::size_t session_count() const;
+  /// Closes all sessions and adds no more.
   void close_all(GoodbyeReason reason, const std::string& text);
   const NetCounters& counters() const { return counters_; }
 
@@ -77,6 +78,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   std::uint16_t port_ = 0;
   SessionId next_id_ = 1;
   mutable std::mutex mutex_;  // a leaf: guards the members below
+  bool is_stopped_ = false;   // no session may be added
   std::optional<TlsContext> tls_;
   std::map<SessionId, std::shared_ptr<NetSession>> sessions_;
   // Sessions in the handshake that are not being closed, oldest first.

@@ -17,18 +17,24 @@ constexpr auto kCanRead = asio::ip::tcp::socket::wait_read;
 /// The first byte of a TLS connection: a record of the type handshake (RFC 8446, 5.1). A client that
 /// does not speak TLS begins with the size of its Hello, which is neither 22 nor 278 bytes.
 constexpr std::uint8_t kHandshakeRecord = 22;
-/// What is kept of the output's memory between two writes.
-constexpr std::size_t kKeptBytes = 2 * 1024;
-/// What a step of the handshake reads at most.
+/// What a step of the handshake reads at most. An honest client's has two or three steps.
 constexpr std::size_t kHandshakeBytes = 4 * 1024;
+constexpr unsigned kHandshakeStepsMax = 32;
 /// What is read of a client that does not speak TLS. Unread input would make the kernel reset the
 /// connection, and the answer would be lost.
 constexpr std::size_t kPlainBytes = 16 * 1024;
 
+/// Memory that the writes of a thread share, so that an idle connection has none and a write
+/// allocates none.
+struct Scratch {
+  Bytes text, records;
+};
+thread_local Scratch scratch;
+
 /// Text that is gathered for the next record.
 class RecordText {
  public:
-  explicit RecordText(TlsChannel& channel) : channel_(channel) {}
+  explicit RecordText(TlsChannel& channel) : channel_(channel) { text_.clear(); }
   /// Writes a record whenever one is full. Returns false after a failure.
   bool add(ByteView text) {
     while (!text.empty()) {
@@ -54,7 +60,7 @@ class RecordText {
 
  private:
   TlsChannel& channel_;
-  Bytes text_;
+  Bytes& text_ = scratch.text;
 };
 
 class TlsStream final : public ByteStream {
@@ -69,9 +75,12 @@ class TlsStream final : public ByteStream {
 
   asio::awaitable<StreamStart> open() override {
     const asio::any_io_executor strand = co_await asio::this_coro::executor;
-    for (;;) {
+    for (unsigned step = 0; step < kHandshakeStepsMax; ++step) {
       const auto [error] = co_await tcp_.socket().async_wait(kCanRead, kTuple);
-      if (error) co_return StreamStart::failed;
+      if (error || !tcp_.socket().is_open()) {
+        failure_ = "it was closed or took too long";
+        co_return StreamStart::failed;
+      }
       if (is_plain()) {
         co_await answer_plain();
         co_return StreamStart::not_encrypted;
@@ -82,16 +91,19 @@ class TlsStream final : public ByteStream {
       co_await asio::post(asio::bind_executor(strand, asio::use_awaitable));
       source_.release();
       co_await flush();
-      if (status == TlsChannel::Status::done) break;
+      if (status == TlsChannel::Status::done) {
+        plain_answer_ = {};
+        binding_ = channel_.binding();
+        co_return StreamStart::open;
+      }
       const asio::error_code broken = source_broke();
       if (status != TlsChannel::Status::wants_input || broken) {
         failure_ = broken ? broken.message() : channel_.error();
         co_return StreamStart::failed;
       }
     }
-    plain_answer_ = {};
-    binding_ = channel_.binding();
-    co_return StreamStart::open;
+    failure_ = "it came in too many pieces";
+    co_return StreamStart::failed;
   }
   std::string failure() const override { return failure_; }
   std::optional<ChannelBinding> binding() const override { return binding_; }
@@ -118,14 +130,26 @@ class TlsStream final : public ByteStream {
                                   std::size_t terrain_bytes) override {
     IoResult result;
     const std::int64_t began_ns = thread_cpu_ns();
-    const bool is_encrypted = encrypt(buffers, asio::buffer_size(buffers) - terrain_bytes);
-    const std::int64_t encrypt_ns = thread_cpu_ns() - began_ns;
-    if (is_encrypted) {
-      result = co_await flush();
-    } else {
+    Bytes& records = channel_.output();
+    if (records.empty()) records.swap(scratch.records);
+    if (!encrypt(buffers, asio::buffer_size(buffers) - terrain_bytes)) {
       result.error = asio::error::connection_aborted;
+      co_return result;
     }
-    result.call_ns += encrypt_ns;
+    // Most writes end here.
+    result.bytes = tcp_.socket().write_some(asio::buffer(records), result.error);
+    result.call_ns = thread_cpu_ns() - began_ns;
+    if (result.bytes == records.size()) {
+      records.clear();
+      records.swap(scratch.records);
+      co_return result;
+    }
+    if (result.error && result.error != asio::error::would_block) co_return result;
+    records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(result.bytes));
+    const IoResult rest = co_await flush();
+    result.error = rest.error;
+    result.bytes += rest.bytes;
+    result.call_ns += rest.call_ns;
     co_return result;
   }
 
@@ -142,7 +166,10 @@ class TlsStream final : public ByteStream {
     tcp_.socket().write_some(asio::buffer(channel_.output()), ignored);
     tcp_.shutdown_send();
   }
-  void close() override { tcp_.close(); }
+  void close() override {
+    source_.disconnect();
+    tcp_.close();
+  }
   std::string peer() const override { return tcp_.peer(); }
   AddressBlock address() const override { return tcp_.address(); }
 
@@ -189,11 +216,7 @@ class TlsStream final : public ByteStream {
     sending_.swap(channel_.output());
     buffers_.assign(1, asio::buffer(sending_));
     const IoResult result = co_await tcp_.write(buffers_, 0);
-    if (sending_.capacity() > kKeptBytes) {
-      sending_ = {};
-    } else {
-      sending_.clear();
-    }
+    sending_ = {};
     co_return result;
   }
 

@@ -8,7 +8,8 @@ namespace runstone::bench {
 namespace {
 
 // The server's default settings.
-constexpr unsigned kSessionsMax = 256, kSessionsPerAddress = 64, kHandshakesPerAddress = 32;
+constexpr unsigned kSessionsMax = 256, kSessionsPerAddress = 64, kHandshakesPerAddress = 32,
+                   kConnectionsPerSecond = 20;
 // The bots of the last window may still be there when those of the next one join.
 constexpr unsigned kSpareSeats = 16;
 
@@ -23,6 +24,7 @@ std::vector<std::string> siege_flags(unsigned bots) {
   raise("--sessions-max", kSessionsMax);
   raise("--sessions-per-address", kSessionsPerAddress);
   raise("--handshakes-per-address", kHandshakesPerAddress);
+  raise("--connections-per-second", kConnectionsPerSecond);
   return out;
 }
 

@@ -1,9 +1,12 @@
 // Connections with and without TLS, and attempts to get between a client and its server.
 #include <openssl/evp.h>
-#include <openssl/x509.h>
+#include <openssl/ssl.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <catch2/catch.hpp>
+#include <cerrno>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -39,27 +42,57 @@ Reloaded reload(Server& server, const ServerConfig& config) {
   return answer.get_future().get();
 }
 
-/// Returns the public key in the certificate that a server shows.
-Bytes certificate_key(const RawClient& client) {
-  const Bytes der = client.certificate();
-  const std::uint8_t* from = der.data();
-  const OpensslPtr<X509, X509_free> certificate(
-      d2i_X509(nullptr, &from, static_cast<long>(der.size())));
-  REQUIRE(certificate != nullptr);
-  Bytes key(32);
-  std::size_t bytes = key.size();
-  if (EVP_PKEY_get_raw_public_key(X509_get0_pubkey(certificate.get()), key.data(), &bytes) != 1)
-    return {};
-  return key;
-}
+/// A client that is nothing but OpenSSL on a blocking socket.
+struct OpensslClient {
+  explicit OpensslClient(std::uint16_t port) {
+    sockaddr_in server{};
+    server.sin_family = AF_INET;
+    server.sin_port = htons(port);
+    server.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    REQUIRE(::connect(socket, reinterpret_cast<const sockaddr*>(&server), sizeof server) == 0);
+    const timeval deadline{10, 0};
+    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &deadline, sizeof deadline);
+    REQUIRE(SSL_set_fd(ssl.get(), socket) == 1);
+    REQUIRE(SSL_connect(ssl.get()) == 1);
+  }
+  ~OpensslClient() { ::close(socket); }
+  OpensslClient(const OpensslClient&) = delete;
+  OpensslClient& operator=(const OpensslClient&) = delete;
+
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  const OpensslPtr<SSL_CTX, SSL_CTX_free> context{SSL_CTX_new(TLS_client_method())};
+  const OpensslPtr<SSL, SSL_free> ssl{SSL_new(context.get())};
+};
 
 TEST_CASE("a server shows its own key in its certificate", "[integration][tls]") {
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   RawClient client(server->port());
   REQUIRE(client.join(1).has_value());
-  CHECK(certificate_key(client) ==
-        Bytes(client.welcome.server_key.begin(), client.welcome.server_key.end()));
+  const OpensslClient other(server->port());
+  PublicKey shown{};
+  std::size_t bytes = shown.size();
+  REQUIRE(EVP_PKEY_get_raw_public_key(X509_get0_pubkey(SSL_get0_peer_certificate(other.ssl.get())),
+                                      shown.data(), &bytes) == 1);
+  CHECK(shown == client.welcome.server_key);
+}
+
+TEST_CASE("a client that changes its keys again and again is disconnected", "[integration][tls]") {
+  const TempFolder folder;
+  const auto server = start_server(quiet_config(folder / "world"), flat_creation());
+  const OpensslClient client(server->port());
+  std::signal(SIGPIPE, SIG_IGN);  // OpenSSL writes to the socket that the server has closed
+  int updates = 0;
+  for (bool goes_on = true; goes_on && updates < 10'000; ++updates) {
+    goes_on = SSL_key_update(client.ssl.get(), SSL_KEY_UPDATE_REQUESTED) == 1 &&
+              SSL_do_handshake(client.ssl.get()) == 1;
+  }
+  // The server closes: reading ends, and not because of the deadline.
+  std::array<char, 100> text{};
+  CHECK(SSL_read(client.ssl.get(), text.data(), text.size()) <= 0);
+  CHECK(errno != EAGAIN);
+  RawClient honest(server->port());
+  CHECK(honest.join(1).has_value());
 }
 
 TEST_CASE("signatures hold on their own connection alone, so a handshake cannot be relayed",

@@ -49,8 +49,6 @@ class RawClient {
 
   bool is_open() const { return is_open_; }
 
-  /// Returns the server's certificate in DER form; empty without TLS.
-  Bytes certificate() const { return tls_ ? tls_->peer_certificate() : Bytes(); }
   /// Identifies the connection if it is encrypted.
   std::optional<ChannelBinding> binding() const {
     return tls_ ? std::optional(tls_->binding()) : std::nullopt;

@@ -26,6 +26,14 @@ int refused(std::vector<const char*> arguments) {
 
 }  // namespace
 
+TEST_CASE("the connection is encrypted unless the user says otherwise", "[client_app]") {
+  CHECK(accepted({"--connect", "a:1"}).tls.has_value());
+  CHECK_FALSE(accepted({"--connect", "a:1", "--insecure"}).tls.has_value());
+  CHECK(refused({"--connect", "a:1", "--ca", ""}) == 2);
+  CHECK(refused({"--connect", "a:1", "--ca", "/nowhere/authority.pem"}) == 2);
+  CHECK(refused({"--connect", "a:1", "--ca", "system", "--insecure"}) == 2);
+}
+
 TEST_CASE("the address is a host with or without a port, also in IPv6", "[client_app]") {
   CHECK(accepted({"--connect", "example.org:4000"}).server == HostPort{"example.org", 4000});
   CHECK(accepted({"--connect", "[::1]:4000"}).server == HostPort{"::1", 4000});

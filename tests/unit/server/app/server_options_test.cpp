@@ -29,6 +29,17 @@ TEST_CASE("the last one of two equal flags wins", "[server_options]") {
   CHECK(import.options->import->world == "c");
 }
 
+TEST_CASE("a switch needs no value and may have one", "[server_options]") {
+  const auto parsed = parse({"--insecure", "--i-know", "--world", "/world"});
+  REQUIRE(parsed.options);
+  CHECK(parsed.options->settings.at("insecure") == "true");
+  CHECK(parsed.options->settings.at("i_know") == "true");
+  CHECK(parsed.options->settings.at("world") == "/world");
+  const auto with_value = parse({"--insecure", "false"});
+  REQUIRE(with_value.options);
+  CHECK(with_value.options->settings.at("insecure") == "false");
+}
+
 TEST_CASE("the arguments after control are the command, whatever they look like",
           "[server_options]") {
   const auto parsed =
