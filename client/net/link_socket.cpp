@@ -13,6 +13,9 @@ namespace {
 constexpr auto kSocketTuple = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReceiveBytes = kTlsRecordBytesMax + kTlsRecordExtraBytes;
 
+/// Looks at the first byte of the server: the type of a record, handshake or alert (RFC 8446, 5.1).
+bool is_handshake_record(std::uint8_t first) { return first == 22 || first == 21; }
+
 }  // namespace
 
 void LinkSocket::reset() {
@@ -31,7 +34,7 @@ asio::awaitable<std::string> LinkSocket::secure(const TlsContext& context,
   records_.buffer.resize(kReceiveBytes);
   records_.unread = {};
   tls_.emplace(TlsChannel::connect(context, records_, host));
-  for (;;) {
+  for (bool is_first = true;;) {
     const TlsChannel::Status status = tls_->handshake();
     const asio::error_code unsent = co_await flush();
     if (status == TlsChannel::Status::done) break;
@@ -39,6 +42,8 @@ asio::awaitable<std::string> LinkSocket::secure(const TlsContext& context,
     if (unsent) co_return "TLS: " + unsent.message();
     const asio::error_code ended = co_await receive();
     if (ended) co_return "TLS: " + ended.message();
+    if (std::exchange(is_first, false) && !is_handshake_record(records_.unread.front()))
+      co_return "the server does not speak TLS: does it run with --insecure?";
   }
   binding_ = tls_->binding();
   co_return std::string();

@@ -1,6 +1,7 @@
 // RawClient: a blocking socket that sends and receives frames and messages, over TLS unless told
 // otherwise. It does only what the test does, and it can send any bytes, also invalid ones. Reads and
 // writes have a deadline, so a test fails instead of hanging.
+// Threads: after the handshake one may send while another reads.
 #pragma once
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -9,8 +10,10 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <deque>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -56,7 +59,14 @@ class RawClient {
 
   void send_bytes(ByteView bytes) {
     if (!tls_) return send_to_socket(bytes);
-    if (is_open_ && tls_->write(bytes)) send_output();
+    if (!is_open_) return;
+    Bytes records;
+    {
+      const std::lock_guard lock(tls_mutex_);
+      if (!tls_->write(bytes)) return;
+      records = std::exchange(tls_->output(), {});
+    }
+    send_to_socket(records);
   }
   /// Sends bytes past TLS.
   void send_to_socket(ByteView bytes) {
@@ -199,6 +209,10 @@ class RawClient {
     tls_.reset();
     return false;
   }
+  TlsChannel::Status read_text(Bytes& buffer, std::size_t& bytes) {
+    const std::lock_guard lock(tls_mutex_);
+    return tls_->read(buffer, bytes);
+  }
   /// Reads what comes into the buffer. Returns the number of bytes, 0 at the end of the stream, or
   /// nullopt at the deadline.
   std::optional<std::size_t> receive(Bytes& buffer, int deadline_ms) {
@@ -209,7 +223,7 @@ class RawClient {
     }
     for (;;) {
       std::size_t bytes = 0;
-      const TlsChannel::Status status = tls_->read(buffer, bytes);
+      const TlsChannel::Status status = read_text(buffer, bytes);
       if (status == TlsChannel::Status::done) return bytes;
       const bool is_over = source_.is_at_end() || source_.error();
       if (status != TlsChannel::Status::wants_input || is_over) return 0;
@@ -257,7 +271,8 @@ class RawClient {
   int socket_;
   SocketSource source_;
   std::optional<TlsChannel> tls_;
-  bool is_open_ = false;
+  std::mutex tls_mutex_;  // held by each call of tls_ after the handshake
+  std::atomic<bool> is_open_ = false;
   KeySeed seed_{};
   std::uint16_t chunk_edge_ = 0;
   FrameWriter frames_;
