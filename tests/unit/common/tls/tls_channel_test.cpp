@@ -86,7 +86,7 @@ Bytes read_all(TlsChannel& channel) {
 TEST_CASE("two ends exchange text of any size, in both directions") {
   Pair pair;
   REQUIRE(pair.shake_hands() == kBothDone);
-  for (const std::size_t bytes : {1, 100, 16'384, 16'385, 100'000}) {
+  for (const std::size_t bytes : {1u, 100u, 16'384u, 16'385u, 100'000u}) {
     const Bytes text = text_of(bytes);
     REQUIRE(pair.client.write(text));
     REQUIRE(pair.server.write(text));
