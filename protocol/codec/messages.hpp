@@ -17,6 +17,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/digest.hpp"
 #include "common/core/ids.hpp"
+#include "common/core/public_key.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
@@ -28,7 +29,6 @@
 
 namespace runstone {
 
-using PublicKey = std::array<std::uint8_t, kKeyBytes>;
 using Nonce = std::array<std::uint8_t, kNonceBytes>;
 using Signature = std::array<std::uint8_t, kSignatureBytes>;
 using WorldId = std::array<std::uint8_t, kWorldIdBytes>;

@@ -11,7 +11,7 @@
 
 #include "common/core/token_bucket.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/limits/address_block.hpp"
+#include "common/core/address_block.hpp"
 
 namespace runstone {
 

@@ -17,7 +17,7 @@
 #include "common/core/channel_binding.hpp"
 #include "common/core/ids.hpp"
 #include "common/tls/tls_context.hpp"
-#include "server/limits/address_block.hpp"
+#include "common/core/address_block.hpp"
 #include "server/limits/address_form.hpp"
 
 namespace runstone {

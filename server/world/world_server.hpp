@@ -14,7 +14,7 @@
 
 #include "common/edits/apply/stack_depths.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/limits/address_block.hpp"
+#include "common/core/address_block.hpp"
 #include "server/world/clocks.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"

@@ -12,7 +12,7 @@
 #include "common/core/token_bucket.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/interest/cache_claims.hpp"
-#include "server/limits/address_block.hpp"
+#include "common/core/address_block.hpp"
 #include "server/limits/followed_position.hpp"
 #include "server/world/world_environment.hpp"
 
