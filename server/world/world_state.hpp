@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/rights/rights_state.hpp"
 #include "server/interest/interest.hpp"
 #include "server/limits/claim_ledger.hpp"
 #include "server/limits/edit_ledger.hpp"
@@ -42,6 +43,10 @@ struct WorldState {
   LoadRetries load_retries;
   Players players;
   NameClaims names;
+  RightsState rights;
+  ClientInstance rights_instance = 0;    // of the changes of rights that this run makes
+  ClientSequence rights_client_seq = 0;  // of the last one
+  Sequence rights_seq = 0;               // likewise, in the log; 0: none in this run
   EditLedger edit_ledger;
   ClaimLedger claim_ledger;
   LargeEditPace large_edits;
