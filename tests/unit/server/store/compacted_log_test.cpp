@@ -124,7 +124,8 @@ TEST_CASE("a lost change of rights is noticed", "[store][damage]") {
     record.edit = sample_rights_edit(rng);
     record.subject = 0;
     REQUIRE(store->append({}, std::vector{record}).has_value());
-    REQUIRE(store->save_keyframe({}, Keyframe{{record.version, record.time_us}, 0, {}}).has_value());
+    REQUIRE(
+        store->save_keyframe({}, Keyframe{{record.version, record.time_us}, 0, {}}).has_value());
     REQUIRE(store->compact(1).has_value());
   }
   run_sql(folder / "w/world.sqlite", "DELETE FROM rights_record");

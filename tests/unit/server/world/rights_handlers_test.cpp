@@ -6,7 +6,8 @@
 namespace runstone::test {
 namespace {
 
-constexpr AddressBlock kHome = address_block_v4(0x0a000001), kElsewhere = address_block_v4(0x0a000101);
+constexpr AddressBlock kHome = address_block_v4(0x0a000001),
+                       kElsewhere = address_block_v4(0x0a000101);
 const RightsActor kConsole;
 
 PublicKey key_of(std::uint8_t who) { return key_pair_of(seed_of(who)).public_key; }
@@ -123,7 +124,8 @@ TEST_CASE("rights are what the log says after a restart", "[world][rights]") {
   CHECK(after.server.rights().boxes().size() == 1);
 }
 
-TEST_CASE("a ban closes the session, ends by the log's time, and can be lifted", "[world][rights]") {
+TEST_CASE("a ban closes the session, ends by the log's time, and can be lifted",
+          "[world][rights]") {
   RightsBench bench;
   bench.join(1, 1);
   bench.join(2, 2);
