@@ -20,6 +20,8 @@ const char* name_of(EditKind kind) {
       return "stroke";
     case EditKind::paste:
       return "paste";
+    case EditKind::rights:
+      return "rights";
   }
   return "?";
 }
