@@ -61,8 +61,12 @@ class BoxIndex {
     std::uint32_t entry = 0;
   };
   static constexpr std::uint32_t kRecent = UINT32_MAX;
-  static constexpr std::size_t kRecentMax = 32;
-  static constexpr std::uint32_t kNodeEntries = 8;
+  static constexpr std::size_t kRecentMax = 16;
+  static constexpr std::uint32_t kNodeEntries = 2;  // of a node that has nodes below it
+  static constexpr std::uint32_t kLeafEntries = 8;  // at most
+  // A tree is at least this many times as large as the next one. Fewer trees make a search faster,
+  // and an insertion slower.
+  static constexpr std::size_t kTreeGrowth = 4;
 
   /// Calls visit(id) for the entries that overlap the box. Returns false if visit() did.
   template <class F>
@@ -72,7 +76,7 @@ class BoxIndex {
   void pack_all();
   void push_tree(std::vector<Entry> entries);
 
-  std::vector<Tree> trees_;    // each at least twice as large as the next one when it was packed
+  std::vector<Tree> trees_;    // in the order of their sizes
   std::vector<Entry> recent_;  // at most kRecentMax
   std::unordered_map<Id, Place> places_;
   std::size_t removed_ = 0;  // entries of trees
