@@ -372,7 +372,7 @@ enum class GoodbyeReason : std::uint16_t {
   timed_out = 9,
   flooding = 10,  // more messages or claims than the limits allow
   internal = 11,
-  name_refused = 12,   // the player may not have this name; text says why
+  name_refused = 12,  // the player may not have this name; text says why
   not_admitted = 13,  // a ban, a kick, or a role that may not join; text says which
 };
 inline constexpr std::uint16_t kGoodbyeReasonMax = 13;
