@@ -1,9 +1,9 @@
-// BoxIndex: finds the boxes that overlap a given one. It holds a short list of new boxes, and packed
-// trees of geometrically growing sizes (the logarithmic method of Bentley and Saxe 1980), so that one
-// box more packs few boxes again. A tree is a binary tree of bounding boxes in preorder. Each node
-// keeps the boxes that reach furthest along the axis by which its other boxes are parted. So a few
-// large boxes do not widen the nodes of many small ones (as in the priority R-tree of Arge, de Berg,
-// Haverkort and Yi 2004).
+// BoxIndex: finds the boxes that overlap a given one. It holds a short list of new boxes, and
+// packed trees of geometrically growing sizes (the logarithmic method of Bentley and Saxe 1980), so
+// that one box more packs few boxes again. A tree is a binary tree of bounding boxes in preorder.
+// Each node keeps the boxes that reach furthest along the axis by which its other boxes are parted.
+// So a few large boxes do not widen the nodes of many small ones (as in the priority R-tree of
+// Arge, de Berg, Haverkort and Yi 2004).
 // Threads: one writer or several readers.
 #pragma once
 #include <cstddef>
@@ -33,8 +33,8 @@ class BoxIndex {
   void remove(Id id);
 
   /// Calls visit(id) for each box that has a voxel in common with `box`, in no special order, until
-  /// visit() returns false. Requires that `box` is not empty. Cost: O(log^2 n + found), if few boxes
-  /// overlap one another.
+  /// visit() returns false. Requires that `box` is not empty. Cost: O(log^2 n + found), if few
+  /// boxes overlap one another.
   template <class F>
   void visit_overlapping(const VoxelBox& box, F&& visit) const;
 

@@ -153,7 +153,11 @@ TEST_CASE("the holding of an owner follows its boxes", "[rights]") {
   state.apply(Protect{field}, {3, 0, 0});
   CHECK(state.holding_of(kAda).boxes == 1);
   CHECK(state.holding_of(kBob).volume == UINT64_MAX);
-  state.apply(Unprotect{"home"}, {4, 0, 0});
+  field.name = "meadow";
+  state.apply(Protect{field}, {4, 0, 0});
+  CHECK(state.holding_of(kBob).boxes == 2);
+  CHECK(state.holding_of(kBob).volume == UINT64_MAX);
+  state.apply(Unprotect{"home"}, {5, 0, 0});
   CHECK(state.holding_of(kAda).boxes == 0);
 }
 
