@@ -47,7 +47,8 @@ enum class Cause : std::uint8_t {
   rollback = 2,
   undo = 3,
   redo = 4,
-  import = 5
+  import = 5,
+  rights = 6  // temporary here
 };
 inline constexpr std::uint8_t kCauseMax = 5;
 

@@ -241,6 +241,27 @@ Result<NameClaim, std::string> WorldServer::release_name(const std::string& name
   return runstone::release_name(*state_, name);
 }
 
+// Temporary, so that the commands link: nothing reaches the log.
+const RightsState& WorldServer::rights() const { return state_->rights; }
+Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& change,
+                                                         const RightsActor& actor, AuthorId author,
+                                                         const Clocks& now) {
+  if (const auto wrong = why_refused(state_->rights, actor, change, now.utc_us))
+    return Unexpected<std::string>{*wrong};
+  state_->rights.apply(change, {++state_->rights_sequence, author, now.utc_us});
+  return state_->rights_sequence;
+}
+std::size_t WorldServer::kick(const RestrictionSubject& who, const std::string& reason) {
+  std::vector<SessionId> ended;
+  for (const auto& [id, session] : state_->sessions) {
+    const auto* key = std::get_if<PublicKey>(&who);
+    const auto* range = std::get_if<AddressRange>(&who);
+    if (key != nullptr ? session.key == *key : range->contains(session.address)) ended.push_back(id);
+  }
+  for (const SessionId id : ended) close_session(*state_, id, GoodbyeReason::closing, reason);
+  return ended.size();
+}
+
 void WorldServer::step_checkpointer(const Clocks& now) {
   WorldState& world = *state_;
   if (world.is_stopping && now.steady_us >= world.stop_due_us) {

@@ -15,6 +15,7 @@
 #include "common/edits/apply/stack_depths.hpp"
 #include "protocol/codec/messages.hpp"
 #include "common/core/address_block.hpp"
+#include "common/rights/change_rules.hpp"
 #include "server/world/clocks.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
@@ -110,6 +111,15 @@ class WorldServer {
   std::optional<AuthorId> author_of(const PublicKey& key) const;
   /// Frees a name. Returns the claim that it had, or the reason why nothing changed.
   Result<NameClaim, std::string> release_name(const std::string& name);
+
+  // Rights.
+  const RightsState& rights() const;
+  /// Orders a change of rights as a record of the log, made by the author (0: the console). Returns
+  /// its sequence, or why it was refused, as a sentence.
+  Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
+                                              AuthorId author, const Clocks& now);
+  /// Closes the sessions of a key, or of an address range. Returns their number.
+  std::size_t kick(const RestrictionSubject& who, const std::string& reason);
 
   // Answers of WorldEnvironment.
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/interest/interest.hpp"
+#include "common/rights/rights_state.hpp"
 #include "server/limits/claim_ledger.hpp"
 #include "server/limits/edit_ledger.hpp"
 #include "server/world/authority.hpp"
@@ -48,6 +49,8 @@ struct WorldState {
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
   WorldCounters counters;
+  RightsState rights;             // temporary: no record of the log
+  Sequence rights_sequence = 0;   // temporary
   Sequence durable = 0;
   bool accepts_edits =
       true;  // false: edits are rejected busy, because the server stops or the log failed
