@@ -57,33 +57,34 @@ CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReade
       rollback_(world, *this,
                 [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); }),
       handler_(world, rollback_, *this, std::move(materials), world_folder,
-               on_strand(strand, actions)) {}
+               on_strand(strand, actions),
+               [this](const PublicKey& key) { return operators_.contains(key); }) {}
 
 void CommandRunner::run(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)] {
-    handler_.run({0, true}, line, read_clocks(), reply);
-    rollback_.tick(read_clocks());
+    handler_.run({}, line, read_clocks(), reply);
+    tick(read_clocks());
   });
 }
 
 void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key,
                         const std::string& text) {
-  const CommandCaller caller{author, operators_.contains(key)};
-  if (caller.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
+  const CommandCaller caller{author, {key, operators_.contains(key)}};
+  if (caller.actor.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
   // The handler may answer at once, and WorldServer must not be called from within its own call.
   strand_.post([this, session, caller, text] {
     const auto reply = [this, session](const CommandAnswer& answer) {
       world_.answer_command(session, lines_of(answer.text), answer.is_done, answer.is_ok);
     };
     handler_.run(caller, text, read_clocks(), reply);
-    rollback_.tick(read_clocks());
+    tick(read_clocks());
   });
 }
 
 void CommandRunner::run(Work work, std::function<void(std::string)> then) {
   readers_.read_log(std::move(work), [this, then = std::move(then)](std::string error) {
     then(std::move(error));
-    rollback_.tick(read_clocks());
+    tick(read_clocks());
   });
 }
 
