@@ -52,7 +52,6 @@ static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 32) <= kServerControl
               "a full material table fits Welcome");
 
 // Handshake.
-inline constexpr std::size_t kKeyBytes = 32;
 inline constexpr std::size_t kNonceBytes = 32;
 inline constexpr std::size_t kSignatureBytes = 64;
 inline constexpr std::size_t kWorldIdBytes = 16;

@@ -4,8 +4,8 @@ namespace runstone {
 namespace {
 
 constexpr std::array<std::string_view, kRightCount> kNames = {
-    "see",       "build", "build_protected", "claim", "protect",  "look_back",
-    "undo", "roll_back", "chat",            "moderate",  "grant", "administer"};
+    "see",       "build", "build_protected", "claim", "protect",   "look_back", "undo",
+    "roll_back", "chat",  "moderate",        "grant", "administer"};
 
 }  // namespace
 

@@ -3,11 +3,13 @@
 // that decides it.
 // Threads: one writer or several readers.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,15 +38,16 @@ struct Decided {
 /// The answer to "may this player do that?".
 struct RightsDecision {
   enum class Reason : std::uint8_t {
-    role,         // the rights of the player's role; `by` is the grant or the definition of the role
-    default_role, // the same, and the player has no grant
-    box,          // a protected box, `box`
+    role,          // the player's role: `by` is the newer one of its grant and its definition
+    default_role,  // the player has no grant: `by` is the newer one of the choice of the default role
+                   // and its definition
+    box,           // a protected box, `box`, admits the player or does not
     ban,
     mute,
     freeze
   };
   bool is_allowed = false;
-  Reason reason{};
+  Reason reason = Reason::default_role;
   ChangeOrigin by;
   std::string role;                   // of the player
   const ProtectedBox* box = nullptr;  // valid until the next apply()
@@ -53,24 +56,35 @@ struct RightsDecision {
 /// Answers whether the edit under check has a voxel in the box. Exact: a bounding box does not do.
 using TouchesBox = std::function<bool(const VoxelBox&)>;
 
+/// The most parts that decide_edit() makes of one box.
+inline constexpr std::size_t kEditBoxPartsMax = 4096;
+
 class RightsState {
  public:
   RightsState();
+  // The index holds the addresses of boxes. A move keeps these addresses; a copy would not.
+  RightsState(RightsState&&) = default;
+  RightsState& operator=(RightsState&&) = default;
+  RightsState(const RightsState&) = delete;
+  RightsState& operator=(const RightsState&) = delete;
 
   /// Applies a record. Requires the order of the log. Every valid change can be applied, so that a
-  /// replay never fails: one that refers to nothing changes nothing.
+  /// replay never fails: one that refers to nothing changes nothing. Cost: O(log n) on average over
+  /// many records for a role, a grant or a restriction, and that of BoxIndex for a box.
   void apply(const RightsChange& change, const ChangeOrigin& origin);
 
   // Roles.
   /// Returns the role of a player: the granted one, or else the default role. A grant of a role that
-  /// does not exist counts as no grant. Cost: O(log grants).
+  /// does not exist counts as no grant, and a default role that does not exist as the role visitor.
+  /// Cost: O(log grants).
   const Role& role_of(const PublicKey& key) const;
-  /// Returns null if there is none.
+  /// Returns null if there is none. The built-in roles always exist.
   const Decided<Role>* find_role(const std::string& name) const;
   const Decided<std::string>& default_role() const { return default_role_; }
   const std::map<std::string, Decided<Role>>& roles() const { return roles_; }
   const std::map<PublicKey, Decided<std::string>>& grants() const { return grants_; }
-  /// Returns the keys whose role has the right `administer` and who are not banned.
+  /// Returns the keys with a grant whose role has the right `administer` and who are not banned.
+  /// Cost: O(grants log n).
   std::vector<PublicKey> administrators(TimeUs now_us) const;
 
   // Restrictions.
@@ -78,10 +92,16 @@ class RightsState {
   /// restrictions).
   const Decided<Restrict>* restriction(RestrictionKind kind, const PublicKey& key,
                                        TimeUs now_us) const;
-  /// Returns the ban of an address, or null. Cost: O(log bans), once for each length of a prefix.
+  /// Returns the ban of an address, or null. Of several, the one with the longest prefix is returned.
+  /// Cost: O(log bans), once for each length of a prefix that a ban has.
   const Decided<Restrict>* address_ban(AddressBlock address, TimeUs now_us) const;
-  /// Returns all restrictions, also those that have ended.
+  /// Returns the restriction of a subject, also one that has ended, or null. Cost: O(log
+  /// restrictions).
+  const Decided<Restrict>* find_restriction(RestrictionKind kind,
+                                            const RestrictionSubject& subject) const;
+  /// Returns all restrictions, also those that have ended: those of players come first.
   std::vector<const Decided<Restrict>*> restrictions() const;
+  std::size_t restriction_count() const { return by_key_.size() + address_bans_.size(); }
 
   // Protected ground.
   const Decided<ProtectedBox>* find_box(const std::string& name) const;
@@ -90,12 +110,13 @@ class RightsState {
   std::vector<const Decided<ProtectedBox>*> boxes_in(const VoxelBox& box) const;
   /// Returns the box that decides for a voxel, or null. Cost: O(log boxes).
   const Decided<ProtectedBox>* box_at(VoxelPos at) const;
-  /// Returns the number of boxes of an owner and their voxels together.
   struct Holding {
     std::size_t boxes = 0;
-    std::uint64_t volume = 0;  // at most 2^64 - 1
+    std::uint64_t volume = 0;  // voxels of all of them together, at most 2^64 - 1
   };
-  Holding holding_of(const PublicKey& owner) const;
+  /// Returns what an owner has, without the box `except` if it is not null. Cost: O(log boxes +
+  /// boxes of the owner).
+  Holding holding_of(const PublicKey& owner, const ProtectedBox* except = nullptr) const;
 
   // Decisions.
   /// Decides whether the player has the right, without regard to a place. Mute and freeze count for
@@ -103,20 +124,45 @@ class RightsState {
   RightsDecision decide(const PublicKey& key, Right right, TimeUs now_us) const;
   /// Decides whether the player may make an edit. The rule: an edit is rejected as a whole if the
   /// player may not change a single one of its voxels, mask ignored. `bounds` is its bounding box.
-  /// Cost: O(log boxes) for an edit that meets no box; at worst, for an edit that meets m boxes,
-  /// O(m^2) calls of `touches`, with at most kEditBoxPartsMax parts: an edit that would need more is
-  /// rejected.
+  /// Free ground, which no box protects, needs the right `build`. If the edit is allowed and a box
+  /// admits the player to a part of it, the answer names the box that decides first. Requires that
+  /// the edit has a voxel in `bounds`. `touches` is called with boxes in `bounds` that are not empty.
+  /// Cost: O(log boxes) for an edit that meets no box. For one that meets m boxes: O(m log m), m + p
+  /// calls of `touches` and O(m * p) cuts, where p is the number of parts. At most
+  /// kEditBoxPartsMax parts are made of one box: an edit that would need more is rejected.
   RightsDecision decide_edit(const PublicKey& key, const VoxelBox& bounds,
                              const TouchesBox& touches, TimeUs now_us) const;
 
  private:
+  const Decided<std::string>* grant_of(const PublicKey& key) const;
+  RightsDecision decide_by_role(const PublicKey& key, Right right) const;
+  /// Returns the answer if a restriction of the player forbids the right.
+  std::optional<RightsDecision> forbidden(const PublicKey& key, Right right, TimeUs now_us) const;
+
+  void apply_kind(const DefineRole& change, const ChangeOrigin& origin);
+  void apply_kind(const RemoveRole& change, const ChangeOrigin& origin);
+  void apply_kind(const GrantRole& change, const ChangeOrigin& origin);
+  void apply_kind(const SetDefaultRole& change, const ChangeOrigin& origin);
+  void apply_kind(const Restrict& change, const ChangeOrigin& origin);
+  void apply_kind(const Lift& change, const ChangeOrigin& origin);
+  void apply_kind(const Protect& change, const ChangeOrigin& origin);
+  void apply_kind(const Unprotect& change, const ChangeOrigin& origin);
+  void remove_box(const std::string& name);
+
   std::map<std::string, Decided<Role>> roles_;
   Decided<std::string> default_role_;
   std::map<PublicKey, Decided<std::string>> grants_;
-  std::map<std::string, Decided<ProtectedBox>> boxes_;
-  // Further data is the implementer's choice.
-};
 
-inline constexpr std::size_t kEditBoxPartsMax = 4096;
+  std::map<std::pair<PublicKey, RestrictionKind>, Decided<Restrict>> by_key_;
+  std::map<AddressRange, Decided<Restrict>> address_bans_;
+  std::array<std::uint32_t, 65> bans_of_length_{};  // by the bits of the prefix
+
+  std::map<std::string, Decided<ProtectedBox>> boxes_;
+  BoxIndex index_;
+  std::vector<const Decided<ProtectedBox>*> indexed_;  // by id; null: the id is in free_ids_
+  std::vector<BoxIndex::Id> free_ids_;
+  std::map<std::string, BoxIndex::Id> id_of_;
+  std::set<std::pair<PublicKey, BoxIndex::Id>> owned_;
+};
 
 }  // namespace runstone

@@ -289,7 +289,7 @@ enum class RejectReason : std::uint8_t {
   unknown_material = 3,
   too_large = 4,  // too many voxels or touched chunks
   out_of_reach = 5,
-  not_permitted = 6,  // reserved: no server sends it yet
+  not_permitted = 6,  // the role of the player, a restriction or protected ground; text says which
   rate_limited = 7,
   bad_edit = 8,       // not a valid descriptor
   outside_world = 9,  // a voxel lies above or below the height limits
@@ -372,9 +372,10 @@ enum class GoodbyeReason : std::uint16_t {
   timed_out = 9,
   flooding = 10,  // more messages or claims than the limits allow
   internal = 11,
-  name_refused = 12,  // the player may not have this name; text says why
+  name_refused = 12,   // the player may not have this name; text says why
+  not_permitted = 13,  // a ban, a kick, or a role that may not join; text says which
 };
-inline constexpr std::uint16_t kGoodbyeReasonMax = 12;
+inline constexpr std::uint16_t kGoodbyeReasonMax = 13;
 /// Returns the name in docs/protocol.md, or "unknown".
 const char* to_string(GoodbyeReason reason);
 

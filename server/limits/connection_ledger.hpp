@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <map>
 
-#include "common/core/token_bucket.hpp"
 #include "common/core/address_block.hpp"
+#include "common/core/token_bucket.hpp"
 
 namespace runstone {
 

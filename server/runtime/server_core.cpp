@@ -147,7 +147,7 @@ void ServerCore::write_activity() {
       sample_activity(*world_, listener_->counters(), log_->writer().counters());
   const ActivityNow now{world_->online_players().size(), world_->memory().total()};
   const std::string line = activity_line(sampled_, sample, now, config_.counters_s);
-  sampled_ = std::move(sample);
+  sampled_ = sample;
   if (!line.empty()) logger("app").info("{}", line);
 }
 

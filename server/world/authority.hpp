@@ -65,6 +65,7 @@ class Authority {
 
   /// The time of the log, for its warnings.
   LogClock& log_clock() { return log_clock_; }
+  const LogClock& log_clock() const { return log_clock_; }
   Epoch epoch() const { return epoch_; }
   /// Returns the last sequence ordered.
   Sequence head() const { return head_; }

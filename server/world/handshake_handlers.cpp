@@ -6,6 +6,7 @@
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
+#include "server/world/rights_handlers.hpp"
 
 namespace runstone {
 namespace {
@@ -77,6 +78,14 @@ bool close_if_no_name(WorldState& world, SessionId session) {
   return true;
 }
 
+bool close_if_not_permitted(WorldState& world, SessionId session) {
+  const WorldSession& mine = *world.find(session);
+  const auto why = join_refusal(world, mine.key, mine.address);
+  if (!why) return false;
+  close_session(world, session, GoodbyeReason::not_permitted, *why);
+  return true;
+}
+
 void open_session(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   for (const auto& [other, theirs] : world.sessions) {
@@ -120,6 +129,8 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.instance = hello.instance;
   mine.name = hello.name;
   mine.features = world.config.features & hello.features;
+  // Before any signature: a banned address costs little.
+  if (close_if_not_permitted(world, session)) return;
   if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
   Welcome welcome = welcome_of(world);
   welcome.encoding = choose_encoding(world.config, hello.encodings);
@@ -148,6 +159,7 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
     return;
   }
   // The name may have been claimed since hello. A session without a seat claims nothing.
+  if (close_if_not_permitted(world, session)) return;
   if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
   mine.auth_transcript = {};
   mine.is_authenticated = true;

@@ -7,6 +7,7 @@
 #include "protocol/rules/edit_check.hpp"
 #include "protocol/rules/edit_price.hpp"
 #include "server/world/delivery.hpp"
+#include "server/world/rights_handlers.hpp"
 
 namespace runstone {
 namespace {
@@ -90,6 +91,10 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     world.authority.reject(op, *refusal);
   } else if (!is_within_reach(world, mine, request.edit, now)) {
     refusal = RejectReason::out_of_reach;
+    world.authority.reject(op, *refusal);
+  } else if (auto why = edit_refusal(world, mine.key, request.edit)) {
+    refusal = RejectReason::not_permitted;
+    detail = *std::move(why);
     world.authority.reject(op, *refusal);
   } else {
     refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0});

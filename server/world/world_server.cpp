@@ -16,6 +16,7 @@
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
 #include "server/world/request_handlers.hpp"
+#include "server/world/rights_handlers.hpp"
 #include "server/world/time_travel.hpp"
 #include "server/world/view_scheduler.hpp"
 #include "server/world/world_state.hpp"
@@ -114,6 +115,7 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   mine.idle_us_max = config.idle_us_max;
   mine.reach_max = config.reach_max;
   mine.speed_max = config.speed_max;
+  mine.operators = config.operators;
 }
 
 void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock from,
@@ -241,25 +243,36 @@ Result<NameClaim, std::string> WorldServer::release_name(const std::string& name
   return runstone::release_name(*state_, name);
 }
 
-// Temporary, so that the commands link: nothing reaches the log.
 const RightsState& WorldServer::rights() const { return state_->rights; }
+TimeUs WorldServer::rights_time() const { return runstone::rights_time(*state_); }
+
 Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& change,
                                                          const RightsActor& actor, AuthorId author,
                                                          const Clocks& now) {
-  if (const auto wrong = why_refused(state_->rights, actor, change, now.utc_us))
-    return Unexpected<std::string>{*wrong};
-  state_->rights.apply(change, {++state_->rights_sequence, author, now.utc_us});
-  return state_->rights_sequence;
+  WorldState& world = *state_;
+  if (const auto invalid = validate(change); !invalid)
+    return Unexpected<std::string>{invalid.error().what};
+  world.authority.log_clock().advance(now);
+  if (auto why = why_refused(world.rights, actor, change, rights_time()))
+    return Unexpected<std::string>{*std::move(why)};
+  const OperationId op{author, world.rights_instance, ++world.rights_client_seq};
+  const EditOffer offer{op, Cause::rights, now.steady_us, rights_edit(change), 0};
+  const ServerEditsResult ordered = order_server_edits({offer}, author, now);
+  if (ordered.state == ServerEditsResult::State::ordered) return world.rights_seq;
+  return Unexpected<std::string>{ordered.state == ServerEditsResult::State::busy
+                                     ? std::string(ordered.reason) + ": try again later"
+                                     : "the world takes no changes any more"};
 }
+
 std::size_t WorldServer::kick(const RestrictionSubject& who, const std::string& reason) {
-  std::vector<SessionId> ended;
-  for (const auto& [id, session] : state_->sessions) {
-    const auto* key = std::get_if<PublicKey>(&who);
-    const auto* range = std::get_if<AddressRange>(&who);
-    if (key != nullptr ? session.key == *key : range->contains(session.address)) ended.push_back(id);
-  }
-  for (const SessionId id : ended) close_session(*state_, id, GoodbyeReason::closing, reason);
-  return ended.size();
+  return runstone::kick(*state_, who, reason);
+}
+
+std::optional<std::string> WorldServer::edit_refusal(AuthorId author,
+                                                     const EditDescriptor& edit) const {
+  if (author == 0) return std::nullopt;
+  const auto key = state_->players.key_of(author);
+  return key ? runstone::edit_refusal(*state_, *key, edit) : std::nullopt;
 }
 
 void WorldServer::step_checkpointer(const Clocks& now) {

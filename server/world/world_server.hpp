@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/apply/stack_depths.hpp"
-#include "protocol/codec/messages.hpp"
 #include "common/core/address_block.hpp"
+#include "common/edits/apply/stack_depths.hpp"
 #include "common/rights/change_rules.hpp"
+#include "protocol/codec/messages.hpp"
 #include "server/world/clocks.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
@@ -57,7 +57,7 @@ class WorldServer {
   /// Orders and sends the queued edits of one commit. Others that are queued may follow later.
   void commit_one(const Clocks& now);
   /// Takes over the limits that may change while the world runs: sessions of a key and of an
-  /// address, the time without a message, reach and speed. Sessions that are open stay.
+  /// address, the time without a message, reach, speed and the operators. Sessions that are open stay.
   void reconfigure(const WorldConfig& config);
   /// Orders and sends queued edits as long as has_ready_edits().
   void commit(const Clocks& now);
@@ -114,12 +114,17 @@ class WorldServer {
 
   // Rights.
   const RightsState& rights() const;
-  /// Orders a change of rights as a record of the log, made by the author (0: the console). Returns
-  /// its sequence, or why it was refused, as a sentence.
+  /// Returns the time by which restrictions end (UTC).
+  TimeUs rights_time() const;
+  /// Orders a change of rights as a record of the log, made by the author (0: the console), who pays
+  /// for it as for an edit. Sessions that may not stay are closed. Returns its sequence, or why it
+  /// was refused, as a sentence.
   Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
                                               AuthorId author, const Clocks& now);
-  /// Closes the sessions of a key, or of an address range. Returns their number.
+  /// Closes the sessions of a key, or of a range of addresses. Returns their number.
   std::size_t kick(const RestrictionSubject& who, const std::string& reason);
+  /// Returns why the author may not make this edit, or nullopt. The server (0) may make every edit.
+  std::optional<std::string> edit_refusal(AuthorId author, const EditDescriptor& edit) const;
 
   // Answers of WorldEnvironment.
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now);

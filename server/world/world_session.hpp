@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "common/core/address_block.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/channel_binding.hpp"
 #include "common/core/token_bucket.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/interest/cache_claims.hpp"
-#include "common/core/address_block.hpp"
 #include "server/limits/followed_position.hpp"
 #include "server/world/world_environment.hpp"
 

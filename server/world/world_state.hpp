@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "server/interest/interest.hpp"
 #include "common/rights/rights_state.hpp"
+#include "server/interest/interest.hpp"
 #include "server/limits/claim_ledger.hpp"
 #include "server/limits/edit_ledger.hpp"
 #include "server/world/authority.hpp"
@@ -43,14 +43,16 @@ struct WorldState {
   LoadRetries load_retries;
   Players players;
   NameClaims names;
+  RightsState rights;
+  ClientInstance rights_instance = 0;    // of the changes of rights that this run makes
+  ClientSequence rights_client_seq = 0;  // of the last one
+  Sequence rights_seq = 0;               // likewise, in the log; 0: none in this run
   EditLedger edit_ledger;
   ClaimLedger claim_ledger;
   LargeEditPace large_edits;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
   WorldCounters counters;
-  RightsState rights;             // temporary: no record of the log
-  Sequence rights_sequence = 0;   // temporary
   Sequence durable = 0;
   bool accepts_edits =
       true;  // false: edits are rejected busy, because the server stops or the log failed

@@ -1,0 +1,125 @@
+#include "server/world/rights_handlers.hpp"
+
+#include <variant>
+#include <vector>
+
+#include "common/core/utc_text.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+
+namespace runstone {
+namespace {
+
+bool is_operator(const WorldState& world, const PublicKey& key) {
+  return world.config.operators.contains(key);
+}
+
+RightsDecision granted_by_settings() {
+  RightsDecision out;
+  out.is_allowed = true;
+  return out;
+}
+
+/// Returns text such as "you are banned until 2026-12-01T00:00:00Z: griefing".
+std::string restriction_text(const char* what, const Restrict& restriction) {
+  std::string text = what;
+  if (restriction.until_us != 0) text += " until " + utc_text(restriction.until_us);
+  if (!restriction.reason.empty()) text += ": " + restriction.reason;
+  return text;
+}
+
+std::string refusal_text(const WorldState& world, const PublicKey& key, const RightsDecision& no) {
+  const auto restricted = [&](RestrictionKind kind, const char* what) {
+    const auto* found = world.rights.restriction(kind, key, rights_time(world));
+    return found == nullptr ? std::string(what) : restriction_text(what, found->value);
+  };
+  switch (no.reason) {
+    case RightsDecision::Reason::ban:
+      return restricted(RestrictionKind::ban, "you are banned");
+    case RightsDecision::Reason::mute:
+      return restricted(RestrictionKind::mute, "you are muted");
+    case RightsDecision::Reason::freeze:
+      return restricted(RestrictionKind::freeze, "you may not edit");
+    case RightsDecision::Reason::box:
+      return "the ground is protected: " + no.box->name;
+    case RightsDecision::Reason::role:
+    case RightsDecision::Reason::default_role:
+      break;
+  }
+  return "your role does not allow it: " + no.role;
+}
+
+}  // namespace
+
+TimeUs rights_time(const WorldState& world) { return world.authority.log_clock().time(); }
+
+RightsActor actor_of(const WorldState& world, const PublicKey& key) {
+  return {key, is_operator(world, key)};
+}
+
+RightsDecision decide(const WorldState& world, const PublicKey& key, Right right) {
+  if (is_operator(world, key)) return granted_by_settings();
+  return world.rights.decide(key, right, rights_time(world));
+}
+
+std::optional<std::string> address_refusal(const WorldState& world, AddressBlock address) {
+  const auto* ban = world.rights.address_ban(address, rights_time(world));
+  if (ban == nullptr) return std::nullopt;
+  return restriction_text("your address is banned", ban->value);
+}
+
+std::optional<std::string> join_refusal(const WorldState& world, const PublicKey& key,
+                                        AddressBlock address) {
+  if (is_operator(world, key)) return std::nullopt;
+  if (auto banned = address_refusal(world, address)) return banned;
+  const RightsDecision decision = decide(world, key, Right::see);
+  if (decision.is_allowed) return std::nullopt;
+  return refusal_text(world, key, decision);
+}
+
+std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey& key,
+                                        const EditDescriptor& edit) {
+  if (is_operator(world, key)) return std::nullopt;
+  const Role& role = world.rights.role_of(key);
+  if (role.edit_volume_max != 0 && counted_voxels(edit) > role.edit_volume_max)
+    return "edits of your role have at most " + std::to_string(role.edit_volume_max) + " voxels";
+  const RightsDecision decision = world.rights.decide_edit(
+      key, bounding_box(edit), [&edit](const VoxelBox& box) { return touches(edit, box); },
+      rights_time(world));
+  if (decision.is_allowed) return std::nullopt;
+  return refusal_text(world, key, decision);
+}
+
+void apply_rights(WorldState& world, const std::vector<EditRecord>& records) {
+  bool has_changed = false;
+  for (const EditRecord& record : records) {
+    const RightsChange* change = rights_change_of(record.edit);
+    if (change == nullptr) continue;
+    world.rights.apply(*change, {record.version.seq, record.op.author, record.time_us});
+    world.rights_seq = record.version.seq;
+    has_changed = true;
+  }
+  if (!has_changed) return;
+  std::vector<std::pair<SessionId, std::string>> refused;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.state == SessionStage::greeting) continue;
+    if (auto why = join_refusal(world, session.key, session.address))
+      refused.emplace_back(id, *std::move(why));
+  }
+  for (const auto& [id, why] : refused) close_session(world, id, GoodbyeReason::not_permitted, why);
+}
+
+std::size_t kick(WorldState& world, const RestrictionSubject& who, const std::string& reason) {
+  std::vector<SessionId> kicked;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.state != SessionStage::open) continue;
+    const auto* key = std::get_if<PublicKey>(&who);
+    const bool is_meant = key != nullptr ? session.key == *key
+                                         : std::get<AddressRange>(who).contains(session.address);
+    if (is_meant) kicked.push_back(id);
+  }
+  const std::string text = reason.empty() ? "you were kicked" : "you were kicked: " + reason;
+  for (const SessionId id : kicked) close_session(world, id, GoodbyeReason::not_permitted, text);
+  return kicked.size();
+}
+
+}  // namespace runstone

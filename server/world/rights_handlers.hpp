@@ -1,0 +1,38 @@
+// Rights handlers: what the rights of the world allow its sessions, and changes of rights. The
+// server's setting `operators` names keys that have every right, whatever the log says.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "common/rights/change_rules.hpp"
+#include "server/world/world_state.hpp"
+
+namespace runstone {
+
+/// Returns the time by which restrictions end: that of the log, which a wrong clock does not set
+/// back.
+TimeUs rights_time(const WorldState& world);
+/// Returns the player as the one who makes a change.
+RightsActor actor_of(const WorldState& world, const PublicKey& key);
+
+/// Decides about a right without a place.
+RightsDecision decide(const WorldState& world, const PublicKey& key, Right right);
+/// Returns why a player may not join from this address, for goodbye not_permitted, or nullopt.
+std::optional<std::string> join_refusal(const WorldState& world, const PublicKey& key,
+                                        AddressBlock address);
+/// Returns why nobody may join from this address, or nullopt. It needs no key.
+std::optional<std::string> address_refusal(const WorldState& world, AddressBlock address);
+/// Returns why the player may not make the edit, for reject not_permitted, or nullopt. Requires a
+/// valid edit. Cost: RightsState::decide_edit().
+std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey& key,
+                                        const EditDescriptor& edit);
+
+/// Takes over the changes of rights among these records, which were ordered just now, and closes the
+/// sessions that may not stay.
+void apply_rights(WorldState& world, const std::vector<EditRecord>& records);
+
+/// Closes the sessions of a player or of a range of addresses. Returns their number.
+std::size_t kick(WorldState& world, const RestrictionSubject& who, const std::string& reason);
+
+}  // namespace runstone

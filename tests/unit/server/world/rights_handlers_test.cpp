@@ -1,0 +1,254 @@
+// What rights allow on the world strand: who joins, who edits where, and who changes rights.
+#include <catch2/catch.hpp>
+
+#include "tests/unit/server/world/world_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr AddressBlock kHome = address_block_v4(0x0a000001),
+                       kElsewhere = address_block_v4(0x0a000101);
+const RightsActor kConsole;
+
+PublicKey key_of(std::uint8_t who) { return key_pair_of(seed_of(who)).public_key; }
+
+ProtectedBox spawn_box() {
+  ProtectedBox box;
+  box.name = "spawn";
+  box.box = {{0, 0, 0}, {8, 8, 8}};
+  return box;
+}
+
+struct RightsBench : WorldBench {
+  using WorldBench::WorldBench;
+
+  Sequence change(const RightsChange& change) {
+    const auto done = server.change_rights(change, kConsole, 0, now());
+    INFO((done ? std::string() : done.error()));
+    REQUIRE(done.has_value());
+    return *done;
+  }
+  std::string refusal(const RightsChange& change, std::uint8_t who, AuthorId author) {
+    const auto done = server.change_rights(change, {key_of(who), false}, author, now());
+    return done ? "" : done.error();
+  }
+  std::vector<Reject> rejects(SessionId session) const {
+    return environment.messages<Reject>(session, kEdge);
+  }
+  /// Says hello as `who` and returns how the server closed the session.
+  FakeEnvironment::Closed refused_join(SessionId session, std::uint8_t who,
+                                       AddressBlock from = kHome) {
+    server.connected(session, now(), from);
+    server.received(session, hello(who), now());
+    REQUIRE_FALSE(environment.closed.empty());
+    return environment.closed.back();
+  }
+};
+
+/// Returns the start of a server on the log that another one wrote.
+WorldStart start_after(const FakeEnvironment& environment) {
+  WorldStart start;
+  start.players = environment.players;
+  for (const EditRecord& record : environment.records) {
+    start.log = {record.version.epoch + 1, record.version.seq, record.time_us};
+    if (const RightsChange* change = rights_change_of(record.edit))
+      start.rights.push_back({*change, {record.version.seq, record.op.author, record.time_us}});
+  }
+  return start;
+}
+
+TEST_CASE("an edit that touches protected ground is rejected as a whole and names the box",
+          "[world][rights]") {
+  RightsBench bench;
+  bench.join(1, 1);
+  bench.change(Protect{spawn_box()});
+  bench.edit(1, 1, SetVoxel{{7, 7, 7}});
+  bench.edit(1, 2, SetVoxel{{8, 7, 7}});
+  bench.edit(1, 3, FillSphere{{12, 4, 4}, 4});  // its nearest voxel is x = 8
+  bench.edit(1, 4, FillSphere{{12, 4, 4}, 5});
+  bench.tick();
+  const auto rejects = bench.rejects(1);
+  REQUIRE(rejects.size() == 2);
+  CHECK(rejects[0].client_seq == 1);
+  CHECK(rejects[1].client_seq == 4);
+  for (const Reject& reject : rejects) {
+    CHECK(reject.reason == RejectReason::not_permitted);
+    CHECK(reject.detail == "the ground is protected: spawn");
+  }
+  CHECK(bench.server.head() == 3);
+
+  ProtectedBox with_member = spawn_box();
+  with_member.members = {key_of(1)};
+  bench.change(Protect{with_member});
+  bench.edit(1, 5, SetVoxel{{7, 7, 7}});
+  bench.tick();
+  CHECK(bench.rejects(1).size() == 2);
+}
+
+TEST_CASE("a change of rights is a record of the log that no player receives", "[world][rights]") {
+  RightsBench bench;
+  bench.join(1, 1);
+  bench.view(1, kSmall);
+  bench.edit(1, 1, kAtOrigin);
+  bench.tick();
+  const std::size_t commits = bench.commits(1).size();
+  CHECK(bench.change(Protect{spawn_box()}) == 2);
+  bench.tick();
+  CHECK(bench.commits(1).size() == commits);
+  const EditRecord& record = bench.environment.records.back();
+  CHECK(record.version.seq == 2);
+  CHECK(record.cause == Cause::rights);
+  CHECK(record.op.author == 0);
+  REQUIRE(rights_change_of(record.edit) != nullptr);
+  CHECK(*rights_change_of(record.edit) == RightsChange(Protect{spawn_box()}));
+  CHECK(validate_fields(record).has_value());
+}
+
+TEST_CASE("rights are what the log says after a restart", "[world][rights]") {
+  RightsBench before;
+  before.change(Protect{spawn_box()});
+  before.change(Restrict{RestrictionKind::ban, key_of(2), 0, "griefing"});
+  before.change(GrantRole{key_of(3), kVisitorRole});
+  RightsBench after(config(), start_after(before.environment));
+  after.join(1, 1);
+  after.edit(1, 1, SetVoxel{{1, 1, 1}});
+  after.tick();
+  REQUIRE(after.rejects(1).size() == 1);
+  CHECK(after.rejects(1)[0].reason == RejectReason::not_permitted);
+  CHECK(after.refused_join(2, 2).text == "you are banned: griefing");
+  after.join(3, 3);
+  after.edit(3, 1, SetVoxel{{100, 1, 1}});
+  after.tick();
+  REQUIRE(after.rejects(3).size() == 1);
+  CHECK(after.rejects(3)[0].detail == "your role does not allow it: visitor");
+  CHECK(after.server.rights().boxes().size() == 1);
+}
+
+TEST_CASE("a ban closes the session, ends by the log's time, and can be lifted",
+          "[world][rights]") {
+  RightsBench bench;
+  bench.join(1, 1);
+  bench.join(2, 2);
+  const TimeUs until = bench.now().utc_us + 60'000'000;
+  bench.change(Restrict{RestrictionKind::ban, key_of(1), until, "griefing"});
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].session == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::not_permitted);
+  CHECK(bench.refused_join(3, 1).reason == GoodbyeReason::not_permitted);
+  bench.tick(61'000'000);
+  bench.join(4, 1);
+
+  bench.change(Restrict{RestrictionKind::ban, key_of(2), 0, ""});
+  CHECK(bench.refused_join(5, 2).text == "you are banned");
+  bench.change(Lift{RestrictionKind::ban, key_of(2)});
+  bench.join(6, 2);
+}
+
+TEST_CASE("a ban of addresses is refused at hello, before any signature", "[world][rights]") {
+  RightsBench bench;
+  bench.change(Restrict{RestrictionKind::ban, AddressRange{address_block_v4(0x0a000000), 32 + 24},
+                        0, "a bot net"});
+  const auto closed = bench.refused_join(1, 1, kHome);
+  CHECK(closed.reason == GoodbyeReason::not_permitted);
+  CHECK(closed.text == "your address is banned: a bot net");
+  CHECK(bench.environment.messages<Welcome>(1, 0).empty());
+  bench.join(2, 2, 1, kElsewhere);
+}
+
+TEST_CASE("a player without the rights sees, and neither edits nor looks back", "[world][rights]") {
+  RightsBench bench;
+  bench.change(DefineRole{{"guest", {Right::see}, 0, 0, 0}});
+  bench.change(SetDefaultRole{"guest"});
+  bench.join(1, 1);
+  bench.view(1, kSmall);
+  CHECK_FALSE(bench.environment.snapshots.empty());
+  bench.edit(1, 1, kAtOrigin);
+  bench.tick();
+  REQUIRE(bench.rejects(1).size() == 1);
+  CHECK(bench.rejects(1)[0].detail == "your role does not allow it: guest");
+  HistoryRequest past;
+  past.request = 1;
+  past.to = HistoryTarget::sequence;
+  past.seq = 1;
+  bench.server.received(1, past, bench.now());
+  bench.tick();
+  CHECK(bench.environment.history_requests.empty());
+  const auto states = bench.environment.messages<ViewState>(1, kEdge);
+  REQUIRE_FALSE(states.empty());
+  CHECK(states.back().phase == ViewPhase::refused);
+}
+
+TEST_CASE("a role that may not see closes the sessions of its players", "[world][rights]") {
+  RightsBench bench;
+  bench.join(1, 1);
+  bench.change(DefineRole{{"nobody", {}, 0, 0, 0}});
+  bench.change(GrantRole{key_of(1), "nobody"});
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].text == "your role does not allow it: nobody");
+}
+
+TEST_CASE("players change rights as far as their role goes, and the record names them",
+          "[world][rights]") {
+  RightsBench bench;
+  const AuthorId one = bench.join(1, 1).author, two = bench.join(2, 2).author;
+  CHECK_FALSE(bench.refusal(GrantRole{key_of(2), kVisitorRole}, 1, one).empty());
+  CHECK_FALSE(bench.refusal(Protect{spawn_box()}, 1, one).empty());
+  bench.change(GrantRole{key_of(1), kAdministratorRole});
+  CHECK(bench.refusal(GrantRole{key_of(2), kModeratorRole}, 1, one).empty());
+  CHECK(bench.environment.records.back().op.author == one);
+  CHECK(bench.environment.players.back().author == one);  // the author of a record has a row
+  CHECK_FALSE(bench.refusal(Restrict{RestrictionKind::ban, key_of(1), 0, ""}, 2, two).empty());
+  const auto locked_out =
+      bench.server.change_rights(GrantRole{key_of(1), kBuilderRole}, kConsole, 0, bench.now());
+  REQUIRE_FALSE(locked_out.has_value());
+  CHECK(locked_out.error().find("administrator") != std::string::npos);
+}
+
+TEST_CASE("operators of the settings have every right", "[world][rights]") {
+  WorldConfig with_operator = config();
+  with_operator.operators = {key_of(1)};
+  RightsBench bench(with_operator);
+  bench.change(Protect{spawn_box()});
+  bench.change(SetDefaultRole{kVisitorRole});
+  bench.join(1, 1);
+  bench.edit(1, 1, SetVoxel{{1, 1, 1}});
+  bench.tick();
+  CHECK(bench.rejects(1).empty());
+}
+
+TEST_CASE("a frozen player stays and edits nothing", "[world][rights]") {
+  RightsBench bench;
+  bench.join(1, 1);
+  bench.change(Restrict{RestrictionKind::freeze, key_of(1), 0, "stop it"});
+  bench.edit(1, 1, kAtOrigin);
+  bench.tick();
+  REQUIRE(bench.rejects(1).size() == 1);
+  CHECK(bench.rejects(1)[0].detail == "you may not edit: stop it");
+  CHECK(bench.environment.closed.empty());
+}
+
+TEST_CASE("a full log refuses a change of rights, and nothing is half done", "[world][rights]") {
+  RightsBench bench;
+  bench.environment.log_room = false;
+  const auto refused = bench.server.change_rights(Protect{spawn_box()}, kConsole, 0, bench.now());
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(refused.error().find("try again later") != std::string::npos);
+  CHECK(bench.server.rights().boxes().empty());
+  bench.environment.log_room = true;
+  bench.tick();
+  CHECK(bench.environment.records.empty());
+}
+
+TEST_CASE("kick closes the sessions of a key or of a range of addresses", "[world][rights]") {
+  RightsBench bench;
+  bench.join(1, 1, 1, kHome);
+  bench.join(2, 1, 2, kElsewhere);
+  bench.join(3, 2, 1, kHome);
+  CHECK(bench.server.kick(key_of(1), "go home") == 2);
+  CHECK(bench.environment.closed.back().text == "you were kicked: go home");
+  CHECK(bench.server.kick(AddressRange{kHome, 64}, "") == 1);
+  CHECK(bench.server.session_count() == 0);
+}
+
+}  // namespace
+}  // namespace runstone::test
