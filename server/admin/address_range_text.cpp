@@ -50,8 +50,7 @@ std::string text_of(const AddressRange& range) {
     return address.to_string() + "/" + std::to_string(range.bits - kIpv4Bits);
   }
   asio::ip::address_v6::bytes_type bytes{};
-  for (std::size_t i = 0; i < 8; ++i)
-    bytes[i] = static_cast<unsigned char>(block >> (56 - 8 * i));
+  for (std::size_t i = 0; i < 8; ++i) bytes[i] = static_cast<unsigned char>(block >> (56 - 8 * i));
   return asio::ip::address_v6(bytes).to_string() + "/" + std::to_string(range.bits);
 }
 

@@ -73,8 +73,7 @@ TimeUs CommandReader::end_of_duration(const std::string& word) {
 }
 
 std::int64_t CommandReader::number(const std::string& word, std::int64_t min, std::int64_t max) {
-  const std::string range =
-      "a number from " + std::to_string(min) + " to " + std::to_string(max);
+  const std::string range = "a number from " + std::to_string(min) + " to " + std::to_string(max);
   const std::string text = take(word, range);
   const auto number = number_of<std::int64_t>(text);
   if (number && *number >= min && *number <= max) return *number;
@@ -94,8 +93,8 @@ std::int32_t CommandReader::coordinate(const std::string& word, const std::strin
 VoxelBox CommandReader::box(const std::string& word) {
   std::array<std::int32_t, 6> c{};
   for (std::int32_t& value : c) {
-    value = coordinate(
-        word, "six numbers: x y z of one corner and of the opposite one, both inside");
+    value =
+        coordinate(word, "six numbers: x y z of one corner and of the opposite one, both inside");
   }
   return {{std::min(c[0], c[3]), std::min(c[1], c[4]), std::min(c[2], c[5])},
           {std::max(c[0], c[3]) + 1, std::max(c[1], c[4]) + 1, std::max(c[2], c[5]) + 1}};

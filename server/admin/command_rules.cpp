@@ -11,8 +11,7 @@ namespace {
 
 // A command has a number: the alternatives of Command, then those of RightsCommand.
 constexpr std::size_t kRightsCommandsFrom = std::variant_size_v<Command>;
-constexpr std::size_t kCommandCount =
-    kRightsCommandsFrom + std::variant_size_v<RightsCommand>;
+constexpr std::size_t kCommandCount = kRightsCommandsFrom + std::variant_size_v<RightsCommand>;
 
 template <class Kind, class... Kinds>
 constexpr std::size_t index_in(const std::variant<Kinds...>*) {
@@ -87,8 +86,7 @@ constexpr std::array kRows = {
                          "                          let nobody join with this key, or from there\n"
                          "mute PLAYER ...           let a player not write to others\n"
                          "freeze PLAYER ...         let a player not edit"),
-    row<LiftCommand>({Right::moderate},
-                     "unban, unmute, unfreeze   end a ban, a mute or a freeze"),
+    row<LiftCommand>({Right::moderate}, "unban, unmute, unfreeze   end a ban, a mute or a freeze"),
     row<ListRestrictionsCommand>({Right::moderate},
                                  "bans                      the bans, mutes and freezes in force"),
     row<LogCommand>({Right::roll_back},
@@ -140,8 +138,7 @@ constexpr bool has_each_command_once() {
 }
 static_assert(has_each_command_once());
 
-constexpr const char* kPlayerHelp =
-    "PLAYER: a name, #N, a fingerprint, or a key of 64 hex digits";
+constexpr const char* kPlayerHelp = "PLAYER: a name, #N, a fingerprint, or a key of 64 hex digits";
 constexpr const char* kBoxHelp =
     "BOX: X Y Z X Y Z, two opposite corners, both inside; or columns X Z X Z, from the bottom to "
     "the top";
@@ -150,8 +147,7 @@ constexpr const char* kFilterHelp =
     "since 1h or since 2026-11-21T23:57:42Z,\n"
     "  until likewise, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights";
 
-bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right,
-              bool is_local) {
+bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right, bool is_local) {
   if (rule.is_local) return is_local;
   if (rule.any_of == RightSet()) return true;
   for (std::size_t i = 0; i < kRightCount; ++i) {

@@ -67,9 +67,10 @@ Result<PublicKey, std::string> KnownPlayers::find(const std::string& word) const
   }
   if (meant.size() == 1) return *meant.begin();
   if (meant.empty()) {
-    return failure(fingerprint.empty()
-                       ? "nobody of that name is known here (players and names list the others)"
-                       : "nobody with that fingerprint is known here (players and names list them)");
+    return failure(
+        fingerprint.empty()
+            ? "nobody of that name is known here (players and names list the others)"
+            : "nobody with that fingerprint is known here (players and names list them)");
   }
   std::string list;
   std::size_t listed = 0;

@@ -22,8 +22,7 @@ std::string line_for(const GrantRole& change) {
 }
 std::string line_for(const SetDefaultRole& change) { return "default role " + change.role; }
 std::string line_for(const Restrict& change) {
-  std::string line =
-      std::string(restricted_text(change.kind)) + " " + subject_text(change.subject);
+  std::string line = std::string(restricted_text(change.kind)) + " " + subject_text(change.subject);
   if (change.until_us != 0) line += " until " + utc_text(change.until_us);
   if (!change.reason.empty()) line += ": " + change.reason;
   return line;

@@ -110,8 +110,7 @@ Parsed role_command(CommandReader reader) {
 }
 
 /// Takes the subject of a restriction. Only bans are for addresses.
-RestrictionWord take_subject(CommandReader& reader, const std::string& word,
-                             RestrictionKind kind) {
+RestrictionWord take_subject(CommandReader& reader, const std::string& word, RestrictionKind kind) {
   if (reader.at_end()) {
     reader.wrong(word + ": " + (kind == RestrictionKind::ban ? kRestrictionWord : kPlayerWord) +
                  " is missing");
@@ -164,16 +163,15 @@ Parsed kick_command(CommandReader reader) {
 /// Takes a box: six numbers, or `columns` and four.
 VoxelBox take_ground(CommandReader& reader, const std::string& word) {
   if (!reader.take_word("columns")) return reader.box(word);
-  constexpr const char* kFour = "four numbers: x z of one corner and of the opposite one, both inside";
+  constexpr const char* kFour =
+      "four numbers: x z of one corner and of the opposite one, both inside";
   std::int32_t c[4] = {};
   for (std::int32_t& value : c) value = reader.coordinate("columns", kFour);
   return columns(std::min(c[0], c[2]), std::min(c[1], c[3]), std::max(c[0], c[2]) + 1,
                  std::max(c[1], c[3]) + 1);
 }
 
-bool is_whole_number(const std::string& word) {
-  return number_of<std::int64_t>(word).has_value();
-}
+bool is_whole_number(const std::string& word) { return number_of<std::int64_t>(word).has_value(); }
 
 Parsed members_command(CommandReader reader, const std::string& name, bool is_removal) {
   constexpr std::string_view kRole = "role:";
@@ -198,19 +196,21 @@ Parsed protect_command(CommandReader reader) {
   ProtectCommand command;
   command.name = take_rights_name(reader, "protect");
   const std::string word = "protect " + command.name;
-  if (reader.error().empty() && reader.at_end()) return failure(word + ": " + allowed + " is missing");
+  if (reader.error().empty() && reader.at_end())
+    return failure(word + ": " + allowed + " is missing");
   if (reader.take_word("add")) return members_command(reader, command.name, false);
   if (reader.take_word("remove")) return members_command(reader, command.name, true);
   while (!reader.at_end()) {
     if (reader.take_word("owner")) {
       command.owner = take_player(reader, "owner");
     } else if (reader.take_word("priority")) {
-      command.priority = static_cast<std::int32_t>(
-          reader.number("priority", -kBoxPriorityMax, kBoxPriorityMax));
+      command.priority =
+          static_cast<std::int32_t>(reader.number("priority", -kBoxPriorityMax, kBoxPriorityMax));
     } else if (!command.box && (reader.peek() == "columns" || is_whole_number(reader.peek()))) {
       command.box = take_ground(reader, word);
     } else {
-      reader.wrong(word + " \"" + reader.peek() + "\": " + (command.box ? "owner or priority" : allowed));
+      reader.wrong(word + " \"" + reader.peek() +
+                   "\": " + (command.box ? "owner or priority" : allowed));
     }
   }
   return parsed_or_error(reader, command);

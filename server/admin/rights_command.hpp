@@ -48,9 +48,9 @@ struct ListGrantsCommand {
 
 /// Whom a restriction is for: a player, or a range of addresses.
 struct RestrictionWord {
-  std::string player;                  // empty: a range
-  std::optional<AddressRange> range;   // nullopt: a player
-  bool is_widened = false;             // a single IPv6 address was typed, which means its /64
+  std::string player;                 // empty: a range
+  std::optional<AddressRange> range;  // nullopt: a player
+  bool is_widened = false;            // a single IPv6 address was typed, which means its /64
   friend bool operator==(const RestrictionWord&, const RestrictionWord&) = default;
 };
 struct RestrictCommand {

@@ -123,8 +123,7 @@ void RightsCommands::with_players(const Call& call, std::vector<std::string> wor
       });
 }
 
-void RightsCommands::change(const Call& call, const RightsChange& change,
-                            const std::string& text) {
+void RightsCommands::change(const Call& call, const RightsChange& change, const std::string& text) {
   if (const auto valid = validate(change); !valid) return refuse(call.reply, valid.error().what);
   const std::size_t sessions = world_.session_count();
   const auto seq = world_.change_rights(change, call.caller.actor, call.caller.author, call.now);
@@ -132,9 +131,9 @@ void RightsCommands::change(const Call& call, const RightsChange& change,
   newest_ = *seq;
   std::string line = text + " (record " + std::to_string(*seq) + ")";
   const auto* restrict = std::get_if<Restrict>(&change);
-  if (restrict != nullptr && restrict->kind == RestrictionKind::ban) {
-    world_.kick(restrict->subject, "you are banned" + end_text(restrict->until_us) +
-                                       colon_text(restrict->reason));
+  if (restrict != nullptr&& restrict->kind == RestrictionKind::ban) {
+    world_.kick(restrict->subject,
+                "you are banned" + end_text(restrict->until_us) + colon_text(restrict->reason));
     const std::size_t left = world_.session_count();
     if (left < sessions) line += "; sessions ended: " + std::to_string(sessions - left);
   }
@@ -154,9 +153,8 @@ void RightsCommands::carry_out(const SetRoleCommand& command, const Call& call) 
 
 void RightsCommands::carry_out(const RemoveRoleCommand& command, const Call& call) {
   const auto built_in = built_in_roles();
-  const bool is_built_in = std::any_of(built_in.begin(), built_in.end(), [&](const Role& role) {
-    return role.name == command.role;
-  });
+  const bool is_built_in = std::any_of(built_in.begin(), built_in.end(),
+                                       [&](const Role& role) { return role.name == command.role; });
   change(call, RemoveRole{command.role},
          "role " + command.role + (is_built_in ? " is as it was built in" : " is removed"));
 }
@@ -362,8 +360,7 @@ void RightsCommands::answer_why(const WhyCommand& command, const PublicKey& key,
                            " has every right\nthe server's setting `operators` names the key",
                        true, true});
   }
-  call.reply(
-      {rights_reason(state, {key, command.right, command.at}, now_us, players), true, true});
+  call.reply({rights_reason(state, {key, command.right, command.at}, now_us, players), true, true});
 }
 
 void RightsCommands::carry_out(const UndoRightsCommand& command, const Call& call) {
@@ -391,8 +388,8 @@ void RightsCommands::undo_record(Sequence seq, const std::vector<RightsRecord>& 
   });
   const std::string number = std::to_string(seq);
   if (found == records.end()) {
-    return refuse(call.reply, "record " + number +
-                                  " changes no rights (log cause rights lists those that do)");
+    return refuse(call.reply,
+                  "record " + number + " changes no rights (log cause rights lists those that do)");
   }
   const auto inverse = inverse_of(records, seq);
   if (!inverse) {

@@ -82,13 +82,14 @@ std::string box_list(const std::vector<const Decided<ProtectedBox>*>& boxes,
   for (const Decided<ProtectedBox>* box : boxes) {
     const ProtectedBox& value = box->value;
     const std::string line = value.name + ": " + ground_text(value.box) + ", priority " +
-                       std::to_string(value.priority) + ", owner " +
-                       (value.owner ? players.text_of(*value.owner) : "nobody");
+                             std::to_string(value.priority) + ", owner " +
+                             (value.owner ? players.text_of(*value.owner) : "nobody");
     std::string members;
     for (const PublicKey& key : value.members)
       members += (members.empty() ? ", members " : " and ") + players.text_of(key);
     std::string roles;
-    for (const std::string& role : value.roles) roles += (roles.empty() ? ", roles " : " and ") + role;
+    for (const std::string& role : value.roles)
+      roles += (roles.empty() ? ", roles " : " and ") + role;
     lines.add(line + members + roles + "; " + origin_text(box->by, players));
   }
   return lines.text("no ground is protected there");

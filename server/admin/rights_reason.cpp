@@ -21,8 +21,7 @@ std::string decided_by(const RightsState& state, const RightsDecision& decision,
   if (grant != state.grants().end() && grant->second.by == decision.by)
     return "the player was given the role " + decision.role;
   const Decided<Role>* role = state.find_role(decision.role);
-  return "the role " + decision.role +
-         (role == nullptr ? "" : " is " + role_text(role->value));
+  return "the role " + decision.role + (role == nullptr ? "" : " is " + role_text(role->value));
 }
 
 }  // namespace

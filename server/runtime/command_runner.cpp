@@ -70,7 +70,8 @@ void CommandRunner::run(const std::string& line, CommandReply reply) {
 void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key,
                         const std::string& text) {
   const CommandCaller caller{author, {key, operators_.contains(key)}};
-  if (caller.actor.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
+  if (caller.actor.is_operator)
+    logger("app").info("operator author={} command=\"{}\"", author, text);
   // The handler may answer at once, and WorldServer must not be called from within its own call.
   strand_.post([this, session, caller, text] {
     const auto reply = [this, session](const CommandAnswer& answer) {

@@ -34,7 +34,8 @@ TEST_CASE("ranges of addresses are read and printed", "[admin][rights]") {
 }
 
 TEST_CASE("other words are no addresses, and a prefix has its length", "[admin][rights]") {
-  for (const char* word : {"ana", "1.2.3", "1.2.3.4.5", "1:2", "", "/24", "fe80::1%lo", "1.2.3.400"})
+  for (const char* word :
+       {"ana", "1.2.3", "1.2.3.4.5", "1:2", "", "/24", "fe80::1%lo", "1.2.3.400"})
     CHECK(again(word) == "no address");
   for (const char* word : {"192.0.2.7/33", "192.0.2.7/", "192.0.2.7/-1", "192.0.2.7/8x"})
     CHECK(again(word) == "a number from 0 to 32 comes after the / of IPv4");

@@ -27,16 +27,16 @@ TEST_CASE("each command needs its right", "[admin][rights]") {
   for (const char* line : {"help", "players", "materials", "roles", "protected", "why ana see"})
     CHECK(rule(line).any_of == RightSet());
   for (const char* line : {"undo", "redo"}) CHECK(rule(line).any_of == RightSet{Right::undo});
-  for (const char* line : {"claim a 0 0 0 1 1 1", "protect a 0 0 0 1 1 1", "protect a add ana",
-                           "unprotect a"}) {
+  for (const char* line :
+       {"claim a 0 0 0 1 1 1", "protect a 0 0 0 1 1 1", "protect a add ana", "unprotect a"}) {
     CHECK(rule(line).any_of == RightSet{Right::claim, Right::protect});
   }
-  for (const char* line : {"status", "names", "kick ana", "ban ana", "mute ana", "freeze ana",
-                           "unban ana", "bans"}) {
+  for (const char* line :
+       {"status", "names", "kick ana", "ban ana", "mute ana", "freeze ana", "unban ana", "bans"}) {
     CHECK(rule(line).any_of == RightSet{Right::moderate});
   }
-  for (const char* line : {"log", "rollback list", "rollback apply p1",
-                           "rollback preview since 1h"}) {
+  for (const char* line :
+       {"log", "rollback list", "rollback apply p1", "rollback preview since 1h"}) {
     CHECK(rule(line).any_of == RightSet{Right::roll_back});
   }
   for (const char* line : {"grant ana mason", "revoke ana", "grants"})
@@ -76,8 +76,8 @@ TEST_CASE("help lists what the caller may do", "[admin][rights]") {
   const std::string none = command_help([](Right) { return false; }, false);
   CHECK(lists(none, "help "));
   CHECK(lists(none, "why PLAYER RIGHT "));
-  for (const char* command : {"undo ", "claim ", "rollback ", "ban ", "grant ", "stop", "backup ",
-                              "FILTERS", "BOX"}) {
+  for (const char* command :
+       {"undo ", "claim ", "rollback ", "ban ", "grant ", "stop", "backup ", "FILTERS", "BOX"}) {
     CHECK_FALSE(lists(none, command));
   }
   const std::string undo = command_help([](Right right) { return right == Right::undo; }, false);

@@ -110,9 +110,8 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
 }
 
 TEST_CASE("answers and filters use the same names of causes", "[admin][command]") {
-  for (const Cause cause :
-       {Cause::player, Cause::console, Cause::rollback, Cause::undo, Cause::redo, Cause::import,
-        Cause::rights}) {
+  for (const Cause cause : {Cause::player, Cause::console, Cause::rollback, Cause::undo,
+                            Cause::redo, Cause::import, Cause::rights}) {
     CHECK(parsed<LogCommand>("log cause " + std::string(name_of(cause))).filter.cause == cause);
   }
 }

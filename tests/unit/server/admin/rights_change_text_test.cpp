@@ -20,12 +20,10 @@ TEST_CASE("each change of rights is one readable line", "[admin][rights]") {
         "banned " + ana + " until 2001-09-09T01:46:40Z: grief");
   CHECK(rights_change_text(Restrict{RestrictionKind::mute, key, 0, ""}) == "muted " + ana);
   const AddressRange range{address_block_v4(0xc0'00'02'00), 32 + 24};
-  CHECK(rights_change_text(Lift{RestrictionKind::ban, range}) ==
-        "no longer banned: 192.0.2.0/24");
+  CHECK(rights_change_text(Lift{RestrictionKind::ban, range}) == "no longer banned: 192.0.2.0/24");
   CHECK(rights_change_text(Lift{RestrictionKind::freeze, key}) == "no longer frozen: " + ana);
   CHECK(rights_change_text(Protect{{"town", {{1, 2, 3}, {5, 6, 7}}, 4, key, {key}, {"a", "b"}}}) ==
-        "protected town 1 2 3 to 4 5 6 priority 4 owner " + ana + " members " + ana +
-            " roles a,b");
+        "protected town 1 2 3 to 4 5 6 priority 4 owner " + ana + " members " + ana + " roles a,b");
   CHECK(rights_change_text(Protect{{"strip", columns(1, 2, 4, 5), 0, {}, {}, {}}}) ==
         "protected strip columns 1 2 to 3 4");
   CHECK(rights_change_text(Unprotect{"town"}) == "no longer protected: town");

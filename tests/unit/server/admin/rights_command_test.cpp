@@ -10,8 +10,7 @@ namespace {
 
 constexpr TimeUs kNow = 1'800'000'000'000'000;
 constexpr const char* kPlayer = "a name, # and a number, a key or a fingerprint";
-constexpr const char* kName =
-    "a name of a-z, 0-9, \"_\", \"-\" and \".\", at most 32 characters";
+constexpr const char* kName = "a name of a-z, 0-9, \"_\", \"-\" and \".\", at most 32 characters";
 constexpr const char* kRights =
     "see, build, build_protected, claim, protect, look_back, undo, roll_back, chat, moderate, "
     "grant, administer";
@@ -38,9 +37,9 @@ std::string mistake(const std::string& line) {
 
 TEST_CASE("commands about roles and grants are parsed", "[admin][rights]") {
   parsed<ListRolesCommand>("roles");
-  const Role mason = parsed<SetRoleCommand>(
-                         "role set mason build,see,undo volume 1000 claims 3 claim-volume 4096")
-                         .role;
+  const Role mason =
+      parsed<SetRoleCommand>("role set mason build,see,undo volume 1000 claims 3 claim-volume 4096")
+          .role;
   CHECK(mason == Role{"mason", {Right::see, Right::build, Right::undo}, 1000, 3, 4096});
   CHECK(parsed<SetRoleCommand>("role set nobody none").role == Role{"nobody", {}, 0, 0, 0});
   CHECK(parsed<RemoveRoleCommand>("role remove mason").role == "mason");
@@ -134,8 +133,7 @@ TEST_CASE("an error in a command about restrictions names the wrong word", "[adm
   CHECK(mistake("ban ana for ever") == "for \"ever\": how long (90s, 15m, 2h30m, 2d, 1w)");
   CHECK(mistake("ban ana for 0s") == "for \"0s\": how long (90s, 15m, 2h30m, 2d, 1w)");
   CHECK(mistake("ban ana reason") == "reason: a text, in quotes if it has blanks, is missing");
-  CHECK(mistake("ban ana reason " + std::string(201, 'a')) ==
-        "reason: at most 200 bytes, not 201");
+  CHECK(mistake("ban ana reason " + std::string(201, 'a')) == "reason: at most 200 bytes, not 201");
   CHECK(mistake("ban 192.0.2.0/33") ==
         "ban \"192.0.2.0/33\": a number from 0 to 32 comes after the / of IPv4");
   CHECK(mistake("ban 2001:db8::/128") ==
@@ -150,8 +148,7 @@ TEST_CASE("an error in a command about restrictions names the wrong word", "[adm
 }
 
 TEST_CASE("an error in a command about ground names the wrong word", "[admin][rights]") {
-  const std::string six =
-      "six numbers: x y z of one corner and of the opposite one, both inside";
+  const std::string six = "six numbers: x y z of one corner and of the opposite one, both inside";
   CHECK(mistake("protect") == std::string("protect: ") + kName + " is missing");
   CHECK(mistake("protect town") ==
         "protect town: X Y Z X Y Z, columns X Z X Z, owner, priority, add or remove is missing");
@@ -163,8 +160,7 @@ TEST_CASE("an error in a command about ground names the wrong word", "[admin][ri
         "protect town \"far\": a whole number from -536870912 to 536870911");
   CHECK(mistake("protect town columns 1 2 3") ==
         "columns: four numbers: x z of one corner and of the opposite one, both inside is missing");
-  CHECK(mistake("protect town priority 1001") ==
-        "priority \"1001\": a number from -1000 to 1000");
+  CHECK(mistake("protect town priority 1001") == "priority \"1001\": a number from -1000 to 1000");
   CHECK(mistake("protect town owner") == std::string("owner: ") + kPlayer + " is missing");
   CHECK(mistake("protect town add") == "protect town add: a player or role:ROLE is missing");
   CHECK(mistake("protect town add role:") ==
@@ -184,8 +180,7 @@ TEST_CASE("an error in a question about rights names the wrong word", "[admin][r
   CHECK(mistake("why ana build 1 2") == "why: three numbers: x y z of a voxel is missing");
   CHECK(mistake("rights") == "rights: undo SEQ is missing");
   CHECK(mistake("rights back 3") == "rights \"back\": undo SEQ");
-  CHECK(mistake("rights undo 0") ==
-        "rights undo \"0\": a number from 1 to 9223372036854775807");
+  CHECK(mistake("rights undo 0") == "rights undo \"0\": a number from 1 to 9223372036854775807");
 }
 
 }  // namespace runstone::rights_command_test

@@ -23,8 +23,7 @@ std::string named(const std::string& name, const PublicKey& key) {
 }
 /// Returns the text of a record that the boss made.
 std::string record(Sequence seq) {
-  return "record " + std::to_string(seq) + ", 2001-09-09T01:46:40Z, by " +
-         named("boss #3", kBoss);
+  return "record " + std::to_string(seq) + ", 2001-09-09T01:46:40Z, by " + named("boss #3", kBoss);
 }
 std::string why(const RightsState& state, const RightsQuestion& question) {
   return rights_reason(state, question, kNow, known());
@@ -89,8 +88,8 @@ TEST_CASE("why names the role that decides, and its record", "[admin][rights]") 
             " has not the right build\nthe player was given the role visitor (" + record(7) + ")");
   state.apply(DefineRole{{kVisitorRole, {Right::see, Right::build}, 0, 0, 0}}, {8, 3, kNow});
   CHECK(why(state, {kAna, Right::build, {}}) ==
-        "yes: " + named("ana #1", kAna) +
-            " has the right build\nthe role visitor is see,build (" + record(8) + ")");
+        "yes: " + named("ana #1", kAna) + " has the right build\nthe role visitor is see,build (" +
+            record(8) + ")");
 }
 
 TEST_CASE("why names the restriction with its reason", "[admin][rights]") {
