@@ -31,23 +31,23 @@ constexpr std::size_t number_of_kind() {
   }
 }
 
-struct Row {
+struct CommandRow {
   std::size_t number = 0;
   CommandRule rule;
   const char* help = "";  // lines of `help`, without a line break at the end
 };
 
 template <class Kind>
-constexpr Row row(RightSet any_of, const char* help) {
+constexpr CommandRow row(RightSet any_of, const char* help) {
   return {number_of_kind<Kind>(), {any_of, false}, help};
 }
 template <class Kind>
-constexpr Row local_row(const char* help) {
+constexpr CommandRow local_row(const char* help) {
   return {number_of_kind<Kind>(), {{}, true}, help};
 }
 
 // The table. The order is that of `help`.
-constexpr std::array kRows = {
+constexpr std::array kCommandRows = {
     row<HelpCommand>({}, "help                      this list"),
     row<MaterialsCommand>({},
                           "materials [PART]          the materials of this world; "
@@ -129,7 +129,7 @@ constexpr std::array kRows = {
 
 constexpr bool has_each_command_once() {
   std::array<int, kCommandCount> counts{};
-  for (const Row& each : kRows) ++counts[each.number];
+  for (const CommandRow& each : kCommandRows) ++counts[each.number];
   counts[number_of_kind<RightsCommand>()] = 1;  // its alternatives have rows of their own
   for (const int count : counts) {
     if (count != 1) return false;
@@ -162,7 +162,7 @@ bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_rig
 CommandRule rule_of(const Command& command) {
   static const std::array<CommandRule, kCommandCount> rules = [] {
     std::array<CommandRule, kCommandCount> by_number;
-    for (const Row& each : kRows) by_number[each.number] = each.rule;
+    for (const CommandRow& each : kCommandRows) by_number[each.number] = each.rule;
     return by_number;
   }();
   const auto* rights = std::get_if<RightsCommand>(&command);
@@ -171,7 +171,7 @@ CommandRule rule_of(const Command& command) {
 
 std::string command_help(const std::function<bool(Right)>& has_right, bool is_local) {
   std::string text;
-  for (const Row& each : kRows) {
+  for (const CommandRow& each : kCommandRows) {
     if (may_give(each.rule, has_right, is_local)) text += std::string(each.help) + "\n";
   }
   text += kPlayerHelp;

@@ -45,8 +45,8 @@ struct PlayerLookUp {
   std::string error;
 };
 
-PlayerLookUp look_up(WorldReader& reader, KnownPlayers::Sources sources,
-                     const std::vector<std::string>& words) {
+PlayerLookUp look_up_players(WorldReader& reader, KnownPlayers::Sources sources,
+                             const std::vector<std::string>& words) {
   PlayerLookUp found;
   auto stored = reader.players();
   auto used = reader.player_names();
@@ -113,14 +113,14 @@ void RightsCommands::tick() {
 void RightsCommands::with_players(const Call& call, std::vector<std::string> words,
                                   std::function<void(const Players&, const Keys&)> go_on) {
   auto found = std::make_shared<PlayerLookUp>();
-  workers_.run(
-      [found, sources = sources_of(world_), words = std::move(words)](
-          WorldReader& reader, const Generator&) { *found = look_up(reader, sources, words); },
-      [found, reply = call.reply, go_on = std::move(go_on)](const std::string& error) {
-        if (!error.empty()) return refuse(reply, error);
-        if (!found->error.empty()) return refuse(reply, found->error);
-        go_on(Players(found, &found->players), found->keys);
-      });
+  workers_.run([found, sources = sources_of(world_), words = std::move(words)](
+                   WorldReader& reader,
+                   const Generator&) { *found = look_up_players(reader, sources, words); },
+               [found, reply = call.reply, go_on = std::move(go_on)](const std::string& error) {
+                 if (!error.empty()) return refuse(reply, error);
+                 if (!found->error.empty()) return refuse(reply, found->error);
+                 go_on(Players(found, &found->players), found->keys);
+               });
 }
 
 void RightsCommands::change(const Call& call, const RightsChange& change, const std::string& text) {
@@ -130,13 +130,8 @@ void RightsCommands::change(const Call& call, const RightsChange& change, const 
   if (!seq) return refuse(call.reply, seq.error());
   newest_ = *seq;
   std::string line = text + " (record " + std::to_string(*seq) + ")";
-  const auto* restrict = std::get_if<Restrict>(&change);
-  if (restrict != nullptr&& restrict->kind == RestrictionKind::ban) {
-    world_.kick(restrict->subject,
-                "you are banned" + end_text(restrict->until_us) + colon_text(restrict->reason));
-    const std::size_t left = world_.session_count();
-    if (left < sessions) line += "; sessions ended: " + std::to_string(sessions - left);
-  }
+  const std::size_t left = world_.session_count();
+  if (left < sessions) line += "; sessions ended: " + std::to_string(sessions - left);
   call.reply({line, true, true});
 }
 
@@ -254,7 +249,7 @@ void RightsCommands::carry_out(const KickCommand& command, const Call& call) {
                 why_refused(world_.rights(), call.caller.actor, mute, world_.rights_time())) {
           return refuse(call.reply, *std::move(why));
         }
-        const std::size_t ended = world_.kick(keys[0], "you were kicked" + colon_text(reason));
+        const std::size_t ended = world_.kick(keys[0], reason);
         if (ended == 0) return refuse(call.reply, who + " is not here");
         call.reply({who + " was kicked; sessions ended: " + std::to_string(ended), true, true});
       });

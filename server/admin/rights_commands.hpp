@@ -66,8 +66,8 @@ class RightsCommands {
   /// or refuses the command if a word means nobody or several players.
   void with_players(const Call& call, std::vector<std::string> words,
                     std::function<void(const Players&, const Keys&)> go_on);
-  /// Orders a change. Answers with "text (record N)", or with why it was refused. A ban ends the
-  /// sessions that it concerns.
+  /// Orders a change. Answers with "text (record N)" and the number of sessions that it ended, or
+  /// with why it was refused.
   void change(const Call& call, const RightsChange& change, const std::string& text);
   void restrict_subject(const RestrictCommand& command, const RestrictionSubject& subject,
                         const std::string& who, const Call& call);

@@ -15,13 +15,17 @@ std::string decided_by(const RightsState& state, const RightsDecision& decision,
     return "the player is " + restriction_text(state, *kind, key, now_us);
   if (decision.reason == Reason::box && decision.box != nullptr)
     return "the ground is protected: " + decision.box->name + " " + box_text(*decision.box);
-  if (decision.reason == Reason::default_role)
-    return "the player has no grant, and the default role is " + decision.role;
+  const Decided<Role>* role = state.find_role(decision.role);
+  const std::string rights = role == nullptr ? "" : " is " + role_text(role->value);
+  if (decision.reason == Reason::default_role) {
+    const bool is_choice = decision.by == state.default_role().by;
+    return "the player has no grant, and the default role " +
+           (is_choice ? "is " + decision.role : decision.role + rights);
+  }
   const auto grant = state.grants().find(key);
   if (grant != state.grants().end() && grant->second.by == decision.by)
     return "the player was given the role " + decision.role;
-  const Decided<Role>* role = state.find_role(decision.role);
-  return "the role " + decision.role + (role == nullptr ? "" : " is " + role_text(role->value));
+  return "the role " + decision.role + rights;
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/rights/right.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/runtime/read_clocks.hpp"
 
@@ -21,6 +23,12 @@ std::vector<std::string> lines_of(const std::string& text) {
     at = end + 1;
   }
   return lines;
+}
+
+/// Returns true if a player with these rights can act on others, so that the commands are logged.
+bool has_power(RightSet rights) {
+  return rights.has(Right::roll_back) || rights.has(Right::moderate) || rights.has(Right::grant) ||
+         rights.has(Right::administer);
 }
 
 /// Returns the actions with replies that may be called from any thread.
@@ -69,11 +77,12 @@ void CommandRunner::run(const std::string& line, CommandReply reply) {
 
 void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key,
                         const std::string& text) {
-  const CommandCaller caller{author, {key, operators_.contains(key)}};
-  if (caller.actor.is_operator)
-    logger("app").info("operator author={} command=\"{}\"", author, text);
   // The handler may answer at once, and WorldServer must not be called from within its own call.
-  strand_.post([this, session, caller, text] {
+  strand_.post([this, session, author, key, text] {
+    const CommandCaller caller{author, {key, operators_.contains(key)}};
+    if (caller.actor.is_operator || has_power(world_.rights().role_of(key).rights))
+      logger("app").info("command author={} key={} command=\"{}\"", author, key_fingerprint(key),
+                         text);
     const auto reply = [this, session](const CommandAnswer& answer) {
       world_.answer_command(session, lines_of(answer.text), answer.is_done, answer.is_ok);
     };
