@@ -28,6 +28,8 @@ std::string fingerprint_in(std::string_view word) {
 
 }  // namespace
 
+bool is_fingerprint(const std::string& word) { return !fingerprint_in(word).empty(); }
+
 KnownPlayers::KnownPlayers(const Sources& sources) {
   for (const PlayerRow& row : sources.present) add(row.key, row.name, row.author);
   for (const PlayerRow& row : sources.stored) add(row.key, row.name, row.author);
@@ -62,8 +64,10 @@ Result<PublicKey, std::string> KnownPlayers::find(const std::string& word) const
   if (const auto named = names_.find(folded_name(word)); named != names_.end())
     meant = named->second;
   const std::string fingerprint = fingerprint_in(word);
-  for (const auto& [key, player] : players_) {
-    if (!fingerprint.empty() && key_fingerprint(key) == fingerprint) meant.insert(key);
+  if (!fingerprint.empty()) {
+    for (const auto& [key, player] : players_) {
+      if (key_fingerprint(key) == fingerprint) meant.insert(key);
+    }
   }
   if (meant.size() == 1) return *meant.begin();
   if (meant.empty()) {

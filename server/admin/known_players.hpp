@@ -15,6 +15,9 @@
 
 namespace runstone {
 
+/// Returns true if the word has the form of a key_fingerprint(), in upper or lower case.
+bool is_fingerprint(const std::string& word);
+
 class KnownPlayers {
  public:
   /// Where players are known from.

@@ -1,10 +1,10 @@
 #include "server/admin/rights_commands.hpp"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 #include <variant>
 
+#include "common/core/key_text.hpp"
 #include "common/core/utc_text.hpp"
 #include "server/admin/rights_change_text.hpp"
 #include "server/admin/rights_lists.hpp"
@@ -14,27 +14,29 @@
 namespace runstone {
 namespace {
 
-/// Returns the keys that the state of rights names.
+/// Returns the keys that the state of rights names, some more than once.
 std::vector<PublicKey> keys_of(const RightsState& state) {
-  std::set<PublicKey> keys;
-  for (const auto& [key, grant] : state.grants()) keys.insert(key);
+  std::vector<PublicKey> keys;
+  for (const auto& [key, grant] : state.grants()) keys.push_back(key);
   for (const Decided<Restrict>* restriction : state.restrictions()) {
-    if (const auto* key = std::get_if<PublicKey>(&restriction->value.subject)) keys.insert(*key);
+    if (const auto* key = std::get_if<PublicKey>(&restriction->value.subject)) keys.push_back(*key);
   }
   for (const auto& [name, box] : state.boxes()) {
-    if (box.value.owner) keys.insert(*box.value.owner);
-    keys.insert(box.value.members.begin(), box.value.members.end());
+    if (box.value.owner) keys.push_back(*box.value.owner);
+    keys.insert(keys.end(), box.value.members.begin(), box.value.members.end());
   }
-  return {keys.begin(), keys.end()};
+  return keys;
 }
 
-KnownPlayers::Sources sources_of(const WorldServer& world) {
+/// Returns what the world strand knows about players. A worker adds what the store has.
+KnownPlayers::Sources sources_of(const WorldServer& world, const std::vector<std::string>& words) {
   KnownPlayers::Sources sources;
   for (const WorldServer::OnlinePlayer& player : world.online_players())
     sources.present.push_back({player.author, player.key, player.name});
   sources.visitors = world.visitors();
-  sources.claims = world.name_claims();
-  sources.others = keys_of(world.rights());
+  // Only a fingerprint finds a key without a name.
+  if (std::any_of(words.begin(), words.end(), is_fingerprint))
+    sources.others = keys_of(world.rights());
   return sources;
 }
 
@@ -50,11 +52,14 @@ PlayerLookUp look_up_players(WorldReader& reader, KnownPlayers::Sources sources,
   PlayerLookUp found;
   auto stored = reader.players();
   auto used = reader.player_names();
+  auto claims = reader.name_claims();
   if (!stored) found.error = stored.error().message();
   if (!used) found.error = used.error().message();
+  if (!claims) found.error = claims.error().message();
   if (!found.error.empty()) return found;
   sources.stored = *std::move(stored);
   sources.used = *std::move(used);
+  sources.claims = *std::move(claims);
   found.players = KnownPlayers(sources);
   for (const std::string& word : words) {
     const auto key = found.players.find(word);
@@ -113,7 +118,7 @@ void RightsCommands::tick() {
 void RightsCommands::with_players(const Call& call, std::vector<std::string> words,
                                   std::function<void(const Players&, const Keys&)> go_on) {
   auto found = std::make_shared<PlayerLookUp>();
-  workers_.run([found, sources = sources_of(world_), words = std::move(words)](
+  workers_.run([found, sources = sources_of(world_, words), words = std::move(words)](
                    WorldReader& reader,
                    const Generator&) { *found = look_up_players(reader, sources, words); },
                [found, reply = call.reply, go_on = std::move(go_on)](const std::string& error) {
@@ -330,6 +335,7 @@ void RightsCommands::carry_out(const ListBoxesCommand& command, const Call& call
     } else {
       for (const auto& [name, box] : world_.rights().boxes()) boxes.push_back(&box);
     }
+    if (at && boxes.empty()) return call.reply({"no box protects " + text_of(*at), true, true});
     call.reply({box_list(boxes, *players), true, true});
   });
 }

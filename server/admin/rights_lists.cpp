@@ -14,9 +14,9 @@ namespace {
 /// Collects the lines of an answer.
 class RightsLines {
  public:
-  void add(const std::string& line) {
-    if (++count_ <= kListed) text_ += (text_.empty() ? "" : "\n") + line;
-  }
+  /// Counts an entry. Returns true if its line is to be added.
+  bool take() { return ++count_ <= kListed; }
+  void add(const std::string& line) { text_ += (text_.empty() ? "" : "\n") + line; }
   std::string text(const char* if_empty) const {
     if (count_ == 0) return if_empty;
     if (count_ <= kListed) return text_;
@@ -45,6 +45,7 @@ std::string role_list(const RightsState& state, const KnownPlayers& players) {
   for (const auto& [key, grant] : state.grants()) ++grants[grant.value];
   RightsLines lines;
   for (const auto& [name, role] : state.roles()) {
+    if (!lines.take()) continue;
     const bool is_default = state.default_role().value == name;
     lines.add(name + (is_default ? " (default): " : ": ") + role_text(role.value) + "; " +
               count_text(grants[name]) + "; " + origin_text(role.by, players));
@@ -55,6 +56,7 @@ std::string role_list(const RightsState& state, const KnownPlayers& players) {
 std::string grant_list(const RightsState& state, const KnownPlayers& players) {
   RightsLines lines;
   for (const auto& [key, grant] : state.grants()) {
+    if (!lines.take()) continue;
     const bool is_known = state.find_role(grant.value) != nullptr;
     lines.add(players.text_of(key) + ": " + grant.value +
               (is_known ? "" : " (there is no such role: the default role counts)") + "; " +
@@ -68,6 +70,7 @@ std::string restriction_list(const RightsState& state, TimeUs now_us, const Know
   for (const Decided<Restrict>* restriction : state.restrictions()) {
     const Restrict& value = restriction->value;
     if (value.until_us != 0 && value.until_us <= now_us) continue;
+    if (!lines.take()) continue;
     lines.add(player_or_range(value.subject, players) + ": " + restricted_text(value.kind) +
               (value.until_us == 0 ? " until it is lifted" : " until " + utc_text(value.until_us)) +
               (value.reason.empty() ? "" : ", \"" + value.reason + "\"") + "; " +
@@ -80,6 +83,7 @@ std::string box_list(const std::vector<const Decided<ProtectedBox>*>& boxes,
                      const KnownPlayers& players) {
   RightsLines lines;
   for (const Decided<ProtectedBox>* box : boxes) {
+    if (!lines.take()) continue;
     const ProtectedBox& value = box->value;
     const std::string line = value.name + ": " + ground_text(value.box) + ", priority " +
                              std::to_string(value.priority) + ", owner " +
@@ -92,7 +96,7 @@ std::string box_list(const std::vector<const Decided<ProtectedBox>*>& boxes,
       roles += (roles.empty() ? ", roles " : " and ") + role;
     lines.add(line + members + roles + "; " + origin_text(box->by, players));
   }
-  return lines.text("no ground is protected there");
+  return lines.text("no ground is protected");
 }
 
 }  // namespace runstone

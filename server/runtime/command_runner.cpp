@@ -2,28 +2,18 @@
 
 #include <sodium.h>
 
-#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "common/rights/right.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
+#include "server/admin/answer_lines.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/runtime/read_clocks.hpp"
 
 namespace runstone {
 namespace {
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    lines.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return lines;
-}
 
 /// Returns true if a player with these rights can act on others, so that the commands are logged.
 bool has_power(RightSet rights) {
@@ -84,7 +74,7 @@ void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key
       logger("app").info("command author={} key={} command=\"{}\"", author, key_fingerprint(key),
                          text);
     const auto reply = [this, session](const CommandAnswer& answer) {
-      world_.answer_command(session, lines_of(answer.text), answer.is_done, answer.is_ok);
+      world_.answer_command(session, answer_lines(answer.text), answer.is_done, answer.is_ok);
     };
     handler_.run(caller, text, read_clocks(), reply);
     tick(read_clocks());

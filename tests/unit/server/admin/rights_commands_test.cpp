@@ -147,7 +147,7 @@ TEST_CASE("boxes are protected, shared and removed by command", "[admin][rights]
         "town admits: " + RightsBench::text_of(2) + ", the role moderator" + bench.record(5));
   CHECK_FALSE(bench.player(1, "protect town add player2").is_ok);
   CHECK(has(bench.done("protected at 9 9 9"), ", members " + RightsBench::text_of(2)));
-  CHECK(bench.done("protected at 10 9 9") == "no ground is protected there");
+  CHECK(bench.done("protected at 10 9 9") == "no box protects 10 9 9");
   CHECK_FALSE(bench.player(2, "unprotect town").is_ok);
   CHECK(bench.player(1, "protect town remove player2").is_ok);
   CHECK(bench.player(1, "unprotect town").is_ok);

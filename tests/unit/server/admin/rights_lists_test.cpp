@@ -64,7 +64,7 @@ TEST_CASE("bans lists what is in force", "[admin][rights]") {
 
 TEST_CASE("protected lists the boxes, at most 500", "[admin][rights]") {
   RightsState state;
-  CHECK(box_list({}, known()) == "no ground is protected there");
+  CHECK(box_list({}, known()) == "no ground is protected");
   state.apply(Protect{{"town", {{1, 2, 3}, {5, 6, 7}}, 4, kAna, {kMole}, {"visitor"}}},
               {7, 3, kNow});
   const auto* town = state.find_box("town");
