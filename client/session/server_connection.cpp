@@ -11,7 +11,7 @@ namespace {
 
 bool is_final(GoodbyeReason reason) {
   return reason == GoodbyeReason::wrong_protocol || reason == GoodbyeReason::not_authenticated ||
-         reason == GoodbyeReason::name_refused || reason == GoodbyeReason::not_permitted;
+         reason == GoodbyeReason::name_refused || reason == GoodbyeReason::not_admitted;
 }
 
 }  // namespace

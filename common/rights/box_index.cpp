@@ -76,10 +76,10 @@ void BoxIndex::remove(Id id) {
   if (removed_ > kRecentMax && removed_ > size()) pack_all();
 }
 
-/// Packs the recent boxes into a tree, together with the trees that are not twice as large.
+/// Packs the recent boxes into a tree, together with the trees that are not much larger.
 void BoxIndex::pack_recent() {
   std::vector<Entry> entries = std::exchange(recent_, {});
-  while (!trees_.empty() && trees_.back().entries.size() < 2 * entries.size()) {
+  while (!trees_.empty() && trees_.back().entries.size() < kTreeGrowth * entries.size()) {
     for (const Entry& entry : trees_.back().entries) {
       if (entry.box == kNoBox) {
         --removed_;
@@ -120,7 +120,7 @@ void BoxIndex::build_nodes(Tree& tree, std::uint32_t first, std::uint32_t end) {
   Node node{kNoBox, 0, first, end};
   for (std::uint32_t i = first; i < end; ++i) node.box = bounds(node.box, tree.entries[i].box);
   tree.nodes.push_back(node);
-  if (end - first > 2 * kNodeEntries) {
+  if (end - first > kLeafEntries) {
     Entry* const entries = tree.entries.data();
     const Axis axis = widest_axis(entries + first, entries + end);
     const auto length = [axis](const Entry& entry) {

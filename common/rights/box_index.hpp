@@ -1,9 +1,9 @@
-// BoxIndex: finds the boxes that overlap a given one. It holds a short list of new boxes, and packed
-// trees of geometrically growing sizes (the logarithmic method of Bentley and Saxe 1980), so that one
-// box more packs few boxes again. A tree is a binary tree of bounding boxes in preorder. Each node
-// keeps the boxes that reach furthest along the axis by which its other boxes are parted. So a few
-// large boxes do not widen the nodes of many small ones (as in the priority R-tree of Arge, de Berg,
-// Haverkort and Yi 2004).
+// BoxIndex: finds the boxes that overlap a given one. It holds a short list of new boxes, and
+// packed trees of geometrically growing sizes (the logarithmic method of Bentley and Saxe 1980), so
+// that one box more packs few boxes again. A tree is a binary tree of bounding boxes in preorder.
+// Each node keeps the boxes that reach furthest along the axis by which its other boxes are parted.
+// So a few large boxes do not widen the nodes of many small ones (as in the priority R-tree of
+// Arge, de Berg, Haverkort and Yi 2004).
 // Threads: one writer or several readers.
 #pragma once
 #include <cstddef>
@@ -33,8 +33,8 @@ class BoxIndex {
   void remove(Id id);
 
   /// Calls visit(id) for each box that has a voxel in common with `box`, in no special order, until
-  /// visit() returns false. Requires that `box` is not empty. Cost: O(log^2 n + found), if few boxes
-  /// overlap one another.
+  /// visit() returns false. Requires that `box` is not empty. Cost: O(log^2 n + found), if few
+  /// boxes overlap one another.
   template <class F>
   void visit_overlapping(const VoxelBox& box, F&& visit) const;
 
@@ -61,8 +61,12 @@ class BoxIndex {
     std::uint32_t entry = 0;
   };
   static constexpr std::uint32_t kRecent = UINT32_MAX;
-  static constexpr std::size_t kRecentMax = 32;
-  static constexpr std::uint32_t kNodeEntries = 8;
+  static constexpr std::size_t kRecentMax = 16;
+  static constexpr std::uint32_t kNodeEntries = 2;  // of a node that has nodes below it
+  static constexpr std::uint32_t kLeafEntries = 8;  // at most
+  // A tree is at least this many times as large as the next one. Fewer trees make a search faster,
+  // and an insertion slower.
+  static constexpr std::size_t kTreeGrowth = 4;
 
   /// Calls visit(id) for the entries that overlap the box. Returns false if visit() did.
   template <class F>
@@ -72,7 +76,7 @@ class BoxIndex {
   void pack_all();
   void push_tree(std::vector<Entry> entries);
 
-  std::vector<Tree> trees_;    // each at least twice as large as the next one when it was packed
+  std::vector<Tree> trees_;    // in the order of their sizes
   std::vector<Entry> recent_;  // at most kRecentMax
   std::unordered_map<Id, Place> places_;
   std::size_t removed_ = 0;  // entries of trees

@@ -50,8 +50,8 @@ class Outlook {
     const auto rights = rights_of(change == nullptr ? state_.default_role().value : change->role);
     return rights.value_or(rights_of(kVisitorRole).value_or(RightSet{})).has(Right::administer);
   }
-  /// Returns true if the grant, which the change may replace, makes the key an administrator who may
-  /// join. Requires that the default role does not administer.
+  /// Returns true if the grant, which the change may replace, makes the key an administrator who
+  /// may join. Requires that the default role does not administer.
   bool administers(const PublicKey& key, const std::string& granted) const {
     const auto* grant = kind<GrantRole>();
     const std::string& role = grant != nullptr && grant->key == key ? grant->role : granted;

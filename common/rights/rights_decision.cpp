@@ -26,6 +26,7 @@ bool touches_outside(const VoxelBox& from, const std::vector<DecidingBox>& holes
   if (!touches(from)) return false;
   std::vector<VoxelBox> parts = {from};
   for (const DecidingBox hole : holes) {
+    if (!overlaps(hole->value.box, from)) continue;
     if (!cut_out(parts, hole->value.box, kEditBoxPartsMax)) return true;
     if (parts.empty()) return false;
   }

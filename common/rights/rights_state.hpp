@@ -39,8 +39,7 @@ struct Decided {
 struct RightsDecision {
   enum class Reason : std::uint8_t {
     role,          // the player's role: `by` is the newer one of its grant and its definition
-    default_role,  // the player has no grant: `by` is the newer one of the choice of the default role
-                   // and its definition
+    default_role,  // the same of a player without a grant, with the choice of the default role
     box,           // a protected box, `box`, admits the player or does not
     ban,
     mute,
@@ -74,9 +73,9 @@ class RightsState {
   void apply(const RightsChange& change, const ChangeOrigin& origin);
 
   // Roles.
-  /// Returns the role of a player: the granted one, or else the default role. A grant of a role that
-  /// does not exist counts as no grant, and a default role that does not exist as the role visitor.
-  /// Cost: O(log grants).
+  /// Returns the role of a player: the granted one, or else the default role. A grant of a role
+  /// that does not exist counts as no grant, and a default role that does not exist as the role
+  /// visitor. Cost: O(log grants).
   const Role& role_of(const PublicKey& key) const;
   /// Returns null if there is none. The built-in roles always exist.
   const Decided<Role>* find_role(const std::string& name) const;
@@ -92,8 +91,8 @@ class RightsState {
   /// restrictions).
   const Decided<Restrict>* restriction(RestrictionKind kind, const PublicKey& key,
                                        TimeUs now_us) const;
-  /// Returns the ban of an address, or null. Of several, the one with the longest prefix is returned.
-  /// Cost: O(log bans), once for each length of a prefix that a ban has.
+  /// Returns the ban of an address, or null. Of several, the one with the longest prefix is
+  /// returned. Cost: O(log bans), once for each length of a prefix that a ban has.
   const Decided<Restrict>* address_ban(AddressBlock address, TimeUs now_us) const;
   /// Returns the restriction of a subject, also one that has ended, or null. Cost: O(log
   /// restrictions).
@@ -126,9 +125,9 @@ class RightsState {
   /// player may not change a single one of its voxels, mask ignored. `bounds` is its bounding box.
   /// Free ground, which no box protects, needs the right `build`. If the edit is allowed and a box
   /// admits the player to a part of it, the answer names the box that decides first. Requires that
-  /// the edit has a voxel in `bounds`. `touches` is called with boxes in `bounds` that are not empty.
-  /// Cost: O(log boxes) for an edit that meets no box. For one that meets m boxes: O(m log m), m + p
-  /// calls of `touches` and O(m * p) cuts, where p is the number of parts. At most
+  /// the edit has a voxel in `bounds`. `touches` is called with boxes in `bounds` that are not
+  /// empty. Cost: O(log boxes) for an edit that meets no box. For one that meets m boxes: O(m log
+  /// m), m + p calls of `touches` and O(m * p) cuts, where p is the number of parts. At most
   /// kEditBoxPartsMax parts are made of one box: an edit that would need more is rejected.
   RightsDecision decide_edit(const PublicKey& key, const VoxelBox& bounds,
                              const TouchesBox& touches, TimeUs now_us) const;

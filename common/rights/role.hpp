@@ -12,8 +12,8 @@
 namespace runstone {
 
 inline constexpr std::size_t kRightsNameBytesMax = 32;
-/// Returns true for a name of a role or a protected box: 1 .. kRightsNameBytesMax characters of a-z,
-/// 0-9, "_", "-" and ".".
+/// Returns true for a name of a role or a protected box: 1 .. kRightsNameBytesMax characters of
+/// a-z, 0-9, "_", "-" and ".".
 bool is_rights_name(std::string_view name);
 
 struct Role {

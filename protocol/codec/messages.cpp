@@ -69,8 +69,8 @@ const char* to_string(GoodbyeReason reason) {
       return "internal";
     case GoodbyeReason::name_refused:
       return "name_refused";
-    case GoodbyeReason::not_permitted:
-      return "not_permitted";
+    case GoodbyeReason::not_admitted:
+      return "not_admitted";
   }
   return "unknown";
 }

@@ -372,8 +372,8 @@ enum class GoodbyeReason : std::uint16_t {
   timed_out = 9,
   flooding = 10,  // more messages or claims than the limits allow
   internal = 11,
-  name_refused = 12,   // the player may not have this name; text says why
-  not_permitted = 13,  // a ban, a kick, or a role that may not join; text says which
+  name_refused = 12,  // the player may not have this name; text says why
+  not_admitted = 13,  // a ban, a kick, or a role that may not join; text says which
 };
 inline constexpr std::uint16_t kGoodbyeReasonMax = 13;
 /// Returns the name in docs/protocol.md, or "unknown".

@@ -82,7 +82,7 @@ bool close_if_not_permitted(WorldState& world, SessionId session) {
   const WorldSession& mine = *world.find(session);
   const auto why = join_refusal(world, mine.key, mine.address);
   if (!why) return false;
-  close_session(world, session, GoodbyeReason::not_permitted, *why);
+  close_session(world, session, GoodbyeReason::not_admitted, *why);
   return true;
 }
 

@@ -92,6 +92,9 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   } else if (!is_within_reach(world, mine, request.edit, now)) {
     refusal = RejectReason::out_of_reach;
     world.authority.reject(op, *refusal);
+  } else if (const auto wrong = world.authority.check(request.edit)) {
+    refusal = wrong;
+    world.authority.reject(op, *refusal);
   } else if (auto why = edit_refusal(world, mine.key, request.edit)) {
     refusal = RejectReason::not_permitted;
     detail = *std::move(why);

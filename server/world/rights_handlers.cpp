@@ -105,7 +105,7 @@ void apply_rights(WorldState& world, const std::vector<EditRecord>& records) {
     if (auto why = join_refusal(world, session.key, session.address))
       refused.emplace_back(id, *std::move(why));
   }
-  for (const auto& [id, why] : refused) close_session(world, id, GoodbyeReason::not_permitted, why);
+  for (const auto& [id, why] : refused) close_session(world, id, GoodbyeReason::not_admitted, why);
 }
 
 std::size_t kick(WorldState& world, const RestrictionSubject& who, const std::string& reason) {
@@ -118,7 +118,7 @@ std::size_t kick(WorldState& world, const RestrictionSubject& who, const std::st
     if (is_meant) kicked.push_back(id);
   }
   const std::string text = reason.empty() ? "you were kicked" : "you were kicked: " + reason;
-  for (const SessionId id : kicked) close_session(world, id, GoodbyeReason::not_permitted, text);
+  for (const SessionId id : kicked) close_session(world, id, GoodbyeReason::not_admitted, text);
   return kicked.size();
 }
 

@@ -18,7 +18,7 @@ RightsActor actor_of(const WorldState& world, const PublicKey& key);
 
 /// Decides about a right without a place.
 RightsDecision decide(const WorldState& world, const PublicKey& key, Right right);
-/// Returns why a player may not join from this address, for goodbye not_permitted, or nullopt.
+/// Returns why a player may not join from this address, for goodbye not_admitted, or nullopt.
 std::optional<std::string> join_refusal(const WorldState& world, const PublicKey& key,
                                         AddressBlock address);
 /// Returns why nobody may join from this address, or nullopt. It needs no key.

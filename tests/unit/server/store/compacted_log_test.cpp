@@ -128,7 +128,7 @@ TEST_CASE("a lost change of rights is noticed", "[store][damage]") {
         store->save_keyframe({}, Keyframe{{record.version, record.time_us}, 0, {}}).has_value());
     REQUIRE(store->compact(1).has_value());
   }
-  run_sql(folder / "w/world.sqlite", "DELETE FROM rights_record");
+  raw_sql(folder / "w/world.sqlite", "DELETE FROM rights_record");
   const auto store = compacted_store(folder / "w");
   const auto read = store->read_rights([](const EditRecord&) { return true; });
   REQUIRE_FALSE(read.has_value());

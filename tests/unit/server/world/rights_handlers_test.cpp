@@ -133,8 +133,8 @@ TEST_CASE("a ban closes the session, ends by the log's time, and can be lifted",
   bench.change(Restrict{RestrictionKind::ban, key_of(1), until, "griefing"});
   REQUIRE(bench.environment.closed.size() == 1);
   CHECK(bench.environment.closed[0].session == 1);
-  CHECK(bench.environment.closed[0].reason == GoodbyeReason::not_permitted);
-  CHECK(bench.refused_join(3, 1).reason == GoodbyeReason::not_permitted);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::not_admitted);
+  CHECK(bench.refused_join(3, 1).reason == GoodbyeReason::not_admitted);
   bench.tick(61'000'000);
   bench.join(4, 1);
 
@@ -149,7 +149,7 @@ TEST_CASE("a ban of addresses is refused at hello, before any signature", "[worl
   bench.change(Restrict{RestrictionKind::ban, AddressRange{address_block_v4(0x0a000000), 32 + 24},
                         0, "a bot net"});
   const auto closed = bench.refused_join(1, 1, kHome);
-  CHECK(closed.reason == GoodbyeReason::not_permitted);
+  CHECK(closed.reason == GoodbyeReason::not_admitted);
   CHECK(closed.text == "your address is banned: a bot net");
   CHECK(bench.environment.messages<Welcome>(1, 0).empty());
   bench.join(2, 2, 1, kElsewhere);
