@@ -97,7 +97,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("log box 1 2 3 4 5 6000000000") ==
         "log box \"6000000000\": a whole number from -536870912 to 536870911");
   CHECK(mistake("log cause rage") ==
-        "log cause \"rage\": player, console, rollback, undo, redo or import");
+        "log cause \"rage\": player, console, rollback, undo, redo, import or rights");
   CHECK(mistake("log limit 0") == "log limit \"0\": a number from 1 to 1000");
   CHECK(mistake("log \"a") == "a \" is missing at the end");
   CHECK(mistake("materials wool red") ==
@@ -109,22 +109,9 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake(std::string(kCommandBytesMax + 1, 'a')) == "a command has at most 1024 bytes");
 }
 
-TEST_CASE(
-    "everybody may undo, redo, list materials and ask for help, and the rest is for operators",
-    "[admin][command]") {
-  for (const char* line : {"help", "materials", "undo", "redo"})
-    CHECK(is_for_everybody(*parse_command(line, kNow)));
-  for (const char* line : {"status", "players", "stop", "reload", "backup copy", "log",
-                           "rollback list", "rollback apply p1", "rollback preview since 1h"}) {
-    CHECK_FALSE(is_for_everybody(*parse_command(line, kNow)));
-  }
-  CHECK(command_help(true).starts_with(command_help(false)));
-  CHECK(command_help(false).find("rollback") == std::string::npos);
-}
-
 TEST_CASE("answers and filters use the same names of causes", "[admin][command]") {
-  for (const Cause cause :
-       {Cause::player, Cause::console, Cause::rollback, Cause::undo, Cause::redo, Cause::import}) {
+  for (const Cause cause : {Cause::player, Cause::console, Cause::rollback, Cause::undo,
+                            Cause::redo, Cause::import, Cause::rights}) {
     CHECK(parsed<LogCommand>("log cause " + std::string(name_of(cause))).filter.cause == cause);
   }
 }
