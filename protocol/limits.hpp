@@ -54,6 +54,7 @@ static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 32) <= kServerControl
 // Handshake.
 inline constexpr std::size_t kNonceBytes = 32;
 inline constexpr std::size_t kSignatureBytes = 64;
+inline constexpr std::size_t kTicketBytesMax = 128;
 inline constexpr std::size_t kWorldIdBytes = 16;
 inline constexpr std::size_t kPlayerNameBytesMax = 32;
 inline constexpr std::int64_t kHandshakeMsMax = 10'000;  // then a silent peer loses its slot

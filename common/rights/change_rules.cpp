@@ -56,9 +56,9 @@ class Outlook {
     const auto* grant = kind<GrantRole>();
     const std::string& role = grant != nullptr && grant->key == key ? grant->role : granted;
     if (!rights_of(role).value_or(RightSet{}).has(Right::administer)) return false;
-    const auto* restrict = kind<Restrict>();
-    if (restrict != nullptr&& restrict->kind == RestrictionKind::ban&& restrict->subject ==
-        RestrictionSubject{key}) {
+    const auto* restricted = kind<Restrict>();
+    if (restricted != nullptr && restricted->kind == RestrictionKind::ban &&
+        restricted->subject == RestrictionSubject{key}) {
       return false;
     }
     return state_.restriction(RestrictionKind::ban, key, now_us_) == nullptr;
@@ -182,6 +182,46 @@ class ChangeCheck {
     return needs(Right::protect);
   }
 
+  Refusal refused_kind(const CreateInvite& change) const {
+    if (!rights_.has(Right::administer)) {
+      if (auto lacks = needs(Right::grant)) return lacks;
+    }
+    const Decided<Role>* role = state_.find_role(change.invite.role);
+    if (role == nullptr) return no_role(change.invite.role);
+    if (auto reason = refused_gift(role->value.rights, {})) return reason;
+    if (change.invite.until_us <= now_us_) return "The invite would have ended already.";
+    if (state_.invites().contains(change.invite.id)) return "There is such an invite already.";
+    if (state_.invites().size() >= kInvitesMax) {
+      return "The world has as many invites as it can have. Cancel some.";
+    }
+    return std::nullopt;
+  }
+
+  Refusal refused_kind(const AcceptInvite& change) const {
+    if (actor_.key != change.key) return "Nobody accepts an invite for somebody else.";
+    if (state_.grants().contains(change.key)) return "You have a role already.";
+    const auto found = state_.invites().find(change.invite);
+    if (found == state_.invites().end()) {
+      return "The invite was cancelled, has ended, or is of another world.";
+    }
+    const OpenInvite& open = found->second.value;
+    if (open.invite.until_us <= now_us_) return "The invite has ended.";
+    if (open.accepted >= open.invite.uses) return "The invite was used as often as it may be.";
+    if (state_.find_role(open.invite.role) == nullptr) return no_role(open.invite.role);
+    if (state_.grants().size() >= kGrantsMax) {
+      return "As many players have a role as the world can hold.";
+    }
+    return std::nullopt;
+  }
+
+  Refusal refused_kind(const CancelInvite& change) const {
+    if (!rights_.has(Right::administer)) {
+      if (auto lacks = needs(Right::grant)) return lacks;
+    }
+    if (!state_.invites().contains(change.invite)) return "There is no such invite.";
+    return std::nullopt;
+  }
+
   Refusal refused_claim(const ProtectedBox& box) const {
     if (!rights_.has(Right::claim)) return needs(Right::protect);
     if (box.owner != actor_.key)
@@ -274,9 +314,9 @@ bool may_take_administer(const RightsState& state, const RightsChange& change) {
     return state.role_of(key).rights.has(Right::administer);
   };
   if (const auto* grant = std::get_if<GrantRole>(&change)) return administers(grant->key);
-  if (const auto* restrict = std::get_if<Restrict>(&change)) {
-    const auto* key = std::get_if<PublicKey>(&restrict->subject);
-    return key != nullptr&& restrict->kind == RestrictionKind::ban && administers(*key);
+  if (const auto* restricted = std::get_if<Restrict>(&change)) {
+    const auto* key = std::get_if<PublicKey>(&restricted->subject);
+    return key != nullptr && restricted->kind == RestrictionKind::ban && administers(*key);
   }
   return std::holds_alternative<DefineRole>(change) || std::holds_alternative<RemoveRole>(change) ||
          std::holds_alternative<SetDefaultRole>(change);

@@ -7,9 +7,9 @@ namespace {
 
 /// Names the part of the state that a change sets.
 struct ChangedCell {
-  enum class Kind : std::uint8_t { role, grant, default_role, restriction, box };
+  enum class Kind : std::uint8_t { role, grant, default_role, restriction, box, invite };
   Kind kind{};
-  std::string name;  // of the role or box
+  std::string name;  // of the role or box; the number of the invite
   RestrictionKind restriction{};
   RestrictionSubject subject;  // of the restriction; of the grant, a key
   friend bool operator==(const ChangedCell&, const ChangedCell&) = default;
@@ -27,6 +27,20 @@ ChangedCell cell_of_kind(const Restrict& c) {
 ChangedCell cell_of_kind(const Lift& c) { return {CellKind::restriction, {}, c.kind, c.subject}; }
 ChangedCell cell_of_kind(const Protect& c) { return {CellKind::box, c.box.name, {}, {}}; }
 ChangedCell cell_of_kind(const Unprotect& c) { return {CellKind::box, c.box, {}, {}}; }
+ChangedCell cell_of_kind(const CreateInvite& c) {
+  return {CellKind::invite, std::to_string(c.invite.id), {}, {}};
+}
+ChangedCell cell_of_kind(const AcceptInvite& c) { return {CellKind::grant, {}, {}, c.key}; }
+ChangedCell cell_of_kind(const CancelInvite& c) {
+  return {CellKind::invite, std::to_string(c.invite), {}, {}};
+}
+
+/// What an accepted invite grants depends on all records about invites.
+bool is_about_invites(const RightsChange& change) {
+  return std::holds_alternative<CreateInvite>(change) ||
+         std::holds_alternative<AcceptInvite>(change) ||
+         std::holds_alternative<CancelInvite>(change);
+}
 
 ChangedCell cell_of(const RightsChange& change) {
   return std::visit([](const auto& kind) { return cell_of_kind(kind); }, change);
@@ -56,6 +70,15 @@ RightsChange restoring(const RightsState& state, const ChangedCell& cell) {
       if (old == nullptr) return Lift{cell.restriction, cell.subject};
       return old->value;
     }
+    case CellKind::invite: {
+      const InviteId id = std::stoull(cell.name);
+      const auto found = state.invites().find(id);
+      if (found == state.invites().end()) return CancelInvite{id};
+      // The invite begins anew with the uses that it had left.
+      Invite invite = found->second.value.invite;
+      invite.uses -= found->second.value.accepted;
+      return CreateInvite{invite};
+    }
     case CellKind::box:
       break;
   }
@@ -78,7 +101,8 @@ std::optional<RightsChange> inverse_of(const std::vector<RightsRecord>& records,
   if (is_replaced) return std::nullopt;
   RightsState before;
   for (auto record = records.begin(); record != at; ++record) {
-    if (cell_of(record->change) == cell) before.apply(record->change, record->origin);
+    if (cell_of(record->change) == cell || is_about_invites(record->change))
+      before.apply(record->change, record->origin);
   }
   return restoring(before, cell);
 }

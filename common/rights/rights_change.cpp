@@ -20,10 +20,13 @@ enum class ChangeTag : std::uint8_t {
   restrict = 5,
   lift = 6,
   protect = 7,
-  unprotect = 8
+  unprotect = 8,
+  create_invite = 9,
+  accept_invite = 10,
+  cancel_invite = 11
 };
 constexpr std::uint8_t kChangeTagMax = std::variant_size_v<RightsChange>;
-static_assert(kChangeTagMax == static_cast<std::uint8_t>(ChangeTag::unprotect));
+static_assert(kChangeTagMax == static_cast<std::uint8_t>(ChangeTag::cancel_invite));
 
 // The tags of the subject of a restriction.
 constexpr std::uint8_t kSubjectKey = 0;
@@ -131,6 +134,17 @@ Result<void> check_change(const Unprotect& change) {
   return check_name(change.box, "bad name of a box");
 }
 
+Result<void> check_change(const CreateInvite& change) {
+  const Invite& invite = change.invite;
+  if (invite.uses == 0 || invite.uses > kInviteUsesMax)
+    return fail(ErrorCode::bad_value, "uses of an invite out of range");
+  if (invite.until_us <= 0) return fail(ErrorCode::bad_value, "invite ends before 1970");
+  return check_name(invite.role, "bad name of a role");
+}
+
+Result<void> check_change(const AcceptInvite& /*change*/) { return {}; }
+Result<void> check_change(const CancelInvite& /*change*/) { return {}; }
+
 void write_text(ByteWriter& w, std::string_view text) {
   w.varint(text.size());
   w.bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -196,6 +210,20 @@ void write_change(ByteWriter& w, const Protect& change) {
 
 void write_change(ByteWriter& w, const Unprotect& change) { write_text(w, change.box); }
 
+void write_change(ByteWriter& w, const CreateInvite& change) {
+  w.u64(change.invite.id);
+  write_text(w, change.invite.role);
+  w.varint(change.invite.uses);
+  w.varint(static_cast<std::uint64_t>(change.invite.until_us));
+}
+
+void write_change(ByteWriter& w, const AcceptInvite& change) {
+  w.u64(change.invite);
+  w.bytes(change.key);
+}
+
+void write_change(ByteWriter& w, const CancelInvite& change) { w.u64(change.invite); }
+
 std::string read_text(ByteReader& r, std::size_t bytes_max, const char* what) {
   const ByteView text = r.bytes(static_cast<std::size_t>(r.varint_max(bytes_max, what)));
   return {text.begin(), text.end()};
@@ -232,12 +260,26 @@ Role read_role(ByteReader& r) {
   return role;
 }
 
+TimeUs read_end_time(ByteReader& r) {
+  constexpr auto kTimeMax = static_cast<std::uint64_t>(std::numeric_limits<TimeUs>::max());
+  return static_cast<TimeUs>(r.varint_max(kTimeMax, "end too late"));
+}
+
+Invite read_invite(ByteReader& r) {
+  Invite invite;
+  invite.id = r.u64();
+  invite.role = read_name(r);
+  invite.uses =
+      static_cast<std::uint32_t>(r.varint_max(kInviteUsesMax, "uses of an invite out of range"));
+  invite.until_us = read_end_time(r);
+  return invite;
+}
+
 Restrict read_restrict(ByteReader& r) {
   Restrict change;
   change.kind = static_cast<RestrictionKind>(r.u8());
   change.subject = read_subject(r);
-  constexpr auto kTimeMax = static_cast<std::uint64_t>(std::numeric_limits<TimeUs>::max());
-  change.until_us = static_cast<TimeUs>(r.varint_max(kTimeMax, "end of a restriction too late"));
+  change.until_us = read_end_time(r);
   change.reason = read_text(r, kReasonBytesMax, "reason too long");
   return change;
 }
@@ -304,6 +346,15 @@ RightsChange read_change_fields(ByteReader& r, ChangeTag tag) {
       return Protect{read_protected_box(r)};
     case ChangeTag::unprotect:
       return Unprotect{read_name(r)};
+    case ChangeTag::create_invite:
+      return CreateInvite{read_invite(r)};
+    case ChangeTag::accept_invite: {
+      AcceptInvite change{r.u64(), {}};
+      change.key = read_key(r);
+      return change;
+    }
+    case ChangeTag::cancel_invite:
+      return CancelInvite{r.u64()};
   }
   return RemoveRole{};  // unknown tags were rejected before
 }

@@ -12,6 +12,7 @@
 #include "common/core/public_key.hpp"
 #include "common/core/result.hpp"
 #include "common/rights/address_range.hpp"
+#include "common/rights/invite.hpp"
 #include "common/rights/protected_box.hpp"
 #include "common/rights/role.hpp"
 
@@ -73,9 +74,26 @@ struct Unprotect {
   friend bool operator==(const Unprotect&, const Unprotect&) = default;
 };
 
+/// Makes an invite.
+struct CreateInvite {
+  Invite invite;
+  friend bool operator==(const CreateInvite&, const CreateInvite&) = default;
+};
+/// Gives a player without a granted role the role of an invite that has uses left.
+struct AcceptInvite {
+  InviteId invite = 0;
+  PublicKey key{};
+  friend bool operator==(const AcceptInvite&, const AcceptInvite&) = default;
+};
+/// Ends an invite. The players who accepted it keep their role.
+struct CancelInvite {
+  InviteId invite = 0;
+  friend bool operator==(const CancelInvite&, const CancelInvite&) = default;
+};
+
 // The order is that of the stored tags, from 1.
 using RightsChange = std::variant<DefineRole, RemoveRole, GrantRole, SetDefaultRole, Restrict, Lift,
-                                  Protect, Unprotect>;
+                                  Protect, Unprotect, CreateInvite, AcceptInvite, CancelInvite>;
 
 inline constexpr std::size_t kRightsChangeBytesMax = 4096;
 

@@ -100,6 +100,33 @@ void RightsState::apply_kind(const Unprotect& change, const ChangeOrigin&) {
   remove_box(change.box);
 }
 
+void RightsState::apply_kind(const CreateInvite& change, const ChangeOrigin& origin) {
+  std::erase_if(invites_, [&](const auto& entry) {
+    const OpenInvite& old = entry.second.value;
+    return old.invite.until_us <= origin.time_us || old.accepted >= old.invite.uses;
+  });
+  invites_[change.invite.id] = {{change.invite, 0}, origin};
+}
+
+void RightsState::apply_kind(const AcceptInvite& change, const ChangeOrigin& origin) {
+  const auto* usable = usable_invite(change.invite, origin.time_us);
+  if (usable == nullptr || grants_.contains(change.key)) return;
+  grants_[change.key] = {usable->value.invite.role, origin};
+  ++invites_.at(change.invite).value.accepted;
+}
+
+void RightsState::apply_kind(const CancelInvite& change, const ChangeOrigin& /*origin*/) {
+  invites_.erase(change.invite);
+}
+
+const Decided<OpenInvite>* RightsState::usable_invite(InviteId id, TimeUs now_us) const {
+  const auto found = invites_.find(id);
+  if (found == invites_.end()) return nullptr;
+  const OpenInvite& open = found->second.value;
+  const bool is_usable = now_us < open.invite.until_us && open.accepted < open.invite.uses;
+  return is_usable ? &found->second : nullptr;
+}
+
 void RightsState::remove_box(const std::string& name) {
   const auto found = id_of_.find(name);
   if (found == id_of_.end()) return;

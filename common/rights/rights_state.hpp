@@ -52,6 +52,13 @@ struct RightsDecision {
   const ProtectedBox* box = nullptr;  // valid until the next apply()
 };
 
+/// An invite that was not cancelled, and the number of players who accepted it.
+struct OpenInvite {
+  Invite invite;
+  std::uint32_t accepted = 0;
+  friend bool operator==(const OpenInvite&, const OpenInvite&) = default;
+};
+
 /// Answers whether the edit under check has a voxel in the box. Exact: a bounding box does not do.
 using TouchesBox = std::function<bool(const VoxelBox&)>;
 
@@ -85,6 +92,13 @@ class RightsState {
   /// Returns the keys with a grant whose role has the right `administer` and who are not banned.
   /// Cost: O(grants log n).
   std::vector<PublicKey> administrators(TimeUs now_us) const;
+
+  // Invites.
+  /// Returns the invites that were neither cancelled nor removed: an invite that has ended is removed
+  /// when a later one is made.
+  const std::map<InviteId, Decided<OpenInvite>>& invites() const { return invites_; }
+  /// Returns the invite if a player may accept it at `now_us` (UTC), or null.
+  const Decided<OpenInvite>* usable_invite(InviteId id, TimeUs now_us) const;
 
   // Restrictions.
   /// Returns the restriction of a player that holds at `now_us` (UTC), or null. Cost: O(log
@@ -146,11 +160,15 @@ class RightsState {
   void apply_kind(const Lift& change, const ChangeOrigin& origin);
   void apply_kind(const Protect& change, const ChangeOrigin& origin);
   void apply_kind(const Unprotect& change, const ChangeOrigin& origin);
+  void apply_kind(const CreateInvite& change, const ChangeOrigin& origin);
+  void apply_kind(const AcceptInvite& change, const ChangeOrigin& origin);
+  void apply_kind(const CancelInvite& change, const ChangeOrigin& origin);
   void remove_box(const std::string& name);
 
   std::map<std::string, Decided<Role>> roles_;
   Decided<std::string> default_role_;
   std::map<PublicKey, Decided<std::string>> grants_;
+  std::map<InviteId, Decided<OpenInvite>> invites_;
 
   std::map<std::pair<PublicKey, RestrictionKind>, Decided<Restrict>> by_key_;
   std::map<AddressRange, Decided<Restrict>> address_bans_;

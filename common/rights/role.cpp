@@ -30,7 +30,7 @@ std::vector<Role> built_in_roles() {
   Role administrator = moderator;
   administrator.name = kAdministratorRole;
   administrator.rights = RightSet::all();
-  return {visitor, builder, moderator, administrator};
+  return {Role{kNobodyRole, {}, 0, 0, 0}, visitor, builder, moderator, administrator};
 }
 
 }  // namespace runstone

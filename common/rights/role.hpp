@@ -1,4 +1,4 @@
-// Role: a named set of rights with limits. A player has one role. Four roles are built in; a world
+// Role: a named set of rights with limits. A player has one role. Five roles are built in; a world
 // may define them otherwise and add its own.
 #pragma once
 #include <cstddef>
@@ -25,13 +25,14 @@ struct Role {
   friend bool operator==(const Role&, const Role&) = default;
 };
 
+inline constexpr const char* kNobodyRole = "nobody";  // no rights: for a world of invited players
 inline constexpr const char* kVisitorRole = "visitor";
 inline constexpr const char* kBuilderRole = "builder";
 inline constexpr const char* kModeratorRole = "moderator";
 inline constexpr const char* kAdministratorRole = "administrator";
 
 /// Returns the roles of a world whose log defines none, each with more rights than those before:
-/// visitor, builder, moderator, administrator.
+/// nobody, visitor, builder, moderator, administrator.
 std::vector<Role> built_in_roles();
 
 }  // namespace runstone

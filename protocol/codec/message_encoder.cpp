@@ -66,7 +66,9 @@ struct BodyBuilder {
                                m.view_radius_max, m.features);
   }
   Offset<wire::ClientAuth> operator()(const ClientAuth& m) {
-    return wire::CreateClientAuth(b, bytes_of(b, m.signature));
+    const auto signature = bytes_of(b, m.signature);
+    const auto ticket = m.ticket.empty() ? 0 : b.CreateString(m.ticket);
+    return wire::CreateClientAuth(b, signature, ticket);
   }
   Offset<wire::SessionAccepted> operator()(const SessionAccepted& m) {
     return wire::CreateSessionAccepted(b, m.author, m.resolved);

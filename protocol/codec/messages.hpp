@@ -83,6 +83,7 @@ struct Welcome {
 };
 struct ClientAuth {
   Signature signature{};
+  std::string ticket;  // an invite token (invite_token.hpp); empty: none
   friend bool operator==(const ClientAuth&, const ClientAuth&) = default;
 };
 struct SessionAccepted {

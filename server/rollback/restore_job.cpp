@@ -146,8 +146,8 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
   }
   if (slice.empty()) return end_if_done();
   const Sequence before = world.head();
-  const WorldServer::ServerEditsResult answer = world.order_server_edits(offers, order_.payer, now);
-  if (answer.state == WorldServer::ServerEditsResult::State::taken) {
+  const ServerEditsResult answer = world.order_server_edits(offers, order_.payer, now);
+  if (answer.state == ServerEditsResult::State::taken) {
     state_ = State::failed;
     progress_.error =
         "a client has come under the server's instance and taken its client sequences";

@@ -78,10 +78,25 @@ bool close_if_no_name(WorldState& world, SessionId session) {
   return true;
 }
 
-bool close_if_not_permitted(WorldState& world, SessionId session) {
+bool close_if_banned(WorldState& world, SessionId session) {
   const WorldSession& mine = *world.find(session);
-  const auto why = join_refusal(world, mine.key, mine.address);
+  const auto why = ban_refusal(world, mine.key, mine.address);
   if (!why) return false;
+  close_session(world, session, GoodbyeReason::not_admitted, *why);
+  return true;
+}
+
+/// Closes a session whose player may not see the world. A ticket is used only if that helps: a
+/// player who has a role keeps it.
+bool close_if_not_admitted(WorldState& world, SessionId session, const std::string& ticket,
+                           const Clocks& now) {
+  const WorldSession& mine = *world.find(session);
+  const bool has_role = world.rights.grants().contains(mine.key);
+  std::optional<std::string> no_invite;
+  if (!ticket.empty() && !has_role) no_invite = accept_invite(world, mine, ticket, now);
+  auto why = join_refusal(world, mine.key, mine.address);
+  if (!why) return false;
+  if (no_invite) *why += " (" + *no_invite + ")";
   close_session(world, session, GoodbyeReason::not_admitted, *why);
   return true;
 }
@@ -130,7 +145,7 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.name = hello.name;
   mine.features = world.config.features & hello.features;
   // Before any signature: a banned address costs little.
-  if (close_if_not_permitted(world, session)) return;
+  if (close_if_banned(world, session)) return;
   if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
   Welcome welcome = welcome_of(world);
   welcome.encoding = choose_encoding(world.config, hello.encodings);
@@ -159,8 +174,9 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
     return;
   }
   // The name may have been claimed since hello. A session without a seat claims nothing.
-  if (close_if_not_permitted(world, session)) return;
-  if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
+  if (close_if_no_seat(world, session) || close_if_no_name(world, session) ||
+      close_if_not_admitted(world, session, auth.ticket, now))
+    return;
   mine.auth_transcript = {};
   mine.is_authenticated = true;
   world.environment.opened(session);  // connections without a key no longer replace it

@@ -5,6 +5,8 @@
 
 #include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "protocol/codec/invite_token.hpp"
+#include "server/world/server_edits.hpp"
 
 namespace runstone {
 namespace {
@@ -78,16 +80,19 @@ RightsDecision decide(const WorldState& world, const PublicKey& key, Right right
   return world.rights.decide(key, right, rights_time(world));
 }
 
-std::optional<std::string> address_refusal(const WorldState& world, AddressBlock address) {
+std::optional<std::string> ban_refusal(const WorldState& world, const PublicKey& key,
+                                       AddressBlock address) {
+  if (is_operator(world, key)) return std::nullopt;
   const auto* ban = world.rights.address_ban(address, rights_time(world));
-  if (ban == nullptr) return std::nullopt;
-  return restriction_text("your address is banned", ban->value);
+  if (ban != nullptr) return restriction_text("your address is banned", ban->value);
+  ban = world.rights.restriction(RestrictionKind::ban, key, rights_time(world));
+  if (ban != nullptr) return restriction_text("you are banned", ban->value);
+  return std::nullopt;
 }
 
 std::optional<std::string> join_refusal(const WorldState& world, const PublicKey& key,
                                         AddressBlock address) {
-  if (is_operator(world, key)) return std::nullopt;
-  if (auto banned = address_refusal(world, address)) return banned;
+  if (auto banned = ban_refusal(world, key, address)) return banned;
   const RightsDecision decision = decide(world, key, Right::see);
   if (decision.is_allowed) return std::nullopt;
   return refusal_text(world, key, decision);
@@ -104,6 +109,33 @@ std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey
       rights_time(world));
   if (decision.is_allowed) return std::nullopt;
   return refusal_text(world, key, decision);
+}
+
+Result<Sequence, std::string> change_rights(WorldState& world, const RightsChange& change,
+                                            const RightsActor& actor, AuthorId author,
+                                            const Clocks& now) {
+  world.authority.log_clock().advance(now);
+  if (auto why = change_refusal(world, actor, change)) return Unexpected<std::string>{*why};
+  const OperationId op{author, world.rights_instance, ++world.rights_client_seq};
+  const EditOffer offer{op, Cause::rights, now.steady_us, rights_edit(change), 0};
+  const ServerEditsResult ordered = order_server_edits(world, {offer}, author, now);
+  if (ordered.state == ServerEditsResult::State::ordered) return world.rights_seq;
+  return Unexpected<std::string>{ordered.state == ServerEditsResult::State::busy
+                                     ? std::string(ordered.reason) + ": try again later"
+                                     : "the world takes no changes any more"};
+}
+
+std::optional<std::string> accept_invite(WorldState& world, const WorldSession& session,
+                                         const std::string& ticket, const Clocks& now) {
+  const WorldConfig& config = world.config;
+  const auto invite = invite_of(ticket, config.world_id, config.server_keys.public_key);
+  if (!invite) return "the invite is not one of this world";
+  const AuthorId author = world.players.enter(session.key, session.name);
+  const auto accepted = change_rights(world, AcceptInvite{*invite, session.key},
+                                      actor_of(world, session.key), author, now);
+  if (accepted) return std::nullopt;
+  world.gone_authors.push_back(author);
+  return accepted.error();
 }
 
 void apply_rights(WorldState& world, const std::vector<EditRecord>& records) {

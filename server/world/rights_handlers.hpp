@@ -18,11 +18,13 @@ RightsActor actor_of(const WorldState& world, const PublicKey& key);
 
 /// Decides about a right without a place.
 RightsDecision decide(const WorldState& world, const PublicKey& key, Right right);
-/// Returns why a player may not join from this address, for goodbye not_admitted, or nullopt.
+/// Returns why a player may not join from this address because of a ban, for goodbye not_admitted, or
+/// nullopt. It costs no signature.
+std::optional<std::string> ban_refusal(const WorldState& world, const PublicKey& key,
+                                       AddressBlock address);
+/// Returns the same, or that the player's role may not see the world.
 std::optional<std::string> join_refusal(const WorldState& world, const PublicKey& key,
                                         AddressBlock address);
-/// Returns why nobody may join from this address, or nullopt. It needs no key.
-std::optional<std::string> address_refusal(const WorldState& world, AddressBlock address);
 /// Returns why the player may not make the edit, for reject not_permitted, or nullopt. Requires a
 /// valid edit. Cost: RightsState::decide_edit().
 std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey& key,
@@ -32,6 +34,15 @@ std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey
 /// operator.
 std::optional<std::string> change_refusal(const WorldState& world, const RightsActor& actor,
                                           const RightsChange& change);
+/// Orders a change of rights as a record of the log, made by the author (0: the console), who pays
+/// for it as for an edit. Returns its sequence, or why it was refused, as a sentence.
+Result<Sequence, std::string> change_rights(WorldState& world, const RightsChange& change,
+                                            const RightsActor& actor, AuthorId author,
+                                            const Clocks& now);
+/// Accepts the invite of a ticket for an authenticated player who has no granted role. Returns why
+/// nothing was granted, as a sentence, or nullopt.
+std::optional<std::string> accept_invite(WorldState& world, const WorldSession& session,
+                                         const std::string& ticket, const Clocks& now);
 /// Takes over the changes of rights among these records, which were ordered just now, and closes the
 /// sessions that may not stay.
 void apply_rights(WorldState& world, const std::vector<EditRecord>& records);

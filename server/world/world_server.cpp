@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "common/core/key_text.hpp"
-#include "protocol/rules/edit_price.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/cached_chunk_handlers.hpp"
 #include "server/world/command_handlers.hpp"
@@ -17,6 +16,7 @@
 #include "server/world/presence.hpp"
 #include "server/world/request_handlers.hpp"
 #include "server/world/rights_handlers.hpp"
+#include "server/world/server_edits.hpp"
 #include "server/world/time_travel.hpp"
 #include "server/world/view_scheduler.hpp"
 #include "server/world/world_state.hpp"
@@ -77,18 +77,6 @@ void retry_loads(WorldState& world, const Clocks& now) {
     world.loads.load_started();
     world.environment.load_chunk(key);
   }
-}
-
-/// Returns who pays for edits of an author: its key, and the address of its first session. Returns
-/// nullopt if nobody has the number.
-std::optional<EditPayer> payer_of(const WorldState& world, AuthorId author) {
-  const std::optional<PublicKey> key = world.players.key_of(author);
-  if (!key) return std::nullopt;
-  for (const auto& [id, session] : world.sessions) {
-    if (session.state == SessionStage::open && session.author == author)
-      return EditPayer{*key, session.address};
-  }
-  return EditPayer{*key, std::nullopt};
 }
 
 /// Counts the end of a load that was under way.
@@ -176,44 +164,9 @@ void WorldServer::commit(const Clocks& now) {
   }
 }
 
-WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector<EditOffer>& offers,
-                                                               AuthorId payer, const Clocks& now) {
-  using State = ServerEditsResult::State;
-  WorldState& world = *state_;
-  commit(now);
-  if (!world.accepts_edits) return {State::closed};
-  if (offers.empty()) return {};
-  // Instances are public, so a client of the author can join with this one and use its client
-  // sequences.
-  if (world.authority.resolved().knows(offers.front().op) || offers.back().op.seq > kSequenceMax)
-    return {State::taken};
-  const std::optional<EditPayer> paying = payer_of(world, payer);
-  ServerEditsResult out;
-  for (const EditOffer& offer : offers) {
-    RUNSTONE_ASSERT(offer.cause != Cause::player);
-    if (!world.environment.log_has_room(world.authority.queue().size() + 1)) {
-      out.reason = world.disk_is_full ? kDiskIsFull : "the log is full (log_queue_records)";
-      break;
-    }
-    if (is_memory_full(world)) {
-      out.reason = kMemoryIsFull;
-      break;
-    }
-    if (paying) {
-      const std::uint64_t price =
-          edit_price(offer.edit, world.config.chunk_edge, world.config.edit_budget);
-      if (const auto unpaid = world.edit_ledger.charge(*paying, price, now.steady_us)) {
-        out.reason = "the player's edit budget is used up (builder_budget)";
-        break;
-      }
-    }
-    const auto refusal = world.authority.submit(offer);
-    RUNSTONE_ASSERT(!refusal);
-    ++out.count;
-  }
-  if (out.count < offers.size()) out.state = State::busy;
-  commit(now);
-  return out;
+ServerEditsResult WorldServer::order_server_edits(const std::vector<EditOffer>& offers,
+                                                  AuthorId payer, const Clocks& now) {
+  return runstone::order_server_edits(*state_, offers, payer, now);
 }
 
 void WorldServer::answer_command(SessionId session, const std::vector<std::string>& lines,
@@ -249,17 +202,7 @@ TimeUs WorldServer::rights_time() const { return runstone::rights_time(*state_);
 Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& change,
                                                          const RightsActor& actor, AuthorId author,
                                                          const Clocks& now) {
-  WorldState& world = *state_;
-  world.authority.log_clock().advance(now);
-  if (auto why = change_refusal(world, actor, change))
-    return Unexpected<std::string>{*std::move(why)};
-  const OperationId op{author, world.rights_instance, ++world.rights_client_seq};
-  const EditOffer offer{op, Cause::rights, now.steady_us, rights_edit(change), 0};
-  const ServerEditsResult ordered = order_server_edits({offer}, author, now);
-  if (ordered.state == ServerEditsResult::State::ordered) return world.rights_seq;
-  return Unexpected<std::string>{ordered.state == ServerEditsResult::State::busy
-                                     ? std::string(ordered.reason) + ": try again later"
-                                     : "the world takes no changes any more"};
+  return runstone::change_rights(*state_, change, actor, author, now);
 }
 
 std::size_t WorldServer::kick(const RestrictionSubject& who, const std::string& reason) {

@@ -17,6 +17,7 @@
 #include "common/rights/change_rules.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/world/clocks.hpp"
+#include "server/world/server_edits.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
 #include "server/world/world_environment.hpp"
@@ -70,22 +71,7 @@ class WorldServer {
   void tick(const Clocks& now);
 
   // Edits of the server: rollback, undo, redo.
-  struct ServerEditsResult {
-    enum class State {
-      ordered,  // all offers
-      busy,     // the first `count` offers; a limit rejects the next one for now: try again
-      closed,   // none: the server stops, or the log cannot be written any more
-      taken,    // none: a client of the author has used these client sequences
-    };
-    State state = State::ordered;
-    std::size_t count = 0;    // ordered offers, from the first on
-    const char* reason = "";  // names the limit if busy
-  };
-  /// Orders the offers at once and in order, behind all queued edits, as far as the log has room.
-  /// Requires that they pass check_server_edit(), that their client sequences ascend, that they
-  /// have one author and instance, and that their cause is not player. Each offer costs its
-  /// edit_price(), paid by the key of the author `payer` and the address of the author's first
-  /// session. An author without a session pays by the key alone. Nobody pays if `payer` is 0.
+  /// See server_edits.hpp.
   ServerEditsResult order_server_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                        const Clocks& now);
 

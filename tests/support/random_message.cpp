@@ -143,6 +143,7 @@ Welcome any_welcome(SplitMix64& rng) {
 
 ClientAuth any_client_auth(SplitMix64& rng) {
   ClientAuth m;
+  if (rng.below(2) == 0) m.ticket = any_text(rng, 1, kTicketBytesMax);
   draw(rng, m.signature);
   return m;
 }

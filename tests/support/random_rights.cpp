@@ -93,9 +93,16 @@ VoxelBox random_box_in(SplitMix64& rng, const VoxelBox& world, std::int32_t side
 
 RightsChange random_rights_change(SplitMix64& rng) {
   const RestrictionKind kind = any_kind(rng);
-  switch (rng.below(8)) {
+  switch (rng.below(11)) {
     case 0:
       return DefineRole{any_role(rng)};
+    case 8:
+      return CreateInvite{{rng.next(), any_rights_name(rng), 1 + rng.below(kInviteUsesMax),
+                           std::max<TimeUs>(1, static_cast<TimeUs>(any_number(rng) >> 1))}};
+    case 9:
+      return AcceptInvite{rng.next(), any_key(rng)};
+    case 10:
+      return CancelInvite{rng.next()};
     case 1:
       return RemoveRole{any_rights_name(rng)};
     case 2:

@@ -19,7 +19,7 @@ class RulesWorld {
   RulesWorld() {
     make(GrantRole{kRoot, kAdministratorRole});
     make(GrantRole{kMod, kModeratorRole});
-    Role granter = built_in_roles()[2];
+    Role granter = built_in_roles()[3];
     granter.name = "granter";
     granter.rights.add(Right::grant);
     make(DefineRole{granter});

@@ -55,7 +55,7 @@ TEST_CASE("a built-in role that is removed is as it was built in", "[rights]") {
   state.apply(DefineRole{{kVisitorRole, {}, 0, 0, 0}}, {1, 9, 10});
   CHECK(state.find_role(kVisitorRole)->value.rights == RightSet{});
   state.apply(RemoveRole{kVisitorRole}, {2, 9, 20});
-  CHECK(state.find_role(kVisitorRole)->value == built_in_roles()[0]);
+  CHECK(state.find_role(kVisitorRole)->value == built_in_roles()[1]);
   CHECK(state.find_role(kVisitorRole)->by == ChangeOrigin{2, 9, 20});
 }
 

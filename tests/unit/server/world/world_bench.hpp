@@ -50,7 +50,7 @@ struct WorldBench {
     return h;
   }
   ClientAuth client_auth(std::uint8_t who, const Hello& h, const Welcome& w) const {
-    return {sign(key_pair_of(seed_of(who)), client_transcript(h, w, std::nullopt))};
+    return {sign(key_pair_of(seed_of(who)), client_transcript(h, w, std::nullopt)), {}};
   }
   SessionAccepted join(SessionId session, std::uint8_t who, ClientInstance instance = 1,
                        AddressBlock from = {}) {
