@@ -48,7 +48,24 @@ std::string refusal_text(const WorldState& world, const PublicKey& key, const Ri
   return "your role does not allow it: " + no.role;
 }
 
+/// Returns the player whom a change is about, or null.
+const PublicKey* target_of(const RightsChange& change) {
+  if (const auto* grant = std::get_if<GrantRole>(&change)) return &grant->key;
+  if (const auto* restricted = std::get_if<Restrict>(&change))
+    return std::get_if<PublicKey>(&restricted->subject);
+  return nullptr;
+}
+
 }  // namespace
+
+std::optional<std::string> change_refusal(const WorldState& world, const RightsActor& actor,
+                                          const RightsChange& change) {
+  if (const auto invalid = validate(change); !invalid) return invalid.error().what;
+  const PublicKey* target = target_of(change);
+  if (target != nullptr && actor.key && is_operator(world, *target))
+    return "the player is an operator by the server's settings";
+  return why_refused(world.rights, actor, change, rights_time(world));
+}
 
 TimeUs rights_time(const WorldState& world) { return world.authority.log_clock().time(); }
 

@@ -28,6 +28,10 @@ std::optional<std::string> address_refusal(const WorldState& world, AddressBlock
 std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey& key,
                                         const EditDescriptor& edit);
 
+/// Returns why the change may not be made, or nullopt: why_refused(), and no player acts on an
+/// operator.
+std::optional<std::string> change_refusal(const WorldState& world, const RightsActor& actor,
+                                          const RightsChange& change);
 /// Takes over the changes of rights among these records, which were ordered just now, and closes the
 /// sessions that may not stay.
 void apply_rights(WorldState& world, const std::vector<EditRecord>& records);

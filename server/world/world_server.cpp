@@ -250,10 +250,8 @@ Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& cha
                                                          const RightsActor& actor, AuthorId author,
                                                          const Clocks& now) {
   WorldState& world = *state_;
-  if (const auto invalid = validate(change); !invalid)
-    return Unexpected<std::string>{invalid.error().what};
   world.authority.log_clock().advance(now);
-  if (auto why = why_refused(world.rights, actor, change, rights_time()))
+  if (auto why = change_refusal(world, actor, change))
     return Unexpected<std::string>{*std::move(why)};
   const OperationId op{author, world.rights_instance, ++world.rights_client_seq};
   const EditOffer offer{op, Cause::rights, now.steady_us, rights_edit(change), 0};

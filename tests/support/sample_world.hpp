@@ -93,8 +93,8 @@ inline EditRecord sample_record(SplitMix64& rng, Epoch epoch, Sequence seq) {
   const auto author = static_cast<AuthorId>(1 + rng.below(2));
   record.op = {author, 0xf000000000000000ULL + rng.below(2), seq};
   record.time_us = 1'700'000'000'000'000 + static_cast<TimeUs>(seq) * 1000;
-  record.cause = static_cast<Cause>(rng.below(kCauseMax + 1));
-  record.edit = record.cause == Cause::rights ? sample_rights_edit(rng) : sample_edit(rng);
+  record.cause = static_cast<Cause>(rng.below(kCauseMax));  // an edit of voxels
+  record.edit = sample_edit(rng);
   if (record.cause == Cause::rollback || record.cause == Cause::undo ||
       record.cause == Cause::redo) {
     record.subject = seq / 2;

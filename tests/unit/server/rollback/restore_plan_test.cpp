@@ -26,8 +26,12 @@ std::vector<EditRecord> some_records(SplitMix64& rng, std::size_t count) {
     record.op.author = static_cast<AuthorId>(1 + rng.below(kAuthors));
     if (rng.below(3) != 0) record.cause = Cause::player;
     if (record.cause == Cause::player) record.subject = 0;
-    if (record.cause != Cause::rights)
-      record.edit = random_edit_near(rng, {0, 0, 0}, Extent::cube(2 * kSampleEdge));
+    record.edit = random_edit_near(rng, {0, 0, 0}, Extent::cube(2 * kSampleEdge));
+    if (rng.below(8) == 0) {  // it touches no voxel, so no plan may depend on it
+      record.cause = Cause::rights;
+      record.subject = 0;
+      record.edit = sample_rights_edit(rng);
+    }
     records.push_back(record);
   }
   return records;

@@ -214,6 +214,10 @@ TEST_CASE("operators of the settings have every right", "[world][rights]") {
   bench.edit(1, 1, SetVoxel{{1, 1, 1}});
   bench.tick();
   CHECK(bench.rejects(1).empty());
+  const AuthorId two = bench.join(2, 2).author;
+  bench.change(GrantRole{key_of(2), kModeratorRole});
+  CHECK(bench.refusal(Restrict{RestrictionKind::ban, key_of(1), 0, ""}, 2, two) ==
+        "the player is an operator by the server's settings");
 }
 
 TEST_CASE("a frozen player stays and edits nothing", "[world][rights]") {
