@@ -89,6 +89,8 @@ Result<Command, std::string> preview_command(CommandReader reader) {
                    "\": author, since, until, box, cause or picture");
   }
   if (!reader.error().empty()) return failure("rollback preview " + reader.error());
+  if (preview.filter.cause == Cause::rights)
+    return failure("rollback preview cause \"rights\": rights undo SEQ takes these records back");
   // A preview without filters would select the whole world, most likely by mistake.
   if (preview.filter == CommandFilter{}) {
     return failure(

@@ -57,19 +57,21 @@ std::string origin_text(const ChangeOrigin& origin, const KnownPlayers& players)
 std::string rights_reason(const RightsState& state, const RightsQuestion& question, TimeUs now_us,
                           const KnownPlayers& players) {
   RightsDecision decision;
-  std::string what = "the right " + std::string(name_of(question.right));
+  std::string verb;
   if (question.at) {
     const VoxelPos at = *question.at;
     const VoxelBox voxel{at, {at.x + 1, at.y + 1, at.z + 1}};
     const auto touches = [at](const VoxelBox& box) { return box.contains(at); };
     decision = state.decide_edit(question.key, voxel, touches, now_us);
-    what = "leave to change the voxel " + text_of(at);
+    verb =
+        (decision.is_allowed ? "may change the voxel " : "may not change the voxel ") + text_of(at);
   } else {
     decision = state.decide(question.key, question.right, now_us);
+    verb = (decision.is_allowed ? "has the right " : "does not have the right ") +
+           std::string(name_of(question.right));
   }
-  return (decision.is_allowed ? "yes: " : "no: ") + players.text_of(question.key) +
-         (decision.is_allowed ? " has " : " has not ") + what + "\n" +
-         decided_by(state, decision, question.key, now_us) + " (" +
+  return (decision.is_allowed ? "yes: " : "no: ") + players.text_of(question.key) + " " + verb +
+         "\n" + decided_by(state, decision, question.key, now_us) + " (" +
          origin_text(decision.by, players) + ")";
 }
 

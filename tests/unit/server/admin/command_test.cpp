@@ -86,6 +86,8 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
       "rollback preview: say whose edits, when, where or why: author, since, until, box or cause");
   CHECK(mistake("rollback preview by ana") ==
         "rollback preview \"by\": author, since, until, box, cause or picture");
+  CHECK(mistake("rollback preview cause rights") ==
+        "rollback preview cause \"rights\": rights undo SEQ takes these records back");
   CHECK(mistake("log since yesterday") ==
         "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, "
         "1w) or when (2026-11-21T23:57:42Z, in UTC)");

@@ -85,7 +85,8 @@ TEST_CASE("why names the role that decides, and its record", "[admin][rights]") 
   state.apply(GrantRole{kAna, kVisitorRole}, {7, 3, kNow});
   CHECK(why(state, {kAna, Right::build, {}}) ==
         "no: " + named("ana #1", kAna) +
-            " has not the right build\nthe player was given the role visitor (" + record(7) + ")");
+            " does not have the right build\nthe player was given the role visitor (" + record(7) +
+            ")");
   state.apply(DefineRole{{kVisitorRole, {Right::see, Right::build}, 0, 0, 0}}, {8, 3, kNow});
   CHECK(why(state, {kAna, Right::build, {}}) ==
         "yes: " + named("ana #1", kAna) + " has the right build\nthe role visitor is see,build (" +
@@ -97,7 +98,7 @@ TEST_CASE("why names the restriction with its reason", "[admin][rights]") {
   state.apply(Restrict{RestrictionKind::freeze, kAna, kNow + kDay, "grief"}, {7, 3, kNow});
   CHECK(why(state, {kAna, Right::build, VoxelPos{1, 2, 3}}) ==
         "no: " + named("ana #1", kAna) +
-            " has not leave to change the voxel 1 2 3\n"
+            " may not change the voxel 1 2 3\n"
             "the player is frozen until 2001-09-10T01:46:40Z: grief (" +
             record(7) + ")");
 }
@@ -108,7 +109,7 @@ TEST_CASE("why names the box that decides", "[admin][rights]") {
   state.apply(Protect{{"town", {{0, 0, 0}, {9, 9, 9}}, 0, kMole, {}, {}}}, {7, 3, kNow});
   CHECK(why(state, {kAna, Right::build, VoxelPos{1, 2, 3}}) ==
         "no: " + named("ana #1", kAna) +
-            " has not leave to change the voxel 1 2 3\n"
+            " may not change the voxel 1 2 3\n"
             "the ground is protected: town 0 0 0 to 8 8 8 owner " +
             key_fingerprint(kMole) + " (" + record(7) + ")");
   CHECK(why(state, {kMole, Right::build, VoxelPos{1, 2, 3}}).starts_with("yes: "));

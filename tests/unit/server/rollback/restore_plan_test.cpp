@@ -41,7 +41,7 @@ bool answers(const SelectionFilter& filter, const EditRecord& record) {
   const bool by_author =
       filter.authors.empty() ||
       std::count(filter.authors.begin(), filter.authors.end(), record.op.author) != 0;
-  return by_author && record.time_us >= filter.from_us && record.time_us <= filter.until_us &&
+  return record.cause != Cause::rights && by_author && record.time_us >= filter.from_us && record.time_us <= filter.until_us &&
          (!filter.cause || *filter.cause == record.cause);
 }
 
