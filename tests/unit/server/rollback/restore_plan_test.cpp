@@ -41,8 +41,8 @@ bool answers(const SelectionFilter& filter, const EditRecord& record) {
   const bool by_author =
       filter.authors.empty() ||
       std::count(filter.authors.begin(), filter.authors.end(), record.op.author) != 0;
-  return record.cause != Cause::rights && by_author && record.time_us >= filter.from_us && record.time_us <= filter.until_us &&
-         (!filter.cause || *filter.cause == record.cause);
+  return record.cause != Cause::rights && by_author && record.time_us >= filter.from_us &&
+         record.time_us <= filter.until_us && (!filter.cause || *filter.cause == record.cause);
 }
 
 SelectionFilter random_filter(SplitMix64& rng, const std::vector<EditRecord>& records) {
