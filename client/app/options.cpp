@@ -7,6 +7,7 @@
 #include "common/core/text.hpp"
 #include "common/os/output_file.hpp"
 #include "protocol/codec/chunk_codec.hpp"
+#include "protocol/codec/server_link.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -32,7 +33,8 @@ struct RawOptions {
 
 void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   app.add_option("--connect", raw.address,
-                 "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort));
+                 "server: HOST, HOST:PORT or a link runstone://HOST:PORT/#INVITE; default port " +
+                     std::to_string(kDefaultPort));
   CLI::Option* const insecure =
       app.add_flag("--insecure", raw.insecure,
                    "do not encrypt the connection; for servers that run with --insecure");
@@ -110,7 +112,10 @@ void add_modes(CLI::App& app, ClientOptions& out) {
 void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   if (!out.draw) {
     if (raw.address.empty()) throw CLI::RequiredError("--connect");
-    auto server = parse_host_port(raw.address, kDefaultPort);
+    auto link = parse_server_link(raw.address);
+    if (!link) throw CLI::ValidationError("--connect", link.error());
+    out.ticket = std::move(link->ticket);
+    auto server = parse_host_port(link->address, kDefaultPort);
     if (!server) throw CLI::ValidationError("--connect", server.error());
     out.server = *std::move(server);
   }

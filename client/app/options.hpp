@@ -15,6 +15,7 @@ struct ClientOptions {
   std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
   std::string name = "builder";
   std::string key_file;            // empty: a new key, for this process only
+  std::string ticket;              // an invite token from the link; empty: none
   std::uint8_t view_radius = 6;    // chunks, horizontal
   std::uint8_t view_radius_v = 3;  // chunks, vertical
   bool headless = false;           // off screen, no display needed

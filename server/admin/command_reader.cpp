@@ -36,6 +36,13 @@ Result<std::vector<std::string>, std::string> command_words(std::string_view lin
   return words;
 }
 
+std::optional<std::uint64_t> hex_number_of(std::string_view text) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, 16);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
 bool CommandReader::take_word(std::string_view word) {
   if (at_end() || peek() != word) return false;
   ++next_;

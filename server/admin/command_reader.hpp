@@ -29,6 +29,9 @@ std::optional<Number> number_of(std::string_view text) {
   return number;
 }
 
+/// Returns the number that the whole text is in hexadecimal digits, or nullopt.
+std::optional<std::uint64_t> hex_number_of(std::string_view text);
+
 class CommandReader {
  public:
   /// Reads from the word `next` on. `words` must outlive the reader. `now_us` (UTC) is the time to

@@ -107,6 +107,12 @@ constexpr std::array kCommandRows = {
     row<RevokeCommand>({Right::grant},
                        "revoke PLAYER             give a player the default role again"),
     row<ListGrantsCommand>({Right::grant}, "grants                    who has which role"),
+    row<CreateInviteCommand>({Right::grant},
+                             "invite [role ROLE] [uses N] [days N]\n"
+                             "                          make a link with which players join and "
+                             "get a role"),
+    row<CancelInviteCommand>({Right::grant}, "invite cancel ID          end an invite"),
+    row<ListInvitesCommand>({Right::grant}, "invites                   the invites in force"),
     row<SetRoleCommand>({Right::administer},
                         "role set NAME RIGHT,RIGHT,... [volume N] [claims N] [claim-volume N]\n"
                         "                          define a role; volume: voxels of one edit"),

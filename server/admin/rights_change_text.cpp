@@ -1,5 +1,7 @@
 #include "server/admin/rights_change_text.hpp"
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <variant>
 
@@ -35,6 +37,15 @@ std::string line_for(const Protect& change) {
   return "protected " + change.box.name + " " + box_text(change.box);
 }
 std::string line_for(const Unprotect& change) { return "no longer protected: " + change.box; }
+std::string line_for(const CreateInvite& change) {
+  return "made the invite " + invite_text(change.invite);
+}
+std::string line_for(const AcceptInvite& change) {
+  return key_fingerprint(change.key) + " accepted the invite " + invite_id_text(change.invite);
+}
+std::string line_for(const CancelInvite& change) {
+  return "cancelled the invite " + invite_id_text(change.invite);
+}
 
 }  // namespace
 
@@ -91,6 +102,13 @@ std::string box_text(const ProtectedBox& box) {
   std::string roles;
   for (const std::string& role : box.roles) roles += (roles.empty() ? " roles " : ",") + role;
   return text + members + roles;
+}
+
+std::string invite_id_text(InviteId invite) { return fmt::format("{:016x}", invite); }
+
+std::string invite_text(const Invite& invite) {
+  return invite_id_text(invite.id) + ": role " + invite.role + ", " + std::to_string(invite.uses) +
+         (invite.uses == 1 ? " use" : " uses") + ", until " + utc_text(invite.until_us);
 }
 
 std::string rights_change_text(const RightsChange& change) {

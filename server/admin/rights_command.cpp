@@ -160,6 +160,38 @@ Parsed kick_command(CommandReader reader) {
   return parsed_or_error(reader, command);
 }
 
+/// Takes the words after `invite`. Options may have two dashes, as people type them in a shell.
+Parsed invite_command(CommandReader reader, TimeUs now_us) {
+  constexpr const char* kOptions = "role ROLE, uses N, days N, for DURATION or cancel ID";
+  constexpr std::int64_t kDaysMax = 3650;
+  constexpr TimeUs kDayUs = TimeUs{24} * 3600 * 1'000'000;
+  if (reader.take_word("cancel")) {
+    const std::string id = reader.take("invite cancel", "an id (invites lists them)");
+    const auto invite = hex_number_of(id);
+    if (!invite) reader.wrong("invite cancel \"" + id + "\": an id (invites lists them)");
+    reader.expect_end("invite cancel " + id);
+    return parsed_or_error(reader, CancelInviteCommand{invite.value_or(0)});
+  }
+  CreateInviteCommand command;
+  command.until_us = now_us + 7 * kDayUs;
+  while (!reader.at_end()) {
+    std::string option = reader.take("invite", kOptions);
+    if (option.starts_with("--")) option.erase(0, 2);
+    if (option == "role") {
+      command.role = take_rights_name(reader, "invite role");
+    } else if (option == "uses") {
+      command.uses = static_cast<std::uint32_t>(reader.number("invite uses", 1, kInviteUsesMax));
+    } else if (option == "days") {
+      command.until_us = now_us + reader.number("invite days", 1, kDaysMax) * kDayUs;
+    } else if (option == "for") {
+      command.until_us = reader.end_of_duration("invite for");
+    } else {
+      reader.wrong("invite \"" + option + "\": " + kOptions);
+    }
+  }
+  return parsed_or_error(reader, command);
+}
+
 /// Takes a box: six numbers, or `columns` and four.
 VoxelBox take_ground(CommandReader& reader, const std::string& word) {
   if (!reader.take_word("columns")) return reader.box(word);
@@ -316,6 +348,8 @@ std::optional<Parsed> parse_rights_command(const std::vector<std::string>& words
   if (name == "protected") return protected_command(reader);
   if (name == "why") return why_command(reader);
   if (name == "rights") return undo_rights_command(reader);
+  if (name == "invite") return invite_command(reader, now_us);
+  if (name == "invites") return alone(ListInvitesCommand{});
   return std::nullopt;
 }
 

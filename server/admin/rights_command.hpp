@@ -46,6 +46,20 @@ struct ListGrantsCommand {
   friend bool operator==(const ListGrantsCommand&, const ListGrantsCommand&) = default;
 };
 
+struct CreateInviteCommand {
+  std::string role = kBuilderRole;
+  std::uint32_t uses = 1;
+  TimeUs until_us = 0;  // UTC
+  friend bool operator==(const CreateInviteCommand&, const CreateInviteCommand&) = default;
+};
+struct CancelInviteCommand {
+  InviteId invite = 0;
+  friend bool operator==(const CancelInviteCommand&, const CancelInviteCommand&) = default;
+};
+struct ListInvitesCommand {
+  friend bool operator==(const ListInvitesCommand&, const ListInvitesCommand&) = default;
+};
+
 /// Whom a restriction is for: a player, or a range of addresses.
 struct RestrictionWord {
   std::string player;                 // empty: a range
@@ -122,7 +136,8 @@ using RightsCommand =
     std::variant<ListRolesCommand, SetRoleCommand, RemoveRoleCommand, DefaultRoleCommand,
                  GrantCommand, RevokeCommand, ListGrantsCommand, RestrictCommand, LiftCommand,
                  ListRestrictionsCommand, KickCommand, ProtectCommand, BoxMembersCommand,
-                 ClaimCommand, UnprotectCommand, ListBoxesCommand, WhyCommand, UndoRightsCommand>;
+                 ClaimCommand, UnprotectCommand, ListBoxesCommand, WhyCommand, UndoRightsCommand,
+                 CreateInviteCommand, CancelInviteCommand, ListInvitesCommand>;
 
 /// Parses the words of a line, of which there is at least one. Returns nullopt if the first word is
 /// no command about rights. The error is one line of text for the person who typed the command.

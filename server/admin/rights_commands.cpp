@@ -402,4 +402,23 @@ void RightsCommands::undo_record(Sequence seq, const std::vector<RightsRecord>& 
              ") is taken back: " + rights_change_text(*inverse));
 }
 
+void RightsCommands::carry_out(const CreateInviteCommand& command, const Call& call) {
+  const Invite invite{world_.new_invite_id(), command.role, command.uses, command.until_us};
+  change(call, CreateInvite{invite},
+         world_.invite_link(invite.id) + "\ninvite " + invite_text(invite) +
+             ". Whoever has the link can use it: pass it on in private");
+}
+
+void RightsCommands::carry_out(const CancelInviteCommand& command, const Call& call) {
+  change(call, CancelInvite{command.invite},
+         "invite " + invite_id_text(command.invite) +
+             " is cancelled; players who accepted it keep their role");
+}
+
+void RightsCommands::carry_out(const ListInvitesCommand& /*command*/, const Call& call) {
+  with_players(call, {}, [this, call](const Players& players, const Keys&) {
+    call.reply({invite_list(world_.rights(), world_.rights_time(), *players), true, true});
+  });
+}
+
 }  // namespace runstone

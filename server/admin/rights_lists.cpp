@@ -65,6 +65,16 @@ std::string grant_list(const RightsState& state, const KnownPlayers& players) {
   return lines.text("nobody has a granted role (roles names the default role)");
 }
 
+std::string invite_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players) {
+  RightsLines lines;
+  for (const auto& [id, open] : state.invites()) {
+    if (state.usable_invite(id, now_us) == nullptr || !lines.take()) continue;
+    lines.add(invite_text(open.value.invite) + ", accepted " + std::to_string(open.value.accepted) +
+              "; " + origin_text(open.by, players));
+  }
+  return lines.text("there are no invites in force (invite makes one)");
+}
+
 std::string restriction_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players) {
   RightsLines lines;
   for (const Decided<Restrict>* restriction : state.restrictions()) {

@@ -14,6 +14,8 @@ namespace runstone {
 std::string role_list(const RightsState& state, const KnownPlayers& players);
 /// Returns one line per grant: player, role, and record.
 std::string grant_list(const RightsState& state, const KnownPlayers& players);
+/// Returns one line per invite that can be accepted: number, role, uses, end, and record.
+std::string invite_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players);
 /// Returns one line per restriction in force: whom it is for, its end, reason, and record.
 std::string restriction_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players);
 /// Returns one line per box: name, ground, priority, owner, who else may change it, and record.

@@ -1,11 +1,14 @@
 #include "server/world/world_server.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "common/core/key_text.hpp"
+#include "protocol/codec/invite_token.hpp"
+#include "protocol/codec/server_link.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/cached_chunk_handlers.hpp"
 #include "server/world/command_handlers.hpp"
@@ -104,6 +107,7 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   mine.reach_max = config.reach_max;
   mine.speed_max = config.speed_max;
   mine.operators = config.operators;
+  mine.public_address = config.public_address;
 }
 
 void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock from,
@@ -203,6 +207,19 @@ Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& cha
                                                          const RightsActor& actor, AuthorId author,
                                                          const Clocks& now) {
   return runstone::change_rights(*state_, change, actor, author, now);
+}
+
+InviteId WorldServer::new_invite_id() {
+  std::array<std::uint8_t, sizeof(InviteId)> bytes{};
+  state_->random(bytes);
+  return ByteReader(bytes).u64();
+}
+
+std::string WorldServer::invite_link(InviteId invite) const {
+  const WorldConfig& config = state_->config;
+  const std::string token = invite_token(invite, config.world_id, config.server_keys);
+  const std::string address = config.public_address.empty() ? "HOST" : config.public_address;
+  return text_of(ServerLink{address, token});
 }
 
 std::size_t WorldServer::kick(const RestrictionSubject& who, const std::string& reason) {

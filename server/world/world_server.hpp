@@ -107,6 +107,11 @@ class WorldServer {
   /// was refused, as a sentence.
   Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
                                               AuthorId author, const Clocks& now);
+  /// Returns a random number for a new invite.
+  InviteId new_invite_id();
+  /// Returns the link with which players accept an invite. It has the server's public address, or
+  /// HOST in its place.
+  std::string invite_link(InviteId invite) const;
   /// Closes the sessions of a key, or of a range of addresses. Returns their number.
   std::size_t kick(const RestrictionSubject& who, const std::string& reason);
   /// Returns why the author may not make this edit, or nullopt. The server (0) may make every edit.

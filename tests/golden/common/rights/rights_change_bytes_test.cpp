@@ -64,6 +64,16 @@ TEST_CASE("the bytes of restrictions are pinned", "[rights][golden]") {
                      joined({{0x06, 0x01, 0x00}, key_bytes(0x10)}));
 }
 
+TEST_CASE("the bytes of invites are pinned", "[rights][golden]") {
+  check_change_bytes(CreateInvite{{0x0123456789abcdef, "mason", 5, 300}},
+                     {0x09, 0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01, 5, 'm', 'a', 's', 'o',
+                      'n', 5, 0xac, 0x02});
+  check_change_bytes(
+      AcceptInvite{1, counting_key(0x10)},
+      joined({{0x0a, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}, key_bytes(0x10)}));
+  check_change_bytes(CancelInvite{1}, {0x0b, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00});
+}
+
 TEST_CASE("the bytes of protected boxes are pinned", "[rights][golden]") {
   ProtectedBox box;
   box.name = "home";

@@ -97,7 +97,7 @@ TEST_CASE("a role is given within the rights of the giver, to players with fewer
   CHECK_FALSE(world.allows(player(kGranter), GrantRole{kChief, kVisitorRole}));
   CHECK(world.why(player(kGranter), GrantRole{kGranter, kVisitorRole}) ==
         "You cannot do this to yourself.");
-  CHECK(world.why(player(kGranter), GrantRole{kMason, "nobody"}) == "There is no role \"nobody\".");
+  CHECK(world.why(player(kGranter), GrantRole{kMason, "pilot"}) == "There is no role \"pilot\".");
   CHECK(world.allows(kConsole, GrantRole{kRoot, kAdministratorRole}));
   CHECK_FALSE(world.allows(RightsActor{kMason, true}, GrantRole{kMason, kVisitorRole}));
 }

@@ -20,7 +20,7 @@ ProtectedBox box_named(const std::string& name, const VoxelBox& box) {
 
 TEST_CASE("a world without records has the built-in roles, and players are builders", "[rights]") {
   const RightsState state;
-  CHECK(state.roles().size() == 4);
+  CHECK(state.roles().size() == 5);
   CHECK(state.role_of(kAda).name == kBuilderRole);
   CHECK(state.default_role().value == kBuilderRole);
   CHECK(state.default_role().by.seq == 0);

@@ -103,6 +103,21 @@ TEST_CASE("questions and the way back are parsed", "[admin][rights]") {
   CHECK(parsed<UndoRightsCommand>("rights undo 9120").seq == 9120);
 }
 
+TEST_CASE("commands about invites are parsed", "[admin][rights]") {
+  constexpr TimeUs kDay = 86'400'000'000;
+  CHECK(parsed<CreateInviteCommand>("invite") ==
+        CreateInviteCommand{"builder", 1, kNow + 7 * kDay});
+  const CreateInviteCommand five{"visitor", 5, kNow + 3 * kDay};
+  CHECK(parsed<CreateInviteCommand>("invite --uses 5 --days 3 --role visitor") == five);
+  CHECK(parsed<CreateInviteCommand>("invite role visitor uses 5 for 72h") == five);
+  CHECK(parsed<CancelInviteCommand>("invite cancel 00000000000000ff").invite == 255);
+  parsed<ListInvitesCommand>("invites");
+  CHECK(mistake("invite uses 0").find("uses \"0\"") != std::string::npos);
+  CHECK(mistake("invite 5").find("invite \"5\": role ROLE") != std::string::npos);
+  CHECK(mistake("invite cancel x") == "invite cancel \"x\": an id (invites lists them)");
+  CHECK(mistake("invites 3").find("nothing comes after invites") != std::string::npos);
+}
+
 TEST_CASE("an error in a command about roles names the wrong word", "[admin][rights]") {
   CHECK(mistake("roles all") == "roles \"all\": nothing comes after roles");
   CHECK(mistake("role") == "role: set, remove or default is missing");

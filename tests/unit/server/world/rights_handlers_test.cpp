@@ -243,6 +243,58 @@ TEST_CASE("a full log refuses a change of rights, and nothing is half done", "[w
   CHECK(bench.environment.records.empty());
 }
 
+TEST_CASE("a world of invited players admits who brings a valid invite", "[world][rights]") {
+  RightsBench bench;
+  bench.change(SetDefaultRole{kNobodyRole});
+  const InviteId id = bench.server.new_invite_id();
+  bench.change(CreateInvite{{id, kBuilderRole, 1, bench.now().utc_us + 60'000'000}});
+  const std::string link = bench.server.invite_link(id);
+  REQUIRE(link.starts_with("runstone://HOST/#"));
+  const std::string token = link.substr(link.find('#') + 1);
+
+  bench.knock(1, 1, "");
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::not_admitted);
+  CHECK(bench.environment.closed[0].text == "your role does not allow it: nobody");
+  bench.knock(2, 1, std::string(96, 'A'));
+  CHECK(bench.environment.closed.back().text ==
+        "your role does not allow it: nobody (the invite is not one of this world)");
+  bench.tick();
+  CHECK(bench.server.author_of(key_of(1)) == std::nullopt);  // a refused player leaves nothing
+
+  bench.knock(3, 1, token);
+  REQUIRE(bench.environment.messages<SessionAccepted>(3, kEdge).size() == 1);
+  const EditRecord& record = bench.environment.records.back();
+  CHECK(record.op.author == bench.environment.messages<SessionAccepted>(3, kEdge)[0].author);
+  CHECK(*rights_change_of(record.edit) == RightsChange(AcceptInvite{id, key_of(1)}));
+  CHECK(bench.environment.players.back().key == key_of(1));
+
+  bench.knock(4, 2, token);  // it had one use
+  CHECK(bench.environment.messages<SessionAccepted>(4, kEdge).empty());
+  CHECK(bench.environment.closed.back().text.find("used as often as it may be") !=
+        std::string::npos);
+  bench.server.disconnected(3);
+  bench.knock(5, 1, token);  // the player has a role now, and needs no invite
+  CHECK(bench.environment.messages<SessionAccepted>(5, kEdge).size() == 1);
+}
+
+TEST_CASE("an invite is not used up while the log is full", "[world][rights]") {
+  RightsBench bench;
+  bench.change(SetDefaultRole{kNobodyRole});
+  const InviteId id = bench.server.new_invite_id();
+  bench.change(CreateInvite{{id, kBuilderRole, 1, bench.now().utc_us + 60'000'000}});
+  const std::string link = bench.server.invite_link(id);
+  const std::string token = link.substr(link.find('#') + 1);
+  bench.environment.log_room = false;
+  bench.knock(1, 1, token);
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].text.find("try again later") != std::string::npos);
+  CHECK(bench.server.rights().invites().at(id).value.accepted == 0);
+  bench.environment.log_room = true;
+  bench.knock(2, 1, token);
+  CHECK(bench.environment.messages<SessionAccepted>(2, kEdge).size() == 1);
+}
+
 TEST_CASE("kick closes the sessions of a key or of a range of addresses", "[world][rights]") {
   RightsBench bench;
   bench.join(1, 1, 1, kHome);
