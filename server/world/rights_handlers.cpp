@@ -95,7 +95,7 @@ std::optional<std::string> join_refusal(const WorldState& world, const PublicKey
   if (auto banned = ban_refusal(world, key, address)) return banned;
   const RightsDecision decision = decide(world, key, Right::see);
   if (decision.is_allowed) return std::nullopt;
-  return refusal_text(world, key, decision);
+  return "only invited players may join: your role is " + decision.role;
 }
 
 std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey& key,

@@ -184,7 +184,7 @@ TEST_CASE("a role that may not see closes the sessions of its players", "[world]
   bench.change(DefineRole{{"nobody", {}, 0, 0, 0}});
   bench.change(GrantRole{key_of(1), "nobody"});
   REQUIRE(bench.environment.closed.size() == 1);
-  CHECK(bench.environment.closed[0].text == "your role does not allow it: nobody");
+  CHECK(bench.environment.closed[0].text == "only invited players may join: your role is nobody");
 }
 
 TEST_CASE("players change rights as far as their role goes, and the record names them",
@@ -255,10 +255,10 @@ TEST_CASE("a world of invited players admits who brings a valid invite", "[world
   bench.knock(1, 1, "");
   REQUIRE(bench.environment.closed.size() == 1);
   CHECK(bench.environment.closed[0].reason == GoodbyeReason::not_admitted);
-  CHECK(bench.environment.closed[0].text == "your role does not allow it: nobody");
+  CHECK(bench.environment.closed[0].text == "only invited players may join: your role is nobody");
   bench.knock(2, 1, std::string(96, 'A'));
   CHECK(bench.environment.closed.back().text ==
-        "your role does not allow it: nobody (the invite is not one of this world)");
+        "only invited players may join: your role is nobody (the invite is not one of this world)");
   bench.tick();
   CHECK(bench.server.author_of(key_of(1)) == std::nullopt);  // a refused player leaves nothing
 
