@@ -115,6 +115,9 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
     auto link = parse_server_link(raw.address);
     if (!link) throw CLI::ValidationError("--connect", link.error());
     out.ticket = std::move(link->ticket);
+    if (!out.ticket.empty() && out.key_file.empty())
+      throw CLI::ValidationError("--connect",
+                                 "the invite is for an identity that you keep: add --key FILE");
     auto server = parse_host_port(link->address, kDefaultPort);
     if (!server) throw CLI::ValidationError("--connect", server.error());
     out.server = *std::move(server);
