@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kProtocolVersion = 2;
 // Features: optional parts of the protocol, a bit each.
 inline constexpr std::uint64_t kFeatureCommands = 1;    // CommandRequest and CommandOutput
 inline constexpr std::uint64_t kFeatureReceiveAck = 2;  // ReceiveAck, by which terrain is paced
-inline constexpr std::uint64_t kFeatureNames = 4;  // the client keeps its key: it claims its name
+inline constexpr std::uint64_t kFeatureNames = 4;   // the client keeps its key: it claims its name
 inline constexpr std::uint64_t kFeatureRights = 8;  // Permissions and ProtectedGround
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights;
@@ -86,7 +86,7 @@ inline constexpr std::size_t kTouchedChunksMax = 4096;       // per edit
 inline constexpr std::size_t kClaimsPerSessionMax = 32'768;  // claims that wait for an answer
 
 // Rights.
-inline constexpr std::size_t kGroundBoxesMax = 1024;  // that a session knows at a time
+inline constexpr std::size_t kGroundBoxesMax = 1024;    // that a session knows at a time
 inline constexpr std::size_t kGroundNameBytesMax = 32;  // of boxes and roles
 inline constexpr std::int32_t kGroundPriorityMax = 1000;
 

@@ -36,7 +36,8 @@ std::optional<RightsDecision> RightsState::forbidden(const PublicKey& key, Right
     return RightsDecision{false, reason, found->by, role_of(key).name, nullptr};
   };
   if (auto ban = answer(RestrictionKind::ban, Reason::ban)) return ban;
-  if (taken_by(RestrictionKind::mute).has(right)) return answer(RestrictionKind::mute, Reason::mute);
+  if (taken_by(RestrictionKind::mute).has(right))
+    return answer(RestrictionKind::mute, Reason::mute);
   if (taken_by(RestrictionKind::freeze).has(right))
     return answer(RestrictionKind::freeze, Reason::freeze);
   return std::nullopt;

@@ -12,8 +12,9 @@ namespace runstone {
 
 /// What a player may do where no protected box decides. A later message replaces it.
 struct Permissions {
-  std::string role;          // 1 .. kGroundNameBytesMax bytes
-  std::uint32_t rights = 0;  // in force; bit n is the right with the value n; unknown bits are valid
+  std::string role;  // 1 .. kGroundNameBytesMax bytes
+  std::uint32_t rights =
+      0;  // in force; bit n is the right with the value n; unknown bits are valid
   std::uint64_t edit_volume_max = 0;  // voxels of one edit of the role; 0: no limit of its own
   /// Why the player may not edit anything, for the player; empty if the player may.
   std::string edits_refused;

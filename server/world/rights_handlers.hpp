@@ -18,6 +18,8 @@ RightsActor actor_of(const WorldState& world, const PublicKey& key);
 
 /// Decides about a right without a place.
 RightsDecision decide(const WorldState& world, const PublicKey& key, Right right);
+/// Returns why the player may not edit at all, if a restriction forbids it, or nullopt.
+std::optional<std::string> freeze_text(const WorldState& world, const PublicKey& key);
 /// Returns why a player may not join from this address, for goodbye not_admitted, or nullopt.
 std::optional<std::string> join_refusal(const WorldState& world, const PublicKey& key,
                                         AddressBlock address);
@@ -32,8 +34,8 @@ std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey
 /// operator.
 std::optional<std::string> change_refusal(const WorldState& world, const RightsActor& actor,
                                           const RightsChange& change);
-/// Takes over the changes of rights among these records, which were ordered just now, and closes the
-/// sessions that may not stay.
+/// Takes over the changes of rights among these records, which were ordered just now, closes the
+/// sessions that may not stay, and marks the others for what changes for them.
 void apply_rights(WorldState& world, const std::vector<EditRecord>& records);
 
 /// Closes the sessions of a player or of a range of addresses. Returns their number.

@@ -15,6 +15,7 @@
 #include "server/world/handshake_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
+#include "server/world/protected_ground.hpp"
 #include "server/world/request_handlers.hpp"
 #include "server/world/rights_handlers.hpp"
 #include "server/world/time_travel.hpp"
@@ -116,6 +117,7 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   mine.reach_max = config.reach_max;
   mine.speed_max = config.speed_max;
   mine.operators = config.operators;
+  rights_changed(*state_, {});
 }
 
 void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock from,
@@ -291,6 +293,7 @@ void WorldServer::tick(const Clocks& now) {
   forget_gone_authors(world);
   close_silent_sessions(world, now);
   apply_due_views(world, now);
+  send_due_ground(world);
   broadcast_player_list(world);
   broadcast_poses(world, now);
   broadcast_durable(world, now);

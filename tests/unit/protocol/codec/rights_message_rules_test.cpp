@@ -67,7 +67,8 @@ TEST_CASE("permissions are refused with a text of the wrong size", "[protocol][r
   CHECK(std::get<Permissions>(*unknown_rights).rights == ~0U);
 }
 
-TEST_CASE("protected ground is refused with a bad box, a bad order, or too many", "[protocol][rights]") {
+TEST_CASE("protected ground is refused with a bad box, a bad order, or too many",
+          "[protocol][rights]") {
   refuses<ProtectedGround, GroundFields>({
       [](auto& g) { g.boxes.clear(); },
       [](auto& g) { g.boxes[0].seq = 0; },
