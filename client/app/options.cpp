@@ -83,6 +83,8 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
       ->check(output_refusal);
   app.add_option("--screenshot-dir", out.screenshot_dir, "folder for screenshots")
       ->check(CLI::ExistingDirectory);
+  app.add_flag("--show-protected", out.show_protected,
+               "outline protected boxes: green where the player may edit, red elsewhere");
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
       ->check(CLI::Range(0U, 64U));
   app.add_option("--memory-mib", out.memory_mib,

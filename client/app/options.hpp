@@ -26,6 +26,7 @@ struct ClientOptions {
   std::string digests;             // file; empty: none
   std::uint8_t encodings = 7;      // as in Hello
   std::string screenshot_dir = ".";
+  bool show_protected = false;  // outline protected boxes from the start
   bool exit_on_goodbye = false;
   double reconnect_seconds = 30;    // the client ends after this time without an open world
   unsigned workers = 0;             // mesh threads, at least 1 after parsing

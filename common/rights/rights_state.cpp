@@ -12,11 +12,11 @@ bool holds(const Decided<Restrict>& restriction, TimeUs now_us) {
   return until_us == 0 || now_us < until_us;
 }
 
-/// Returns true if box `a` decides before box `b`.
-bool decides_before(const Decided<ProtectedBox>& a, const Decided<ProtectedBox>& b) {
-  if (a.value.priority != b.value.priority) return a.value.priority > b.value.priority;
-  if (a.by.seq != b.by.seq) return a.by.seq > b.by.seq;
-  return a.value.name < b.value.name;
+BoxRank rank_of(const Decided<ProtectedBox>& box) {
+  return {box.value.priority, box.by.seq, box.value.name};
+}
+bool decides_first(const Decided<ProtectedBox>& a, const Decided<ProtectedBox>& b) {
+  return decides_before(rank_of(a), rank_of(b));
 }
 
 AddressRange range_around(AddressBlock address, unsigned bits) {
@@ -215,14 +215,25 @@ std::vector<const Decided<ProtectedBox>*> RightsState::boxes_in(const VoxelBox& 
     return true;
   });
   std::sort(found.begin(), found.end(),
-            [](const auto* a, const auto* b) { return decides_before(*a, *b); });
+            [](const auto* a, const auto* b) { return decides_first(*a, *b); });
+  return found;
+}
+
+std::vector<const Decided<ProtectedBox>*> RightsState::some_boxes_in(const VoxelBox& box,
+                                                                     std::size_t count_max) const {
+  std::vector<const Decided<ProtectedBox>*> found;
+  index_.visit_overlapping(box, [&](BoxIndex::Id id) {
+    if (found.size() == count_max) return false;
+    found.push_back(indexed_[id]);
+    return true;
+  });
   return found;
 }
 
 const Decided<ProtectedBox>* RightsState::box_at(VoxelPos at) const {
   const Decided<ProtectedBox>* first = nullptr;
   index_.visit_overlapping({at, {at.x + 1, at.y + 1, at.z + 1}}, [&](BoxIndex::Id id) {
-    if (first == nullptr || decides_before(*indexed_[id], *first)) first = indexed_[id];
+    if (first == nullptr || decides_first(*indexed_[id], *first)) first = indexed_[id];
     return true;
   });
   return first;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,6 +15,7 @@
 
 #include "common/core/ids.hpp"
 #include "common/rights/box_index.hpp"
+#include "common/rights/ground_decision.hpp"
 #include "common/rights/rights_change.hpp"
 
 namespace runstone {
@@ -59,11 +59,8 @@ struct OpenInvite {
   friend bool operator==(const OpenInvite&, const OpenInvite&) = default;
 };
 
-/// Answers whether the edit under check has a voxel in the box. Exact: a bounding box does not do.
-using TouchesBox = std::function<bool(const VoxelBox&)>;
-
-/// The most parts that decide_edit() makes of one box.
-inline constexpr std::size_t kEditBoxPartsMax = 4096;
+/// Returns true if the box admits the player, who has this role.
+bool admits(const ProtectedBox& box, const PublicKey& key, const Role& role);
 
 class RightsState {
  public:
@@ -121,6 +118,11 @@ class RightsState {
   const std::map<std::string, Decided<ProtectedBox>>& boxes() const { return boxes_; }
   /// Returns the boxes that overlap this one: those that decide first come first.
   std::vector<const Decided<ProtectedBox>*> boxes_in(const VoxelBox& box) const;
+  /// Returns `count_max` of the boxes that overlap this one, or all of them if there are not more,
+  /// in no special order. Requires that `box` is not empty. Cost: O(log^2 boxes + count_max), if few
+  /// boxes overlap one another.
+  std::vector<const Decided<ProtectedBox>*> some_boxes_in(const VoxelBox& box,
+                                                          std::size_t count_max) const;
   /// Returns the box that decides for a voxel, or null. Cost: O(log boxes).
   const Decided<ProtectedBox>* box_at(VoxelPos at) const;
   struct Holding {
@@ -135,14 +137,14 @@ class RightsState {
   /// Decides whether the player has the right, without regard to a place. Mute and freeze count for
   /// `chat`, and for `build`, `build_protected` and `undo`; a ban of the key counts for everything.
   RightsDecision decide(const PublicKey& key, Right right, TimeUs now_us) const;
-  /// Decides whether the player may make an edit. The rule: an edit is rejected as a whole if the
-  /// player may not change a single one of its voxels, mask ignored. `bounds` is its bounding box.
-  /// Free ground, which no box protects, needs the right `build`. If the edit is allowed and a box
-  /// admits the player to a part of it, the answer names the box that decides first. Requires that
-  /// the edit has a voxel in `bounds`. `touches` is called with boxes in `bounds` that are not
-  /// empty. Cost: O(log boxes) for an edit that meets no box. For one that meets m boxes: O(m log
-  /// m), m + p calls of `touches` and O(m * p) cuts, where p is the number of parts. At most
-  /// kEditBoxPartsMax parts are made of one box: an edit that would need more is rejected.
+  /// Returns the rights of the player's role without those that a restriction takes away: the ones
+  /// that decide() allows.
+  RightSet rights_in_force(const PublicKey& key, TimeUs now_us) const;
+  /// Decides whether the player may make an edit: decide_ground() with the boxes that overlap
+  /// `bounds`, its bounding box. The mask of the edit is ignored. Free ground, which no box
+  /// protects, needs the right `build`. Requires that the edit has a voxel in `bounds`. `touches` is
+  /// called with boxes in `bounds` that are not empty. Cost: O(log boxes) for an edit that meets no
+  /// box. For one that meets m boxes: O(m log m), and that of decide_ground().
   RightsDecision decide_edit(const PublicKey& key, const VoxelBox& bounds,
                              const TouchesBox& touches, TimeUs now_us) const;
 

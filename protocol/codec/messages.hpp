@@ -25,6 +25,7 @@
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/frame.hpp"
+#include "protocol/codec/rights_messages.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -414,7 +415,8 @@ using Message =
     std::variant<Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, Chunks,
                  EditRequest, Commit, Reject, Durable, DigestCheck, Move, PlayerPoses, PlayerList,
                  Ping, Pong, Goodbye, ChunkUnavailable, HistoryRequest, ViewState, CommandRequest,
-                 CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified>;
+                 CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified,
+                 Permissions, ProtectedGround>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

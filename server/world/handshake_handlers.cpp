@@ -6,6 +6,7 @@
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
+#include "server/world/protected_ground.hpp"
 #include "server/world/rights_handlers.hpp"
 
 namespace runstone {
@@ -127,7 +128,9 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   world.player_list_changed = true;
   const SessionAccepted accepted{mine.author,
                                  world.authority.resolved().of(mine.author, mine.instance)};
-  if (send_or_close(world, session, accepted)) send_all_poses_to(world, session);
+  if (!send_or_close(world, session, accepted)) return;
+  start_ground(world, session);
+  send_all_poses_to(world, session);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "protocol/codec/invite_token.hpp"
+#include "protocol/rules/refusal_text.hpp"
+#include "server/world/protected_ground.hpp"
 #include "server/world/server_edits.hpp"
 
 namespace runstone {
@@ -20,6 +22,8 @@ RightsDecision granted_by_settings() {
   out.is_allowed = true;
   return out;
 }
+
+constexpr const char* kMayNotEdit = "you may not edit";
 
 /// Returns text such as "you are banned until 2026-12-01T00:00:00Z: griefing".
 std::string restriction_text(const char* what, const Restrict& restriction) {
@@ -40,14 +44,14 @@ std::string refusal_text(const WorldState& world, const PublicKey& key, const Ri
     case RightsDecision::Reason::mute:
       return restricted(RestrictionKind::mute, "you are muted");
     case RightsDecision::Reason::freeze:
-      return restricted(RestrictionKind::freeze, "you may not edit");
+      return restricted(RestrictionKind::freeze, kMayNotEdit);
     case RightsDecision::Reason::box:
-      return "the ground is protected: " + no.box->name;
+      return refused_by_box(no.box->name);
     case RightsDecision::Reason::role:
     case RightsDecision::Reason::default_role:
       break;
   }
-  return "your role does not allow it: " + no.role;
+  return refused_by_role(no.role);
 }
 
 /// Returns the player whom a change is about, or null.
@@ -80,6 +84,12 @@ RightsDecision decide(const WorldState& world, const PublicKey& key, Right right
   return world.rights.decide(key, right, rights_time(world));
 }
 
+std::optional<std::string> freeze_text(const WorldState& world, const PublicKey& key) {
+  const auto* found = world.rights.restriction(RestrictionKind::freeze, key, rights_time(world));
+  if (found == nullptr) return std::nullopt;
+  return restriction_text(kMayNotEdit, found->value);
+}
+
 std::optional<std::string> ban_refusal(const WorldState& world, const PublicKey& key,
                                        AddressBlock address) {
   if (is_operator(world, key)) return std::nullopt;
@@ -103,7 +113,7 @@ std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey
   if (is_operator(world, key)) return std::nullopt;
   const Role& role = world.rights.role_of(key);
   if (role.edit_volume_max != 0 && counted_voxels(edit) > role.edit_volume_max)
-    return "edits of your role have at most " + std::to_string(role.edit_volume_max) + " voxels";
+    return refused_by_volume(role.edit_volume_max);
   const RightsDecision decision = world.rights.decide_edit(
       key, bounding_box(edit), [&edit](const VoxelBox& box) { return touches(edit, box); },
       rights_time(world));
@@ -140,9 +150,11 @@ std::optional<std::string> accept_invite(WorldState& world, const WorldSession& 
 
 void apply_rights(WorldState& world, const std::vector<EditRecord>& records) {
   bool has_changed = false;
+  std::vector<VoxelBox> ground;
   for (const EditRecord& record : records) {
     const RightsChange* change = rights_change_of(record.edit);
     if (change == nullptr) continue;
+    add_changed_ground(world.rights, *change, ground);
     world.rights.apply(*change, {record.version.seq, record.op.author, record.time_us});
     world.rights_seq = record.version.seq;
     has_changed = true;
@@ -155,6 +167,7 @@ void apply_rights(WorldState& world, const std::vector<EditRecord>& records) {
       refused.emplace_back(id, *std::move(why));
   }
   for (const auto& [id, why] : refused) close_session(world, id, GoodbyeReason::not_admitted, why);
+  rights_changed(world, ground);
 }
 
 std::size_t kick(WorldState& world, const RestrictionSubject& who, const std::string& reason) {

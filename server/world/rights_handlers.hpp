@@ -18,6 +18,8 @@ RightsActor actor_of(const WorldState& world, const PublicKey& key);
 
 /// Decides about a right without a place.
 RightsDecision decide(const WorldState& world, const PublicKey& key, Right right);
+/// Returns why the player may not edit at all, if a restriction forbids it, or nullopt.
+std::optional<std::string> freeze_text(const WorldState& world, const PublicKey& key);
 /// Returns why a player may not join from this address because of a ban, for goodbye not_admitted, or
 /// nullopt. It costs no signature.
 std::optional<std::string> ban_refusal(const WorldState& world, const PublicKey& key,
@@ -43,8 +45,8 @@ Result<Sequence, std::string> change_rights(WorldState& world, const RightsChang
 /// nothing was granted, as a sentence, or nullopt.
 std::optional<std::string> accept_invite(WorldState& world, const WorldSession& session,
                                          const std::string& ticket, const Clocks& now);
-/// Takes over the changes of rights among these records, which were ordered just now, and closes the
-/// sessions that may not stay.
+/// Takes over the changes of rights among these records, which were ordered just now, closes the
+/// sessions that may not stay, and marks the others for what changes for them.
 void apply_rights(WorldState& world, const std::vector<EditRecord>& records);
 
 /// Closes the sessions of a player or of a range of addresses. Returns their number.

@@ -17,6 +17,7 @@
 #include "server/world/handshake_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
+#include "server/world/protected_ground.hpp"
 #include "server/world/request_handlers.hpp"
 #include "server/world/rights_handlers.hpp"
 #include "server/world/server_edits.hpp"
@@ -108,6 +109,7 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   mine.speed_max = config.speed_max;
   mine.operators = config.operators;
   mine.public_address = config.public_address;
+  rights_changed(*state_, {});
 }
 
 void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock from,
@@ -251,6 +253,7 @@ void WorldServer::tick(const Clocks& now) {
   forget_gone_authors(world);
   close_silent_sessions(world, now);
   apply_due_views(world, now);
+  send_due_ground(world);
   broadcast_player_list(world);
   broadcast_poses(world, now);
   broadcast_durable(world, now);

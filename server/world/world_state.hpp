@@ -79,6 +79,7 @@ struct WorldState {
   std::size_t view_chunks_left;     // that views may still visit on this tick
   bool views_wait = false;          // some views had to wait for the next tick
   SessionId view_applied_last = 0;  // the session whose view took effect last on a tick
+  SessionId ground_sent_last = 0;   // the session whose protected ground was sent last on a tick
   // Time travel.
   std::uint32_t history_count = 0;    // history views since the start
   std::size_t histories_opening = 0;  // requests that workers open

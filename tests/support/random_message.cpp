@@ -338,6 +338,34 @@ PlayerList any_player_list(SplitMix64& rng) {
   return m;
 }
 
+Permissions any_permissions(SplitMix64& rng) {
+  Permissions m;
+  m.role = any_text(rng, 1, kGroundNameBytesMax);
+  m.rights = static_cast<std::uint32_t>(any64(rng));
+  m.edit_volume_max = any64(rng);
+  if (rng.below(2) == 0) m.edits_refused = any_text(rng, 0, kTextBytesMax);
+  return m;
+}
+
+ProtectedGround any_ground(SplitMix64& rng) {
+  ProtectedGround m;
+  std::set<Sequence> seqs;
+  for (std::uint32_t i = 1 + rng.below(20); i > 0; --i) seqs.insert(1 + (any64(rng) >> 1));
+  const bool has_removed = rng.below(2) == 0;
+  for (const Sequence seq : seqs) {
+    if (has_removed && rng.below(2) == 0) m.removed.push_back(seq);
+    if (has_removed && rng.below(4) == 0 && !m.removed.empty()) continue;
+    const VoxelPos min{rng.between(-kWorldLimit, kWorldLimit - 1), rng.between(-300, 300), 7};
+    m.boxes.push_back({seq,
+                       {min, {kWorldLimit, min.y + rng.between(1, 60), 8}},
+                       rng.between(-kGroundPriorityMax, kGroundPriorityMax),
+                       rng.below(2) == 0,
+                       any_text(rng, 1, kGroundNameBytesMax),
+                       any_text(rng, 0, kPlayerNameBytesMax)});
+  }
+  return m;
+}
+
 }  // namespace
 
 EditRequest any_edit_request(SplitMix64& rng) {
@@ -405,9 +433,13 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_uniform(rng);
     case kKindOf<CachedChunks>:
       return any_cached_chunks(rng);
-    default:
-      RUNSTONE_ASSERT(kind == kKindOf<ChunksNotModified>);
+    case kKindOf<ChunksNotModified>:
       return any_chunks_not_modified(rng);
+    case kKindOf<Permissions>:
+      return any_permissions(rng);
+    default:
+      RUNSTONE_ASSERT(kind == kKindOf<ProtectedGround>);
+      return any_ground(rng);
   }
 }
 
