@@ -89,6 +89,8 @@ constexpr std::array kCommandRows = {
     row<LiftCommand>({Right::moderate}, "unban, unmute, unfreeze   end a ban, a mute or a freeze"),
     row<ListRestrictionsCommand>({Right::moderate},
                                  "bans                      the bans, mutes and freezes in force"),
+    row<ListRefusalsCommand>({Right::moderate},
+                             "refusals                  what players were refused lately"),
     row<LogCommand>({Right::roll_back},
                     "log FILTERS [limit N]     the newest edits, the last one at the bottom"),
     row<RollbackPreviewCommand>(

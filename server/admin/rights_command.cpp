@@ -350,6 +350,7 @@ std::optional<Parsed> parse_rights_command(const std::vector<std::string>& words
   if (name == "rights") return undo_rights_command(reader);
   if (name == "invite") return invite_command(reader, now_us);
   if (name == "invites") return alone(ListInvitesCommand{});
+  if (name == "refusals") return alone(ListRefusalsCommand{});
   return std::nullopt;
 }
 

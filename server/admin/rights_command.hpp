@@ -60,6 +60,10 @@ struct ListInvitesCommand {
   friend bool operator==(const ListInvitesCommand&, const ListInvitesCommand&) = default;
 };
 
+struct ListRefusalsCommand {
+  friend bool operator==(const ListRefusalsCommand&, const ListRefusalsCommand&) = default;
+};
+
 /// Whom a restriction is for: a player, or a range of addresses.
 struct RestrictionWord {
   std::string player;                 // empty: a range
@@ -137,7 +141,7 @@ using RightsCommand =
                  GrantCommand, RevokeCommand, ListGrantsCommand, RestrictCommand, LiftCommand,
                  ListRestrictionsCommand, KickCommand, ProtectCommand, BoxMembersCommand,
                  ClaimCommand, UnprotectCommand, ListBoxesCommand, WhyCommand, UndoRightsCommand,
-                 CreateInviteCommand, CancelInviteCommand, ListInvitesCommand>;
+                 CreateInviteCommand, CancelInviteCommand, ListInvitesCommand, ListRefusalsCommand>;
 
 /// Parses the words of a line, of which there is at least one. Returns nullopt if the first word is
 /// no command about rights. The error is one line of text for the person who typed the command.

@@ -421,4 +421,10 @@ void RightsCommands::carry_out(const ListInvitesCommand& /*command*/, const Call
   });
 }
 
+void RightsCommands::carry_out(const ListRefusalsCommand& /*command*/, const Call& call) {
+  with_players(call, {}, [this, call](const Players& players, const Keys&) {
+    call.reply({refusal_list(world_.refusals(), *players), true, true});
+  });
+}
+
 }  // namespace runstone

@@ -89,6 +89,16 @@ std::string restriction_list(const RightsState& state, TimeUs now_us, const Know
   return lines.text("nobody is banned, muted or frozen");
 }
 
+std::string refusal_list(const std::vector<RefusalRow>& rows, const KnownPlayers& players) {
+  RightsLines lines;
+  for (const RefusalRow& row : rows) {
+    if (!lines.take()) continue;
+    lines.add(utc_text(row.last_us) + " " + players.text_of(row.key) + ": " + row.what +
+              (row.count == 1 ? "" : " (" + std::to_string(row.count) + " times)"));
+  }
+  return lines.text("nobody was refused anything since the server started");
+}
+
 std::string box_list(const std::vector<const Decided<ProtectedBox>*>& boxes,
                      const KnownPlayers& players) {
   RightsLines lines;

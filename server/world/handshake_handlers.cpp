@@ -98,6 +98,7 @@ bool close_if_not_admitted(WorldState& world, SessionId session, const std::stri
   auto why = join_refusal(world, mine.key, mine.address);
   if (!why) return false;
   if (no_invite) *why += " (" + *no_invite + ")";
+  world.refusals.add(mine.key, "join: " + *why, now.utc_us);
   close_session(world, session, GoodbyeReason::not_admitted, *why);
   return true;
 }

@@ -106,6 +106,12 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
   if (*refusal == RejectReason::busy) detail = why_busy(world, request.edit, mine.author);
   ++world.counters.edits_rejected;
+  if (*refusal != RejectReason::already_resolved) {
+    // The details of other reasons have numbers that differ each time.
+    const bool has_detail = *refusal == RejectReason::not_permitted;
+    world.refusals.add(
+        mine.key, std::string("edit: ") + (has_detail ? detail : to_string(*refusal)), now.utc_us);
+  }
   // Edits that are offered again after a reconnection are no misuse.
   if (*refusal != RejectReason::already_resolved)
     world.environment.charge_reading(session, kRejectionBytes);

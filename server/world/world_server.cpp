@@ -211,6 +211,8 @@ Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& cha
   return runstone::change_rights(*state_, change, actor, author, now);
 }
 
+std::vector<RefusalRow> WorldServer::refusals() const { return state_->refusals.rows(); }
+
 InviteId WorldServer::new_invite_id() {
   std::array<std::uint8_t, sizeof(InviteId)> bytes{};
   state_->random(bytes);

@@ -16,6 +16,7 @@
 #include "common/edits/apply/stack_depths.hpp"
 #include "common/rights/change_rules.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/limits/recent_refusals.hpp"
 #include "server/world/clocks.hpp"
 #include "server/world/server_edits.hpp"
 #include "server/world/world_config.hpp"
@@ -107,6 +108,8 @@ class WorldServer {
   /// was refused, as a sentence.
   Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
                                               AuthorId author, const Clocks& now);
+  /// Returns what players were refused lately, the newest last.
+  std::vector<RefusalRow> refusals() const;
   /// Returns a random number for a new invite.
   InviteId new_invite_id();
   /// Returns the link with which players accept an invite. It has the server's public address, or

@@ -10,6 +10,7 @@
 #include "server/interest/interest.hpp"
 #include "server/limits/claim_ledger.hpp"
 #include "server/limits/edit_ledger.hpp"
+#include "server/limits/recent_refusals.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
 #include "server/world/large_edit_pace.hpp"
@@ -49,6 +50,7 @@ struct WorldState {
   Sequence rights_seq = 0;               // likewise, in the log; 0: none in this run
   EditLedger edit_ledger;
   ClaimLedger claim_ledger;
+  RecentRefusals refusals;
   LargeEditPace large_edits;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick

@@ -60,8 +60,8 @@ TEST_CASE("changes of rights are not played", "[bots][play]") {
   grant.cause = Cause::rights;
   grant.edit = rights_edit(GrantRole{{}, kModeratorRole});
   const std::vector<EditRecord> records = {voxel(1, 2, 5'000, 1), grant, voxel(3, 2, 6'000, 1)};
-  const Bytes file =
-      rlog_of(world_of_defaults(), {{1, {}, "ada"}, {2, {}, "bob"}}, records, {0, 2});
+  const std::vector<RlogPlayer> players = {{1, {}, "ada"}, {2, {}, "bob"}};
+  const Bytes file = rlog_of(world_of_defaults(), players, records, {0, 2});
   const auto log = read_recorded_log(source_of(file));
   REQUIRE(log.has_value());
   CHECK(log->edits == 2);

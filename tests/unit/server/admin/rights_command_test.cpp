@@ -112,6 +112,7 @@ TEST_CASE("commands about invites are parsed", "[admin][rights]") {
   CHECK(parsed<CreateInviteCommand>("invite role visitor uses 5 for 72h") == five);
   CHECK(parsed<CancelInviteCommand>("invite cancel 00000000000000ff").invite == 255);
   parsed<ListInvitesCommand>("invites");
+  parsed<ListRefusalsCommand>("refusals");
   CHECK(mistake("invite uses 0").find("uses \"0\"") != std::string::npos);
   CHECK(mistake("invite 5").find("invite \"5\": role ROLE") != std::string::npos);
   CHECK(mistake("invite cancel x") == "invite cancel \"x\": an id (invites lists them)");

@@ -75,6 +75,9 @@ TEST_CASE("an edit that touches protected ground is rejected as a whole and name
     CHECK(reject.reason == RejectReason::not_permitted);
     CHECK(reject.detail == "the ground is protected: spawn");
   }
+  REQUIRE(bench.server.refusals().size() == 1);
+  CHECK(bench.server.refusals()[0].what == "edit: the ground is protected: spawn");
+  CHECK(bench.server.refusals()[0].count == 2);
   CHECK(bench.server.head() == 3);
 
   ProtectedBox with_member = spawn_box();
