@@ -1,7 +1,8 @@
-// KnownGround: what the server has said the player may do, and the protected boxes near its view. The
-// replica refuses an edit by it before it shows and sends the edit. It decides as the server does
-// (decide_ground()) where it has every box that overlaps the edit. Where it lacks a box, it may allow
-// an edit that the server rejects, or refuse one that a box of higher rank would admit. One thread.
+// KnownGround: what the server has said the player may do, and the protected boxes near its view.
+// The replica refuses an edit by it before it shows and sends the edit. It decides as the server
+// does (decide_ground()) where it has every box that overlaps the edit. Where it lacks a box, it
+// may allow an edit that the server rejects, or refuse one that a box of higher rank would admit.
+// One thread.
 #pragma once
 #include <map>
 #include <optional>
@@ -21,8 +22,8 @@ class KnownGround {
   /// Fails if more than kGroundBoxesMax boxes would be known; then the boxes are unspecified.
   Result<void> receive(const ProtectedGround& change);
 
-  /// Returns why the player may not make the edit, or nullopt. Requires a valid edit. Cost: O(boxes),
-  /// and that of decide_ground() for the boxes that overlap the edit.
+  /// Returns why the player may not make the edit, or nullopt. Requires a valid edit. Cost:
+  /// O(boxes), and that of decide_ground() for the boxes that overlap the edit.
   std::optional<std::string> refusal(const EditDescriptor& edit) const;
 
   /// Returns nullopt if the server has sent none.

@@ -48,9 +48,9 @@ struct GroundDecision {
 
 /// Decides whether a player may make an edit. The rule: an edit is refused as a whole if the player
 /// may not change a single one of its voxels. `rules` has every box that overlaps `bounds`, the
-/// bounding box of the edit; those that decide first come first. `may_build` says whether the player
-/// may change free ground. If the edit is allowed and a box admits the player to a part of it, the
-/// answer names the box that decides first. Requires that the edit has a voxel in `bounds`.
+/// bounding box of the edit; those that decide first come first. `may_build` says whether the
+/// player may change free ground. If the edit is allowed and a box admits the player to a part of
+/// it, the answer names the box that decides first. Requires that the edit has a voxel in `bounds`.
 /// `touches` is called with boxes in `bounds` that are not empty. Cost for m rules: m + p calls of
 /// `touches` and O(m * p) cuts, where p is the number of parts. At most kEditBoxPartsMax parts are
 /// made of one box: an edit that would need more is refused.

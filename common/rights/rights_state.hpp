@@ -119,8 +119,8 @@ class RightsState {
   /// Returns the boxes that overlap this one: those that decide first come first.
   std::vector<const Decided<ProtectedBox>*> boxes_in(const VoxelBox& box) const;
   /// Returns `count_max` of the boxes that overlap this one, or all of them if there are not more,
-  /// in no special order. Requires that `box` is not empty. Cost: O(log^2 boxes + count_max), if few
-  /// boxes overlap one another.
+  /// in no special order. Requires that `box` is not empty. Cost: O(log^2 boxes + count_max), if
+  /// few boxes overlap one another.
   std::vector<const Decided<ProtectedBox>*> some_boxes_in(const VoxelBox& box,
                                                           std::size_t count_max) const;
   /// Returns the box that decides for a voxel, or null. Cost: O(log boxes).
@@ -142,9 +142,9 @@ class RightsState {
   RightSet rights_in_force(const PublicKey& key, TimeUs now_us) const;
   /// Decides whether the player may make an edit: decide_ground() with the boxes that overlap
   /// `bounds`, its bounding box. The mask of the edit is ignored. Free ground, which no box
-  /// protects, needs the right `build`. Requires that the edit has a voxel in `bounds`. `touches` is
-  /// called with boxes in `bounds` that are not empty. Cost: O(log boxes) for an edit that meets no
-  /// box. For one that meets m boxes: O(m log m), and that of decide_ground().
+  /// protects, needs the right `build`. Requires that the edit has a voxel in `bounds`. `touches`
+  /// is called with boxes in `bounds` that are not empty. Cost: O(log boxes) for an edit that meets
+  /// no box. For one that meets m boxes: O(m log m), and that of decide_ground().
   RightsDecision decide_edit(const PublicKey& key, const VoxelBox& bounds,
                              const TouchesBox& touches, TimeUs now_us) const;
 

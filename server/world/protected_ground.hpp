@@ -1,12 +1,12 @@
 // Protected ground: sends each session what its player may do (Permissions) and the protected boxes
-// near its view (ProtectedGround), so that its client predicts only edits that are allowed. A session
-// knows at most kGroundBoxesMax boxes: those that overlap the cuboid of chunks around its view. If
-// there are more, the cuboid is halved around the centre until they fit.
+// near its view (ProtectedGround), so that its client predicts only edits that are allowed. A
+// session knows at most kGroundBoxesMax boxes: those that overlap the cuboid of chunks around its
+// view. If there are more, the cuboid is halved around the centre until they fit.
 //
 // A change only marks the sessions that it affects. On the next tick, each of them gets the
 // difference to what it was sent. After kGroundBoxesPerTick compared boxes the other sessions wait
-// for the next tick. A session whose queue is full is tried again on every tick. A session that looks
-// at the past waits until it is back.
+// for the next tick. A session whose queue is full is tried again on every tick. A session that
+// looks at the past waits until it is back.
 #pragma once
 #include <cstddef>
 #include <vector>

@@ -97,6 +97,11 @@ TEST_CASE("the memory budget is 1 GiB unless an option says otherwise", "[client
   CHECK(refused({"--connect", "a:1", "--memory-mib", "65537"}) == 2);
 }
 
+TEST_CASE("protected boxes are outlined from the start if an option says so", "[client_app]") {
+  CHECK_FALSE(accepted({"--connect", "a:1"}).show_protected);
+  CHECK(accepted({"--connect", "a:1", "--show-protected"}).show_protected);
+}
+
 TEST_CASE("of two values of one flag the last one counts", "[client_app]") {
   CHECK(accepted({"--connect", "a:1", "--connect", "b:2"}).server.host == "b");
 }

@@ -125,7 +125,7 @@ TEST_CASE("a new member, another role and another owner change what a box admits
   GroundBench bench;
   bench.join_with(1, 1);
   bench.join_with(2, 2);
-  for (const SessionId session : {1, 2}) bench.view(session, kSmall);
+  for (const SessionId session : {1U, 2U}) bench.view(session, kSmall);
   ProtectedBox box = box_named("spawn", kNear);
   box.owner = public_key_of(2);
   bench.change(Protect{box});
