@@ -32,6 +32,10 @@ class Outlook {
   }
 
  private:
+  /// An administrator who may not join is none.
+  static bool is_administrator(RightSet rights) {
+    return rights.includes({Right::administer, Right::see});
+  }
   template <class T>
   const T* kind() const {
     return std::get_if<T>(change_);
@@ -48,14 +52,14 @@ class Outlook {
   bool default_administers() const {
     const auto* change = kind<SetDefaultRole>();
     const auto rights = rights_of(change == nullptr ? state_.default_role().value : change->role);
-    return rights.value_or(rights_of(kVisitorRole).value_or(RightSet{})).has(Right::administer);
+    return is_administrator(rights.value_or(rights_of(kVisitorRole).value_or(RightSet{})));
   }
   /// Returns true if the grant, which the change may replace, makes the key an administrator who
   /// may join. Requires that the default role does not administer.
   bool administers(const PublicKey& key, const std::string& granted) const {
     const auto* grant = kind<GrantRole>();
     const std::string& role = grant != nullptr && grant->key == key ? grant->role : granted;
-    if (!rights_of(role).value_or(RightSet{}).has(Right::administer)) return false;
+    if (!is_administrator(rights_of(role).value_or(RightSet{}))) return false;
     const auto* restricted = kind<Restrict>();
     if (restricted != nullptr && restricted->kind == RestrictionKind::ban &&
         restricted->subject == RestrictionSubject{key}) {
@@ -163,7 +167,8 @@ class ChangeCheck {
     const ProtectedBox& box = change.box;
     const Decided<ProtectedBox>* found = state_.find_box(box.name);
     const ProtectedBox* old = found == nullptr ? nullptr : &found->value;
-    if (old == nullptr && state_.boxes().size() >= kBoxesMax) {
+    const std::size_t boxes_max = rights_.has(Right::protect) ? kBoxesMax : kClaimedBoxesMax;
+    if (old == nullptr && state_.boxes().size() >= boxes_max) {
       return "The world has as many protected boxes as it can have.";
     }
     for (const std::string& role : box.roles) {
@@ -178,8 +183,9 @@ class ChangeCheck {
   Refusal refused_kind(const Unprotect& change) const {
     const Decided<ProtectedBox>* box = state_.find_box(change.box);
     if (box == nullptr) return "There is no protected box " + quoted(change.box) + ".";
-    if (box->value.owner && box->value.owner == actor_.key) return std::nullopt;
-    return needs(Right::protect);
+    if (rights_.has(Right::protect)) return std::nullopt;
+    if (!box->value.owner || box->value.owner != actor_.key) return needs(Right::protect);
+    return refused_while_frozen();
   }
 
   Refusal refused_kind(const CreateInvite& change) const {
@@ -191,7 +197,14 @@ class ChangeCheck {
     if (auto reason = refused_gift(role->value.rights, {})) return reason;
     if (change.invite.until_us <= now_us_) return "The invite would have ended already.";
     if (state_.invites().contains(change.invite.id)) return "There is such an invite already.";
-    if (state_.invites().size() >= kInvitesMax) {
+    if (!role->value.rights.has(Right::see)) {
+      return "Players with the role " + quoted(change.invite.role) + " may not join.";
+    }
+    const auto usable =
+        std::count_if(state_.invites().begin(), state_.invites().end(), [this](const auto& invite) {
+          return state_.usable_invite(invite.first, now_us_) != nullptr;
+        });
+    if (static_cast<std::size_t>(usable) >= kInvitesMax) {
       return "The world has as many invites as it can have. Cancel some.";
     }
     return std::nullopt;
@@ -238,9 +251,16 @@ class ChangeCheck {
     if (box.priority != old.priority) {
       return "Without the right to protect the priority of a box stays.";
     }
-    if (box.box == old.box) return std::nullopt;
+    // A changed box is the newest one, so even a change of members may take ground.
+    if (box.box == old.box) return refused_ground(box);
     if (auto lacks = needs(Right::claim)) return lacks;
     return refused_place(&old, box);
+  }
+
+  Refusal refused_while_frozen() const {
+    if (has_all_ || state_.restriction(RestrictionKind::freeze, *actor_.key, now_us_) == nullptr)
+      return std::nullopt;
+    return "You may not edit now.";
   }
 
   /// Requires an actor with a key. `old` is the box that this one replaces, or null.
@@ -255,8 +275,14 @@ class ChangeCheck {
       return "Your role allows boxes of " + std::to_string(role.claim_volume_max) +
              " voxels together.";
     }
+    return refused_ground(box);
+  }
+
+  /// Checks the ground of a box that becomes the newest one of its priority.
+  Refusal refused_ground(const ProtectedBox& box) const {
+    if (auto frozen = refused_while_frozen()) return frozen;
     for (const auto* other : state_.boxes_in(box.box)) {
-      if (other->value.owner && other->value.owner != actor_.key) {
+      if (other->value.priority <= box.priority && other->value.owner != actor_.key) {
         return "The box " + quoted(other->value.name) + " of somebody else lies there.";
       }
     }

@@ -35,6 +35,7 @@ inline constexpr std::size_t kRolesMax = 256;
 inline constexpr std::size_t kGrantsMax = 100'000;
 inline constexpr std::size_t kRestrictionsMax = 100'000;  // also those that have ended
 inline constexpr std::size_t kBoxesMax = 100'000;
+inline constexpr std::size_t kClaimedBoxesMax = 90'000;  // the rest is for the right `protect`
 inline constexpr std::size_t kInvitesMax = 1'000;
 
 /// Returns why the change may not be made, as a sentence for the one who makes it, or nullopt.

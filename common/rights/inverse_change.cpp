@@ -35,9 +35,10 @@ ChangedCell cell_of_kind(const CancelInvite& c) {
   return {CellKind::invite, std::to_string(c.invite), {}, {}};
 }
 
-/// What an accepted invite grants depends on all records about invites.
+/// What an accepted invite grants depends on all records about invites and grants.
 bool is_about_invites(const RightsChange& change) {
-  return std::holds_alternative<CreateInvite>(change) ||
+  return std::holds_alternative<GrantRole>(change) ||
+         std::holds_alternative<CreateInvite>(change) ||
          std::holds_alternative<AcceptInvite>(change) ||
          std::holds_alternative<CancelInvite>(change);
 }
@@ -73,7 +74,9 @@ RightsChange restoring(const RightsState& state, const ChangedCell& cell) {
     case CellKind::invite: {
       const InviteId id = std::stoull(cell.name);
       const auto found = state.invites().find(id);
-      if (found == state.invites().end()) return CancelInvite{id};
+      if (found == state.invites().end() ||
+          found->second.value.accepted >= found->second.value.invite.uses)
+        return CancelInvite{id};
       // The invite begins anew with the uses that it had left.
       Invite invite = found->second.value.invite;
       invite.uses -= found->second.value.accepted;

@@ -1,6 +1,6 @@
 // Invite: lets players join who have no role of their own yet, and gives them one. The world's log
 // holds what an invite allows; the link that a player gets names the invite and proves that this
-// server made it (protocol/codec/invite_link.hpp).
+// server made it (protocol/codec/invite_token.hpp).
 #pragma once
 #include <cstdint>
 #include <string>

@@ -33,7 +33,7 @@ Result<ServerLink, std::string> parse_server_link(std::string_view text) {
   link.ticket = rest.substr(hash + 1);
   if (link.ticket.empty() || link.ticket.size() > kTicketBytesMax ||
       !is_printable_utf8(link.ticket))
-    return Unexpected<std::string>{"what stands behind # in the link is no invite"};
+    return Unexpected<std::string>{"the text after # in the link is not an invite"};
   return link;
 }
 

@@ -133,7 +133,6 @@ void RightsCommands::change(const Call& call, const RightsChange& change, const 
   const std::size_t sessions = world_.session_count();
   const auto seq = world_.change_rights(change, call.caller.actor, call.caller.author, call.now);
   if (!seq) return refuse(call.reply, seq.error());
-  newest_ = *seq;
   std::string line = text + " (record " + std::to_string(*seq) + ")";
   const std::size_t left = world_.session_count();
   if (left < sessions) line += "; sessions ended: " + std::to_string(sessions - left);
@@ -250,10 +249,8 @@ void RightsCommands::carry_out(const KickCommand& command, const Call& call) {
         const std::string who = players->text_of(keys[0]);
         // A player may kick whom the player may mute: those who have fewer rights.
         const Restrict mute{RestrictionKind::mute, keys[0], 0, ""};
-        if (auto why =
-                why_refused(world_.rights(), call.caller.actor, mute, world_.rights_time())) {
+        if (auto why = world_.change_refusal(mute, call.caller.actor))
           return refuse(call.reply, *std::move(why));
-        }
         const std::size_t ended = world_.kick(keys[0], reason);
         if (ended == 0) return refuse(call.reply, who + " is not here");
         call.reply({who + " was kicked; sessions ended: " + std::to_string(ended), true, true});
@@ -366,18 +363,19 @@ void RightsCommands::answer_why(const WhyCommand& command, const PublicKey& key,
 
 void RightsCommands::carry_out(const UndoRightsCommand& command, const Call& call) {
   // The inverse depends on the records after this one, so all of them must be on disk.
-  if (world_.durable() < newest_) {
-    waiting_.push_back({newest_, [this, command, call] { carry_out(command, call); }, call.reply});
+  const Sequence newest = world_.newest_rights();
+  if (world_.durable() < newest) {
+    waiting_.push_back({newest, [this, command, call] { carry_out(command, call); }, call.reply});
     return;
   }
   auto records =
       std::make_shared<StoreResult<std::vector<RightsRecord>>>(std::vector<RightsRecord>());
   workers_.run(
       [records](WorldReader& reader, const Generator&) { *records = read_rights_records(reader); },
-      [this, records, command, call, newest = newest_](const std::string& error) {
+      [this, records, command, call, newest](const std::string& error) {
         if (!error.empty()) return refuse(call.reply, "rights undo: " + error);
         if (!*records) return refuse(call.reply, "rights undo: " + records->error().message());
-        if (newest != newest_) return carry_out(command, call);
+        if (newest != world_.newest_rights()) return carry_out(command, call);
         undo_record(command.seq, **records, call);
       });
 }

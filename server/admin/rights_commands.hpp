@@ -91,7 +91,6 @@ class RightsCommands {
   WorldServer& world_;
   RollbackService::Workers& workers_;
   const IsOperator is_operator_;
-  Sequence newest_ = 0;  // the last change that this object ordered
   std::vector<Waiting> waiting_;
 };
 

@@ -79,9 +79,10 @@ bool close_if_no_name(WorldState& world, SessionId session) {
   return true;
 }
 
+/// Closes a session from a banned address. A ban of its key is told later, to the owner of the key.
 bool close_if_banned(WorldState& world, SessionId session) {
   const WorldSession& mine = *world.find(session);
-  const auto why = ban_refusal(world, mine.key, mine.address);
+  const auto why = address_refusal(world, mine.key, mine.address);
   if (!why) return false;
   close_session(world, session, GoodbyeReason::not_admitted, *why);
   return true;
@@ -91,14 +92,17 @@ bool close_if_banned(WorldState& world, SessionId session) {
 /// player who has a role keeps it.
 bool close_if_not_admitted(WorldState& world, SessionId session, const std::string& ticket,
                            const Clocks& now) {
-  const WorldSession& mine = *world.find(session);
-  const bool has_role = world.rights.grants().contains(mine.key);
+  const PublicKey key = world.find(session)->key;
+  const AddressBlock address = world.find(session)->address;
   std::optional<std::string> no_invite;
-  if (!ticket.empty() && !has_role) no_invite = accept_invite(world, mine, ticket, now);
-  auto why = join_refusal(world, mine.key, mine.address);
+  if (!ticket.empty() && !world.rights.grants().contains(key)) {
+    no_invite = accept_invite(world, session, ticket, now);
+    if (world.find(session) == nullptr) return true;  // the new role closed it
+  }
+  auto why = join_refusal(world, key, address);
   if (!why) return false;
   if (no_invite) *why += " (" + *no_invite + ")";
-  world.refusals.add(mine.key, "join: " + *why, now.utc_us);
+  world.refusals.add(key, "join: " + *why, now.utc_us);
   close_session(world, session, GoodbyeReason::not_admitted, *why);
   return true;
 }

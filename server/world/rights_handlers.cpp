@@ -7,6 +7,7 @@
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "protocol/codec/invite_token.hpp"
 #include "protocol/rules/refusal_text.hpp"
+#include "server/world/broadcast.hpp"
 #include "server/world/protected_ground.hpp"
 #include "server/world/server_edits.hpp"
 
@@ -54,6 +55,19 @@ std::string refusal_text(const WorldState& world, const PublicKey& key, const Ri
   return refused_by_role(no.role);
 }
 
+/// Returns true for those whose changes take rights from others.
+bool has_power(const WorldState& world, const RightsActor& actor) {
+  if (!actor.key || actor.is_operator) return true;
+  const RightSet rights = world.rights.role_of(*actor.key).rights;
+  return rights.has(Right::moderate) || rights.has(Right::protect) || rights.has(Right::grant) ||
+         rights.has(Right::administer);
+}
+
+void commit_all_edits(WorldState& world, const Clocks& now) {
+  while (commit_and_broadcast(world, LargeEdits::all, now)) {
+  }
+}
+
 /// Returns the player whom a change is about, or null.
 const PublicKey* target_of(const RightsChange& change) {
   if (const auto* grant = std::get_if<GrantRole>(&change)) return &grant->key;
@@ -70,7 +84,20 @@ std::optional<std::string> change_refusal(const WorldState& world, const RightsA
   const PublicKey* target = target_of(change);
   if (target != nullptr && actor.key && is_operator(world, *target))
     return "the player is an operator by the server's settings";
-  return why_refused(world.rights, actor, change, rights_time(world));
+  if (auto why = why_refused(world.rights, actor, change, rights_time(world))) return why;
+  const auto* restricted = std::get_if<Restrict>(&change);
+  const auto* range =
+      restricted == nullptr ? nullptr : std::get_if<AddressRange>(&restricted->subject);
+  const bool has_all =
+      !actor.key || actor.is_operator || decide(world, *actor.key, Right::administer).is_allowed;
+  if (range == nullptr || has_all) return std::nullopt;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.state != SessionStage::open || !range->contains(session.address)) continue;
+    const Restrict alone{RestrictionKind::ban, session.key, restricted->until_us, ""};
+    if (change_refusal(world, actor, alone))
+      return "A player is here from there to whom you cannot do this: " + session.name + ".";
+  }
+  return std::nullopt;
 }
 
 TimeUs rights_time(const WorldState& world) { return world.authority.log_clock().time(); }
@@ -90,12 +117,20 @@ std::optional<std::string> freeze_text(const WorldState& world, const PublicKey&
   return restriction_text(kMayNotEdit, found->value);
 }
 
+std::optional<std::string> address_refusal(const WorldState& world, const PublicKey& key,
+                                           AddressBlock address) {
+  if (is_operator(world, key) || world.rights.role_of(key).rights.has(Right::administer))
+    return std::nullopt;
+  const auto* ban = world.rights.address_ban(address, rights_time(world));
+  if (ban == nullptr) return std::nullopt;
+  return restriction_text("your address is banned", ban->value);
+}
+
 std::optional<std::string> ban_refusal(const WorldState& world, const PublicKey& key,
                                        AddressBlock address) {
   if (is_operator(world, key)) return std::nullopt;
-  const auto* ban = world.rights.address_ban(address, rights_time(world));
-  if (ban != nullptr) return restriction_text("your address is banned", ban->value);
-  ban = world.rights.restriction(RestrictionKind::ban, key, rights_time(world));
+  if (auto refused = address_refusal(world, key, address)) return refused;
+  const auto* ban = world.rights.restriction(RestrictionKind::ban, key, rights_time(world));
   if (ban != nullptr) return restriction_text("you are banned", ban->value);
   return std::nullopt;
 }
@@ -124,25 +159,30 @@ std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey
 Result<Sequence, std::string> change_rights(WorldState& world, const RightsChange& change,
                                             const RightsActor& actor, AuthorId author,
                                             const Clocks& now) {
-  world.authority.log_clock().advance(now);
   if (auto why = change_refusal(world, actor, change)) return Unexpected<std::string>{*why};
+  if (author != 0 && !world.players.key_of(author))
+    return Unexpected<std::string>{"the player has left"};
+  // What waits was allowed, and is ordered before the change that may forbid it. A claim does not
+  // hurry: players could use it to send large edits faster than others.
+  if (has_power(world, actor)) commit_all_edits(world, now);
   const OperationId op{author, world.rights_instance, ++world.rights_client_seq};
   const EditOffer offer{op, Cause::rights, now.steady_us, rights_edit(change), 0};
   const ServerEditsResult ordered = order_server_edits(world, {offer}, author, now);
   if (ordered.state == ServerEditsResult::State::ordered) return world.rights_seq;
-  return Unexpected<std::string>{ordered.state == ServerEditsResult::State::busy
-                                     ? std::string(ordered.reason) + ": try again later"
-                                     : "the world takes no changes any more"};
+  if (ordered.state == ServerEditsResult::State::closed)
+    return Unexpected<std::string>{"the world takes no changes any more"};
+  return Unexpected<std::string>{std::string(ordered.reason) + ": try again later"};
 }
 
-std::optional<std::string> accept_invite(WorldState& world, const WorldSession& session,
+std::optional<std::string> accept_invite(WorldState& world, SessionId session,
                                          const std::string& ticket, const Clocks& now) {
   const WorldConfig& config = world.config;
   const auto invite = invite_of(ticket, config.world_id, config.server_keys.public_key);
   if (!invite) return "the invite is not one of this world";
-  const AuthorId author = world.players.enter(session.key, session.name);
-  const auto accepted = change_rights(world, AcceptInvite{*invite, session.key},
-                                      actor_of(world, session.key), author, now);
+  const PublicKey key = world.find(session)->key;
+  const AuthorId author = world.players.enter(key, world.find(session)->name);
+  const auto accepted =
+      change_rights(world, AcceptInvite{*invite, key}, actor_of(world, key), author, now);
   if (accepted) return std::nullopt;
   world.gone_authors.push_back(author);
   return accepted.error();
@@ -163,8 +203,10 @@ void apply_rights(WorldState& world, const std::vector<EditRecord>& records) {
   std::vector<std::pair<SessionId, std::string>> refused;
   for (const auto& [id, session] : world.sessions) {
     if (session.state == SessionStage::greeting) continue;
-    if (auto why = join_refusal(world, session.key, session.address))
-      refused.emplace_back(id, *std::move(why));
+    // A player who has not proved the key yet may bring an invite.
+    auto why = session.is_authenticated ? join_refusal(world, session.key, session.address)
+                                        : address_refusal(world, session.key, session.address);
+    if (why) refused.emplace_back(id, *std::move(why));
   }
   for (const auto& [id, why] : refused) close_session(world, id, GoodbyeReason::not_admitted, why);
   rights_changed(world, ground);

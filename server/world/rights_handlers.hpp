@@ -20,8 +20,11 @@ RightsActor actor_of(const WorldState& world, const PublicKey& key);
 RightsDecision decide(const WorldState& world, const PublicKey& key, Right right);
 /// Returns why the player may not edit at all, if a restriction forbids it, or nullopt.
 std::optional<std::string> freeze_text(const WorldState& world, const PublicKey& key);
-/// Returns why a player may not join from this address because of a ban, for goodbye not_admitted, or
-/// nullopt. It costs no signature.
+/// Returns why nobody with this key may join from this address, for goodbye not_admitted, or nullopt.
+/// Administrators may join from everywhere, so that no ban of addresses locks them out.
+std::optional<std::string> address_refusal(const WorldState& world, const PublicKey& key,
+                                           AddressBlock address);
+/// Returns the same, or that the player is banned.
 std::optional<std::string> ban_refusal(const WorldState& world, const PublicKey& key,
                                        AddressBlock address);
 /// Returns the same, or that the player's role may not see the world.
@@ -32,8 +35,9 @@ std::optional<std::string> join_refusal(const WorldState& world, const PublicKey
 std::optional<std::string> edit_refusal(const WorldState& world, const PublicKey& key,
                                         const EditDescriptor& edit);
 
-/// Returns why the change may not be made, or nullopt: why_refused(), and no player acts on an
-/// operator.
+/// Returns why the change may not be made, or nullopt: why_refused(), no player acts on an operator,
+/// and no player but an administrator bans an address from which somebody is here on whom that player
+/// may not act.
 std::optional<std::string> change_refusal(const WorldState& world, const RightsActor& actor,
                                           const RightsChange& change);
 /// Orders a change of rights as a record of the log, made by the author (0: the console), who pays
@@ -42,8 +46,9 @@ Result<Sequence, std::string> change_rights(WorldState& world, const RightsChang
                                             const RightsActor& actor, AuthorId author,
                                             const Clocks& now);
 /// Accepts the invite of a ticket for an authenticated player who has no granted role. Returns why
-/// nothing was granted, as a sentence, or nullopt.
-std::optional<std::string> accept_invite(WorldState& world, const WorldSession& session,
+/// nothing was granted, as a sentence, or nullopt. The session may be closed on return, if the role
+/// may not see the world.
+std::optional<std::string> accept_invite(WorldState& world, SessionId session,
                                          const std::string& ticket, const Clocks& now);
 /// Takes over the changes of rights among these records, which were ordered just now, closes the
 /// sessions that may not stay, and marks the others for what changes for them.

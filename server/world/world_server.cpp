@@ -205,6 +205,12 @@ Result<NameClaim, std::string> WorldServer::release_name(const std::string& name
 const RightsState& WorldServer::rights() const { return state_->rights; }
 TimeUs WorldServer::rights_time() const { return runstone::rights_time(*state_); }
 
+Sequence WorldServer::newest_rights() const { return state_->rights_seq; }
+std::optional<std::string> WorldServer::change_refusal(const RightsChange& change,
+                                                       const RightsActor& actor) const {
+  return runstone::change_refusal(*state_, actor, change);
+}
+
 Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& change,
                                                          const RightsActor& actor, AuthorId author,
                                                          const Clocks& now) {
@@ -234,7 +240,7 @@ std::optional<std::string> WorldServer::edit_refusal(AuthorId author,
                                                      const EditDescriptor& edit) const {
   if (author == 0) return std::nullopt;
   const auto key = state_->players.key_of(author);
-  return key ? runstone::edit_refusal(*state_, *key, edit) : std::nullopt;
+  return key ? runstone::edit_refusal(*state_, *key, edit) : "the player has left";
 }
 
 void WorldServer::step_checkpointer(const Clocks& now) {

@@ -103,6 +103,11 @@ class WorldServer {
   const RightsState& rights() const;
   /// Returns the time by which restrictions end (UTC).
   TimeUs rights_time() const;
+  /// Returns the sequence of the last change of rights in this run, or 0.
+  Sequence newest_rights() const;
+  /// Returns why the change would be refused, as a sentence, or nullopt.
+  std::optional<std::string> change_refusal(const RightsChange& change,
+                                            const RightsActor& actor) const;
   /// Orders a change of rights as a record of the log, made by the author (0: the console), who pays
   /// for it as for an edit. Sessions that may not stay are closed. Returns its sequence, or why it
   /// was refused, as a sentence.
