@@ -339,29 +339,26 @@ PlayerList any_player_list(SplitMix64& rng) {
 }
 
 Permissions any_permissions(SplitMix64& rng) {
-  Permissions m;
-  m.role = any_text(rng, 1, kGroundNameBytesMax);
-  m.rights = static_cast<std::uint32_t>(any64(rng));
-  m.edit_volume_max = any64(rng);
-  if (rng.below(2) == 0) m.edits_refused = any_text(rng, 0, kTextBytesMax);
-  return m;
+  return {any_text(rng, 1, kGroundNameBytesMax), static_cast<std::uint32_t>(any64(rng)), any64(rng),
+          any_text(rng, 0, kTextBytesMax)};
 }
 
 ProtectedGround any_ground(SplitMix64& rng) {
   ProtectedGround m;
-  std::set<Sequence> seqs;
-  for (std::uint32_t i = 1 + rng.below(20); i > 0; --i) seqs.insert(1 + (any64(rng) >> 1));
-  const bool has_removed = rng.below(2) == 0;
-  for (const Sequence seq : seqs) {
-    if (has_removed && rng.below(2) == 0) m.removed.push_back(seq);
-    if (has_removed && rng.below(4) == 0 && !m.removed.empty()) continue;
+  Sequence seq = any64(rng) >> 2;
+  for (std::uint32_t i = 1 + rng.below(20); i > 0; --i) {
+    seq += 1 + rng.below(1000);
+    if (rng.below(3) == 0) m.removed.push_back(seq);
+    if (!m.removed.empty() && rng.below(3) == 0) continue;
     const VoxelPos min{rng.between(-kWorldLimit, kWorldLimit - 1), rng.between(-300, 300), 7};
+    const VoxelPos max{kWorldLimit, min.y + rng.between(1, 60), 8};
+    const std::int32_t priority = rng.between(-kGroundPriorityMax, kGroundPriorityMax);
     m.boxes.push_back({seq,
-                       {min, {kWorldLimit, min.y + rng.between(1, 60), 8}},
-                       rng.between(-kGroundPriorityMax, kGroundPriorityMax),
+                       {min, max},
+                       priority,
                        rng.below(2) == 0,
                        any_text(rng, 1, kGroundNameBytesMax),
-                       any_text(rng, 0, kPlayerNameBytesMax)});
+                       any_text(rng, 0, 32)});
   }
   return m;
 }
