@@ -235,17 +235,44 @@ TEST_CASE("a claim takes no ground of others", "[rights]") {
   CHECK(world.why(mason, Protect{claim_of(kMason, "home", {{19, 19, 19}, {22, 22, 22}})}) ==
         "The box \"hall\" of somebody else lies there.");
   CHECK(world.allows(mason, Protect{claim_of(kMason, "home", {{20, 19, 19}, {22, 22, 22}})}));
-  // Ground without an owner: whoever may build there may claim there.
+  // Ground without an owner is that of all who share it.
   ProtectedBox city;
   city.name = "city";
   city.box = columns(100, 100, 200, 200);
   city.roles = {kBuilderRole};
   world.make(Protect{city});
-  CHECK(world.allows(mason, Protect{claim_of(kMason, "home", {{110, 0, 110}, {120, 9, 120}})}));
+  const Protect home{claim_of(kMason, "home", {{110, 0, 110}, {120, 9, 120}})};
+  CHECK(world.why(mason, home) == "The box \"city\" of somebody else lies there.");
+  city.priority = 1;  // it decides before every claim
+  world.make(Protect{city});
+  CHECK(world.allows(mason, home));
   city.roles.clear();
   world.make(Protect{city});
-  CHECK(world.why(mason, Protect{claim_of(kMason, "home", {{110, 0, 110}, {120, 9, 120}})}) ==
-        "You may not change the ground of the box \"city\".");
+  CHECK(world.why(mason, home) == "You may not change the ground of the box \"city\".");
+}
+
+TEST_CASE("a change of members takes no ground back", "[rights]") {
+  RulesWorld world;
+  ProtectedBox home = claim_of(kMason, "home", kPlot);
+  world.make(Protect{home});
+  ProtectedBox road;
+  road.name = "road";
+  road.box = kPlot;
+  world.make(Protect{road});
+  home.members = {kStranger};
+  CHECK(world.why(player(kMason), Protect{home}) ==
+        "The box \"road\" of somebody else lies there.");
+  world.make(Unprotect{"road"});
+  CHECK(world.allows(player(kMason), Protect{home}));
+  world.make(Restrict{RestrictionKind::freeze, kMason, 0, ""});
+  CHECK(world.why(player(kMason), Protect{home}) == "You may not edit now.");
+  CHECK(world.why(player(kMason), Unprotect{"home"}) == "You may not edit now.");
+}
+
+TEST_CASE("an administrator who may not join is none", "[rights]") {
+  RulesWorld world;
+  CHECK(world.why(kConsole, DefineRole{{kAdministratorRole, {Right::administer}, 0, 0, 0}}) ==
+        "The world would have no administrator any more.");
 }
 
 TEST_CASE("owners change their boxes, and protectors all of them", "[rights]") {

@@ -95,6 +95,19 @@ TEST_CASE("who makes an invite gives only rights that are his", "[rights]") {
   CHECK(why(kFirst, kBuilderRole, kStart) == "The invite would have ended already.");
 }
 
+TEST_CASE("an invite is for a role that may join, and ended ones leave room", "[rights]") {
+  InvitedWorld world;
+  const RightsActor console;
+  const auto why = [&](const Invite& invite, TimeUs now_us) {
+    return why_refused(world.state, console, CreateInvite{invite}, now_us).value_or("");
+  };
+  CHECK(why({9, kNobodyRole, 1, kEnd}, kStart) == "Players with the role \"nobody\" may not join.");
+  for (InviteId id = 100; world.state.invites().size() < kInvitesMax; ++id)
+    world.make(CreateInvite{{id, kBuilderRole, 1, kEnd}});
+  CHECK_FALSE(why({9, kBuilderRole, 1, 2 * kEnd}, kStart).empty());
+  CHECK(why({9, kBuilderRole, 1, 2 * kEnd}, kEnd).empty());
+}
+
 TEST_CASE("a record about invites can be taken back", "[rights]") {
   InvitedWorld world;
   CHECK(inverse_of(world.records, 2) == RightsChange(CancelInvite{7}));

@@ -35,13 +35,16 @@ struct RightsBench : WorldBench {
   std::vector<Reject> rejects(SessionId session) const {
     return environment.messages<Reject>(session, kEdge);
   }
-  /// Says hello as `who` and returns how the server closed the session.
-  FakeEnvironment::Closed refused_join(SessionId session, std::uint8_t who,
-                                       AddressBlock from = kHome) {
-    server.connected(session, now(), from);
-    server.received(session, hello(who), now());
+  /// Does the handshake as `who` and returns how the server closed the session.
+  FakeEnvironment::Closed refused_join(SessionId session, std::uint8_t who) {
+    knock(session, who, "");
     REQUIRE_FALSE(environment.closed.empty());
+    REQUIRE(environment.closed.back().session == session);
     return environment.closed.back();
+  }
+  std::string token_of(InviteId id) const {
+    const std::string link = server.invite_link(id);
+    return link.substr(link.find('#') + 1);
   }
 };
 
@@ -151,7 +154,10 @@ TEST_CASE("a ban of addresses is refused at hello, before any signature", "[worl
   RightsBench bench;
   bench.change(Restrict{RestrictionKind::ban, AddressRange{address_block_v4(0x0a000000), 32 + 24},
                         0, "a bot net"});
-  const auto closed = bench.refused_join(1, 1, kHome);
+  bench.server.connected(1, bench.now(), kHome);
+  bench.server.received(1, bench.hello(1), bench.now());
+  REQUIRE(bench.environment.closed.size() == 1);
+  const auto closed = bench.environment.closed[0];
   CHECK(closed.reason == GoodbyeReason::not_admitted);
   CHECK(closed.text == "your address is banned: a bot net");
   CHECK(bench.environment.messages<Welcome>(1, 0).empty());
@@ -279,6 +285,65 @@ TEST_CASE("a world of invited players admits who brings a valid invite", "[world
   bench.server.disconnected(3);
   bench.knock(5, 1, token);  // the player has a role now, and needs no invite
   CHECK(bench.environment.messages<SessionAccepted>(5, kEdge).size() == 1);
+}
+
+TEST_CASE("an accepted invite whose role may not see any more closes the session",
+          "[world][rights]") {
+  RightsBench bench;
+  bench.change(DefineRole{{"guest", {Right::see}, 0, 0, 0}});
+  const InviteId id = bench.server.new_invite_id();
+  bench.change(CreateInvite{{id, "guest", 1, bench.now().utc_us + 60'000'000}});
+  bench.change(DefineRole{{"guest", {}, 0, 0, 0}});
+  bench.knock(1, 1, bench.token_of(id));
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::not_admitted);
+  CHECK(bench.environment.messages<SessionAccepted>(1, kEdge).empty());
+  bench.tick();
+}
+
+TEST_CASE("a change of rights lets players in their handshake go on", "[world][rights]") {
+  RightsBench bench;
+  bench.change(SetDefaultRole{kNobodyRole});
+  const InviteId id = bench.server.new_invite_id();
+  bench.change(CreateInvite{{id, kBuilderRole, 2, bench.now().utc_us + 60'000'000}});
+  bench.server.connected(1, bench.now());
+  const Hello hello = bench.hello(1);
+  bench.server.received(1, hello, bench.now());
+  bench.knock(2, 2, bench.token_of(id));  // another player accepts it meanwhile
+  CHECK(bench.environment.closed.empty());
+  ClientAuth auth = bench.client_auth(1, hello, bench.environment.messages<Welcome>(1, 0).at(0));
+  auth.ticket = bench.token_of(id);
+  bench.server.received(1, auth, bench.now());
+  CHECK(bench.environment.messages<SessionAccepted>(1, kEdge).size() == 1);
+}
+
+TEST_CASE("a ban of addresses lets administrators in, and a moderator bans no peer with it",
+          "[world][rights]") {
+  RightsBench bench;
+  bench.change(GrantRole{key_of(1), kAdministratorRole});
+  bench.change(GrantRole{key_of(2), kModeratorRole});
+  bench.change(GrantRole{key_of(3), kModeratorRole});
+  const AuthorId two = bench.join(2, 2, 1, kElsewhere).author;
+  bench.join(3, 3, 1, kHome);
+  const Restrict home{RestrictionKind::ban, AddressRange{kHome, 64}, 0, ""};
+  CHECK(bench.refusal(home, 2, two).find("player3") != std::string::npos);
+  bench.server.disconnected(3);
+  CHECK(bench.refusal(home, 2, two).empty());
+  bench.join(1, 1, 1, kHome);
+  bench.server.connected(4, bench.now(), kHome);
+  bench.server.received(4, bench.hello(4), bench.now());
+  CHECK(bench.environment.closed.back().session == 4);
+}
+
+TEST_CASE("edits that wait are ordered before a change that forbids them", "[world][rights]") {
+  RightsBench bench;
+  bench.join(1, 1);
+  bench.view(1, kSmall);
+  bench.edit(1, 1, SetVoxel{{2, 2, 2}});
+  bench.change(Restrict{RestrictionKind::freeze, key_of(1), 0, ""});
+  REQUIRE(bench.environment.records.size() == 2);
+  CHECK(bench.environment.records[0].cause == Cause::player);
+  CHECK(bench.environment.records[1].cause == Cause::rights);
 }
 
 TEST_CASE("an invite is not used up while the log is full", "[world][rights]") {
