@@ -168,7 +168,8 @@ class RawClient {
     chunk_edge_ = welcome.chunk_edge;
     if (!verify(welcome.server_key, server_transcript(h, welcome, binding()), welcome.signature))
       return std::nullopt;
-    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome, signed_binding)), ticket});
+    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome, signed_binding)),
+                    ticket});
     return next_of<SessionAccepted>();
   }
 
