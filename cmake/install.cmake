@@ -34,7 +34,8 @@ endfunction()
 
 runstone_installed(core DESCRIPTION "positions, bytes, digests and results")
 runstone_installed(runs REQUIRES runstone-core DESCRIPTION "voxel chunks stored as runs of one material")
-runstone_installed(edits REQUIRES runstone-runs libhwy DESCRIPTION "edits of run chunks and the layers they change")
+runstone_installed(rights DESCRIPTION "roles, bans and protected boxes" REQUIRES runstone-core)
+runstone_installed(edits REQUIRES runstone-rights runstone-runs libhwy DESCRIPTION "edits of run chunks and the layers they change")
 runstone_installed(mesh REQUIRES runstone-runs libhwy DESCRIPTION "quads from run chunks")
 
 if(RUNSTONE_INSTALL)

@@ -17,9 +17,10 @@ inline constexpr std::uint32_t kProtocolVersion = 2;
 // Features: optional parts of the protocol, a bit each.
 inline constexpr std::uint64_t kFeatureCommands = 1;    // CommandRequest and CommandOutput
 inline constexpr std::uint64_t kFeatureReceiveAck = 2;  // ReceiveAck, by which terrain is paced
-inline constexpr std::uint64_t kFeatureNames = 4;  // the client keeps its key: it claims its name
+inline constexpr std::uint64_t kFeatureNames = 4;   // the client keeps its key: it claims its name
+inline constexpr std::uint64_t kFeatureRights = 8;  // Permissions and ProtectedGround
 inline constexpr std::uint64_t kFeaturesKnown =
-    kFeatureCommands | kFeatureReceiveAck | kFeatureNames;
+    kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -52,9 +53,9 @@ static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 32) <= kServerControl
               "a full material table fits Welcome");
 
 // Handshake.
-inline constexpr std::size_t kKeyBytes = 32;
 inline constexpr std::size_t kNonceBytes = 32;
 inline constexpr std::size_t kSignatureBytes = 64;
+inline constexpr std::size_t kTicketBytesMax = 128;
 inline constexpr std::size_t kWorldIdBytes = 16;
 inline constexpr std::size_t kPlayerNameBytesMax = 32;
 inline constexpr std::int64_t kHandshakeMsMax = 10'000;  // then a silent peer loses its slot
@@ -84,6 +85,11 @@ inline constexpr std::size_t kTextBytesMax = 256;  // of reject details and good
 
 inline constexpr std::size_t kTouchedChunksMax = 4096;       // per edit
 inline constexpr std::size_t kClaimsPerSessionMax = 32'768;  // claims that wait for an answer
+
+// Rights.
+inline constexpr std::size_t kGroundBoxesMax = 1024;    // that a session knows at a time
+inline constexpr std::size_t kGroundNameBytesMax = 32;  // of boxes and roles
+inline constexpr std::int32_t kGroundPriorityMax = 1000;
 
 // Commands.
 inline constexpr std::size_t kCommandBytesMax = 1024;      // one line

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "client/display/body_marker.hpp"
+#include "client/display/ground_marker.hpp"
 #include "client/report/exit_code.hpp"
 #include "common/core/key_text.hpp"
 #include "common/os/output_file.hpp"
@@ -77,6 +78,7 @@ Client::Client(ClientOptions options, const Script* script)
       budget_(options_.memory_mib << 20, {options_.view_radius, options_.view_radius_v}),
       view_(session_, player_, budget_.radii()),
       actions_(session_, player_, pipeline_, tool_, view_, options_.screenshot_dir) {
+  shows_ground_ = options_.show_protected;
   spdlog::info("renderer={}", pipeline_.renderer_name());
   if (script != nullptr) runner_.emplace(*script, actions_);
   started_us_ = polled_us_ = steady_now_us();
@@ -150,6 +152,7 @@ void Client::poll_window(TimeUs now_us) {
   if (input.scrub != 0) scrub(input.scrub);
   if (input.undo) static_cast<void>(session_.command("undo"));
   if (input.redo) static_cast<void>(session_.command("redo"));
+  if (input.ground % 2 != 0) shows_ground_ = !shows_ground_;
   if (input.live) static_cast<void>(session_.request_history({}));
   if (input.screenshot)
     static_cast<void>(actions_.screenshot(fmt::format("runstone-{}.png", now_us)));
@@ -235,12 +238,26 @@ void Client::log_players(TimeUs now_us) {
   player_log_.update(session_.others());
 }
 
+void Client::add_ground(std::vector<Marker>& markers) const {
+  const Replica& replica = session_.replica();
+  if (!shows_ground_ || replica.past()) return;
+  for (const auto& [seq, box] : replica.ground().boxes()) {
+    if (const auto outline = ground_marker(box, player_.eye(), draw_distance()))
+      markers.push_back(*outline);
+  }
+}
+
+double Client::draw_distance() const {
+  return (view_.radii().h + 1.5) * std::max(16, session_.replica().chunk_edge());
+}
+
 std::vector<Marker> Client::markers() const {
   std::vector<Marker> out;
   for (const auto& [author, other] : session_.others()) {
     if (!other.pose) continue;
     if (const auto body = body_marker(author, other.pose->at, player_.eye())) out.push_back(*body);
   }
+  add_ground(out);
   if (options_.headless) return out;
   if (const auto hit = tool_.pick()) {
     const auto at = [](std::int32_t v) { return v - 0.002; };
@@ -258,8 +275,7 @@ std::vector<Marker> Client::markers() const {
 }
 
 void Client::draw(TimeUs now_us) {
-  const double edge = std::max(16, session_.replica().chunk_edge());
-  const Camera camera = player_.camera((view_.radii().h + 1.5) * edge);
+  const Camera camera = player_.camera(draw_distance());
   const std::array<int, 2> size =
       window_ ? window_->framebuffer_size() : std::array{options_.width, options_.height};
   pipeline_.draw(now_us, camera, size, [this] { return markers(); });

@@ -59,6 +59,9 @@ class Client {
   void drain_changes();
   void draw(TimeUs now_us);
   std::vector<Marker> markers() const;
+  /// Adds the outlines of protected boxes if they are shown.
+  void add_ground(std::vector<Marker>& markers) const;
+  double draw_distance() const;  // voxels
   void update_title(TimeUs now_us);
   /// Returns the exit code if the program is to end now.
   std::optional<int> exit_code(TimeUs now_us);
@@ -90,7 +93,8 @@ class Client {
   PlayerLog player_log_;
   TimeUs players_logged_us_ = 0;   // when the player log was last updated
   bool logged_read_only_ = false;  // the state of the server that was logged last
-  bool end_requested_ = false;     // by the user or a signal
+  bool shows_ground_ = false;
+  bool end_requested_ = false;  // by the user or a signal
 };
 
 }  // namespace runstone

@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 namespace runstone {
 
 std::optional<RayHit> EditTool::pick() const {
@@ -19,7 +21,8 @@ void EditTool::place(TimeUs now_us) {
   if (at) static_cast<void>(submit({SetVoxel{*at}, {}, player_.held()}, now_us, now_us));
 }
 
-Result<void> EditTool::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
+Result<void, std::string> EditTool::submit(const EditDescriptor& edit, TimeUs due_us,
+                                           TimeUs now_us) {
   const auto seq = session_.submit(edit, due_us, now_us);
   if (seq) {
     recorder_.submitted(*seq, due_us);
@@ -30,8 +33,9 @@ Result<void> EditTool::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs 
   } else {
     ++refused_;
   }
-  spdlog::warn("edit refused: {}", seq.error().what);
-  return Unexpected<Error>{seq.error()};
+  std::string why = session_.refusal_text(edit, seq.error());
+  spdlog::warn("edit refused: {}", why);
+  return Unexpected<std::string>{std::move(why)};
 }
 
 }  // namespace runstone

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "client/app/player.hpp"
 #include "client/replica/ray_pick.hpp"
@@ -25,10 +26,11 @@ class EditTool {
   void remove(TimeUs now_us);
   /// Places the player's material against the voxel that the player looks at.
   void place(TimeUs now_us);
-  /// Submits an edit that was due at `due_us`. Fails if the client does not accept it, and logs the
-  /// reason. If the client had no room for it, the edit counts as infinitely late. Any other
-  /// refusal, such as that of an edit while the view shows the past, counts in refused() only.
-  Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us);
+  /// Submits an edit that was due at `due_us`. Fails with the reason, which is also logged, if the
+  /// client does not accept it. If the client had no room for it, the edit counts as infinitely
+  /// late. Any other refusal, such as that of an edit while the view shows the past, counts in
+  /// refused() only.
+  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us);
 
   std::uint64_t refused() const { return refused_; }
 

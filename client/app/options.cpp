@@ -7,6 +7,7 @@
 #include "common/core/text.hpp"
 #include "common/os/output_file.hpp"
 #include "protocol/codec/chunk_codec.hpp"
+#include "protocol/codec/server_link.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -32,7 +33,8 @@ struct RawOptions {
 
 void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   app.add_option("--connect", raw.address,
-                 "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort));
+                 "server: HOST, HOST:PORT or a link runstone://HOST:PORT/#INVITE; default port " +
+                     std::to_string(kDefaultPort));
   CLI::Option* const insecure =
       app.add_flag("--insecure", raw.insecure,
                    "do not encrypt the connection; for servers that run with --insecure");
@@ -81,6 +83,8 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
       ->check(output_refusal);
   app.add_option("--screenshot-dir", out.screenshot_dir, "folder for screenshots")
       ->check(CLI::ExistingDirectory);
+  app.add_flag("--show-protected", out.show_protected,
+               "outline protected boxes: green where the player may edit, red elsewhere");
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
       ->check(CLI::Range(0U, 64U));
   app.add_option("--memory-mib", out.memory_mib,
@@ -110,7 +114,13 @@ void add_modes(CLI::App& app, ClientOptions& out) {
 void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   if (!out.draw) {
     if (raw.address.empty()) throw CLI::RequiredError("--connect");
-    auto server = parse_host_port(raw.address, kDefaultPort);
+    auto link = parse_server_link(raw.address);
+    if (!link) throw CLI::ValidationError("--connect", link.error());
+    out.ticket = std::move(link->ticket);
+    if (!out.ticket.empty() && out.key_file.empty())
+      throw CLI::ValidationError("--connect",
+                                 "the invite is for an identity that you keep: add --key FILE");
+    auto server = parse_host_port(link->address, kDefaultPort);
     if (!server) throw CLI::ValidationError("--connect", server.error());
     out.server = *std::move(server);
   }

@@ -15,6 +15,7 @@ struct ClientOptions {
   std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
   std::string name = "builder";
   std::string key_file;            // empty: a new key, for this process only
+  std::string ticket;              // an invite token from the link; empty: none
   std::uint8_t view_radius = 6;    // chunks, horizontal
   std::uint8_t view_radius_v = 3;  // chunks, vertical
   bool headless = false;           // off screen, no display needed
@@ -25,6 +26,7 @@ struct ClientOptions {
   std::string digests;             // file; empty: none
   std::uint8_t encodings = 7;      // as in Hello
   std::string screenshot_dir = ".";
+  bool show_protected = false;  // outline protected boxes from the start
   bool exit_on_goodbye = false;
   double reconnect_seconds = 30;    // the client ends after this time without an open world
   unsigned workers = 0;             // mesh threads, at least 1 after parsing

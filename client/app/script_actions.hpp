@@ -38,7 +38,8 @@ class ScriptActions final : public ScriptHost {
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {
     return session_.edit_wait_us(edit, now_us);
   }
-  Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
+  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us,
+                                   TimeUs now_us) override {
     return tool_.submit(edit, due_us, now_us);
   }
   bool loaded() const override;

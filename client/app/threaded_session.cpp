@@ -35,6 +35,7 @@ std::unique_ptr<CacheThread> make_cache(const ClientOptions& options,
 
 SessionConfig session_config(const ClientOptions& options, bool has_cache) {
   SessionConfig config;
+  config.ticket = options.ticket;
   config.has_cache = has_cache;
   config.keys = options.key_file.empty() ? random_key() : load_or_create_key(options.key_file);
   if (!options.key_file.empty()) {

@@ -47,6 +47,7 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
   TimeUs first_us = 0;
   std::string wrong;
   const auto read = reader->read({}, [&](const EditRecord& record) {
+    if (rights_change_of(record.edit) != nullptr) return true;  // the live world has its own
     if (log.edits == 0) first_us = record.time_us;
     if (!log.materials.knows(material_max(record.edit))) {
       wrong = "edit " + std::to_string(record.version.seq) + " uses material " +

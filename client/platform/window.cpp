@@ -102,6 +102,7 @@ Window::Window(int width, int height, const std::string& title)
     if (key == GLFW_KEY_Z && (mods & GLFW_MOD_CONTROL) != 0) state.pending.undo = true;
     if (key == GLFW_KEY_Y && (mods & GLFW_MOD_CONTROL) != 0) state.pending.redo = true;
     if (key == GLFW_KEY_HOME) state.pending.live = true;
+    if (key == GLFW_KEY_G) ++state.pending.ground;
     if (key == GLFW_KEY_ESCAPE) {
       if (state.captured) return state.capture(false);
       state.pending.escape = true;

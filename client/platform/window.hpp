@@ -23,6 +23,7 @@ struct WindowInput {
   int scrub = 0;                    // presses of ] (later) minus presses of [ (earlier)
   bool undo = false, redo = false;  // Ctrl+Z, Ctrl+Y pressed
   bool live = false;                // Home pressed
+  int ground = 0;                   // presses of G
   bool close = false;               // the window's close button
 };
 

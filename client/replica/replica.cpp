@@ -19,6 +19,7 @@ std::vector<ClientSequence> Replica::open(const SessionParameters& parameters) {
   past_.reset();
   views_.reopen();
   claims_.clear();
+  ground_.clear();
   updater_.clear_requests();
   parameters_ = parameters;
   durable_ = parameters.durable;
@@ -57,6 +58,7 @@ void Replica::reset() {
   chunks_.clear();
   claims_.clear();
   local_edits_.clear();
+  ground_.clear();
   updater_.clear_requests();
   outbox_.clear();
   parameters_.reset();
@@ -140,8 +142,10 @@ Result<void> Replica::check(const EditDescriptor& edit) const {
     case RejectReason::too_large:
       return fail(ErrorCode::limit_exceeded, "edit covers more voxels or chunks than allowed");
     default:
-      return {};
+      break;
   }
+  if (ground_.refusal(edit)) return fail(ErrorCode::not_permitted, "you may not edit there");
+  return {};
 }
 
 void Replica::add_pending_to_chunks(ClientSequence seq) {

@@ -40,6 +40,7 @@
 #include "client/replica/change_queue.hpp"
 #include "client/replica/chunk_updater.hpp"
 #include "client/replica/claims.hpp"
+#include "client/replica/known_ground.hpp"
 #include "client/replica/local_edits.hpp"
 #include "client/replica/past_view.hpp"
 #include "client/replica/recent_views.hpp"
@@ -94,6 +95,7 @@ class Replica {
   ///   - before open(), and while the past is shown;
   ///   - if the descriptor is invalid, has a material that the world lacks, or exceeds the heights or
   ///     the edit volume of the world;
+  ///   - with not_permitted if the player may not make it, as far as this client knows (ground());
   ///   - if it touches an unavailable chunk or more than kTouchedChunksMax chunks;
   ///   - if kLocalEditsMax edits are kept.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
@@ -114,6 +116,9 @@ class Replica {
   void receive(const Reject& reject, TimeUs now_us);
   void receive(const Durable& durable);
   void receive(const DigestCheck& check, TimeUs now_us);
+  void receive(const Permissions& permissions) { ground_.receive(permissions); }
+  /// Fails as KnownGround::receive() does.
+  Result<void> receive(const ProtectedGround& change) { return ground_.receive(change); }
   /// The chunks that follow are of another moment; nullopt: of the live world. What is shown stays
   /// until they arrive. In the past nothing is predicted, and commits only resolve local edits.
   /// Back in the live world every chunk is expected again, and pending edits are shown again.
@@ -167,6 +172,7 @@ class Replica {
   /// and it is not unavailable.
   bool is_expected(const ChunkKey& key) const;
   const LocalEdits& local_edits() const { return local_edits_; }
+  const KnownGround& ground() const { return ground_; }
   /// Returns the memory of all chunks: confirmed and shown runs, and edits that wait beside them.
   std::size_t chunk_bytes() const { return chunks_.bytes(); }
   Sequence durable() const { return durable_; }
@@ -193,6 +199,7 @@ class Replica {
   Claims claims_;
   CacheOutbox outbox_;
   LocalEdits local_edits_;
+  KnownGround ground_;
   Sequence durable_ = 0;
   Sequence newest_ = 0;
   ChangeQueue changes_;

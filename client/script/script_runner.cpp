@@ -134,7 +134,7 @@ ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit) {
     return Progress::waits;
   }
   if (const auto ok = host_.submit(edit, now_us_, now_us_); !ok)
-    fail(std::string("edit refused: ") + ok.error().what);
+    fail("edit refused: " + ok.error());
   return Progress::done;
 }
 

@@ -20,6 +20,7 @@ struct SessionConfig {
   std::uint64_t features = kFeaturesKnown & ~kFeatureNames;
   View view;                            // requested; the server's limit cuts the radii
   std::map<WorldId, PublicKey> pinned;  // server keys seen before
+  std::string ticket;                   // an invite token, sent with the signature; empty: none
   bool has_cache = false;               // a ClientSession looks chunks up in a cache
 };
 
@@ -32,8 +33,8 @@ struct WelcomeFault {
   std::string text;
 };
 /// Returns nullopt if the server has this protocol version, has proved its key on the connection of
-/// this binding, and the key is the pinned one of its world. Adds the key to `pinned` if the world has none. Otherwise returns the
-/// reason for the rejection. Cost: one signature check, about 0.1 ms.
+/// this binding, and the key is the pinned one of its world. Adds the key to `pinned` if the world
+/// has none. Otherwise returns the reason for the rejection. Cost: one signature check, about 0.1 ms.
 std::optional<WelcomeFault> check_welcome(const Hello& hello, const Welcome& welcome,
                                           const std::optional<ChannelBinding>& binding,
                                           std::map<WorldId, PublicKey>& pinned);

@@ -74,6 +74,11 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           replica_->receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, DigestCheck>) {
           replica_->receive(m, arrival.now_us);
+        } else if constexpr (std::is_same_v<T, Permissions>) {
+          replica_->receive(m);
+        } else if constexpr (std::is_same_v<T, ProtectedGround>) {
+          const auto taken = replica_->receive(m);
+          if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
         } else if constexpr (std::is_same_v<T, Durable>) {
           is_server_read_only_ = m.is_read_only;
           replica_->receive(m);
@@ -152,6 +157,13 @@ Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs 
     send_waiting_edits(now_us);
   }
   return seq;
+}
+
+std::string ClientSession::refusal_text(const EditDescriptor& edit, const Error& error) const {
+  if (error.code == ErrorCode::not_permitted) {
+    if (auto why = replica_->ground().refusal(edit)) return *std::move(why);
+  }
+  return error.what;
 }
 
 void ClientSession::send_waiting_edits(TimeUs now_us) {

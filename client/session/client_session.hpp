@@ -71,6 +71,9 @@ class ClientSession {
   /// from there. Fails as Replica::submit() does, and with limit_exceeded if edit_wait_us() is not
   /// 0.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
+  /// Returns why submit() has refused this edit with this error, for the player. If the player may
+  /// not make the edit, the text names the protected box or the role.
+  std::string refusal_text(const EditDescriptor& edit, const Error& error) const;
   /// Returns how long the player's edit budget needs until it suffices for this edit, as far as this
   /// client knows.
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) {

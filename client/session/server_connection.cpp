@@ -11,7 +11,7 @@ namespace {
 
 bool is_final(GoodbyeReason reason) {
   return reason == GoodbyeReason::wrong_protocol || reason == GoodbyeReason::not_authenticated ||
-         reason == GoodbyeReason::name_refused;
+         reason == GoodbyeReason::name_refused || reason == GoodbyeReason::not_admitted;
 }
 
 }  // namespace
@@ -77,7 +77,8 @@ ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
   }
   const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
   if (is_another_world || (welcome_ && welcome_->epoch != welcome.epoch)) clock_.reset();
-  outgoing_.push_back(ClientAuth{sign(config_.keys, client_transcript(hello_, welcome, binding_))});
+  outgoing_.push_back(ClientAuth{sign(config_.keys, client_transcript(hello_, welcome, binding_)),
+                                 config_.ticket});
   welcome_ = std::move(welcome);
   state_ = SessionState::authenticating;
   return is_another_world ? Dispatch::another_world : Dispatch::handled;

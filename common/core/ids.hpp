@@ -47,9 +47,10 @@ enum class Cause : std::uint8_t {
   rollback = 2,
   undo = 3,
   redo = 4,
-  import = 5
+  import = 5,
+  rights = 6  // a change of rights, by a player or by the console (author 0)
 };
-inline constexpr std::uint8_t kCauseMax = 5;
+inline constexpr std::uint8_t kCauseMax = 6;
 
 using SessionId = std::uint32_t;  // one connection; never reused while the server runs
 

@@ -26,6 +26,7 @@ enum class ErrorCode : std::uint16_t {
   unknown_kind,      // a tag, message type or encoding that this build does not know
   not_found,         // a named object does not exist
   io_failed,         // the disk or the network failed
+  not_permitted,     // the player may not do this
 };
 
 struct Error {

@@ -35,7 +35,7 @@ std::size_t RlogEditsWriter::bytes() const {
 }
 
 void RlogEditsWriter::add(const EditRecord& record) {
-  RUNSTONE_ASSERT(validate_numbers(record).has_value() && record.log == 0);
+  RUNSTONE_ASSERT(validate_fields(record).has_value() && record.log == 0);
   if (count_ == 0) {
     first_ = record.version.seq;
     first_us_ = last_us_ = record.time_us;
@@ -166,7 +166,7 @@ Result<EditRecord> RlogEditsReader::next() {
   record.cause = static_cast<Cause>(cause);
   record.edit = *std::move(edit);
   record.subject = back == 0 ? 0 : seq_ - back;
-  if (const auto numbers = validate_numbers(record); !numbers)
+  if (const auto numbers = validate_fields(record); !numbers)
     return Unexpected<Error>{numbers.error()};
   clients_seen_ = std::max(clients_seen_, static_cast<std::size_t>(client) + 1);
   last = record.op.seq;

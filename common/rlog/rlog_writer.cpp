@@ -73,7 +73,7 @@ RlogResult<void> RlogWriter::add(const EditRecord& record) {
   const auto bad = [&](const char* what) {
     return failure(ErrorCode::bad_value, what, record.version.seq);
   };
-  if (const auto numbers = validate_numbers(record); !numbers) return bad(numbers.error().what);
+  if (const auto numbers = validate_fields(record); !numbers) return bad(numbers.error().what);
   if (record.log != 0) return bad("belongs to another log");
   if (record.version.seq != next_) return bad("does not continue the log");
   if (record.version.epoch < epoch_) return bad("epoch falls");

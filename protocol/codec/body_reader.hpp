@@ -1,6 +1,6 @@
 // BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier
 // cannot check. Internal to the message decoder. The readers are in session_bodies.cpp,
-// chunk_bodies.cpp and edit_bodies.cpp.
+// chunk_bodies.cpp, edit_bodies.cpp and rights_bodies.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -66,6 +66,10 @@ struct BodyReader {
   Result<Message> read(const wire::Commit& t) const;
   Result<Message> read(const wire::Reject& t) const;
   Result<Message> read(const wire::Durable& t) const;
+
+  // ---- rights_bodies.cpp
+  Result<Message> read(const wire::Permissions& t) const;
+  Result<Message> read(const wire::ProtectedGround& t) const;
 
   using TakeEdit = std::function<Result<void>()>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then

@@ -45,7 +45,7 @@ Result<std::vector<MissingEdit>> decode_missing_edits(ByteView bytes, Sequence f
     const std::uint64_t size = in.varint_max(kDescriptorBytesMax, "descriptor is too long");
     const ByteView edit = in.bytes(static_cast<std::size_t>(size));
     if (!in.ok()) return missing;
-    auto decoded = decode_descriptor(edit);
+    auto decoded = decode_voxel_edit(edit);
     if (!decoded) {
       in.reject(decoded.error().code, decoded.error().what);
     } else {

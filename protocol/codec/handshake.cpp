@@ -10,7 +10,8 @@
 namespace runstone {
 namespace {
 
-static_assert(crypto_sign_PUBLICKEYBYTES == kKeyBytes && crypto_sign_BYTES == kSignatureBytes);
+static_assert(crypto_sign_PUBLICKEYBYTES == kPublicKeyBytes &&
+              crypto_sign_BYTES == kSignatureBytes);
 static_assert(crypto_sign_SEEDBYTES == std::tuple_size_v<KeySeed>);
 static_assert(crypto_sign_SECRETKEYBYTES == std::tuple_size_v<decltype(KeyPair::secret_key)>);
 

@@ -16,7 +16,8 @@ using Bodies =
                wire::Durable, wire::DigestCheck, wire::Move, wire::PlayerPoses, wire::PlayerList,
                wire::Ping, wire::Pong, wire::Goodbye, wire::ChunkUnavailable, wire::HistoryRequest,
                wire::ViewState, wire::CommandRequest, wire::CommandOutput, wire::ReceiveAck,
-               wire::UniformChunks, wire::CachedChunks, wire::ChunksNotModified>;
+               wire::UniformChunks, wire::CachedChunks, wire::ChunksNotModified, wire::Permissions,
+               wire::ProtectedGround>;
 static_assert(std::tuple_size_v<Bodies> == kMessageKindCount);
 
 using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);

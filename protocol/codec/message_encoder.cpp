@@ -66,7 +66,9 @@ struct BodyBuilder {
                                m.view_radius_max, m.features);
   }
   Offset<wire::ClientAuth> operator()(const ClientAuth& m) {
-    return wire::CreateClientAuth(b, bytes_of(b, m.signature));
+    const auto signature = bytes_of(b, m.signature);
+    const auto ticket = m.ticket.empty() ? 0 : b.CreateString(m.ticket);
+    return wire::CreateClientAuth(b, signature, ticket);
   }
   Offset<wire::SessionAccepted> operator()(const SessionAccepted& m) {
     return wire::CreateSessionAccepted(b, m.author, m.resolved);
@@ -173,6 +175,28 @@ struct BodyBuilder {
   }
   Offset<wire::UniformChunks> operator()(const UniformChunks& m) {
     return wire::CreateUniformChunks(b, m.view, bytes_of(b, encode_uniform(m.chunks)));
+  }
+
+  Offset<wire::Permissions> operator()(const Permissions& m) {
+    RUNSTONE_ASSERT(!m.role.empty() && m.role.size() <= kGroundNameBytesMax);
+    const auto role = b.CreateString(m.role);
+    return wire::CreatePermissions(b, role, m.rights, m.edit_volume_max, text(m.edits_refused));
+  }
+  Offset<wire::ProtectedGround> operator()(const ProtectedGround& m) {
+    RUNSTONE_ASSERT(m.removed.size() <= kGroundBoxesMax && m.boxes.size() <= kGroundBoxesMax);
+    RUNSTONE_ASSERT(!m.removed.empty() || !m.boxes.empty());
+    std::vector<Offset<wire::GroundBox>> boxes;
+    boxes.reserve(m.boxes.size());
+    for (const GroundBox& box : m.boxes) {
+      const auto name = b.CreateString(box.name);
+      const auto owner = b.CreateString(box.owner);
+      const wire::Corner min(box.box.min.x, box.box.min.y, box.box.min.z);
+      const wire::Corner max(box.box.max.x, box.box.max.y, box.box.max.z);
+      boxes.push_back(
+          wire::CreateGroundBox(b, box.seq, &min, &max, box.priority, box.admits, name, owner));
+    }
+    const auto removed = b.CreateVector(m.removed);
+    return wire::CreateProtectedGround(b, removed, b.CreateVector(boxes));
   }
 
   Offset<wire::Chunks> chunks(std::uint32_t view, std::span<const ChunkEntry> entries) {

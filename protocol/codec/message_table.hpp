@@ -70,6 +70,8 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"UniformChunks", server, kChunks, open, 0},
       {"CachedChunks", client, kControl, open, 0},
       {"ChunksNotModified", server, kChunks, open, 0},
+      {"Permissions", server, kControl, open, kFeatureRights},
+      {"ProtectedGround", server, kControl, open, kFeatureRights},
   }};
 }();
 

@@ -69,6 +69,8 @@ const char* to_string(GoodbyeReason reason) {
       return "internal";
     case GoodbyeReason::name_refused:
       return "name_refused";
+    case GoodbyeReason::not_admitted:
+      return "not_admitted";
   }
   return "unknown";
 }

@@ -17,6 +17,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/digest.hpp"
 #include "common/core/ids.hpp"
+#include "common/core/public_key.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
@@ -24,11 +25,11 @@
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/frame.hpp"
+#include "protocol/codec/rights_messages.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
 
-using PublicKey = std::array<std::uint8_t, kKeyBytes>;
 using Nonce = std::array<std::uint8_t, kNonceBytes>;
 using Signature = std::array<std::uint8_t, kSignatureBytes>;
 using WorldId = std::array<std::uint8_t, kWorldIdBytes>;
@@ -83,6 +84,7 @@ struct Welcome {
 };
 struct ClientAuth {
   Signature signature{};
+  std::string ticket;  // an invite token (invite_token.hpp); empty: none
   friend bool operator==(const ClientAuth&, const ClientAuth&) = default;
 };
 struct SessionAccepted {
@@ -289,7 +291,7 @@ enum class RejectReason : std::uint8_t {
   unknown_material = 3,
   too_large = 4,  // too many voxels or touched chunks
   out_of_reach = 5,
-  not_permitted = 6,  // reserved: no server sends it yet
+  not_permitted = 6,  // the role of the player, a restriction or protected ground; text says which
   rate_limited = 7,
   bad_edit = 8,       // not a valid descriptor
   outside_world = 9,  // a voxel lies above or below the height limits
@@ -373,8 +375,9 @@ enum class GoodbyeReason : std::uint16_t {
   flooding = 10,  // more messages or claims than the limits allow
   internal = 11,
   name_refused = 12,  // the player may not have this name; text says why
+  not_admitted = 13,  // a ban, a kick, or a role that may not join; text says which
 };
-inline constexpr std::uint16_t kGoodbyeReasonMax = 12;
+inline constexpr std::uint16_t kGoodbyeReasonMax = 13;
 /// Returns the name in docs/protocol.md, or "unknown".
 const char* to_string(GoodbyeReason reason);
 
@@ -412,7 +415,8 @@ using Message =
     std::variant<Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, Chunks,
                  EditRequest, Commit, Reject, Durable, DigestCheck, Move, PlayerPoses, PlayerList,
                  Ping, Pong, Goodbye, ChunkUnavailable, HistoryRequest, ViewState, CommandRequest,
-                 CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified>;
+                 CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified,
+                 Permissions, ProtectedGround>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

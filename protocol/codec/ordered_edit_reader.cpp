@@ -14,7 +14,8 @@ Result<void> OrderedEditReader::next(OrderedEdit& edit, std::vector<ChunkCoord>&
   edit.op.instance = in_.u64();
   edit.op.seq = in_.varint();
   const std::uint8_t cause = in_.u8();
-  if (in_.ok() && cause > kCauseMax) in_.reject(ErrorCode::bad_value, "commit cause is unknown");
+  if (in_.ok() && (cause > kCauseMax || cause == static_cast<std::uint8_t>(Cause::rights)))
+    in_.reject(ErrorCode::bad_value, "commit cause is unknown");
   edit.cause = static_cast<Cause>(cause);
   edit.subject = in_.varint_max(edit.seq - 1, "commit subject is not an earlier edit");
   // The difference is subtracted: a click lies before the edit's order.
@@ -51,7 +52,7 @@ void OrderedEditReader::take_descriptor(OrderedEdit& edit) {
   const std::uint64_t size = in_.varint_max(kDescriptorBytesMax, "descriptor is too long");
   const ByteView bytes = in_.bytes(static_cast<std::size_t>(size));
   if (!in_.ok()) return;
-  auto descriptor = decode_descriptor(bytes);
+  auto descriptor = decode_voxel_edit(bytes);
   if (descriptor) {
     edit.edit = *std::move(descriptor);
   } else {

@@ -86,6 +86,8 @@ Result<Message> BodyReader::read(const wire::Welcome& t) const {
 Result<Message> BodyReader::read(const wire::ClientAuth& t) const {
   ClientAuth m;
   if (!take_exact(t.signature(), m.signature)) return bad("client_auth.signature is not 64 bytes");
+  if (t.ticket() != nullptr && !take_text(t.ticket(), 1, kTicketBytesMax, m.ticket))
+    return bad("client_auth.ticket is not 1 .. 128 bytes of text");
   return m;
 }
 

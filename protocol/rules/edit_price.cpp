@@ -16,6 +16,7 @@ std::uint64_t edit_price(const EditDescriptor& edit, std::uint16_t chunk_edge,
     const std::uint64_t bytes = paste->clipboard->byte_size() + EditPrices::kClipboardBytes - 1;
     price += bytes / EditPrices::kClipboardBytes * EditPrices::kClipboardPart;
   }
+  if (rights_change_of(edit) != nullptr) price += encode(edit).size() / EditPrices::kClipboardBytes;
   return budget.is_limited() ? std::min(price, budget.burst) : price;
 }
 

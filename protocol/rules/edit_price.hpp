@@ -15,7 +15,7 @@ struct EditPrices {
   /// Each chunk that the bounding box of the edit touches, up to kTouchedChunksMax. The chunk gets a
   /// new version, is swept, and is written once with the next snapshots.
   static constexpr std::uint64_t kChunk = 1;
-  /// Each started kClipboardBytes of a clipboard. They are written to the log twice, kept in memory
+  /// Each started kClipboardBytes of a clipboard, and each kClipboardBytes of a change of rights. They are written to the log twice, kept in memory
   /// until all touched chunks are loaded, and sent to every session that sees the edit.
   static constexpr std::uint64_t kClipboardPart = 1;
   static constexpr std::size_t kClipboardBytes = 64;

@@ -13,6 +13,7 @@
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
 #include "protocol/limits.hpp"
+#include "server/admin/rights_command.hpp"
 
 namespace runstone {
 
@@ -85,23 +86,16 @@ struct RollbackListCommand {
   friend bool operator==(const RollbackListCommand&, const RollbackListCommand&) = default;
 };
 
-using Command =
-    std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand, StopCommand,
-                 ReloadCommand, BackupCommand, UndoCommand, LogCommand, NamesCommand,
-                 ReleaseNameCommand, RollbackPreviewCommand, RollbackCommand, RollbackListCommand>;
+using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand,
+                             StopCommand, ReloadCommand, BackupCommand, UndoCommand, LogCommand,
+                             NamesCommand, ReleaseNameCommand, RollbackPreviewCommand,
+                             RollbackCommand, RollbackListCommand, RightsCommand>;
 
 /// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate
 /// words; a word that contains blanks stands in double quotes. `now_us` (UTC) is the time to which
 /// ages such as "since 1h" refer. The error is one line of text for the person who typed the
 /// command.
 Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us);
-
-/// Returns true if every player may give the command. The others are for operators.
-bool is_for_everybody(const Command& command);
-
-/// Returns a text that lists the commands: all of them for operators, otherwise those for
-/// everybody.
-std::string command_help(bool is_operator);
 
 /// Returns the name that filters and answers use: "player", "rollback", ...
 std::string_view name_of(Cause cause);

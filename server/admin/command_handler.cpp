@@ -6,6 +6,7 @@
 
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/author_names.hpp"
+#include "server/admin/command_rules.hpp"
 #include "server/admin/log_line.hpp"
 #include "server/admin/material_list.hpp"
 #include "server/admin/name_list.hpp"
@@ -35,16 +36,17 @@ StoreResult<AuthorNames> read_author_names(WorldReader& reader) {
 
 CommandHandler::CommandHandler(WorldServer& world, RollbackService& rollback,
                                RollbackService::Workers& workers, MaterialTable materials,
-                               std::string world_folder, OperatorActions actions)
+                               std::string world_folder, OperatorActions actions,
+                               RightsCommands::IsOperator is_operator)
     : world_(world),
       rollback_(rollback),
       workers_(workers),
+      rights_(world, workers, std::move(is_operator)),
       materials_(std::move(materials)),
       world_folder_(std::move(world_folder)),
       actions_(std::move(actions)) {}
 
-bool CommandHandler::run_action(const CommandCaller& caller, const Command& command,
-                                const CommandReply& reply) {
+bool CommandHandler::run_action(const Command& command, const CommandReply& reply) {
   if (std::holds_alternative<StopCommand>(command)) {
     reply({"the server stops", true, true});
     if (actions_.stop) actions_.stop();
@@ -53,10 +55,7 @@ bool CommandHandler::run_action(const CommandCaller& caller, const Command& comm
   const auto* backup = std::get_if<BackupCommand>(&command);
   const bool is_reload = std::holds_alternative<ReloadCommand>(command);
   if (backup == nullptr && !is_reload) return false;
-  // Both use files of the machine, which a key of the game must not give access to.
-  if (caller.author != 0) {
-    refuse(reply, "this command is for the console and `runstone-server control`");
-  } else if (is_reload ? !actions_.reload : !actions_.back_up) {
+  if (is_reload ? !actions_.reload : !actions_.back_up) {
     refuse(reply, "this server cannot do that");
   } else if (is_reload) {
     actions_.reload(reply);
@@ -70,12 +69,11 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
                          CommandReply reply) {
   const auto command = parse_command(line, now.utc_us);
   if (!command) return refuse(reply, command.error());
-  if (!caller.is_operator && !is_for_everybody(*command)) {
-    return refuse(
-        reply, "that command is for operators: the server's setting `operators` names their keys");
-  }
-  if (std::holds_alternative<HelpCommand>(*command))
-    return reply({command_help(caller.is_operator), true, true});
+  if (auto why = why_not(caller, world_.rights(), rule_of(*command), world_.rights_time()))
+    return refuse(reply, *std::move(why));
+  if (const auto* rights = std::get_if<RightsCommand>(&*command))
+    return rights_.run(caller, *rights, now, reply);
+  if (std::holds_alternative<HelpCommand>(*command)) return help(caller, reply);
   if (std::holds_alternative<StatusCommand>(*command)) return status(reply);
   if (std::holds_alternative<PlayersCommand>(*command)) return players(reply);
   if (std::holds_alternative<NamesCommand>(*command)) return names(reply);
@@ -84,7 +82,7 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
   if (const auto* list = std::get_if<MaterialsCommand>(&*command)) {
     return reply({material_list(materials_, list->part), true, true});
   }
-  if (run_action(caller, *command, reply)) return;
+  if (run_action(*command, reply)) return;
   if (const auto* undo = std::get_if<UndoCommand>(&*command)) {
     if (caller.author == 0) {
       return refuse(
@@ -110,6 +108,13 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
     case RollbackCommand::Verb::undo:
       return rollback_.undo_rollback(rollback.id, caller.author, now, std::move(reply));
   }
+}
+
+void CommandHandler::help(const CommandCaller& caller, const CommandReply& reply) const {
+  const auto has = [&](Right right) {
+    return has_right(caller, world_.rights(), right, world_.rights_time());
+  };
+  reply({command_help(has, !caller.actor.key), true, true});
 }
 
 void CommandHandler::status(const CommandReply& reply) const {

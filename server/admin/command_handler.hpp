@@ -6,31 +6,31 @@
 #include <string>
 
 #include "server/admin/command.hpp"
+#include "server/admin/command_caller.hpp"
 #include "server/admin/operator_actions.hpp"
+#include "server/admin/rights_commands.hpp"
 #include "server/rollback/rollback_service.hpp"
 #include "server/world/world_server.hpp"
 
 namespace runstone {
 
-/// The giver of a command.
-struct CommandCaller {
-  AuthorId author = 0;  // 0: console or control
-  bool is_operator = false;
-};
-
 class CommandHandler {
  public:
   /// The references must outlive the handler.
   CommandHandler(WorldServer& world, RollbackService& rollback, RollbackService::Workers& workers,
-                 MaterialTable materials, std::string world_folder, OperatorActions actions);
+                 MaterialTable materials, std::string world_folder, OperatorActions actions,
+                 RightsCommands::IsOperator is_operator);
 
   /// Carries out one line. `reply` is called on the world strand and must not call this object.
   void run(const CommandCaller& caller, const std::string& line, const Clocks& now,
            CommandReply reply);
+  /// Begins the work that waited for the disk. Call it when the log became durable or failed.
+  void tick() { rights_.tick(); }
 
  private:
   /// Carries out a command of the program around the server. Returns false if it is another one.
-  bool run_action(const CommandCaller& caller, const Command& command, const CommandReply& reply);
+  bool run_action(const Command& command, const CommandReply& reply);
+  void help(const CommandCaller& caller, const CommandReply& reply) const;
   void status(const CommandReply& reply) const;
   void players(const CommandReply& reply);
   void names(const CommandReply& reply) const;
@@ -45,6 +45,7 @@ class CommandHandler {
   WorldServer& world_;
   RollbackService& rollback_;
   RollbackService::Workers& workers_;
+  RightsCommands rights_;
   MaterialTable materials_;
   const std::string world_folder_;  // for the pictures of previews
   const OperatorActions actions_;

@@ -4,6 +4,7 @@
 #include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/admin/command.hpp"
+#include "server/admin/rights_change_text.hpp"
 
 namespace runstone {
 namespace {
@@ -20,6 +21,8 @@ const char* name_of(EditKind kind) {
       return "stroke";
     case EditKind::paste:
       return "paste";
+    case EditKind::rights:
+      return "rights";
   }
   return "?";
 }
@@ -34,12 +37,14 @@ bool restores(Cause cause) {
 
 std::string log_line(const EditRecord& record, const std::string& author,
                      const MaterialTable& materials) {
-  const VoxelBox box = bounding_box(record.edit);
-  const EditKind kind = kind_of(record.edit);
   std::string line =
       std::to_string(record.version.seq) + " " + utc_text(record.time_us) + " " + author + " ";
   line += name_of(record.cause);
   if (record.subject != 0) line += " of " + std::to_string(record.subject);
+  if (const RightsChange* change = rights_change_of(record.edit))
+    return line + " " + rights_change_text(*change);
+  const VoxelBox box = bounding_box(record.edit);
+  const EditKind kind = kind_of(record.edit);
   line += std::string(" ") + (restores(record.cause) ? "restored" : name_of(kind)) + " " +
           text_of(box.min);
   const VoxelPos last{box.max.x - 1, box.max.y - 1, box.max.z - 1};

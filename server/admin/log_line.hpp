@@ -12,7 +12,7 @@ namespace runstone {
 /// where both corners are inside. `author` is a text of AuthorNames. For an undo, redo or rollback
 /// the line names the edit that it refers to instead of a kind: "undo of 9100 restored 1 2 3". The
 /// material is left out if the edit restores voxels or pastes a clipboard, and if the table does
-/// not have it.
+/// not have it. The line of a change of rights ends with rights_change_text().
 std::string log_line(const EditRecord& record, const std::string& author,
                      const MaterialTable& materials);
 

@@ -179,6 +179,8 @@ const std::vector<Field>& fields() {
       {"insecure", "connections are not encrypted; for 127.0.0.1 and [::1] only",
        SwitchField{&C::insecure}},
       {"i_know", "allow insecure on every address", SwitchField{&C::i_know}},
+      {"public_address", "HOST or HOST:PORT at which players reach the server, for invites",
+       optional_text_field<&C::public_address>()},
       {"tls_certificate", "PEM file: certificate chain of an authority; empty: the server's own",
        optional_text_field<&C::tls_certificate>()},
       {"tls_key", "PEM file: secret key of tls_certificate", optional_text_field<&C::tls_key>()},

@@ -49,6 +49,7 @@ struct ServerConfig {
   /// PEM files: a certificate chain of an authority and its secret key. Empty: the server makes a
   /// certificate of its own.
   std::string tls_certificate, tls_key;
+  std::string public_address;  // HOST or HOST:PORT in links for players
   LogLevel log_level = LogLevel::info;
   LogFormat log_format = LogFormat::text;
   AddressForm log_addresses = AddressForm::full;  // of players, in log lines

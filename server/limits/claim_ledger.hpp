@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <map>
 
+#include "common/core/address_block.hpp"
 #include "common/core/token_bucket.hpp"
-#include "server/limits/address_block.hpp"
 
 namespace runstone {
 

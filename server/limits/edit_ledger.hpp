@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
+#include "common/core/address_block.hpp"
 #include "common/core/token_bucket.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/limits/address_block.hpp"
 
 namespace runstone {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <asio/ip/address.hpp>
 
-#include "server/limits/address_block.hpp"
+#include "common/core/address_block.hpp"
 
 namespace runstone {
 

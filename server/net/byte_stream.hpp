@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "common/core/address_block.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/channel_binding.hpp"
 #include "common/core/ids.hpp"
 #include "common/tls/tls_context.hpp"
-#include "server/limits/address_block.hpp"
 #include "server/limits/address_form.hpp"
 
 namespace runstone {

@@ -131,6 +131,11 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
       waiting_.push_back(chunk.key);
       continue;
     }
+    leave_protected(chunk, world);
+    if (chunk.edits.empty()) {
+      ++progress_.chunks_done;
+      continue;
+    }
     voxels += chunk.voxels;
     for (const EditDescriptor& edit : chunk.edits) {
       const Sequence subject = order_.subject != 0 ? order_.subject : chunk.subject;
@@ -139,10 +144,10 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
     }
     slice.push_back(std::move(chunk));
   }
-  if (slice.empty()) return;
+  if (slice.empty()) return end_if_done();
   const Sequence before = world.head();
-  const WorldServer::ServerEditsResult answer = world.order_server_edits(offers, order_.payer, now);
-  if (answer.state == WorldServer::ServerEditsResult::State::taken) {
+  const ServerEditsResult answer = world.order_server_edits(offers, order_.payer, now);
+  if (answer.state == ServerEditsResult::State::taken) {
     state_ = State::failed;
     progress_.error =
         "a client has come under the server's instance and taken its client sequences";
@@ -157,6 +162,17 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
   }
   take_written(std::move(slice), answer.count, world);
   end_if_done();
+}
+
+void RestoreJob::leave_protected(RestoredChunk& chunk, const WorldServer& world) {
+  std::erase_if(chunk.edits, [&](const EditDescriptor& edit) {
+    auto why = world.edit_refusal(order_.author, edit);
+    if (!why) return false;
+    ++progress_.edits_refused;
+    chunk.voxels -= counted_voxels(edit);
+    progress_.refusal = *std::move(why);
+    return true;
+  });
 }
 
 void RestoreJob::take_written(std::vector<RestoredChunk> slice, std::size_t count,

@@ -4,6 +4,7 @@
 //   - If the chunk has changed meanwhile, it is planned again. After kCollisionsMax collisions its
 //     edits are masked (restore_paste.hpp): they leave alone every voxel that was changed since,
 //     and are written without that comparison.
+//   - An edit that the author may not make, for example on protected ground, is left out.
 //   - Each step writes a slice of a few chunks, so that other players' edits come in between. A
 //     slice is cut short by the room in the log, and by the budget of the payer if the order names
 //     one. The rest goes into later slices.
@@ -99,6 +100,8 @@ class RestoreJob {
     std::size_t chunks_failed = 0;
     std::uint64_t edits = 0, voxels = 0;  // written
     std::uint64_t collisions = 0;         // plans of an older version of their chunk
+    std::uint64_t edits_refused = 0;      // that the author may not make
+    std::string refusal;                  // the reason for the last of them
     Sequence first = 0, last = 0;         // of the edits written; 0 if there are none
     std::string error;                    // the first one
     std::string waits_for;                // the limit that cut the last slice short, or empty
@@ -107,6 +110,8 @@ class RestoreJob {
 
  private:
   void end_if_done();
+  /// Removes the edits of the chunk that the author may not make.
+  void leave_protected(RestoredChunk& chunk, const WorldServer& world);
   /// Counts the first `count` edits of the slice, which are written, and puts the others back to be
   /// written next.
   void take_written(std::vector<RestoredChunk> slice, std::size_t count, const WorldServer& world);

@@ -382,6 +382,8 @@ bool RollbackService::answer_if_ended(Job& job) {
               counted(p.chunks, "chunk") + ": " + p.error;
       break;
   }
+  if (p.edits_refused > 0)
+    text += "; " + counted(p.edits_refused, "part") + " left as they are: " + p.refusal;
   text += undo_hint;
   if (!is_on_disk)
     text += " (not all of it is on disk yet: what is not will be missing after a restart)";

@@ -2,25 +2,23 @@
 
 #include <sodium.h>
 
-#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "common/rights/right.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
+#include "server/admin/answer_lines.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/runtime/read_clocks.hpp"
 
 namespace runstone {
 namespace {
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    lines.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return lines;
+/// Returns true if a player with these rights can act on others, so that the commands are logged.
+bool has_power(RightSet rights) {
+  return rights.has(Right::roll_back) || rights.has(Right::moderate) || rights.has(Right::grant) ||
+         rights.has(Right::administer);
 }
 
 /// Returns the actions with replies that may be called from any thread.
@@ -57,33 +55,36 @@ CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReade
       rollback_(world, *this,
                 [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); }),
       handler_(world, rollback_, *this, std::move(materials), world_folder,
-               on_strand(strand, actions)) {}
+               on_strand(strand, actions),
+               [this](const PublicKey& key) { return operators_.contains(key); }) {}
 
 void CommandRunner::run(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)] {
-    handler_.run({0, true}, line, read_clocks(), reply);
-    rollback_.tick(read_clocks());
+    handler_.run({}, line, read_clocks(), reply);
+    tick(read_clocks());
   });
 }
 
 void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key,
                         const std::string& text) {
-  const CommandCaller caller{author, operators_.contains(key)};
-  if (caller.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
   // The handler may answer at once, and WorldServer must not be called from within its own call.
-  strand_.post([this, session, caller, text] {
+  strand_.post([this, session, author, key, text] {
+    const CommandCaller caller{author, {key, operators_.contains(key)}};
+    if (caller.actor.is_operator || has_power(world_.rights().role_of(key).rights))
+      logger("app").info("command author={} key={} command=\"{}\"", author, key_fingerprint(key),
+                         text);
     const auto reply = [this, session](const CommandAnswer& answer) {
-      world_.answer_command(session, lines_of(answer.text), answer.is_done, answer.is_ok);
+      world_.answer_command(session, answer_lines(answer.text), answer.is_done, answer.is_ok);
     };
     handler_.run(caller, text, read_clocks(), reply);
-    rollback_.tick(read_clocks());
+    tick(read_clocks());
   });
 }
 
 void CommandRunner::run(Work work, std::function<void(std::string)> then) {
   readers_.read_log(std::move(work), [this, then = std::move(then)](std::string error) {
     then(std::move(error));
-    rollback_.tick(read_clocks());
+    tick(read_clocks());
   });
 }
 

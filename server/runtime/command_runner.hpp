@@ -30,8 +30,12 @@ class CommandRunner final : private RollbackService::Workers {
   void run(SessionId session, AuthorId author, const PublicKey& key, const std::string& text);
 
   void set_operators(std::set<PublicKey> operators) { operators_ = std::move(operators); }
-  /// Lets rollback jobs go on. Call it on every tick, and when the log became durable or failed.
-  void tick(const Clocks& now) { rollback_.tick(now); }
+  /// Lets the work go on that waits for the disk or for the next slice of a rollback. Call it on
+  /// every tick, and when the log became durable or failed.
+  void tick(const Clocks& now) {
+    rollback_.tick(now);
+    handler_.tick();
+  }
   /// Makes jobs and workers end soon. Call it when the server stops.
   void stop() { rollback_.stop(); }
 

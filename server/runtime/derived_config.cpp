@@ -30,6 +30,8 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.names_per_key = config.names_per_key;
   world.names_per_address = config.names_per_address;
   world.reserved_names = folded_reserved_names(config.reserved_names);
+  world.operators = config.operators;
+  world.public_address = config.public_address;
   world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
   world.view_interval_us = static_cast<TimeUs>(config.view_interval_ms) * kUsPerMs;
   world.loads_in_flight_max = kLoadsPerWorker * config.worker_threads;

@@ -31,6 +31,12 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   auto claims = store.name_claims();
   if (!claims) return failure(claims.error());
   start.name_claims = *std::move(claims);
+  const auto rights = store.read_rights([&](const EditRecord& record) {
+    if (const RightsChange* change = rights_change_of(record.edit))
+      start.rights.push_back({*change, {record.version.seq, record.op.author, record.time_us}});
+    return true;
+  });
+  if (!rights) return failure(rights.error());
   auto watermarks = store.high_waters();
   if (!watermarks) return failure(watermarks.error());
   start.resolved = *std::move(watermarks);

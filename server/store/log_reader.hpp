@@ -46,6 +46,9 @@ class LogReader : public virtual WorldInfo {
   virtual StoreResult<void> read_log(Sequence first, Sequence last, const EachRecord& each) = 0;
   /// Calls `each` for the records that answer the query, in order, until it returns false.
   virtual StoreResult<void> query_log(const LogQuery& query, const EachRecord& each) = 0;
+  /// Calls `each` for all changes of rights, in order, until it returns false. They include those
+  /// that a compaction moved out of the log.
+  virtual StoreResult<void> read_rights(const EachRecord& each) = 0;
 };
 
 }  // namespace runstone

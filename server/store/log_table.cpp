@@ -54,6 +54,7 @@ std::optional<EditRecord> record_of(const sql::Statement& row) {
                     *std::move(edit),
                     static_cast<Sequence>(subject),
                     LogId{0}};
+  if (!validate_fields(record)) return std::nullopt;
   if (static_cast<std::uint64_t>(row.integer(15)) != record_checksum(record)) return std::nullopt;
   return record;
 }

@@ -11,6 +11,9 @@ namespace {
 constexpr std::size_t kOpenMax = 1024;  // authors with an open segment; bounds the memory
 
 VoxelBox join(const VoxelBox& a, const VoxelBox& b) {
+  // An edit without a place belongs to every box.
+  if (a.empty()) return b;
+  if (b.empty()) return a;
   return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
           {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
 }

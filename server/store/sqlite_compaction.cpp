@@ -70,6 +70,7 @@ StoreResult<void> SqliteStore::compact(Sequence keyframe) {
       if (auto put = meta_table_.put("checkpoint", static_cast<std::int64_t>(keyframe)); !put)
         return put;
     }
+    if (auto kept = keep_rights(keyframe); !kept) return kept;
     if (auto put = meta_table_.put_log_head(moment->at); !put) return put;
     if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", keyframe);
         !gone)

@@ -1,5 +1,5 @@
-// The part of SqliteStore that reads, writes and repairs players, names and watermarks. `meta` holds
-// a fold of each of these tables but `player_name`, which detects rows that are lost.
+// The part of SqliteStore that reads, writes and repairs players, names, rights and watermarks.
+// `meta` holds a fold of each of these tables but `player_name`, which detects rows that are lost.
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -16,6 +16,7 @@ namespace {
 constexpr const char* kPlayers = "player";
 constexpr const char* kWatermarks = "player_instance";
 constexpr const char* kClaims = "name_claim";
+constexpr const char* kRights = "rights_record";
 /// A damaged mark does not say how many starts are lost. No more than these, we trust: clients keep
 /// chunks by epoch, so an epoch must not be used twice.
 constexpr Epoch kEpochsSkipped = 10'000;
@@ -85,28 +86,71 @@ StoreResult<void> SqliteStore::change_names(std::span<const NameChange> changes)
 }
 
 StoreResult<void> SqliteStore::add_claims() {
-  auto added = write([&]() -> StoreResult<void> {
-    const auto players = player_table_.players();
-    if (!players) return failed(players.error());
-    // A world that lacks players stays as it is, until its losses are accepted.
-    if (access_ == StoreAccess::read_write) {
-      if (auto sound = check_players(*players); !sound) return sound;
-    }
-    if (auto made = add_name_claims(*database_); !made) return made;
-    auto table = ClaimTable::open(*database_);
-    if (!table) return failed(table.error());
-    RowFold fold;
-    std::set<std::string> claimed;
-    for (const PlayerRow& player : players->rows) {  // ascending by author
-      const std::string folded = folded_name(player.name);
-      if (name_fault(player.name) || !claimed.insert(folded).second) continue;
-      if (auto put = table->add({folded, player.name, player.key}, fold); !put) return put;
-    }
-    claims_ = *std::move(table);
-    return meta_table_.put_fold(fold_key_of(kClaims), fold);
+  const auto players = player_table_.players();
+  if (!players) return failed(players.error());
+  // A world that lacks players stays as it is, until its losses are accepted.
+  if (access_ == StoreAccess::read_write) {
+    if (auto sound = check_players(*players); !sound) return sound;
+  }
+  auto table = ClaimTable::open(*database_);
+  if (!table) return failed(table.error());
+  RowFold fold;
+  std::set<std::string> claimed;
+  for (const PlayerRow& player : players->rows) {  // ascending by author
+    const std::string folded = folded_name(player.name);
+    if (name_fault(player.name) || !claimed.insert(folded).second) continue;
+    if (auto put = table->add({folded, player.name, player.key}, fold); !put) return put;
+  }
+  claims_ = *std::move(table);
+  return meta_table_.put_fold(fold_key_of(kClaims), fold);
+}
+
+StoreResult<void> SqliteStore::convert_to_format_3() {
+  auto converted = write([&]() -> StoreResult<void> {
+    if (auto made = add_tables_of_format_3(*database_); !made) return made;
+    if (auto added = add_claims(); !added) return added;
+    auto rights = RightsTable::open(*database_);
+    if (!rights) return failed(rights.error());
+    rights_ = *std::move(rights);
+    return meta_table_.put_fold(fold_key_of(kRights), {});
   });
-  if (!added) claims_.reset();
-  return added;
+  if (!converted) {
+    claims_.reset();
+    rights_.reset();
+  }
+  return converted;
+}
+
+StoreResult<void> SqliteStore::read_rights(const EachRecord& each) {
+  return at_one_moment<void>([&]() -> StoreResult<void> {
+    if (rights_) {
+      const auto compacted = rights_->records();
+      if (!compacted) return failed(compacted.error());
+      if (auto sound = check_fold(kRights, compacted->fold); !sound) return sound;
+      for (const EditRecord& record : compacted->rows) {
+        if (!each(record)) return {};
+      }
+    }
+    LogQuery in_log;
+    in_log.cause = Cause::rights;
+    return query_log(in_log, each);
+  });
+}
+
+StoreResult<void> SqliteStore::keep_rights(Sequence last) {
+  auto fold = meta_table_.fold(fold_key_of(kRights));
+  if (!fold) return failed(fold.error());
+  LogQuery in_log;
+  in_log.cause = Cause::rights;
+  in_log.last = last;
+  StoreResult<void> kept;
+  auto read = query_log(in_log, [&](const EditRecord& record) {
+    kept = rights_->add(record, *fold);
+    return kept.has_value();
+  });
+  if (!read) return read;
+  if (!kept) return kept;
+  return meta_table_.put_fold(fold_key_of(kRights), *fold);
 }
 
 StoreResult<std::vector<HighWater>> SqliteStore::high_waters() {
@@ -161,6 +205,12 @@ StoreResult<void> SqliteStore::accept_lost_rows(std::vector<std::string>& lost) 
   if (const auto sound = check_fold(kClaims, claims->fold); !sound) {
     lost.push_back(sound.error().message());
     if (auto put = meta_table_.put_fold(fold_key_of(kClaims), claims->fold); !put) return put;
+  }
+  const auto rights = rights_->records();
+  if (!rights) return failed(rights.error());
+  if (const auto sound = check_fold(kRights, rights->fold); !sound) {
+    lost.push_back(sound.error().message());
+    if (auto put = meta_table_.put_fold(fold_key_of(kRights), rights->fold); !put) return put;
   }
   const auto found = player_table_.high_waters();
   if (!found) return failed(found.error());

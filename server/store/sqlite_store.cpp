@@ -21,6 +21,7 @@ SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock,
       player_table_(std::move(tables.players)),
       names_(std::move(tables.names)),
       claims_(std::move(tables.claims)),
+      rights_(std::move(tables.rights)),
       log_(std::move(tables.log)),
       segments_(std::move(tables.segments)),
       base_(std::move(tables.base)),
@@ -124,7 +125,7 @@ StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> recor
     }
     epoch = record.version.epoch;
     if (record.log != 0) return refuse(where, "belongs to another log");
-    if (const auto numbers = validate_numbers(record); !numbers)
+    if (const auto numbers = validate_fields(record); !numbers)
       return refuse(where, numbers.error().what);
   }
   return {};

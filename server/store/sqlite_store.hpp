@@ -18,6 +18,7 @@
 #include "server/store/meta_table.hpp"
 #include "server/store/name_table.hpp"
 #include "server/store/player_table.hpp"
+#include "server/store/rights_table.hpp"
 #include "server/store/segment_table.hpp"
 #include "server/store/sqlite_result.hpp"
 #include "server/store/store.hpp"
@@ -55,6 +56,7 @@ class SqliteStore final : public Store {
   StoreResult<Sequence> sequence_at(TimeUs time_us) override;
   StoreResult<void> read_log(Sequence first, Sequence last, const EachRecord& each) override;
   StoreResult<void> query_log(const LogQuery& query, const EachRecord& each) override;
+  StoreResult<void> read_rights(const EachRecord& each) override;
 
   // ChunkReader
   StoreResult<bool> has_base() override;
@@ -112,6 +114,7 @@ class SqliteStore final : public Store {
     PlayerTable players;
     NameTable names;
     std::optional<ClaimTable> claims;
+    std::optional<RightsTable> rights;
     LogTable log;
     SegmentTable segments;
     ChunkTable base, snapshots;
@@ -121,7 +124,8 @@ class SqliteStore final : public Store {
   SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
               Tables tables, WorldMeta meta, std::unique_ptr<DurableMark> mark);
   /// Converts a world of format 2: the players own their names, and of several players with one
-  /// name the oldest.
+  /// name the oldest. Its log has no changes of rights.
+  StoreResult<void> convert_to_format_3();
   StoreResult<void> add_claims();
   /// Reads the durable mark, then the numbers of the database, and compares them. Sets loss_. Fails
   /// if the database cannot be repaired, unless it is open for reading only.
@@ -141,6 +145,8 @@ class SqliteStore final : public Store {
   /// Returns the base chunks that a compaction completed. Reads nothing if there was no compaction.
   StoreResult<std::vector<StoredChunk>> completed(const LogEnd& head);
   StoreResult<void> complete_base(const StoredMoment& moment);
+  /// Copies the changes of rights that the log holds up to `last` to the table of their own.
+  StoreResult<void> keep_rights(Sequence last);
   StoreResult<void> delete_up_to(const char* text, Sequence last);
   StoreResult<void> check_keyframe(const Keyframe& keyframe, const LogRange& range);
   StoreResult<void> save_chunks(ChunkTable& table, ChunkSpan chunks);
@@ -175,7 +181,9 @@ class SqliteStore final : public Store {
   MetaTable meta_table_;
   PlayerTable player_table_;
   NameTable names_;
-  std::optional<ClaimTable> claims_;  // nullopt: a world of format 2 that is open for reading only
+  // nullopt: a world of format 2 that is open for reading only
+  std::optional<ClaimTable> claims_;
+  std::optional<RightsTable> rights_;
   LogTable log_;
   SegmentTable segments_;
   ChunkTable base_, snapshots_;

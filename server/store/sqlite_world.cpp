@@ -131,8 +131,8 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
   for (const auto& [key, value] : rows) {
     if (auto put = table->put(key, value); !put) return put;
   }
-  for (const char* key :
-       {"base_fold", "snapshot_fold", "player_fold", "player_instance_fold", "name_claim_fold"}) {
+  for (const char* key : {"base_fold", "snapshot_fold", "player_fold", "player_instance_fold",
+                          "name_claim_fold", "rights_record_fold"}) {
     if (auto put = table->put_fold(key, {}); !put) return put;
   }
   if (auto put = table->put_log_head({}); !put) return put;
@@ -180,10 +180,14 @@ StoreResult<SqliteStore::Tables> SqliteStore::Tables::open(sql::Database& databa
   const auto version = database.integer("PRAGMA user_version");
   if (!version) return failed(version.error());
   std::optional<ClaimTable> claims;
+  std::optional<RightsTable> rights;
   if (*version == std::int64_t{kWorldFormat}) {
-    auto opened = ClaimTable::open(database);
-    if (!opened) return failed(opened.error());
-    claims = *std::move(opened);
+    auto claims_opened = ClaimTable::open(database);
+    if (!claims_opened) return failed(claims_opened.error());
+    claims = *std::move(claims_opened);
+    auto rights_opened = RightsTable::open(database);
+    if (!rights_opened) return failed(rights_opened.error());
+    rights = *std::move(rights_opened);
   }
   auto log = LogTable::open(database);
   if (!log) return failed(log.error());
@@ -195,9 +199,10 @@ StoreResult<SqliteStore::Tables> SqliteStore::Tables::open(sql::Database& databa
   if (!snapshots) return failed(snapshots.error());
   auto keyframes = KeyframeTable::open(database);
   if (!keyframes) return failed(keyframes.error());
-  return Tables{*std::move(meta),  *std::move(players),   *std::move(names),
-                std::move(claims), *std::move(log),       *std::move(segments),
-                *std::move(base),  *std::move(snapshots), *std::move(keyframes)};
+  return Tables{*std::move(meta),     *std::move(players), *std::move(names),
+                std::move(claims),    std::move(rights),   *std::move(log),
+                *std::move(segments), *std::move(base),    *std::move(snapshots),
+                *std::move(keyframes)};
 }
 
 StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder,
@@ -239,7 +244,7 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   if (const auto read = store->read_state(); !read) return failed(read.error());
   if (store->loss_ && access == StoreAccess::read_write) return failed(*store->loss_);
   if (!store->claims_ && access != StoreAccess::read_only) {
-    if (const auto added = store->add_claims(); !added) return failed(added.error());
+    if (const auto added = store->convert_to_format_3(); !added) return failed(added.error());
   }
   store->database_->keep_wal_on_close(store->loss_.has_value());
   return store;

@@ -43,7 +43,8 @@ class Maintenance {
   /// Moves all edits up to a keyframe into the base, in one transaction. Requires that no server
   /// runs the world.
   ///   - The base is completed from the keyframe.
-  ///   - The edits, their indexes, the keyframe and those before it are deleted.
+  ///   - The edits, their indexes, the keyframe and those before it are deleted. Changes of rights
+  ///     move to a table of their own.
   ///   - The head of the log moves, and so does the checkpoint if it lies before the head.
   ///   - A chunk whose snapshot is older than the base gets a snapshot that is not.
   ///   - The watermarks of players stay.

@@ -73,7 +73,7 @@ StoreResult<void> SqliteStore::check_segments_cover_log() {
     const auto found = open.find(record.op.author);
     const VoxelBox box = bounding_box(record.edit);
     if (found == open.end() || found->second->last < seq ||
-        intersect(found->second->box, box) != box) {
+        (!box.empty() && intersect(found->second->box, box) != box)) {
       uncovered = seq;
     }
     return uncovered == 0;
@@ -124,6 +124,8 @@ StoreResult<void> SqliteStore::check() {
   if (const auto rows = players(); !rows) return failed(rows.error());
   if (const auto rows = names_.names(); !rows) return failed(rows.error());
   if (const auto rows = name_claims(); !rows) return failed(rows.error());
+  const auto rights = read_rights([](const EditRecord&) { return true; });
+  if (!rights) return failed(rights.error());
   if (const auto seq = checkpoint(); !seq) return failed(seq.error());
   // A watermark that the log proves to be missing is named before the rows are counted.
   if (auto marks = check_marks_cover_log(); !marks) return marks;

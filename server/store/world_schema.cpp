@@ -79,6 +79,14 @@ CREATE TABLE name_claim(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kRightsRecords = R"sql(
+CREATE TABLE rights_record(
+  seq INTEGER NOT NULL PRIMARY KEY,
+  record BLOB NOT NULL,
+  checksum INTEGER NOT NULL
+) STRICT;
+)sql";
+
 // There is no index by time: times never fall along the log, so a time is found by bisection.
 // Nearly every edit has cause player, so the index by cause holds the others only.
 constexpr const char* kIndexes = R"sql(
@@ -116,11 +124,13 @@ StoreResult<void> create_schema(sql::Database& database) {
   for (const char* part : {mark.c_str(), kTables, kPlayerNames, kIndexes, kKeyframes}) {
     if (auto made = database.run(part); !made) return failed(made.error());
   }
-  return add_name_claims(database);
+  return add_tables_of_format_3(database);
 }
 
-StoreResult<void> add_name_claims(sql::Database& database) {
-  if (auto made = database.run(kNameClaims); !made) return failed(made.error());
+StoreResult<void> add_tables_of_format_3(sql::Database& database) {
+  for (const char* table : {kNameClaims, kRightsRecords}) {
+    if (auto made = database.run(table); !made) return failed(made.error());
+  }
   const std::string mark = "PRAGMA user_version=" + std::to_string(kWorldFormat);
   return store_result(database.run(mark.c_str()));
 }

@@ -20,9 +20,9 @@ inline constexpr std::uint32_t kWorldFormatConverted = 2;
 
 /// Makes all tables and sets both marks, in the caller's transaction.
 StoreResult<void> create_schema(sql::Database& database);
-/// Makes the table that format 3 adds to format 2, without rows, and sets the mark, in the caller's
+/// Makes the tables that format 3 adds to format 2, without rows, and sets the mark, in the caller's
 /// transaction.
-StoreResult<void> add_name_claims(sql::Database& database);
+StoreResult<void> add_tables_of_format_3(sql::Database& database);
 
 /// Reads the marks from the main file alone, so that a file that is refused does not change. `vfs`
 /// is that of sql::Database::open(). Fails with not_a_world, newer_version or corrupt.

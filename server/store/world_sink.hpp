@@ -24,7 +24,7 @@ class WorldSink {
   /// durable on return. Fails (bad_request) and writes nothing if
   ///   - the records do not continue the log without a gap;
   ///   - a record is not of the epoch of this start;
-  ///   - the numbers of a record are not valid (validate_numbers()).
+  ///   - the fields of a record are not valid (validate_fields()).
   virtual StoreResult<void> append(std::span<const PlayerRow> players,
                                    std::span<const EditRecord> records) = 0;
   /// Writes claims of names and removes released ones, in this order. All of it is durable on

@@ -50,6 +50,10 @@ class Authority {
   /// Requires log order, before the first submit().
   void replay_onto_stack(const EditRecord& record);
 
+  /// Returns why a player's edit cannot be ordered (check_edit()), or nullopt.
+  std::optional<RejectReason> check(const EditDescriptor& edit) const {
+    return check_edit(edit, limits_);
+  }
   /// Queues an edit. Returns nullopt if it was queued, otherwise the reason for the rejection.
   /// Either way the operation is resolved: submitting it again returns the same rejection, or
   /// already_resolved. An edit of a player must pass check_edit(), any other edit
@@ -65,6 +69,7 @@ class Authority {
 
   /// The time of the log, for its warnings.
   LogClock& log_clock() { return log_clock_; }
+  const LogClock& log_clock() const { return log_clock_; }
   Epoch epoch() const { return epoch_; }
   /// Returns the last sequence ordered.
   Sequence head() const { return head_; }

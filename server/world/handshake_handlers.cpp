@@ -6,6 +6,8 @@
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
+#include "server/world/protected_ground.hpp"
+#include "server/world/rights_handlers.hpp"
 
 namespace runstone {
 namespace {
@@ -77,6 +79,34 @@ bool close_if_no_name(WorldState& world, SessionId session) {
   return true;
 }
 
+/// Closes a session from a banned address. A ban of its key is told later, to the owner of the key.
+bool close_if_banned(WorldState& world, SessionId session) {
+  const WorldSession& mine = *world.find(session);
+  const auto why = address_refusal(world, mine.key, mine.address);
+  if (!why) return false;
+  close_session(world, session, GoodbyeReason::not_admitted, *why);
+  return true;
+}
+
+/// Closes a session whose player may not see the world. A ticket is used only if that helps: a
+/// player who has a role keeps it.
+bool close_if_not_admitted(WorldState& world, SessionId session, const std::string& ticket,
+                           const Clocks& now) {
+  const PublicKey key = world.find(session)->key;
+  const AddressBlock address = world.find(session)->address;
+  std::optional<std::string> no_invite;
+  if (!ticket.empty() && !world.rights.grants().contains(key)) {
+    no_invite = accept_invite(world, session, ticket, now);
+    if (world.find(session) == nullptr) return true;  // the new role closed it
+  }
+  auto why = join_refusal(world, key, address);
+  if (!why) return false;
+  if (no_invite) *why += " (" + *no_invite + ")";
+  world.refusals.add(key, "join: " + *why, now.utc_us);
+  close_session(world, session, GoodbyeReason::not_admitted, *why);
+  return true;
+}
+
 void open_session(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   for (const auto& [other, theirs] : world.sessions) {
@@ -103,7 +133,9 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   world.player_list_changed = true;
   const SessionAccepted accepted{mine.author,
                                  world.authority.resolved().of(mine.author, mine.instance)};
-  if (send_or_close(world, session, accepted)) send_all_poses_to(world, session);
+  if (!send_or_close(world, session, accepted)) return;
+  start_ground(world, session);
+  send_all_poses_to(world, session);
 }
 
 }  // namespace
@@ -120,6 +152,8 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.instance = hello.instance;
   mine.name = hello.name;
   mine.features = world.config.features & hello.features;
+  // Before any signature: a banned address costs little.
+  if (close_if_banned(world, session)) return;
   if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
   Welcome welcome = welcome_of(world);
   welcome.encoding = choose_encoding(world.config, hello.encodings);
@@ -148,7 +182,9 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
     return;
   }
   // The name may have been claimed since hello. A session without a seat claims nothing.
-  if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
+  if (close_if_no_seat(world, session) || close_if_no_name(world, session) ||
+      close_if_not_admitted(world, session, auth.ticket, now))
+    return;
   mine.auth_transcript = {};
   mine.is_authenticated = true;
   world.environment.opened(session);  // connections without a key no longer replace it

@@ -6,10 +6,10 @@
 namespace runstone {
 
 /// Sends a signed welcome, or closes the session: wrong_protocol (the text names both versions) or
-/// server_full, or name_refused.
+/// server_full, name_refused or not_admitted.
 void on_hello(WorldState& world, SessionId session, const Hello& hello);
 /// Opens the session, at once or when the claim of its name is on disk, or closes it:
-/// not_authenticated, server_full or name_refused. Closes an older session of
+/// not_authenticated, server_full, name_refused or not_admitted. Closes an older session of
 /// the same key and client instance (already_connected). The signature shows that both are the same
 /// client, and the older connection is usually dead without a sign of it.
 void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth,

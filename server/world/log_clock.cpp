@@ -14,7 +14,8 @@ constexpr TimeUs kMillion = 1'000'000;
 
 void LogClock::advance(const Clocks& now) {
   if (!steady_us_) return begin(now);
-  const TimeUs passed_us = std::max<TimeUs>(now.steady_us - *steady_us_, 0);
+  if (now.steady_us < *steady_us_) return;  // the caller read the clocks before the last call
+  const TimeUs passed_us = now.steady_us - *steady_us_;
   steady_us_ = now.steady_us;
   time_us_ += passed_us;
   const TimeUs error_us = now.utc_us - time_us_;

@@ -64,6 +64,12 @@ class Players {
     if (found == known_.end()) return std::nullopt;
     return found->second.row.key;
   }
+  /// Returns the name of a key's player, or nullopt if the key has no author.
+  std::optional<std::string> name_of(const PublicKey& key) const {
+    const auto found = by_key_.find(key);
+    if (found == by_key_.end()) return std::nullopt;
+    return known_.at(found->second).row.name;
+  }
   /// Returns the author number of a key, or nullopt if it has none.
   std::optional<AuthorId> author_of(const PublicKey& key) const {
     const auto found = by_key_.find(key);

@@ -7,6 +7,7 @@
 #include "protocol/rules/edit_check.hpp"
 #include "protocol/rules/edit_price.hpp"
 #include "server/world/delivery.hpp"
+#include "server/world/rights_handlers.hpp"
 
 namespace runstone {
 namespace {
@@ -91,6 +92,13 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   } else if (!is_within_reach(world, mine, request.edit, now)) {
     refusal = RejectReason::out_of_reach;
     world.authority.reject(op, *refusal);
+  } else if (const auto wrong = world.authority.check(request.edit)) {
+    refusal = wrong;
+    world.authority.reject(op, *refusal);
+  } else if (auto why = edit_refusal(world, mine.key, request.edit)) {
+    refusal = RejectReason::not_permitted;
+    detail = *std::move(why);
+    world.authority.reject(op, *refusal);
   } else {
     refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0});
   }
@@ -98,6 +106,12 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
   if (*refusal == RejectReason::busy) detail = why_busy(world, request.edit, mine.author);
   ++world.counters.edits_rejected;
+  if (*refusal != RejectReason::already_resolved) {
+    // The details of other reasons have numbers that differ each time.
+    const bool has_detail = *refusal == RejectReason::not_permitted;
+    world.refusals.add(
+        mine.key, std::string("edit: ") + (has_detail ? detail : to_string(*refusal)), now.utc_us);
+  }
   // Edits that are offered again after a reconnection are no misuse.
   if (*refusal != RejectReason::already_resolved)
     world.environment.charge_reading(session, kRejectionBytes);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/world/delivery.hpp"
+#include "server/world/rights_handlers.hpp"
 
 namespace runstone {
 namespace {
@@ -36,6 +37,15 @@ void return_to_live(WorldState& world, SessionId session, std::uint32_t request,
   begin_state(world, session, request, now);
 }
 
+void refuse_history(WorldState& world, SessionId session, std::uint32_t request, std::string why,
+                    const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  mine.history_request = request;
+  mine.refused_due = view_state(world, session, ViewPhase::refused);
+  mine.refused_due->text = std::move(why);
+  deliver(world, session, now);
+}
+
 /// Carries out the session's newest request, unless it must wait: for the answer to the request
 /// before, for a worker, or because every state makes the whole view wanted again and so costs as
 /// much as a new view.
@@ -49,6 +59,11 @@ void open_next(WorldState& world, SessionId session, const Clocks& now) {
     const std::uint32_t request = mine.next_history_request->request;
     mine.next_history_request.reset();
     return return_to_live(world, session, request, now);
+  }
+  if (!decide(world, mine.key, Right::look_back).is_allowed) {
+    const std::uint32_t request = mine.next_history_request->request;
+    mine.next_history_request.reset();
+    return refuse_history(world, session, request, "your role does not allow to see the past", now);
   }
   mine.is_opening_history = true;
   ++world.histories_opening;
@@ -80,12 +95,7 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
   if (!mine->next_history_request || mine->next_history_request->request != request)
     return open_next(world, session, now);
   mine->next_history_request.reset();
-  if (!opened) {
-    mine->history_request = request;
-    mine->refused_due = view_state(world, session, ViewPhase::refused);
-    mine->refused_due->text = opened.error();
-    return deliver(world, session, now);
-  }
+  if (!opened) return refuse_history(world, session, request, opened.error(), now);
   HistoryView history;
   history.number = HistoryNumber{++world.history_count};
   history.seq = opened->seq;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/world/delivery.hpp"
+#include "server/world/protected_ground.hpp"
 #include "server/world/time_travel.hpp"
 
 namespace runstone {
@@ -34,7 +35,10 @@ void apply_view(WorldState& world, SessionId id, const Clocks& now) {
   const bool same_chunks = seen && seen->same_chunks(*mine.next_view);
   visited += world.interest.set_view(id, *std::exchange(mine.next_view, std::nullopt));
   world.view_chunks_left -= std::min(world.view_chunks_left, visited);
-  if (!same_chunks) forget_sent(mine);
+  if (!same_chunks) {
+    forget_sent(mine);
+    mark_ground(world, id);
+  }
   if (!same_chunks || has_skipped) forget_unsent(world, id);
   mine.is_view_complete = false;
   mine.complete_due.reset();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/materials/material_table.hpp"
+#include "common/rights/change_rules.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/world/authority.hpp"
@@ -27,6 +28,7 @@ struct WorldConfig {
   MaterialTable materials;
   KeyPair server_keys;
   std::uint64_t features = kFeaturesKnown;  // optional parts of the protocol
+  std::string public_address;               // HOST or HOST:PORT for links; empty: not known
   // Limits of sessions.
   std::size_t sessions_max = 256;             // beyond it: server_full
   std::size_t sessions_per_key = 0;           // likewise; 0: no limit
@@ -34,6 +36,7 @@ struct WorldConfig {
   std::size_t names_per_key = 3;              // that a key may own; owned names stay owned
   std::uint64_t names_per_address = 0;        // claimed within an hour; 0: no limit
   std::set<std::string> reserved_names;       // folded; nobody may have them
+  std::set<PublicKey> operators;              // they have every right, whatever the log says
   std::uint8_t view_radius_max = 16;          // chunks; larger views are reduced to it
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit
   double reach_max = 0;                       // voxels from the player to the edit; 0: no limit
@@ -70,7 +73,8 @@ struct WorldStart {
   std::vector<std::pair<ChunkKey, Version>> snapshots;
   std::vector<PlayerRow> players;
   std::vector<NameClaim> name_claims;
-  AuthorId author_max = 0;  // the highest author number ever stored
+  std::vector<RightsRecord> rights;  // all changes of rights, in the order of the log
+  AuthorId author_max = 0;           // the highest author number ever stored
   std::vector<HighWater> resolved;
 };
 

@@ -1,12 +1,14 @@
 #include "server/world/world_server.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "common/core/key_text.hpp"
-#include "protocol/rules/edit_price.hpp"
+#include "protocol/codec/invite_token.hpp"
+#include "protocol/codec/server_link.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/cached_chunk_handlers.hpp"
 #include "server/world/command_handlers.hpp"
@@ -15,7 +17,10 @@
 #include "server/world/handshake_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
+#include "server/world/protected_ground.hpp"
 #include "server/world/request_handlers.hpp"
+#include "server/world/rights_handlers.hpp"
+#include "server/world/server_edits.hpp"
 #include "server/world/time_travel.hpp"
 #include "server/world/view_scheduler.hpp"
 #include "server/world/world_state.hpp"
@@ -78,18 +83,6 @@ void retry_loads(WorldState& world, const Clocks& now) {
   }
 }
 
-/// Returns who pays for edits of an author: its key, and the address of its first session. Returns
-/// nullopt if nobody has the number.
-std::optional<EditPayer> payer_of(const WorldState& world, AuthorId author) {
-  const std::optional<PublicKey> key = world.players.key_of(author);
-  if (!key) return std::nullopt;
-  for (const auto& [id, session] : world.sessions) {
-    if (session.state == SessionStage::open && session.author == author)
-      return EditPayer{*key, session.address};
-  }
-  return EditPayer{*key, std::nullopt};
-}
-
 /// Counts the end of a load that was under way.
 void count_load_end(WorldState& world, const ChunkKey& key) {
   if (world.authority.chunks().residency(key) == Residency::loading) world.loads.load_ended();
@@ -114,6 +107,9 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   mine.idle_us_max = config.idle_us_max;
   mine.reach_max = config.reach_max;
   mine.speed_max = config.speed_max;
+  mine.operators = config.operators;
+  mine.public_address = config.public_address;
+  rights_changed(*state_, {});
 }
 
 void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock from,
@@ -174,44 +170,9 @@ void WorldServer::commit(const Clocks& now) {
   }
 }
 
-WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector<EditOffer>& offers,
-                                                               AuthorId payer, const Clocks& now) {
-  using State = ServerEditsResult::State;
-  WorldState& world = *state_;
-  commit(now);
-  if (!world.accepts_edits) return {State::closed};
-  if (offers.empty()) return {};
-  // Instances are public, so a client of the author can join with this one and use its client
-  // sequences.
-  if (world.authority.resolved().knows(offers.front().op) || offers.back().op.seq > kSequenceMax)
-    return {State::taken};
-  const std::optional<EditPayer> paying = payer_of(world, payer);
-  ServerEditsResult out;
-  for (const EditOffer& offer : offers) {
-    RUNSTONE_ASSERT(offer.cause != Cause::player);
-    if (!world.environment.log_has_room(world.authority.queue().size() + 1)) {
-      out.reason = world.disk_is_full ? kDiskIsFull : "the log is full (log_queue_records)";
-      break;
-    }
-    if (is_memory_full(world)) {
-      out.reason = kMemoryIsFull;
-      break;
-    }
-    if (paying) {
-      const std::uint64_t price =
-          edit_price(offer.edit, world.config.chunk_edge, world.config.edit_budget);
-      if (const auto unpaid = world.edit_ledger.charge(*paying, price, now.steady_us)) {
-        out.reason = "the player's edit budget is used up (builder_budget)";
-        break;
-      }
-    }
-    const auto refusal = world.authority.submit(offer);
-    RUNSTONE_ASSERT(!refusal);
-    ++out.count;
-  }
-  if (out.count < offers.size()) out.state = State::busy;
-  commit(now);
-  return out;
+ServerEditsResult WorldServer::order_server_edits(const std::vector<EditOffer>& offers,
+                                                  AuthorId payer, const Clocks& now) {
+  return runstone::order_server_edits(*state_, offers, payer, now);
 }
 
 void WorldServer::answer_command(SessionId session, const std::vector<std::string>& lines,
@@ -241,6 +202,47 @@ Result<NameClaim, std::string> WorldServer::release_name(const std::string& name
   return runstone::release_name(*state_, name);
 }
 
+const RightsState& WorldServer::rights() const { return state_->rights; }
+TimeUs WorldServer::rights_time() const { return runstone::rights_time(*state_); }
+
+Sequence WorldServer::newest_rights() const { return state_->rights_seq; }
+std::optional<std::string> WorldServer::change_refusal(const RightsChange& change,
+                                                       const RightsActor& actor) const {
+  return runstone::change_refusal(*state_, actor, change);
+}
+
+Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& change,
+                                                         const RightsActor& actor, AuthorId author,
+                                                         const Clocks& now) {
+  return runstone::change_rights(*state_, change, actor, author, now);
+}
+
+std::vector<RefusalRow> WorldServer::refusals() const { return state_->refusals.rows(); }
+
+InviteId WorldServer::new_invite_id() {
+  std::array<std::uint8_t, sizeof(InviteId)> bytes{};
+  state_->random(bytes);
+  return ByteReader(bytes).u64();
+}
+
+std::string WorldServer::invite_link(InviteId invite) const {
+  const WorldConfig& config = state_->config;
+  const std::string token = invite_token(invite, config.world_id, config.server_keys);
+  const std::string address = config.public_address.empty() ? "HOST" : config.public_address;
+  return text_of(ServerLink{address, token});
+}
+
+std::size_t WorldServer::kick(const RestrictionSubject& who, const std::string& reason) {
+  return runstone::kick(*state_, who, reason);
+}
+
+std::optional<std::string> WorldServer::edit_refusal(AuthorId author,
+                                                     const EditDescriptor& edit) const {
+  if (author == 0) return std::nullopt;
+  const auto key = state_->players.key_of(author);
+  return key ? runstone::edit_refusal(*state_, *key, edit) : "the player has left";
+}
+
 void WorldServer::step_checkpointer(const Clocks& now) {
   WorldState& world = *state_;
   if (world.is_stopping && now.steady_us >= world.stop_due_us) {
@@ -259,6 +261,7 @@ void WorldServer::tick(const Clocks& now) {
   forget_gone_authors(world);
   close_silent_sessions(world, now);
   apply_due_views(world, now);
+  send_due_ground(world);
   broadcast_player_list(world);
   broadcast_poses(world, now);
   broadcast_durable(world, now);

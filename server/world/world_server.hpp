@@ -12,10 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/address_block.hpp"
 #include "common/edits/apply/stack_depths.hpp"
+#include "common/rights/change_rules.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/limits/address_block.hpp"
+#include "server/limits/recent_refusals.hpp"
 #include "server/world/clocks.hpp"
+#include "server/world/server_edits.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
 #include "server/world/world_environment.hpp"
@@ -56,7 +59,7 @@ class WorldServer {
   /// Orders and sends the queued edits of one commit. Others that are queued may follow later.
   void commit_one(const Clocks& now);
   /// Takes over the limits that may change while the world runs: sessions of a key and of an
-  /// address, the time without a message, reach and speed. Sessions that are open stay.
+  /// address, the time without a message, reach, speed and the operators. Sessions that are open stay.
   void reconfigure(const WorldConfig& config);
   /// Orders and sends queued edits as long as has_ready_edits().
   void commit(const Clocks& now);
@@ -69,22 +72,7 @@ class WorldServer {
   void tick(const Clocks& now);
 
   // Edits of the server: rollback, undo, redo.
-  struct ServerEditsResult {
-    enum class State {
-      ordered,  // all offers
-      busy,     // the first `count` offers; a limit rejects the next one for now: try again
-      closed,   // none: the server stops, or the log cannot be written any more
-      taken,    // none: a client of the author has used these client sequences
-    };
-    State state = State::ordered;
-    std::size_t count = 0;    // ordered offers, from the first on
-    const char* reason = "";  // names the limit if busy
-  };
-  /// Orders the offers at once and in order, behind all queued edits, as far as the log has room.
-  /// Requires that they pass check_server_edit(), that their client sequences ascend, that they
-  /// have one author and instance, and that their cause is not player. Each offer costs its
-  /// edit_price(), paid by the key of the author `payer` and the address of the author's first
-  /// session. An author without a session pays by the key alone. Nobody pays if `payer` is 0.
+  /// See server_edits.hpp.
   ServerEditsResult order_server_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                        const Clocks& now);
 
@@ -110,6 +98,32 @@ class WorldServer {
   std::optional<AuthorId> author_of(const PublicKey& key) const;
   /// Frees a name. Returns the claim that it had, or the reason why nothing changed.
   Result<NameClaim, std::string> release_name(const std::string& name);
+
+  // Rights.
+  const RightsState& rights() const;
+  /// Returns the time by which restrictions end (UTC).
+  TimeUs rights_time() const;
+  /// Returns the sequence of the last change of rights in this run, or 0.
+  Sequence newest_rights() const;
+  /// Returns why the change would be refused, as a sentence, or nullopt.
+  std::optional<std::string> change_refusal(const RightsChange& change,
+                                            const RightsActor& actor) const;
+  /// Orders a change of rights as a record of the log, made by the author (0: the console), who pays
+  /// for it as for an edit. Sessions that may not stay are closed. Returns its sequence, or why it
+  /// was refused, as a sentence.
+  Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
+                                              AuthorId author, const Clocks& now);
+  /// Returns what players were refused lately, the newest last.
+  std::vector<RefusalRow> refusals() const;
+  /// Returns a random number for a new invite.
+  InviteId new_invite_id();
+  /// Returns the link with which players accept an invite. It has the server's public address, or
+  /// HOST in its place.
+  std::string invite_link(InviteId invite) const;
+  /// Closes the sessions of a key, or of a range of addresses. Returns their number.
+  std::size_t kick(const RestrictionSubject& who, const std::string& reason);
+  /// Returns why the author may not make this edit, or nullopt. The server (0) may make every edit.
+  std::optional<std::string> edit_refusal(AuthorId author, const EditDescriptor& edit) const;
 
   // Answers of WorldEnvironment.
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now);

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "common/core/address_block.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/channel_binding.hpp"
 #include "common/core/token_bucket.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/interest/cache_claims.hpp"
-#include "server/limits/address_block.hpp"
 #include "server/limits/followed_position.hpp"
 #include "server/world/world_environment.hpp"
 
@@ -37,6 +37,15 @@ struct HistoryView {
   // Chunks of the past that the session has. They are not sent again while the view stays.
   std::map<ChunkKey, Version> sent;
   std::size_t loading = 0;  // chunks that workers make for this view
+};
+
+/// What a session knows of rights (protected_ground.hpp).
+struct SentGround {
+  std::optional<Permissions> permissions;  // sent last
+  bool are_permissions_due = false;
+  TimeUs restricted_until_us = 0;  // when a restriction of the player ends, UTC; 0: none does
+  std::map<Sequence, bool> boxes;  // sent, by the record of each; whether it admits the player
+  bool are_boxes_due = false;
 };
 
 /// Times are of the steady clock.
@@ -72,6 +81,7 @@ struct WorldSession {
   std::optional<TimeUs> view_applied_us;  // when a view took effect last
   std::vector<View> skipped_views;    // replaced before they took effect, at most kSkippedViewsMax
   bool has_skipped_too_many = false;  // there were more
+  SentGround ground;
   // Cached chunks (cached_chunk_handlers.hpp).
   CacheClaims claims;
   std::vector<UnmodifiedChunk> not_modified_due;  // subscribed, and not answered yet

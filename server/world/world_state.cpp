@@ -1,6 +1,8 @@
 #include "server/world/world_state.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <set>
 #include <utility>
 
@@ -40,6 +42,10 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
   for (const PlayerRow& player : start.players) players.restore(player);
   players.begin_above(start.author_max);
   for (const NameClaim& claim : start.name_claims) names.restore(claim);
+  for (const RightsRecord& record : start.rights) rights.apply(record.change, record.origin);
+  std::array<std::uint8_t, sizeof rights_instance> instance{};
+  random(instance);
+  std::memcpy(&rights_instance, instance.data(), sizeof rights_instance);
   for (const HighWater& watermark : start.resolved)
     authority.resolved().raise({watermark.author, watermark.instance, watermark.resolved});
 }

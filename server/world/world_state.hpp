@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "common/rights/rights_state.hpp"
 #include "server/interest/interest.hpp"
 #include "server/limits/claim_ledger.hpp"
 #include "server/limits/edit_ledger.hpp"
+#include "server/limits/recent_refusals.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
 #include "server/world/large_edit_pace.hpp"
@@ -42,8 +44,13 @@ struct WorldState {
   LoadRetries load_retries;
   Players players;
   NameClaims names;
+  RightsState rights;
+  ClientInstance rights_instance = 0;    // of the changes of rights that this run makes
+  ClientSequence rights_client_seq = 0;  // of the last one
+  Sequence rights_seq = 0;               // likewise, in the log; 0: none in this run
   EditLedger edit_ledger;
   ClaimLedger claim_ledger;
+  RecentRefusals refusals;
   LargeEditPace large_edits;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
@@ -74,6 +81,7 @@ struct WorldState {
   std::size_t view_chunks_left;     // that views may still visit on this tick
   bool views_wait = false;          // some views had to wait for the next tick
   SessionId view_applied_last = 0;  // the session whose view took effect last on a tick
+  SessionId ground_sent_last = 0;   // the session whose protected ground was sent last on a tick
   // Time travel.
   std::uint32_t history_count = 0;    // history views since the start
   std::size_t histories_opening = 0;  // requests that workers open

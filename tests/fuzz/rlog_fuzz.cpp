@@ -16,7 +16,7 @@ void read(const Bytes& file) {
   Epoch epoch = contents.world.head.epoch;
   for (const EditRecord& record : contents.records) {
     RUNSTONE_ASSERT(record.version.seq == next && record.version.epoch >= epoch);
-    RUNSTONE_ASSERT(validate_numbers(record).has_value() && validate(record.edit).has_value());
+    RUNSTONE_ASSERT(validate_fields(record).has_value() && validate(record.edit).has_value());
     ++next;
     epoch = record.version.epoch;
   }

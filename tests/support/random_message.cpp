@@ -143,6 +143,7 @@ Welcome any_welcome(SplitMix64& rng) {
 
 ClientAuth any_client_auth(SplitMix64& rng) {
   ClientAuth m;
+  if (rng.below(2) == 0) m.ticket = any_text(rng, 1, kTicketBytesMax);
   draw(rng, m.signature);
   return m;
 }
@@ -288,7 +289,7 @@ Commit any_commit(SplitMix64& rng) {
     seq += 1 + (rng.below(2) == 0 ? 0 : rng.below(1'000'000));
     e.seq = seq;
     e.op = {rng.below(1000), rng.next(), any64(rng)};
-    e.cause = static_cast<Cause>(rng.below(kCauseMax + 1u));
+    e.cause = static_cast<Cause>(rng.below(kCauseMax));  // a commit has no change of rights
     e.submitted_us = any_time(rng);
     e.ordered_us = any_time(rng);
     e.edit = any_edit(rng);
@@ -334,6 +335,31 @@ PlayerList any_player_list(SplitMix64& rng) {
   m.is_change = rng.below(2) == 0;
   if (m.is_change) m.left.resize(rng.below(20));
   for (AuthorId& author : m.left) author = rng.below(1000);
+  return m;
+}
+
+Permissions any_permissions(SplitMix64& rng) {
+  return {any_text(rng, 1, kGroundNameBytesMax), static_cast<std::uint32_t>(any64(rng)), any64(rng),
+          any_text(rng, 0, kTextBytesMax)};
+}
+
+ProtectedGround any_ground(SplitMix64& rng) {
+  ProtectedGround m;
+  Sequence seq = any64(rng) >> 2;
+  for (std::uint32_t i = 1 + rng.below(20); i > 0; --i) {
+    seq += 1 + rng.below(1000);
+    if (rng.below(3) == 0) m.removed.push_back(seq);
+    if (!m.removed.empty() && rng.below(3) == 0) continue;
+    const VoxelPos min{rng.between(-kWorldLimit, kWorldLimit - 1), rng.between(-300, 300), 7};
+    const VoxelPos max{kWorldLimit, min.y + rng.between(1, 60), 8};
+    const std::int32_t priority = rng.between(-kGroundPriorityMax, kGroundPriorityMax);
+    m.boxes.push_back({seq,
+                       {min, max},
+                       priority,
+                       rng.below(2) == 0,
+                       any_text(rng, 1, kGroundNameBytesMax),
+                       any_text(rng, 0, 32)});
+  }
   return m;
 }
 
@@ -404,9 +430,13 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_uniform(rng);
     case kKindOf<CachedChunks>:
       return any_cached_chunks(rng);
-    default:
-      RUNSTONE_ASSERT(kind == kKindOf<ChunksNotModified>);
+    case kKindOf<ChunksNotModified>:
       return any_chunks_not_modified(rng);
+    case kKindOf<Permissions>:
+      return any_permissions(rng);
+    default:
+      RUNSTONE_ASSERT(kind == kKindOf<ProtectedGround>);
+      return any_ground(rng);
   }
 }
 

@@ -73,6 +73,18 @@ inline EditDescriptor sample_edit(SplitMix64& rng) {
   return edit;
 }
 
+/// Returns a change of rights, with and without a place.
+inline EditDescriptor sample_rights_edit(SplitMix64& rng) {
+  const PublicKey key = sample_player(static_cast<AuthorId>(1 + rng.below(2))).key;
+  if (rng.below(2) == 0) return rights_edit(GrantRole{key, kModeratorRole});
+  ProtectedBox box;
+  box.name = "box" + std::to_string(rng.below(4));
+  const VoxelPos at{rng.between(-40, 40), rng.between(-20, 40), rng.between(-40, 40)};
+  box.box = {at, {at.x + 10, at.y + 20, at.z + 30}};
+  box.owner = key;
+  return rights_edit(Protect{std::move(box)});
+}
+
 /// Returns record `seq` of two players with two client processes each. Client sequences and times
 /// rise with `seq`.
 inline EditRecord sample_record(SplitMix64& rng, Epoch epoch, Sequence seq) {
@@ -81,7 +93,7 @@ inline EditRecord sample_record(SplitMix64& rng, Epoch epoch, Sequence seq) {
   const auto author = static_cast<AuthorId>(1 + rng.below(2));
   record.op = {author, 0xf000000000000000ULL + rng.below(2), seq};
   record.time_us = 1'700'000'000'000'000 + static_cast<TimeUs>(seq) * 1000;
-  record.cause = static_cast<Cause>(rng.below(kCauseMax + 1));
+  record.cause = static_cast<Cause>(rng.below(kCauseMax));  // an edit of voxels
   record.edit = sample_edit(rng);
   if (record.cause == Cause::rollback || record.cause == Cause::undo ||
       record.cause == Cause::redo) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <utility>
 
 #include "common/edits/descriptor/placed_clipboard.hpp"
 
@@ -83,6 +84,11 @@ Result<void> validate_shape(const Paste& shape) {
   return {};
 }
 
+Result<void> validate_shape(const RightsEdit& shape) {
+  if (shape.change == nullptr) return fail(ErrorCode::bad_value, "edit of rights without a change");
+  return validate(*shape.change);
+}
+
 void write_position(ByteWriter& w, VoxelPos p) {
   w.svarint(p.x);
   w.svarint(p.y);
@@ -118,6 +124,12 @@ void write_shape(ByteWriter& w, const Paste& shape) {
   write_position(w, shape.at);
   w.u8(shape.orientation.to_byte());
   write_clipboard(w, *shape.clipboard);
+}
+
+void write_shape(ByteWriter& w, const RightsEdit& shape) {
+  Bytes bytes;
+  encode(*shape.change, bytes);
+  w.bytes(bytes);
 }
 
 std::int32_t read_coordinate(ByteReader& r) {
@@ -184,6 +196,7 @@ bool is_kind(std::uint8_t tag) {
     case EditKind::fill_sphere:
     case EditKind::fill_stroke:
     case EditKind::paste:
+    case EditKind::rights:
       return true;
   }
   return false;
@@ -212,6 +225,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
       return read_stroke(r);
     case EditKind::paste:
       return read_paste(r);
+    case EditKind::rights:
+      return RightsEdit{std::make_shared<const RightsChange>(read_rights_change(r))};
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
@@ -220,9 +235,13 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
 
 EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
-      EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
-      EditKind::paste};
+      EditKind::set_voxel,   EditKind::fill_box, EditKind::fill_sphere,
+      EditKind::fill_stroke, EditKind::paste,    EditKind::rights};
   return kKinds[edit.shape.index()];
+}
+
+EditDescriptor rights_edit(RightsChange change) {
+  return {RightsEdit{std::make_shared<const RightsChange>(std::move(change))}, {}, kEmpty};
 }
 
 Result<void> validate(const EditDescriptor& edit) {
@@ -235,6 +254,10 @@ Result<void> validate(const EditDescriptor& edit) {
   }
   if (std::holds_alternative<Paste>(edit.shape) && edit.material != kEmpty) {
     return fail(ErrorCode::bad_value, "paste with a material of its own");
+  }
+  if (std::holds_alternative<RightsEdit>(edit.shape) &&
+      (edit.material != kEmpty || edit.mask != Mask{})) {
+    return fail(ErrorCode::bad_value, "edit of rights with a mask or a material");
   }
   return std::visit([](const auto& shape) { return validate_shape(shape); }, edit.shape);
 }
@@ -283,6 +306,13 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
   }
   if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
   if (const auto valid = validate(edit); !valid) return Unexpected<Error>{valid.error()};
+  return edit;
+}
+
+Result<EditDescriptor> decode_voxel_edit(ByteView in) {
+  auto edit = decode_descriptor(in);
+  if (edit && rights_change_of(*edit) != nullptr)
+    return fail(ErrorCode::unknown_kind, "a change of rights is no edit of voxels");
   return edit;
 }
 

@@ -2,6 +2,7 @@
 // pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
 // in the log and in exports. The meaning of a kind is frozen; a change is a new kind.
+// One kind has no voxels: it changes who may do what, and stands in the same order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "common/core/result.hpp"
 #include "common/edits/clipboard/clipboard.hpp"
 #include "common/edits/clipboard/orientation.hpp"
+#include "common/rights/rights_change.hpp"
 
 namespace runstone {
 
@@ -24,7 +26,8 @@ enum class EditKind : std::uint8_t {
   fill_box = 2,
   fill_sphere = 3,
   fill_stroke = 4,
-  paste = 6
+  paste = 6,
+  rights = 7
 };
 
 /// The condition on the present voxels of the geometry that an edit may write. The values are
@@ -94,13 +97,23 @@ struct Paste {
   }
 };
 
+/// Changes roles, restrictions or protected ground. It has no voxels and touches no chunk.
+struct RightsEdit {
+  std::shared_ptr<const RightsChange> change;
+  friend bool operator==(const RightsEdit& a, const RightsEdit& b) {
+    return a.change == b.change ||
+           (a.change != nullptr && b.change != nullptr && *a.change == *b.change);
+  }
+};
+
 // The order is that of EditKind.
-using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste>;
+using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit>;
 
 struct EditDescriptor {
   EditShape shape;
   Mask mask;
-  // kEmpty removes voxels. It is kEmpty for a paste, whose cells have their own materials.
+  // kEmpty removes voxels. It is kEmpty for a paste, whose cells have their own materials, and for
+  // a change of rights, which has no mask either.
   Material material = kEmpty;
   friend bool operator==(const EditDescriptor&, const EditDescriptor&) = default;
 };
@@ -113,9 +126,18 @@ inline constexpr std::int32_t kStrokeStepMax = 1024;  // from point to point, al
 
 EditKind kind_of(const EditDescriptor& edit);
 
+/// Returns the descriptor of a change of rights.
+EditDescriptor rights_edit(RightsChange change);
+/// Returns the change of a descriptor that changes rights; null for the other kinds.
+inline const RightsChange* rights_change_of(const EditDescriptor& edit) {
+  const auto* rights = std::get_if<RightsEdit>(&edit.shape);
+  return rights == nullptr ? nullptr : rights->change.get();
+}
+
 /// Returns the maximum number of bytes of a descriptor of this kind.
 constexpr std::size_t descriptor_bytes_max(EditKind kind) {
   if (kind == EditKind::paste) return 64 + kClipboardBytesMax;
+  if (kind == EditKind::rights) return 64 + kRightsChangeBytesMax;
   return kind == EditKind::fill_stroke ? 1600 : 64;
 }
 // Maximum over all kinds.
@@ -137,5 +159,8 @@ Bytes encode(const EditDescriptor& edit);
 /// Decodes exactly one descriptor. Fails if bytes are left over or are not canonical. The result is
 /// valid.
 Result<EditDescriptor> decode_descriptor(ByteView in);
+/// Does the same and fails for a change of rights, which players neither send nor receive as an
+/// edit.
+Result<EditDescriptor> decode_voxel_edit(ByteView in);
 
 }  // namespace runstone

@@ -31,11 +31,13 @@ VoxelBox box_of_shape(const FillStroke& shape) {
           {box.max.x + r + 1, box.max.y + r + 1, box.max.z + r + 1}};
 }
 VoxelBox box_of_shape(const Paste& shape) { return box_of(shape); }
+VoxelBox box_of_shape(const RightsEdit& shape) {
+  constexpr VoxelPos kNowhere{-kWorldLimit, -kWorldLimit, -kWorldLimit};
+  return place_of(*shape.change).value_or(VoxelBox{kNowhere, kNowhere});
+}
 
-std::uint64_t volume_of(const VoxelBox& b) {
-  return static_cast<std::uint64_t>(b.max.x - b.min.x) *
-         static_cast<std::uint64_t>(b.max.y - b.min.y) *
-         static_cast<std::uint64_t>(b.max.z - b.min.z);
+bool has_voxels(const EditDescriptor& edit) {
+  return !std::holds_alternative<RightsEdit>(edit.shape);
 }
 
 // Returns an upper bound for the voxels of the segment's capsule. Across the longest axis of the
@@ -134,11 +136,12 @@ std::uint64_t counted_voxels(const EditDescriptor& edit) {
     return count;
   }
   if (const auto* paste = std::get_if<Paste>(&edit.shape)) return paste->clipboard->touched();
+  if (!has_voxels(edit)) return 0;
   return volume_of(bounding_box(edit));
 }
 
 bool touches(const EditDescriptor& edit, const VoxelBox& box) {
-  if (box.empty()) return false;
+  if (box.empty() || !has_voxels(edit)) return false;
   if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
     for (std::size_t i = 0; i < segment_count(*stroke); ++i) {
       if (touches_segment(*stroke, i, box)) return true;
@@ -189,6 +192,7 @@ void touched_chunks(const EditDescriptor& edit, std::int32_t edge, std::vector<C
     out = touched_chunks(*paste, edge);
     return;
   }
+  if (!has_voxels(edit)) return;
   append_chunks(chunk_range(bounding_box(edit), edge), out,
                 [&](ChunkCoord c) { return touches(edit, box_of(c, edge)); });
 }
@@ -203,6 +207,7 @@ std::uint64_t touched_chunks_bound(const EditDescriptor& edit, std::int32_t edge
     // Several segments may touch one chunk.
     return std::min(count, chunks_of(chunk_range(bounding_box(edit), edge)));
   }
+  if (!has_voxels(edit)) return 0;
   return chunks_of(chunk_range(bounding_box(edit), edge));
 }
 

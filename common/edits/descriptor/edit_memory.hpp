@@ -14,10 +14,11 @@ inline std::size_t own_bytes(const EditDescriptor& edit) {
   return sizeof(EditDescriptor) + (stroke ? stroke->points.capacity() * sizeof(VoxelPos) : 0);
 }
 
-/// Returns the bytes that all copies of the descriptor share: the clipboard of a paste, otherwise
-/// 0. Cost: O(1).
+/// Returns the bytes that all copies of the descriptor share: the clipboard of a paste, or at most
+/// those of a change of rights, otherwise 0. Cost: O(1).
 inline std::size_t shared_bytes(const EditDescriptor& edit) {
   const auto* paste = std::get_if<Paste>(&edit.shape);
+  if (std::holds_alternative<RightsEdit>(edit.shape)) return kRightsChangeBytesMax;
   return paste != nullptr && paste->clipboard ? paste->clipboard->memory_bytes() : 0;
 }
 

@@ -1,23 +1,26 @@
 #include "common/edits/descriptor/edit_record.hpp"
 
 #include <limits>
+#include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 
 namespace runstone {
 
-Result<void> validate_numbers(const EditRecord& record) {
+Result<void> validate_fields(const EditRecord& record) {
   const Sequence seq = record.version.seq;
   if (seq == 0) return fail(ErrorCode::bad_value, "sequence 0 is the base, not an edit");
   if (seq > kSequenceMax) return fail(ErrorCode::bad_value, "sequence exceeds 63 bits");
   if (record.op.seq > kSequenceMax)
     return fail(ErrorCode::bad_value, "client sequence exceeds 63 bits");
   if (record.subject >= seq) return fail(ErrorCode::bad_value, "subject is not an earlier edit");
+  if ((record.cause == Cause::rights) != (rights_change_of(record.edit) != nullptr))
+    return fail(ErrorCode::bad_value, "the cause is not that of the edit");
   return {};
 }
 
 Bytes encode_record(const EditRecord& record) {
-  RUNSTONE_ASSERT(validate_numbers(record).has_value());
+  RUNSTONE_ASSERT(validate_fields(record).has_value());
   RUNSTONE_ASSERT(static_cast<std::uint8_t>(record.cause) <= kCauseMax);
   Bytes out;
   ByteWriter w(out);
@@ -60,11 +63,6 @@ Result<EditRecord> decode_record(ByteView in) {
   if (cause > kCauseMax) r.reject(ErrorCode::bad_value, "unknown cause");
   record.cause = static_cast<Cause>(cause <= kCauseMax ? cause : 0);
   record.subject = r.varint();
-  if (r.ok()) {
-    if (const auto numbers = validate_numbers(record); !numbers) {
-      r.reject(numbers.error().code, numbers.error().what);
-    }
-  }
   const auto coordinate = [&r] {
     return static_cast<std::int32_t>(
         r.svarint_in(-kWorldLimit, kWorldLimit - 1, "box outside the world"));
@@ -87,7 +85,8 @@ Result<EditRecord> decode_record(ByteView in) {
   if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
   auto edit = decode_descriptor(bytes);
   if (!edit) return fail(edit.error().code, edit.error().what, at + edit.error().offset);
-  record.edit = *edit;
+  record.edit = *std::move(edit);
+  if (auto valid = validate_fields(record); !valid) return Unexpected<Error>{valid.error()};
   if (box != bounding_box(record.edit)) {
     return fail(ErrorCode::bad_value, "bounding box is not the descriptor's", at);
   }

@@ -29,11 +29,12 @@ inline constexpr std::uint8_t kEditRecordVersion = 1;
 /// checks the maximum of each kind.
 inline constexpr std::size_t kRecordDescriptorBytesMax = std::size_t{1} << 20;
 
-/// Fails if sequence, client sequence or subject is outside its range.
-Result<void> validate_numbers(const EditRecord& record);
+/// Fails if sequence, client sequence or subject is outside its range, or if the cause is not that of
+/// the edit: a change of rights has the cause `rights`, and no other edit has it.
+Result<void> validate_fields(const EditRecord& record);
 
 /// Returns the canonical bytes without the checksum: version byte, numbers, bounding box,
-/// descriptor. Requires validate_numbers().
+/// descriptor. Requires validate_fields().
 Bytes encode_record(const EditRecord& record);
 
 /// Decodes a record. Fails if the bytes are not canonical or the bounding box is not that of the

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tests/bench/edits/replay_case.hpp"
+#include "tests/bench/edits/rights_case.hpp"
 #include "tests/bench/edits/stack_case.hpp"
 #include "tests/bench/harness/statistics.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -69,6 +70,20 @@ void measure_spreads(EditBenchResult& result, unsigned repetitions) {
   measure("stroke of radius 8 over 150 voxels emptied", tunnel);
 }
 
+void measure_rights(EditBenchResult& result, unsigned repetitions) {
+  constexpr std::size_t kBoxes = 10'000, kDecisions = 1'000;
+  for (const Ground ground : {Ground::spread, Ground::nested}) {
+    const char* name = ground == Ground::spread ? "boxes apart" : "boxes among large regions";
+    const std::vector<double> us = time_rights(ground, kBoxes, kDecisions, repetitions);
+    result.rows.push_back(
+        row_of(fmt::format("rights of a voxel, 10,000 {}", name), 1, kDecisions, us));
+    Target target = at_most(fmt::format("rights of a single voxel, 10,000 protected {}", name),
+                            median(us) / kDecisions, 1);
+    target.measured = fmt::format("{:.2f} µs", median(us) / kDecisions);
+    result.targets.push_back(std::move(target));
+  }
+}
+
 Result<void, std::string> measure_replay(EditBenchResult& result, std::size_t edits,
                                          unsigned repetitions) {
   const test::TempFolder folder;
@@ -102,6 +117,8 @@ Result<EditBenchResult, std::string> run_edit_bench(const BenchOptions& options,
   fmt::print(progress, "stacks\n");
   measure_spreads(result, options.repetitions);
   fmt::print(progress, "spheres and strokes\n");
+  measure_rights(result, options.repetitions);
+  fmt::print(progress, "rights\n");
   progress.flush();
   const unsigned replays = std::max(1U, options.repetitions / 10);
   const auto replayed = measure_replay(result, options.edits, replays);

@@ -85,7 +85,7 @@ bool AttackClient::open_session(std::uint64_t identity, ClientInstance instance,
     is_proven = true;
     welcome_ = *came_;
     const auto binding = tls_ ? std::optional(tls_->binding()) : std::nullopt;
-    queue(ClientAuth{sign(keys, client_transcript(hello, welcome_, binding))});
+    queue(ClientAuth{sign(keys, client_transcript(hello, welcome_, binding)), {}});
   }
   return is_open() && has_session_;
 }

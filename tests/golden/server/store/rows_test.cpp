@@ -90,6 +90,7 @@ TEST_CASE("the tables have the columns of format 3", "[store][golden]") {
         "digest0 INTEGER0, digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "player") == "author INTEGER1, key BLOB0, name TEXT0, checksum INTEGER0");
   CHECK(columns(file, "name_claim") == "folded TEXT1, name TEXT0, key BLOB0, checksum INTEGER0");
+  CHECK(columns(file, "rights_record") == "seq INTEGER1, record BLOB0, checksum INTEGER0");
   CHECK(columns(file, "player_name") ==
         "author INTEGER1, number INTEGER2, name TEXT0, checksum INTEGER0");
   CHECK(
@@ -99,7 +100,7 @@ TEST_CASE("the tables have the columns of format 3", "[store][golden]") {
                 "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master "
                 "WHERE type = 'table' ORDER BY name)") ==
         "base edit_log keyframe keyframe_chunk log_box log_box_node log_box_parent log_box_rowid "
-        "meta name_claim player player_instance player_name snapshot");
+        "meta name_claim player player_instance player_name rights_record snapshot");
   CHECK(
       raw_sql(
           file,
@@ -116,7 +117,8 @@ TEST_CASE("the tables have the columns of format 3", "[store][golden]") {
   CHECK(
       raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
       "author_max base_fold checkpoint chunk_edge epoch generator generator_parameters "
-      "generator_version log_head log_last materials name_claim_fold player_fold player_instance_fold seed "
+      "generator_version log_head log_last materials name_claim_fold player_fold player_instance_fold "
+      "rights_record_fold seed "
       "server_key_seed snapshot_fold spawn world_id");
 }
 

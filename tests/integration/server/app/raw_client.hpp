@@ -168,7 +168,8 @@ class RawClient {
     chunk_edge_ = welcome.chunk_edge;
     if (!verify(welcome.server_key, server_transcript(h, welcome, binding()), welcome.signature))
       return std::nullopt;
-    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome, signed_binding))});
+    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome, signed_binding)),
+                    ticket});
     return next_of<SessionAccepted>();
   }
 
@@ -176,6 +177,7 @@ class RawClient {
   std::uint64_t features = 0;  // offered in hello
   bool cuts_chunks = true;     // tests get each chunk of a message as a snapshot of its own
   std::string name;            // of the player; empty: "player" and the number
+  std::string ticket;          // an invite token; empty: none
 
  private:
   static constexpr time_t kSendSeconds = 60;

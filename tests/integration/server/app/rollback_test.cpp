@@ -38,7 +38,7 @@ std::string replayed(const std::string& world) {
 
 }  // namespace
 
-TEST_CASE("players undo and redo by a command, and other commands are for operators",
+TEST_CASE("players undo and redo by a command, and other commands need rights",
           "[integration][rollback]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
@@ -61,7 +61,7 @@ TEST_CASE("players undo and redo by a command, and other commands are for operat
   CHECK(nothing.text == "nothing to redo\n");
   const Answer refused = command(ana, "rollback list");
   CHECK_FALSE(refused.is_ok);
-  CHECK(refused.text.find("for operators") != std::string::npos);
+  CHECK(refused.text.find("needs the right roll_back") != std::string::npos);
   CHECK(command(ana, "help").text.find("rollback") == std::string::npos);
 
   RawClient boss(server->port());

@@ -49,7 +49,9 @@ struct Fixture {
     REQUIRE(session.is_open());
   }
   void receive(Message message) { session.receive(std::move(message), {kNow, kNow, kNow}); }
-  Result<void> submit(VoxelPos at) { return tool.submit({SetVoxel{at}, {}, 1}, kNow, kNow); }
+  Result<void, std::string> submit(VoxelPos at) {
+    return tool.submit({SetVoxel{at}, {}, 1}, kNow, kNow);
+  }
   std::uint64_t infinite(EditPath path) const {
     return recorder.report()[path]
         .since_submit[static_cast<std::size_t>(LatencyStage::applied)]
@@ -82,7 +84,7 @@ TEST_CASE_METHOD(Fixture, "an edit in the past is refused with a reason and is i
   REQUIRE(session.replica().past());
   const auto refused = submit({1, 2, 3});
   REQUIRE_FALSE(refused.has_value());
-  CHECK(std::string(refused.error().what) == "the past cannot be edited");
+  CHECK(refused.error() == "the past cannot be edited");
   CHECK(tool.refused() == 1);
   for (const EditPath path : kPaths) {
     CHECK(recorder.report()[path].edits == 0);

@@ -29,6 +29,8 @@ int refused(std::vector<const char*> arguments) {
 TEST_CASE("the connection is encrypted unless the user says otherwise", "[client_app]") {
   CHECK(accepted({"--connect", "a:1"}).tls.has_value());
   CHECK_FALSE(accepted({"--connect", "a:1", "--insecure"}).tls.has_value());
+  CHECK(refused({"--connect", "runstone://a/#token"}) == 2);  // the key would be lost
+  CHECK(refused({"--connect", "runstone://"}) == 2);
   CHECK(refused({"--connect", "a:1", "--ca", ""}) == 2);
   CHECK(refused({"--connect", "a:1", "--ca", "/nowhere/authority.pem"}) == 2);
   CHECK(refused({"--connect", "a:1", "--ca", "system", "--insecure"}) == 2);
@@ -43,6 +45,15 @@ TEST_CASE("the address is a host with or without a port, also in IPv6", "[client
   CHECK(refused({"--connect", "example.org:65536"}) == 2);
   CHECK(refused({"--connect", ":4000"}) == 2);
   CHECK(refused({}) == 2);
+}
+
+TEST_CASE("a link gives the address and the invite", "[client_app]") {
+  const ClientOptions options =
+      accepted({"--connect", "runstone://example.org:5000/#token", "--key", "k"});
+  CHECK(options.server.host == "example.org");
+  CHECK(options.server.port == 5000);
+  CHECK(options.ticket == "token");
+  CHECK(accepted({"--connect", "runstone://example.org"}).ticket.empty());
 }
 
 TEST_CASE("the mode --draw requires no server and accepts none", "[client_app]") {
@@ -84,6 +95,11 @@ TEST_CASE("the memory budget is 1 GiB unless an option says otherwise", "[client
   CHECK(accepted({"--connect", "a:1", "--memory-mib", "64"}).memory_mib == 64);
   CHECK(refused({"--connect", "a:1", "--memory-mib", "63"}) == 2);
   CHECK(refused({"--connect", "a:1", "--memory-mib", "65537"}) == 2);
+}
+
+TEST_CASE("protected boxes are outlined from the start if an option says so", "[client_app]") {
+  CHECK_FALSE(accepted({"--connect", "a:1"}).show_protected);
+  CHECK(accepted({"--connect", "a:1", "--show-protected"}).show_protected);
 }
 
 TEST_CASE("of two values of one flag the last one counts", "[client_app]") {

@@ -55,6 +55,20 @@ TEST_CASE("edits are sorted by author, each at its time since the first of all",
   CHECK(log->used == std::vector<Material>{0, 1, 2, 4});
 }
 
+TEST_CASE("changes of rights are not played", "[bots][play]") {
+  EditRecord grant = voxel(2, 1, 5'000, 1);
+  grant.cause = Cause::rights;
+  grant.edit = rights_edit(GrantRole{{}, kModeratorRole});
+  const std::vector<EditRecord> records = {voxel(1, 2, 5'000, 1), grant, voxel(3, 2, 6'000, 1)};
+  const std::vector<RlogPlayer> players = {{1, {}, "ada"}, {2, {}, "bob"}};
+  const Bytes file = rlog_of(world_of_defaults(), players, records, {0, 2});
+  const auto log = read_recorded_log(source_of(file));
+  REQUIRE(log.has_value());
+  CHECK(log->edits == 2);
+  REQUIRE(log->authors.size() == 1);
+  CHECK(log->authors[0].name == "bob");
+}
+
 TEST_CASE("a file that is damaged or cut anywhere is rejected", "[bots][play]") {
   const Bytes file = three_authors();
   for (std::size_t bytes = 0; bytes < file.size(); ++bytes) {

@@ -73,9 +73,10 @@ struct FakeScriptHost final : ScriptHost {
   TimeUs edit_wait_us(const EditDescriptor& /*edit*/, TimeUs now_us) override {
     return std::max<TimeUs>(0, budget_from_us - now_us);
   }
-  Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
+  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us,
+                                   TimeUs now_us) override {
     edits.push_back({edit, due_us, now_us});
-    if (!takes) return runstone::fail(ErrorCode::bad_value, "the past cannot be edited");
+    if (!takes) return failure("the past cannot be edited");
     return {};
   }
   bool loaded() const override { return is_loaded; }

@@ -63,7 +63,7 @@ TEST_CASE("a frame with a bad header is refused, and the error names where it be
       {"0140 11 00 01000000", ErrorCode::limit_exceeded},  // 16,385 bytes
       {"ffff 11 00 01000000", ErrorCode::limit_exceeded},
       {"0100 00 00 01000000", ErrorCode::unknown_kind},
-      {"0100 1c 00 01000000", ErrorCode::unknown_kind},  // one more than there are
+      {"0100 1e 00 01000000", ErrorCode::unknown_kind},  // one more than there are
       {"0100 ff 00 01000000", ErrorCode::unknown_kind},
       {"0100 10 00 01000000", ErrorCode::unknown_kind},  // Ping: servers do not send it
       {"0100 11 02 01000000", ErrorCode::bad_value},     // flags

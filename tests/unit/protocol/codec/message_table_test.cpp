@@ -29,6 +29,7 @@ const char* text_of(const std::optional<SessionStage>& stage) {
 
 const char* text_of_feature(std::uint64_t feature) {
   if (feature == 0) return "–";
+  if (feature == kFeatureRights) return "rights";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 
@@ -84,7 +85,7 @@ TEST_CASE("an encoded message has its kind, and the kind decides the class", "[p
   }
   CHECK(kKindOf<Hello> == 0);
   CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
-  CHECK(kKindOf<ChunksNotModified> == kMessageKindCount - 1);
+  CHECK(kKindOf<ProtectedGround> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {

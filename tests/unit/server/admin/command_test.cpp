@@ -86,6 +86,8 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
       "rollback preview: say whose edits, when, where or why: author, since, until, box or cause");
   CHECK(mistake("rollback preview by ana") ==
         "rollback preview \"by\": author, since, until, box, cause or picture");
+  CHECK(mistake("rollback preview cause rights") ==
+        "rollback preview cause \"rights\": rights undo SEQ takes these records back");
   CHECK(mistake("log since yesterday") ==
         "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, "
         "1w) or when (2026-11-21T23:57:42Z, in UTC)");
@@ -97,7 +99,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("log box 1 2 3 4 5 6000000000") ==
         "log box \"6000000000\": a whole number from -536870912 to 536870911");
   CHECK(mistake("log cause rage") ==
-        "log cause \"rage\": player, console, rollback, undo, redo or import");
+        "log cause \"rage\": player, console, rollback, undo, redo, import or rights");
   CHECK(mistake("log limit 0") == "log limit \"0\": a number from 1 to 1000");
   CHECK(mistake("log \"a") == "a \" is missing at the end");
   CHECK(mistake("materials wool red") ==
@@ -109,22 +111,9 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake(std::string(kCommandBytesMax + 1, 'a')) == "a command has at most 1024 bytes");
 }
 
-TEST_CASE(
-    "everybody may undo, redo, list materials and ask for help, and the rest is for operators",
-    "[admin][command]") {
-  for (const char* line : {"help", "materials", "undo", "redo"})
-    CHECK(is_for_everybody(*parse_command(line, kNow)));
-  for (const char* line : {"status", "players", "stop", "reload", "backup copy", "log",
-                           "rollback list", "rollback apply p1", "rollback preview since 1h"}) {
-    CHECK_FALSE(is_for_everybody(*parse_command(line, kNow)));
-  }
-  CHECK(command_help(true).starts_with(command_help(false)));
-  CHECK(command_help(false).find("rollback") == std::string::npos);
-}
-
 TEST_CASE("answers and filters use the same names of causes", "[admin][command]") {
-  for (const Cause cause :
-       {Cause::player, Cause::console, Cause::rollback, Cause::undo, Cause::redo, Cause::import}) {
+  for (const Cause cause : {Cause::player, Cause::console, Cause::rollback, Cause::undo,
+                            Cause::redo, Cause::import, Cause::rights}) {
     CHECK(parsed<LogCommand>("log cause " + std::string(name_of(cause))).filter.cause == cause);
   }
 }

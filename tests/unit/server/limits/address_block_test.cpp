@@ -1,4 +1,4 @@
-#include "server/limits/address_block.hpp"
+#include "common/core/address_block.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -27,6 +27,11 @@ std::vector<EditRecord> some_records(SplitMix64& rng, std::size_t count) {
     if (rng.below(3) != 0) record.cause = Cause::player;
     if (record.cause == Cause::player) record.subject = 0;
     record.edit = random_edit_near(rng, {0, 0, 0}, Extent::cube(2 * kSampleEdge));
+    if (rng.below(8) == 0) {  // it touches no voxel, so no plan may depend on it
+      record.cause = Cause::rights;
+      record.subject = 0;
+      record.edit = sample_rights_edit(rng);
+    }
     records.push_back(record);
   }
   return records;
@@ -36,8 +41,8 @@ bool answers(const SelectionFilter& filter, const EditRecord& record) {
   const bool by_author =
       filter.authors.empty() ||
       std::count(filter.authors.begin(), filter.authors.end(), record.op.author) != 0;
-  return by_author && record.time_us >= filter.from_us && record.time_us <= filter.until_us &&
-         (!filter.cause || *filter.cause == record.cause);
+  return record.cause != Cause::rights && by_author && record.time_us >= filter.from_us &&
+         record.time_us <= filter.until_us && (!filter.cause || *filter.cause == record.cause);
 }
 
 SelectionFilter random_filter(SplitMix64& rng, const std::vector<EditRecord>& records) {

@@ -75,6 +75,67 @@ TEST_CASE("a log that was compacted to its end does not begin at 1 again", "[sto
   CHECK(store->check().has_value());
 }
 
+TEST_CASE("changes of rights are kept when the log is compacted", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(5);
+  std::vector<EditRecord> written;
+  {
+    auto store = *create_world(folder / "w", sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    auto records = sample_records(rng, 1, 1, 40);
+    for (const Sequence seq : {3U, 17U, 20U, 31U}) {
+      records[seq - 1].cause = Cause::rights;
+      records[seq - 1].edit = sample_rights_edit(rng);
+      records[seq - 1].subject = 0;
+    }
+    for (const EditRecord& record : records) {
+      if (record.cause == Cause::rights) written.push_back(record);
+    }
+    REQUIRE(store->append({}, records).has_value());
+    const Keyframe keyframe{{records[19].version, records[19].time_us}, 0, {}};
+    REQUIRE(store->save_keyframe({}, keyframe).has_value());
+  }
+  const auto rights_of = [](WorldReader& store) {
+    std::vector<EditRecord> found;
+    REQUIRE(store
+                .read_rights([&](const EditRecord& record) {
+                  found.push_back(record);
+                  return true;
+                })
+                .has_value());
+    return found;
+  };
+  const auto store = compacted_store(folder / "w");
+  CHECK(rights_of(*store) == written);
+  REQUIRE(store->compact(20).has_value());
+  CHECK(store->log_range()->first == 21);
+  CHECK(rights_of(*store) == written);
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("a lost change of rights is noticed", "[store][damage]") {
+  const TempFolder folder;
+  {
+    auto store = *create_world(folder / "w", sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    SplitMix64 rng(6);
+    auto record = sample_record(rng, 1, 1);
+    record.cause = Cause::rights;
+    record.edit = sample_rights_edit(rng);
+    record.subject = 0;
+    REQUIRE(store->append({}, std::vector{record}).has_value());
+    REQUIRE(
+        store->save_keyframe({}, Keyframe{{record.version, record.time_us}, 0, {}}).has_value());
+    REQUIRE(store->compact(1).has_value());
+  }
+  raw_sql(folder / "w/world.sqlite", "DELETE FROM rights_record");
+  const auto store = compacted_store(folder / "w");
+  const auto read = store->read_rights([](const EditRecord&) { return true; });
+  REQUIRE_FALSE(read.has_value());
+  CHECK(read.error().kind == StoreError::Kind::corrupt);
+  CHECK(read.error().message().find("rights_record") != std::string::npos);
+}
+
 TEST_CASE("a base chunk carries the version at which it was completed", "[store]") {
   const TempFolder folder;
   SplitMix64 rng(3);

@@ -34,7 +34,8 @@ void make_claims(const std::string& folder) {
 /// Takes from a closed world what format 3 added.
 void make_format_2(const std::string& file) {
   REQUIRE(raw_sql(file,
-                  "DROP TABLE name_claim; DELETE FROM meta WHERE key = 'name_claim_fold'; "
+                  "DROP TABLE name_claim; DROP TABLE rights_record; DELETE FROM meta WHERE key IN "
+                  "('name_claim_fold', 'rights_record_fold'); "
                   "PRAGMA user_version = 2; SELECT 'done'") == "done");
 }
 

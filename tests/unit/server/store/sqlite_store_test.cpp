@@ -390,6 +390,7 @@ TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") 
             SetVoxel{{rng.between(-2000, 2000), rng.between(0, 120), rng.between(-2000, 2000)}},
             {},
             1};
+        record.cause = Cause::player;
         // Instances are random numbers of full width, of few client processes.
         record.op.instance = mix64(rng.below(8));
       }

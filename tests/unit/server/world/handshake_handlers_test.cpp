@@ -142,9 +142,10 @@ TEST_CASE("a message at the wrong stage closes the session with its reason", "[w
       closes(bench.client_auth(1, hello, other), GoodbyeReason::not_authenticated);
     }
     SECTION("the server's signature") {
-      closes(ClientAuth{sign(key_pair_of(seed_of(1)),
-                             server_transcript(hello, welcome, std::nullopt))},
-             GoodbyeReason::not_authenticated);
+      closes(
+          ClientAuth{sign(key_pair_of(seed_of(1)), server_transcript(hello, welcome, std::nullopt)),
+                     {}},
+          GoodbyeReason::not_authenticated);
     }
     SECTION("after client auth") {
       bench.server.received(1, bench.client_auth(1, hello, welcome), bench.now());

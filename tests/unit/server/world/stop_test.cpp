@@ -100,7 +100,7 @@ TEST_CASE("while the disk is full edits are rejected with that reason, and accep
   const std::vector<EditOffer> offers = {{{1, 99, 1}, Cause::rollback, 0, {kAtOrigin, {}, 2}, 0}};
   bench.environment.log_room = false;
   const auto busy = bench.server.order_server_edits(offers, 0, bench.now());
-  CHECK(busy.state == WorldServer::ServerEditsResult::State::busy);
+  CHECK(busy.state == ServerEditsResult::State::busy);
   CHECK(std::string(busy.reason) == "the world's disk is full");
   CHECK(bench.environment.records.size() == 1);  // the edit that was accepted before
   bench.environment.log_room = true;

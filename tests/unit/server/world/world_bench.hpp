@@ -49,8 +49,19 @@ struct WorldBench {
     h.name = "player" + std::to_string(who);
     return h;
   }
+  /// Does the handshake as far as client auth, with an invite token.
+  void knock(SessionId session, std::uint8_t who, const std::string& ticket) {
+    server.connected(session, now());
+    const Hello h = hello(who);
+    server.received(session, h, now());
+    const auto welcome = environment.messages<Welcome>(session, 0);
+    REQUIRE(welcome.size() == 1);
+    ClientAuth auth = client_auth(who, h, welcome[0]);
+    auth.ticket = ticket;
+    server.received(session, auth, now());
+  }
   ClientAuth client_auth(std::uint8_t who, const Hello& h, const Welcome& w) const {
-    return {sign(key_pair_of(seed_of(who)), client_transcript(h, w, std::nullopt))};
+    return {sign(key_pair_of(seed_of(who)), client_transcript(h, w, std::nullopt)), {}};
   }
   SessionAccepted join(SessionId session, std::uint8_t who, ClientInstance instance = 1,
                        AddressBlock from = {}) {

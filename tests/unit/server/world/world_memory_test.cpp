@@ -123,7 +123,7 @@ TEST_CASE("over the bound edits are rejected busy with the reason, and accepted 
       std::vector<Reject>{{1, RejectReason::busy, "the server's memory is full (memory_mib)", 0}});
   const std::vector<EditOffer> offers = {{{1, 99, 1}, Cause::rollback, 0, {kAtOrigin, {}, 2}, 0}};
   const auto refused = bench.server.order_server_edits(offers, 0, bench.now());
-  CHECK(refused.state == WorldServer::ServerEditsResult::State::busy);
+  CHECK(refused.state == ServerEditsResult::State::busy);
   CHECK(std::string(refused.reason) == "the server's memory is full (memory_mib)");
   bench.environment.log_bytes = 0;
   bench.edit(1, 2, kAtOrigin);

@@ -2,6 +2,7 @@
 
 #include "common/edits/clipboard/clipboard_builder.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
 #include "tests/support/edit_oracle.hpp"
 
@@ -31,7 +32,9 @@ EditRecord random_record(SplitMix64& rng) {
   record.cause = static_cast<Cause>(rng.below(kCauseMax + 1));
   if (rng.below(2) == 0) record.subject = any(kSequenceMax) % record.version.seq;
   if (rng.below(2) == 0) record.log = static_cast<LogId>(any(~0U));
-  record.edit = random_edit_anywhere(rng);
+  record.edit = record.cause == Cause::rights
+                    ? rights_edit(Unprotect{"box" + std::to_string(rng.below(10))})
+                    : random_edit_anywhere(rng);
   return record;
 }
 
@@ -304,7 +307,7 @@ TEST_CASE("a record has room for descriptors of later kinds, up to its own bound
     REQUIRE_FALSE(decoded.has_value());
     return decoded.error();
   };
-  constexpr std::uint8_t kLater = 7;
+  constexpr std::uint8_t kLater = 8;
   CHECK(with_descriptor_of(65, 1).code == ErrorCode::limit_exceeded);  // the kind's bound
   // The length is allowed; this build does not know the kind.
   CHECK(with_descriptor_of(65, kLater).code == ErrorCode::unknown_kind);
@@ -314,6 +317,40 @@ TEST_CASE("a record has room for descriptors of later kinds, up to its own bound
   CHECK(error.what == std::string("descriptor too long"));
 }
 
+TEST_CASE("a change of rights is an edit without voxels", "[edits]") {
+  const EditDescriptor grant = rights_edit(GrantRole{{}, kModeratorRole});
+  const VoxelBox box{{-3, 0, 5}, {4, 9, 40}};
+  ProtectedBox spawn;
+  spawn.name = "spawn";
+  spawn.box = box;
+  const EditDescriptor protect = rights_edit(Protect{spawn});
+  for (const EditDescriptor& edit : {grant, protect}) {
+    const auto decoded = decode_descriptor(encode(edit));
+    REQUIRE(decoded.has_value());
+    CHECK(*decoded == edit);
+    CHECK_FALSE(decode_voxel_edit(encode(edit)).has_value());
+    CHECK(touched_chunks(edit, 16).empty());
+    CHECK(touched_chunks_bound(edit, 16) == 0);
+    CHECK(counted_voxels(edit) == 0);
+    CHECK_FALSE(touches(edit, box));
+    std::vector<IndexSpan> spans;
+    append_spans(edit, {0, 0, 0}, Extent::cube(16), AxisOrder::xyz, spans);
+    CHECK(spans.empty());
+  }
+  CHECK(bounding_box(protect) == box);
+  CHECK(bounding_box(grant).empty());
+  CHECK(error_of({grant.shape, {}, 1}) == ErrorCode::bad_value);
+  CHECK(error_of({grant.shape, {MaskKind::only_empty, kEmpty}, kEmpty}) == ErrorCode::bad_value);
+  CHECK(error_of({RightsEdit{}, {}, kEmpty}) == ErrorCode::bad_value);
+}
+
+TEST_CASE("the cause of a record is that of its edit", "[edits]") {
+  const EditDescriptor grant = rights_edit(GrantRole{{}, kModeratorRole});
+  CHECK(validate_fields({{1, 1}, {}, 0, Cause::rights, grant}).has_value());
+  CHECK_FALSE(validate_fields({{1, 1}, {}, 0, Cause::console, grant}).has_value());
+  CHECK_FALSE(validate_fields({{1, 1}, {}, 0, Cause::rights, kVoxel}).has_value());
+}
+
 TEST_CASE("a record's numbers stay within 63 bits and its subject before itself", "[edits]") {
   EditRecord record = {
       {1, kSequenceMax}, {1, 2, kSequenceMax}, 4, Cause::undo, kVoxel, kSequenceMax - 1, ~0U};
@@ -321,7 +358,7 @@ TEST_CASE("a record's numbers stay within 63 bits and its subject before itself"
   REQUIRE(good.has_value());
   CHECK(*good == record);
   const auto broken = [](EditRecord bad, const char* what) {
-    const auto numbers = validate_numbers(bad);
+    const auto numbers = validate_fields(bad);
     return !numbers && numbers.error().what == std::string(what);
   };
   record.subject = record.version.seq;

@@ -1,0 +1,63 @@
+// KnownPlayers: finds the key that a command means, and the text for a key in an answer. A name says
+// little: several keys may use it one after another. So a word that fits several keys is an error
+// that lists them, and every text has the fingerprint of the key.
+#pragma once
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/core/ids.hpp"
+#include "common/core/public_key.hpp"
+#include "common/core/result.hpp"
+#include "server/world/player_rows.hpp"
+
+namespace runstone {
+
+/// Returns true if the word has the form of a key_fingerprint(), in upper or lower case.
+bool is_fingerprint(const std::string& word);
+
+class KnownPlayers {
+ public:
+  /// Where players are known from.
+  struct Sources {
+    std::vector<PlayerRow> present;   // who is here
+    std::vector<PlayerRow> stored;    // who has ever built
+    std::vector<UsedName> used;       // earlier names of these
+    std::vector<PlayerRow> visitors;  // who left without an edit
+    std::vector<NameClaim> claims;    // who owns a name
+    std::vector<PublicKey> others;    // keys without a name: with a grant, a restriction or a box
+  };
+  KnownPlayers() = default;
+  /// Cost: O(n log n) for n names.
+  explicit KnownPlayers(const Sources& sources);
+
+  /// Returns the key that a word means:
+  ///   - "#N": the player with this author number;
+  ///   - 64 hexadecimal digits: this key, known or not;
+  ///   - a fingerprint: the known key that has it;
+  ///   - otherwise the player who has, owns or had this name. Case and the like do not count
+  ///     (folded_name).
+  /// Fails if there is none, or if there are several; the error then lists them. A word can be both
+  /// fingerprint and name. Cost: O(keys) for a fingerprint, otherwise O(log n).
+  Result<PublicKey, std::string> find(const std::string& word) const;
+
+  /// Returns "ana #3 9M1Q-Z7CR-04KD", as far as name and author number are known.
+  std::string text_of(const PublicKey& key) const;
+  /// The same for an author of the log: "#3" if the key is not known, "the server" for author 0.
+  std::string text_of(AuthorId author) const;
+
+ private:
+  struct Player {
+    std::string name;  // empty: not known
+    std::optional<AuthorId> author;
+  };
+  void add(const PublicKey& key, const std::string& name, std::optional<AuthorId> author);
+
+  std::map<PublicKey, Player> players_;
+  std::map<AuthorId, PublicKey> authors_;
+  std::map<std::string, std::set<PublicKey>> names_;  // by folded name
+};
+
+}  // namespace runstone

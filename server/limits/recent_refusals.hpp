@@ -1,0 +1,41 @@
+// RecentRefusals: what players were refused lately, for moderators. Equal refusals of a player are
+// one row with a count. A player has few rows, so that nobody hides what others did.
+// Memory: at most kRefusalRowsMax rows. Thread: one. Times are arguments.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/core/ids.hpp"
+#include "common/core/public_key.hpp"
+
+namespace runstone {
+
+inline constexpr std::size_t kRefusalRowsMax = 512;
+inline constexpr std::size_t kRefusalRowsOfKeyMax = 16;
+
+struct RefusalRow {
+  PublicKey key{};
+  std::string what;  // such as "edit: the ground is protected: spawn"
+  std::uint64_t count = 0;
+  TimeUs first_us = 0, last_us = 0;  // UTC
+  friend bool operator==(const RefusalRow&, const RefusalRow&) = default;
+};
+
+class RecentRefusals {
+ public:
+  /// Counts a refusal. If there is no room for another row, the one that was refused longest ago
+  /// goes: of the player, or of all. Cost: O(log rows); for a row too many, O(rows).
+  void add(const PublicKey& key, const std::string& what, TimeUs now_us);
+  /// Returns all rows, the newest last.
+  std::vector<RefusalRow> rows() const;
+
+ private:
+  using Place = std::pair<PublicKey, std::string>;
+  std::map<Place, RefusalRow> rows_;
+};
+
+}  // namespace runstone

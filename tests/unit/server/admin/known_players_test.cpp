@@ -1,0 +1,71 @@
+#include "server/admin/known_players.hpp"
+
+#include <catch2/catch.hpp>
+#include <cctype>
+#include <string>
+
+#include "common/core/hex.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
+
+namespace runstone::known_players_test {
+namespace {
+
+const PublicKey kAna{1}, kMole{2}, kBat{3}, kOther{4};
+
+KnownPlayers players() {
+  KnownPlayers::Sources sources;
+  sources.stored = {{1, kAna, "Ana"}, {2, kMole, "the mole"}};
+  sources.used = {{1, "ann"}, {1, "Ana"}, {2, "the bat"}};
+  sources.present = {{3, kBat, "the bat"}};
+  sources.claims = {{"owner", "Owner", kOther}};
+  return KnownPlayers(sources);
+}
+
+}  // namespace
+
+TEST_CASE("a player is found by name, number, key and fingerprint", "[admin][rights]") {
+  const KnownPlayers known = players();
+  CHECK(*known.find("ana") == kAna);  // names are folded
+  CHECK(*known.find("ann") == kAna);  // an earlier name
+  CHECK(*known.find("#3") == kBat);
+  CHECK(*known.find("OWNER") == kOther);  // who never built
+  CHECK(*known.find(to_hex(kMole)) == kMole);
+  CHECK(*known.find(to_hex(PublicKey{9})) == PublicKey{9});  // nobody knows it yet
+  CHECK(*known.find(key_fingerprint(kMole)) == kMole);
+  std::string small = key_fingerprint(kMole);
+  for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  CHECK(*known.find(small) == kMole);
+}
+
+TEST_CASE("a word that means nobody or several players is refused", "[admin][rights]") {
+  const KnownPlayers known = players();
+  CHECK(known.find("nobody").error() ==
+        "nobody of that name is known here (players and names list the others)");
+  CHECK(known.find("#7").error() == "nobody has that author number (players lists them)");
+  CHECK(known.find("0000-0000-0000").error() ==
+        "nobody with that fingerprint is known here (players and names list them)");
+  CHECK(known.find("the bat").error() ==
+        "several players have, own or had that name: the mole #2 " + key_fingerprint(kMole) +
+            ", the bat #3 " + key_fingerprint(kBat) + " (give #N, the fingerprint or the key)");
+
+  // A name that imitates a fingerprint does not hide the player who has it.
+  KnownPlayers::Sources sources;
+  sources.stored = {{1, kAna, "Ana"}, {2, kMole, key_fingerprint(kAna)}};
+  CHECK_FALSE(KnownPlayers(sources).find(key_fingerprint(kAna)).has_value());
+
+  KnownPlayers::Sources many;
+  for (std::uint8_t i = 1; i <= 12; ++i) many.stored.push_back({i, PublicKey{i}, "x"});
+  CHECK(KnownPlayers(many).find("x").error().find(" and 2 more (give") != std::string::npos);
+}
+
+TEST_CASE("the text of a player has the fingerprint of the key", "[admin][rights]") {
+  const KnownPlayers known = players();
+  CHECK(known.text_of(kAna) == "Ana #1 " + key_fingerprint(kAna));
+  CHECK(known.text_of(kOther) == "Owner " + key_fingerprint(kOther));
+  CHECK(known.text_of(PublicKey{9}) == key_fingerprint(PublicKey{9}));
+  CHECK(known.text_of(AuthorId{2}) == "the mole #2 " + key_fingerprint(kMole));
+  CHECK(known.text_of(AuthorId{7}) == "#7");
+  CHECK(known.text_of(AuthorId{0}) == "the server");
+}
+
+}  // namespace runstone::known_players_test

@@ -1,0 +1,202 @@
+#include "server/admin/rights_command.hpp"
+
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "server/admin/command.hpp"
+
+namespace runstone::rights_command_test {
+namespace {
+
+constexpr TimeUs kNow = 1'800'000'000'000'000;
+constexpr const char* kPlayer = "a name, # and a number, a key or a fingerprint";
+constexpr const char* kName = "a name of a-z, 0-9, \"_\", \"-\" and \".\", at most 32 characters";
+constexpr const char* kRights =
+    "see, build, build_protected, claim, protect, look_back, undo, roll_back, chat, moderate, "
+    "grant, administer";
+
+template <class Kind>
+Kind parsed(const std::string& line) {
+  CAPTURE(line);
+  const auto command = parse_command(line, kNow);
+  INFO((command ? "" : command.error()));
+  REQUIRE(command.has_value());
+  const auto* rights = std::get_if<RightsCommand>(&*command);
+  REQUIRE(rights != nullptr);
+  const auto* kind = std::get_if<Kind>(rights);
+  REQUIRE(kind != nullptr);
+  return *kind;
+}
+
+std::string mistake(const std::string& line) {
+  const auto command = parse_command(line, kNow);
+  return command ? "no mistake" : command.error();
+}
+
+}  // namespace
+
+TEST_CASE("commands about roles and grants are parsed", "[admin][rights]") {
+  parsed<ListRolesCommand>("roles");
+  const Role mason =
+      parsed<SetRoleCommand>("role set mason build,see,undo volume 1000 claims 3 claim-volume 4096")
+          .role;
+  CHECK(mason == Role{"mason", {Right::see, Right::build, Right::undo}, 1000, 3, 4096});
+  CHECK(parsed<SetRoleCommand>("role set nobody none").role == Role{"nobody", {}, 0, 0, 0});
+  CHECK(parsed<RemoveRoleCommand>("role remove mason").role == "mason");
+  CHECK(parsed<DefaultRoleCommand>("role default mason").role == "mason");
+  CHECK(parsed<GrantCommand>("grant \"the mole\" mason") == GrantCommand{"the mole", "mason"});
+  CHECK(parsed<RevokeCommand>("revoke #3").player == "#3");
+  parsed<ListGrantsCommand>("grants");
+}
+
+TEST_CASE("commands about restrictions are parsed", "[admin][rights]") {
+  const auto ban = parsed<RestrictCommand>("ban ana for 2d reason \"broke the bridge\"");
+  CHECK(ban.kind == RestrictionKind::ban);
+  CHECK(ban.who == RestrictionWord{"ana", std::nullopt, false});
+  CHECK(ban.until_us == kNow + 2 * 86'400'000'000);
+  CHECK(ban.reason == "broke the bridge");
+  const auto mute = parsed<RestrictCommand>("mute ana");
+  CHECK(mute == RestrictCommand{RestrictionKind::mute, {"ana", std::nullopt, false}, 0, ""});
+  CHECK(parsed<RestrictCommand>("freeze #3 reason x").kind == RestrictionKind::freeze);
+
+  const auto range = parsed<RestrictCommand>("ban 192.0.2.7/24").who;
+  CHECK(range.player.empty());
+  CHECK(range.range == AddressRange{address_block_v4(0xc0'00'02'00), 32 + 24});
+  const auto wide = parsed<RestrictCommand>("ban 2001:db8::1").who;
+  CHECK(wide.is_widened);
+  CHECK(wide.range == AddressRange{AddressBlock{0x2001'0db8'0000'0000}, 64});
+
+  CHECK(parsed<LiftCommand>("unban ana").kind == RestrictionKind::ban);
+  CHECK(parsed<LiftCommand>("unmute ana").kind == RestrictionKind::mute);
+  CHECK(parsed<LiftCommand>("unfreeze ana").kind == RestrictionKind::freeze);
+  parsed<ListRestrictionsCommand>("bans");
+  CHECK(parsed<KickCommand>("kick ana reason \"come back\"") == KickCommand{"ana", "come back"});
+  CHECK(parsed<KickCommand>("kick ana").reason.empty());
+}
+
+TEST_CASE("commands about protected ground are parsed", "[admin][rights]") {
+  const auto town = parsed<ProtectCommand>("protect town 5 60 -3 -4 70 8 owner ana priority -2");
+  CHECK(town.name == "town");
+  CHECK(town.box == VoxelBox{{-4, 60, -3}, {6, 71, 9}});  // both corners inside
+  CHECK(town.owner == "ana");
+  CHECK(town.priority == -2);
+  const auto strip = parsed<ProtectCommand>("protect strip columns 9 1 -2 3");
+  CHECK(strip.box == columns(-2, 1, 10, 4));
+  const auto later = parsed<ProtectCommand>("protect town priority 7");
+  CHECK_FALSE(later.box.has_value());
+  CHECK(later.priority == 7);
+
+  const auto add = parsed<BoxMembersCommand>("protect town add ana role:mason #3");
+  CHECK(add == BoxMembersCommand{"town", false, {"ana", "#3"}, {"mason"}});
+  CHECK(parsed<BoxMembersCommand>("protect town remove ana").is_removal);
+  CHECK(parsed<ClaimCommand>("claim home 0 0 0 1 1 1").box == VoxelBox{{0, 0, 0}, {2, 2, 2}});
+  CHECK(parsed<ClaimCommand>("claim home columns 0 0 1 1").box == columns(0, 0, 2, 2));
+  CHECK(parsed<UnprotectCommand>("unprotect town").name == "town");
+  CHECK_FALSE(parsed<ListBoxesCommand>("protected").at.has_value());
+  CHECK(parsed<ListBoxesCommand>("protected at 1 -2 3").at == VoxelPos{1, -2, 3});
+}
+
+TEST_CASE("questions and the way back are parsed", "[admin][rights]") {
+  CHECK(parsed<WhyCommand>("why ana chat") == WhyCommand{"ana", Right::chat, std::nullopt});
+  CHECK(parsed<WhyCommand>("why ana build 1 2 3") ==
+        WhyCommand{"ana", Right::build, VoxelPos{1, 2, 3}});
+  CHECK(parsed<UndoRightsCommand>("rights undo 9120").seq == 9120);
+}
+
+TEST_CASE("commands about invites are parsed", "[admin][rights]") {
+  constexpr TimeUs kDay = 86'400'000'000;
+  CHECK(parsed<CreateInviteCommand>("invite") ==
+        CreateInviteCommand{"builder", 1, kNow + 7 * kDay});
+  const CreateInviteCommand five{"visitor", 5, kNow + 3 * kDay};
+  CHECK(parsed<CreateInviteCommand>("invite --uses 5 --days 3 --role visitor") == five);
+  CHECK(parsed<CreateInviteCommand>("invite role visitor uses 5 for 72h") == five);
+  CHECK(parsed<CancelInviteCommand>("invite cancel 00000000000000ff").invite == 255);
+  parsed<ListInvitesCommand>("invites");
+  parsed<ListRefusalsCommand>("refusals");
+  CHECK(mistake("invite uses 0").find("uses \"0\"") != std::string::npos);
+  CHECK(mistake("invite 5").find("invite \"5\": role ROLE") != std::string::npos);
+  CHECK(mistake("invite cancel x") == "invite cancel \"x\": an id (invites lists them)");
+  CHECK(mistake("invites 3").find("nothing comes after invites") != std::string::npos);
+}
+
+TEST_CASE("an error in a command about roles names the wrong word", "[admin][rights]") {
+  CHECK(mistake("roles all") == "roles \"all\": nothing comes after roles");
+  CHECK(mistake("role") == "role: set, remove or default is missing");
+  CHECK(mistake("role make mason") == "role \"make\": set, remove or default");
+  CHECK(mistake("role set Mason see") == std::string("role set \"Mason\": ") + kName);
+  CHECK(mistake("role set mason") ==
+        "role set mason: rights, separated by commas without blanks, or none, is missing");
+  CHECK(mistake("role set mason see,fly") ==
+        std::string("role set mason \"fly\": none, or any of ") + kRights);
+  CHECK(mistake("role set mason see,") ==
+        std::string("role set mason \"\": none, or any of ") + kRights);
+  CHECK(mistake("role set mason see limit 3") ==
+        "role set \"limit\": volume, claims or claim-volume");
+  CHECK(mistake("role set mason see claims -1") == "claims \"-1\": a number from 0 to 4294967295");
+  CHECK(mistake("role remove mason now") == "role remove mason \"now\": nothing comes after it");
+  CHECK(mistake("role default") == std::string("role default: ") + kName + " is missing");
+  CHECK(mistake("grant") == std::string("grant: ") + kPlayer + " is missing");
+  CHECK(mistake("grant #x mason") == "grant \"#x\": a number comes after #");
+  CHECK(mistake("grant ana") == std::string("grant ana: ") + kName + " is missing");
+  CHECK(mistake("grant ana mason 1") == "grant ana mason \"1\": nothing comes after it");
+  CHECK(mistake("revoke ana mason") == "revoke ana \"mason\": nothing comes after it");
+  CHECK(mistake("grants ana") == "grants \"ana\": nothing comes after grants");
+}
+
+TEST_CASE("an error in a command about restrictions names the wrong word", "[admin][rights]") {
+  CHECK(mistake("ban") == "ban: a player, an address or a range is missing");
+  CHECK(mistake("ban ana 2d") == "ban \"2d\": for DURATION or reason \"TEXT\"");
+  CHECK(mistake("ban ana for ever") == "for \"ever\": how long (90s, 15m, 2h30m, 2d, 1w)");
+  CHECK(mistake("ban ana for 0s") == "for \"0s\": how long (90s, 15m, 2h30m, 2d, 1w)");
+  CHECK(mistake("ban ana reason") == "reason: a text, in quotes if it has blanks, is missing");
+  CHECK(mistake("ban ana reason " + std::string(201, 'a')) == "reason: at most 200 bytes, not 201");
+  CHECK(mistake("ban 192.0.2.0/33") ==
+        "ban \"192.0.2.0/33\": a number from 0 to 32 comes after the / of IPv4");
+  CHECK(mistake("ban 2001:db8::/128") ==
+        "ban \"2001:db8::/128\": a number from 0 to 64 comes after the / of IPv6: a subscriber "
+        "has at least a /64");
+  CHECK(mistake("mute 192.0.2.7") == "mute \"192.0.2.7\": only bans are for addresses");
+  CHECK(mistake("mute") == std::string("mute: ") + kPlayer + " is missing");
+  CHECK(mistake("unban ana for 2d") == "unban \"for\": nothing comes after it");
+  CHECK(mistake("bans ana") == "bans \"ana\": nothing comes after bans");
+  CHECK(mistake("kick") == std::string("kick: ") + kPlayer + " is missing");
+  CHECK(mistake("kick ana now") == "kick \"now\": reason \"TEXT\"");
+}
+
+TEST_CASE("an error in a command about ground names the wrong word", "[admin][rights]") {
+  const std::string six = "six numbers: x y z of one corner and of the opposite one, both inside";
+  CHECK(mistake("protect") == std::string("protect: ") + kName + " is missing");
+  CHECK(mistake("protect town") ==
+        "protect town: X Y Z X Y Z, columns X Z X Z, owner, priority, add or remove is missing");
+  CHECK(mistake("protect town all") ==
+        "protect town \"all\": X Y Z X Y Z, columns X Z X Z, owner, priority, add or remove");
+  CHECK(mistake("protect town 1 2 3 4 5") == "protect town: " + six + " is missing");
+  CHECK(mistake("protect town 1 2 3 4 5 6 7") == "protect town \"7\": owner or priority");
+  CHECK(mistake("protect town 1 2 3 4 5 far") ==
+        "protect town \"far\": a whole number from -536870912 to 536870911");
+  CHECK(mistake("protect town columns 1 2 3") ==
+        "columns: four numbers: x z of one corner and of the opposite one, both inside is missing");
+  CHECK(mistake("protect town priority 1001") == "priority \"1001\": a number from -1000 to 1000");
+  CHECK(mistake("protect town owner") == std::string("owner: ") + kPlayer + " is missing");
+  CHECK(mistake("protect town add") == "protect town add: a player or role:ROLE is missing");
+  CHECK(mistake("protect town add role:") ==
+        "protect town add \"role:\": the name of a role comes after role:");
+  CHECK(mistake("claim home") == "claim home: " + six + " is missing");
+  CHECK(mistake("claim home 0 0 0 1 1 1 1") == "claim home \"1\": nothing comes after it");
+  CHECK(mistake("unprotect") == std::string("unprotect: ") + kName + " is missing");
+  CHECK(mistake("protected 1 2 3") == "protected \"1\": at X Y Z");
+  CHECK(mistake("protected at 1 2") == "at: three numbers: x y z of a voxel is missing");
+}
+
+TEST_CASE("an error in a question about rights names the wrong word", "[admin][rights]") {
+  CHECK(mistake("why") == std::string("why: ") + kPlayer + " is missing");
+  CHECK(mistake("why ana") == std::string("why: one of the rights ") + kRights + " is missing");
+  CHECK(mistake("why ana fly") == std::string("why \"fly\": one of the rights ") + kRights);
+  CHECK(mistake("why ana chat 1 2 3") == "why \"1\": a place comes after the right build only");
+  CHECK(mistake("why ana build 1 2") == "why: three numbers: x y z of a voxel is missing");
+  CHECK(mistake("rights") == "rights: undo SEQ is missing");
+  CHECK(mistake("rights back 3") == "rights \"back\": undo SEQ");
+  CHECK(mistake("rights undo 0") == "rights undo \"0\": a number from 1 to 9223372036854775807");
+}
+
+}  // namespace runstone::rights_command_test
