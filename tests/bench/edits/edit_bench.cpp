@@ -73,10 +73,10 @@ void measure_spreads(EditBenchResult& result, unsigned repetitions) {
 void measure_rights(EditBenchResult& result, unsigned repetitions) {
   constexpr std::size_t kBoxes = 10'000, kDecisions = 1'000;
   for (const Ground ground : {Ground::spread, Ground::nested}) {
-    const char* name = ground == Ground::spread ? "boxes apart" : "boxes among large regions";
+    const char* name = ground == Ground::spread ? "boxes apart" : "boxes and large regions";
     const std::vector<double> us = time_rights(ground, kBoxes, kDecisions, repetitions);
     result.rows.push_back(
-        row_of(fmt::format("rights of a voxel, 10,000 {}", name), 1, kDecisions, us));
+        row_of(fmt::format("rights of a voxel among 10000 {}", name), 1, kDecisions, us));
     Target target = at_most(fmt::format("rights of a single voxel, 10,000 protected {}", name),
                             median(us) / kDecisions, 1);
     target.measured = fmt::format("{:.2f} µs", median(us) / kDecisions);
