@@ -1,6 +1,7 @@
 #include "server/limits/recent_refusals.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace runstone {
 namespace {
@@ -34,8 +35,9 @@ std::vector<RefusalRow> RecentRefusals::rows() const {
   std::vector<RefusalRow> out;
   out.reserve(rows_.size());
   for (const auto& [place, row] : rows_) out.push_back(row);
-  std::stable_sort(out.begin(), out.end(),
-                   [](const auto& a, const auto& b) { return a.last_us < b.last_us; });
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.last_us, a.key, a.what) < std::tie(b.last_us, b.key, b.what);
+  });
   return out;
 }
 
