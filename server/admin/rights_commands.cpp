@@ -118,7 +118,8 @@ void RightsCommands::tick() {
 void RightsCommands::with_players(const Call& call, std::vector<std::string> words,
                                   std::function<void(const Players&, const Keys&)> go_on) {
   auto found = std::make_shared<PlayerLookUp>();
-  workers_.run([found, sources = sources_of(world_, words), words = std::move(words)](
+  KnownPlayers::Sources sources = sources_of(world_, words);
+  workers_.run([found, sources = std::move(sources), words = std::move(words)](
                    WorldReader& reader,
                    const Generator&) { *found = look_up_players(reader, sources, words); },
                [found, reply = call.reply, go_on = std::move(go_on)](const std::string& error) {
