@@ -75,6 +75,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
         } else if constexpr (std::is_same_v<T, DigestCheck>) {
           replica_->receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, Permissions>) {
+          allowance_.set(m.edit_budget, welcome()->chunk_edge);
           replica_->receive(m);
         } else if constexpr (std::is_same_v<T, ProtectedGround>) {
           const auto taken = replica_->receive(m);

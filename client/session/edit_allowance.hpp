@@ -13,8 +13,8 @@ namespace runstone {
 
 class EditAllowance {
  public:
-  /// Takes over what Welcome says. A budget that stays the same is not filled again, because the
-  /// server remembers it over a reconnection, too.
+  /// Takes over what Welcome or Permissions says. A budget that stays the same is not filled again,
+  /// because the server remembers it over a reconnection, too.
   void set(const EditBudget& budget, std::uint16_t chunk_edge);
   /// Returns how long the player must wait before this edit: 0 if it is paid by what is left.
   TimeUs wait_us(const EditDescriptor& edit, TimeUs now_us);

@@ -11,7 +11,8 @@
 namespace runstone {
 namespace {
 
-// The tag of a change is its index in the variant, plus 1.
+// The tag of a change is its index in the variant, plus 1. A role with quotas of its own has a tag of
+// its own, because the bytes of define_role have no room for them.
 enum class ChangeTag : std::uint8_t {
   define_role = 1,
   remove_role = 2,
@@ -23,10 +24,17 @@ enum class ChangeTag : std::uint8_t {
   unprotect = 8,
   create_invite = 9,
   accept_invite = 10,
-  cancel_invite = 11
+  cancel_invite = 11,
+  define_role_with_quotas = 14
 };
-constexpr std::uint8_t kChangeTagMax = std::variant_size_v<RightsChange>;
-static_assert(kChangeTagMax == static_cast<std::uint8_t>(ChangeTag::cancel_invite));
+static_assert(std::variant_size_v<RightsChange> ==
+              static_cast<std::uint8_t>(ChangeTag::cancel_invite));
+
+ChangeTag tag_of(const RightsChange& change) {
+  const auto* define = std::get_if<DefineRole>(&change);
+  if (define != nullptr && define->role.has_quotas()) return ChangeTag::define_role_with_quotas;
+  return static_cast<ChangeTag>(change.index() + 1);
+}
 
 // The tags of the subject of a restriction.
 constexpr std::uint8_t kSubjectKey = 0;
@@ -79,6 +87,14 @@ bool is_ascending(const std::vector<T>& items) {
 Result<void> check_change(const DefineRole& change) {
   if (!RightSet::all().includes(change.role.rights)) {
     return fail(ErrorCode::bad_value, "role with an unknown right");
+  }
+  const Budget& edits = change.role.edit_budget;
+  if (edits.per_second > kBudgetPerSecondMax || edits.burst > kBudgetBurstMax ||
+      (edits.per_second == 0) != (edits.burst == 0)) {
+    return fail(ErrorCode::bad_value, "edit budget of a role out of range");
+  }
+  if (change.role.chunk_loads_per_second > kBudgetPerSecondMax) {
+    return fail(ErrorCode::bad_value, "chunk loads of a role out of range");
   }
   return check_name(change.role.name, "bad name of a role");
 }
@@ -169,6 +185,11 @@ void write_change(ByteWriter& w, const DefineRole& change) {
   w.varint(change.role.edit_volume_max);
   w.varint(change.role.claims_max);
   w.varint(change.role.claim_volume_max);
+  if (!change.role.has_quotas()) return;
+  w.varint(change.role.edit_budget.per_second);
+  w.varint(change.role.edit_budget.burst);
+  w.u8(change.role.view_radius_max);
+  w.varint(change.role.chunk_loads_per_second);
 }
 
 void write_change(ByteWriter& w, const RemoveRole& change) { write_text(w, change.role); }
@@ -257,6 +278,17 @@ Role read_role(ByteReader& r) {
   role.claims_max = static_cast<std::uint32_t>(
       r.varint_max(std::numeric_limits<std::uint32_t>::max(), "claims exceed 32 bits"));
   role.claim_volume_max = r.varint();
+  return role;
+}
+
+Role read_role_with_quotas(ByteReader& r) {
+  Role role = read_role(r);
+  role.edit_budget.per_second = r.varint_max(kBudgetPerSecondMax, "edits of a role out of range");
+  role.edit_budget.burst = r.varint_max(kBudgetBurstMax, "edits of a role out of range");
+  role.view_radius_max = r.u8();
+  role.chunk_loads_per_second = static_cast<std::uint32_t>(
+      r.varint_max(kBudgetPerSecondMax, "chunk loads of a role out of range"));
+  if (!role.has_quotas()) r.reject(ErrorCode::not_canonical, "quotas of a role that has none");
   return role;
 }
 
@@ -355,8 +387,11 @@ RightsChange read_change_fields(ByteReader& r, ChangeTag tag) {
     }
     case ChangeTag::cancel_invite:
       return CancelInvite{r.u64()};
+    case ChangeTag::define_role_with_quotas:
+      return DefineRole{read_role_with_quotas(r)};
   }
-  return RemoveRole{};  // unknown tags were rejected before
+  r.reject(ErrorCode::unknown_kind, "unknown rights change");
+  return RemoveRole{};
 }
 
 }  // namespace
@@ -368,15 +403,14 @@ Result<void> validate(const RightsChange& change) {
 void encode(const RightsChange& change, Bytes& out) {
   RUNSTONE_ASSERT(validate(change).has_value());
   ByteWriter w(out);
-  w.u8(static_cast<std::uint8_t>(change.index() + 1));
+  w.u8(static_cast<std::uint8_t>(tag_of(change)));
   std::visit([&w](const auto& kind) { write_change(w, kind); }, change);
 }
 
 RightsChange read_rights_change(ByteReader& in) {
   RightsChange change;
-  const std::uint8_t tag = in.u8();
-  if (tag == 0 || tag > kChangeTagMax) in.reject(ErrorCode::unknown_kind, "unknown rights change");
-  if (in.ok()) change = read_change_fields(in, static_cast<ChangeTag>(tag));
+  const auto tag = static_cast<ChangeTag>(in.u8());
+  if (in.ok()) change = read_change_fields(in, tag);
   if (!in.finish()) return change;
   if (const auto valid = validate(change); !valid) {
     in.reject(valid.error().code, valid.error().what);

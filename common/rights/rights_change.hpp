@@ -91,7 +91,7 @@ struct CancelInvite {
   friend bool operator==(const CancelInvite&, const CancelInvite&) = default;
 };
 
-// The order is that of the stored tags, from 1.
+// The order is that of the stored tags, from 1. A DefineRole with quotas is stored with a tag of its own.
 using RightsChange = std::variant<DefineRole, RemoveRole, GrantRole, SetDefaultRole, Restrict, Lift,
                                   Protect, Unprotect, CreateInvite, AcceptInvite, CancelInvite>;
 

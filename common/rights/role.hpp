@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/core/budget.hpp"
 #include "common/rights/right.hpp"
 
 namespace runstone {
@@ -22,6 +23,15 @@ struct Role {
   std::uint64_t edit_volume_max = 0;   // voxels of one edit; 0: as the server allows
   std::uint32_t claims_max = 0;        // boxes of one's own
   std::uint64_t claim_volume_max = 0;  // voxels of all of them together
+  // Quotas instead of those in the server's settings; 0: the settings count.
+  // At most kBudgetPerSecondMax and kBudgetBurstMax; both numbers are 0, or none is.
+  Budget edit_budget{};
+  std::uint8_t view_radius_max = 0;          // chunks; the settings' one counts if it is smaller
+  std::uint32_t chunk_loads_per_second = 0;  // at most kBudgetPerSecondMax
+  /// Returns true if the role has a quota of its own.
+  bool has_quotas() const {
+    return edit_budget.is_limited() || view_radius_max != 0 || chunk_loads_per_second != 0;
+  }
   friend bool operator==(const Role&, const Role&) = default;
 };
 

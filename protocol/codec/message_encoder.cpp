@@ -180,7 +180,8 @@ struct BodyBuilder {
   Offset<wire::Permissions> operator()(const Permissions& m) {
     RUNSTONE_ASSERT(!m.role.empty() && m.role.size() <= kGroundNameBytesMax);
     const auto role = b.CreateString(m.role);
-    return wire::CreatePermissions(b, role, m.rights, m.edit_volume_max, text(m.edits_refused));
+    return wire::CreatePermissions(b, role, m.rights, m.edit_volume_max, text(m.edits_refused),
+                                   m.edit_budget.per_second, m.edit_budget.burst);
   }
   Offset<wire::ProtectedGround> operator()(const ProtectedGround& m) {
     RUNSTONE_ASSERT(m.removed.size() <= kGroundBoxesMax && m.boxes.size() <= kGroundBoxesMax);

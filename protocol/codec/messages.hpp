@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/core/budget.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/digest.hpp"
@@ -57,12 +58,7 @@ struct Hello {
   friend bool operator==(const Hello&, const Hello&) = default;
 };
 /// How fast a player may edit. docs/protocol.md has the prices of edits.
-struct EditBudget {
-  std::uint64_t per_second = 0;  // units that come back; 0: no limit
-  std::uint64_t burst = 0;       // units at most, at least 1 if there is a limit
-  bool is_limited() const { return per_second != 0; }
-  friend bool operator==(const EditBudget&, const EditBudget&) = default;
-};
+using EditBudget = Budget;
 struct Welcome {
   std::uint32_t protocol = kProtocolVersion;
   WorldId world_id{};

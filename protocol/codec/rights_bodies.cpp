@@ -35,6 +35,9 @@ Result<Message> BodyReader::read(const wire::Permissions& t) const {
   Permissions m;
   m.rights = t.rights();
   m.edit_volume_max = t.edit_volume_max();
+  m.edit_budget = {t.edits_per_second(), t.edit_burst()};
+  if ((m.edit_budget.per_second == 0) != (m.edit_budget.burst == 0))
+    return bad("permissions.edits_per_second and edit_burst are not both 0 or both above");
   if (!take_text(t.role(), 1, kGroundNameBytesMax, m.role))
     return bad("permissions.role is not 1 .. 32 bytes of text");
   if (!take_text(t.edits_refused(), 0, kTextBytesMax, m.edits_refused))

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/budget.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 
@@ -18,6 +19,7 @@ struct Permissions {
   std::uint64_t edit_volume_max = 0;  // voxels of one edit of the role; 0: no limit of its own
   /// Why the player may not edit anything, for the player; empty if the player may.
   std::string edits_refused;
+  Budget edit_budget{};  // replaces that of Welcome
   friend bool operator==(const Permissions&, const Permissions&) = default;
 };
 

@@ -15,8 +15,9 @@ struct EditPrices {
   /// Each chunk that the bounding box of the edit touches, up to kTouchedChunksMax. The chunk gets a
   /// new version, is swept, and is written once with the next snapshots.
   static constexpr std::uint64_t kChunk = 1;
-  /// Each started kClipboardBytes of a clipboard, and each kClipboardBytes of a change of rights. They are written to the log twice, kept in memory
-  /// until all touched chunks are loaded, and sent to every session that sees the edit.
+  /// Each started kClipboardBytes of a clipboard or of a change of rights. The bytes are written to
+  /// the log twice. Those of a clipboard are also kept in memory until all touched chunks are loaded,
+  /// and sent to every session that sees the edit.
   static constexpr std::uint64_t kClipboardPart = 1;
   static constexpr std::size_t kClipboardBytes = 64;
 };

@@ -117,7 +117,10 @@ constexpr std::array kCommandRows = {
     row<ListInvitesCommand>({Right::grant}, "invites                   the invites in force"),
     row<SetRoleCommand>({Right::administer},
                         "role set NAME RIGHT,RIGHT,... [volume N] [claims N] [claim-volume N]\n"
-                        "                          define a role; volume: voxels of one edit"),
+                        "         [edits BUDGET] [view N] [loads N]\n"
+                        "                          define a role; volume: voxels of one edit; "
+                        "edits: as builder_budget;\n"
+                        "                          view: chunks; loads: chunks a second"),
     row<RemoveRoleCommand>({Right::administer},
                            "role remove NAME          remove a role, or what was changed of a "
                            "built-in one"),

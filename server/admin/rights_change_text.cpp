@@ -9,6 +9,7 @@
 #include "common/core/utc_text.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/address_range_text.hpp"
+#include "server/admin/edit_budget_text.hpp"
 
 namespace runstone {
 namespace {
@@ -63,6 +64,10 @@ std::string role_text(const Role& role) {
   if (role.edit_volume_max != 0) text += " volume " + std::to_string(role.edit_volume_max);
   if (role.claims_max != 0) text += " claims " + std::to_string(role.claims_max);
   if (role.claim_volume_max != 0) text += " claim-volume " + std::to_string(role.claim_volume_max);
+  if (role.edit_budget.is_limited()) text += " edits " + text_of(role.edit_budget);
+  if (role.view_radius_max != 0) text += " view " + std::to_string(role.view_radius_max);
+  if (role.chunk_loads_per_second != 0)
+    text += " loads " + std::to_string(role.chunk_loads_per_second);
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "server/admin/address_range_text.hpp"
+#include "server/admin/edit_budget_text.hpp"
 
 namespace runstone {
 namespace {
@@ -73,6 +74,31 @@ RightSet take_rights(CommandReader& reader, const std::string& word) {
   return rights;
 }
 
+/// Takes the budget of a role. A role cannot have an unlimited one: 0 stands for that of the settings.
+Budget take_edit_budget(CommandReader& reader) {
+  const std::string text = reader.take("edits", "a budget");
+  const auto budget = parse_edit_budget(text);
+  if (budget && budget->is_limited()) return *budget;
+  reader.wrong("edits \"" + text + "\": " + edit_budget_rule() + "; not unlimited");
+  return {};
+}
+
+/// Takes a quota of a role, if one comes next. Returns false if none does.
+bool take_quota(CommandReader& reader, Role& role) {
+  if (reader.take_word("edits")) {
+    role.edit_budget = take_edit_budget(reader);
+  } else if (reader.take_word("view")) {
+    role.view_radius_max = static_cast<std::uint8_t>(
+        reader.number("view", 0, std::numeric_limits<std::uint8_t>::max()));
+  } else if (reader.take_word("loads")) {
+    role.chunk_loads_per_second =
+        static_cast<std::uint32_t>(reader.number("loads", 0, kBudgetPerSecondMax));
+  } else {
+    return false;
+  }
+  return true;
+}
+
 Parsed set_role(CommandReader reader) {
   constexpr auto kVolumeMax = std::numeric_limits<std::int64_t>::max();
   SetRoleCommand command;
@@ -80,6 +106,7 @@ Parsed set_role(CommandReader reader) {
   role.name = take_rights_name(reader, "role set");
   role.rights = take_rights(reader, "role set " + role.name);
   while (!reader.at_end()) {
+    if (take_quota(reader, role)) continue;
     if (reader.take_word("volume")) {
       role.edit_volume_max = static_cast<std::uint64_t>(reader.number("volume", 0, kVolumeMax));
     } else if (reader.take_word("claims")) {
@@ -89,7 +116,8 @@ Parsed set_role(CommandReader reader) {
       role.claim_volume_max =
           static_cast<std::uint64_t>(reader.number("claim-volume", 0, kVolumeMax));
     } else {
-      reader.wrong("role set \"" + reader.peek() + "\": volume, claims or claim-volume");
+      reader.wrong("role set \"" + reader.peek() +
+                   "\": volume, claims, claim-volume, edits, view or loads");
     }
   }
   return parsed_or_error(reader, command);

@@ -9,6 +9,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/hex.hpp"
+#include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
 #include "server/admin/reserved_names.hpp"
 
@@ -112,41 +113,14 @@ FormField operators_field() {
           }};
 }
 
-/// Reads a name of kBuilderBudgets, or "100/4000". Returns nullopt if it is neither.
-std::optional<EditBudget> parse_budget(const std::string& text) {
-  for (const NamedBudget& named : kBuilderBudgets) {
-    if (text == named.name) return named.budget;
-  }
-  EditBudget budget;
-  const char* end = text.data() + text.size();
-  const auto rate = std::from_chars(text.data(), end, budget.per_second);
-  if (rate.ec != std::errc{} || rate.ptr == end || *rate.ptr != '/') return std::nullopt;
-  const auto burst = std::from_chars(rate.ptr + 1, end, budget.burst);
-  const bool is_valid = burst.ec == std::errc{} && burst.ptr == end && budget.per_second >= 1 &&
-                        budget.per_second <= kBudgetPerSecondMax && budget.burst >= 1 &&
-                        budget.burst <= kBudgetBurstMax;
-  if (!is_valid) return std::nullopt;
-  return budget;
-}
-
 FormField builder_budget_field() {
   return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
-            const auto budget = parse_budget(text);
-            if (!budget) {
-              return "must be " + names_of(kBuilderBudgets) + ", or like 100/4000: 1.." +
-                     std::to_string(kBudgetPerSecondMax) + " units a second / 1.." +
-                     std::to_string(kBudgetBurstMax) + " at once";
-            }
+            const auto budget = parse_edit_budget(text);
+            if (!budget) return "must be " + edit_budget_rule();
             config.builder_budget = *budget;
             return std::nullopt;
           },
-          [](const ServerConfig& config) -> std::string {
-            for (const NamedBudget& named : kBuilderBudgets) {
-              if (named.budget == config.builder_budget) return named.name;
-            }
-            return std::to_string(config.builder_budget.per_second) + "/" +
-                   std::to_string(config.builder_budget.burst);
-          }};
+          [](const ServerConfig& config) { return text_of(config.builder_budget); }};
 }
 
 FormField reserved_names_field() {
@@ -204,6 +178,9 @@ const std::vector<Field>& fields() {
       number("view_radius_max", &C::view_radius_max, 0, 64, "chunks; larger views are cut to it"),
       number("view_interval_ms", &C::view_interval_ms, 0, 10'000,
              "milliseconds between two views of a session that take effect"),
+      number("chunk_loads_per_second", &C::chunk_loads_per_second, 0, kBudgetPerSecondMax,
+             "chunks that are generated or read for a player, ten times as many at once, "
+             "0: no limit"),
       {"encoding", "packed, raw or coded (smallest, slowest), where the client reads it",
        choice_field<&C::encoding, kEncodings>()},
       number("idle_s", &C::idle_s, 5, 86'400, "seconds without a message until a session ends"),
@@ -235,10 +212,10 @@ const std::vector<Field>& fields() {
       number("speed_max", &C::speed_max, 0, 1ULL << 30,
              "voxels a second at which the reach follows a player who jumps, 0: at once"),
       {"builder_budget",
-       names_of(kBuilderBudgets) + ", or units a second / units at once: how much a player edits",
+       names_of(kNamedBudgets) + ", or units a second / units at once: how much a player edits",
        builder_budget_field()},
       number("budgets_per_address", &C::budgets_per_address, 0, 1'000'000,
-             "times builder_budget for all players of one address, 0: no limit"),
+             "times the budgets of a player for all players of one address, 0: no limit"),
       number("memory_mib", &C::memory_mib, 16, 1'048'576,
              "MiB of chunks and of edits that wait, then views wait and edits are rejected"),
       number("snapshot_edits", &C::snapshot_edits, 1, 1'000'000'000,

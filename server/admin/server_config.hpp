@@ -7,7 +7,6 @@
 // set, so a ServerConfig is always valid. It is read once and passed on by const reference.
 // docs/server-reference.md describes the settings.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -26,18 +25,6 @@
 #include "server/limits/address_form.hpp"
 
 namespace runstone {
-
-/// The budgets that have a name. docs/server-reference.md has the prices of edits.
-struct NamedBudget {
-  const char* name;
-  EditBudget budget;
-};
-inline constexpr std::array<NamedBudget, 4> kBuilderBudgets = {{{"small", {25, 1'000}},
-                                                                {"normal", {100, 4'000}},
-                                                                {"large", {1'000, 40'000}},
-                                                                {"unlimited", {}}}};
-/// Limits of a budget that has no name.
-inline constexpr std::uint64_t kBudgetPerSecondMax = 1'000'000, kBudgetBurstMax = 100'000'000;
 
 struct ServerConfig {
   // Place.
@@ -64,6 +51,8 @@ struct ServerConfig {
   std::uint64_t handshakes_per_address = 32;  // unauthenticated connections, 1..65536
   std::uint64_t view_radius_max = 16;         // chunks, 0..64
   std::uint64_t view_interval_ms = 50;        // least time between two views of a session, 0..10000
+  /// Chunks that are generated or read for a player, ten times as many at once, 0: no limit.
+  std::uint64_t chunk_loads_per_second = 2'000;
   ChunkEncoding encoding = ChunkEncoding::packed;  // sent to clients that can read it
   std::uint64_t idle_s = 60;                       // seconds without a message, 5..86400
   std::uint64_t messages_per_second = 10'000;      // per session, 0: no limit
@@ -89,8 +78,8 @@ struct ServerConfig {
   std::uint64_t reach_max = 0;                // voxels from the player to the edit, 0: no limit
   /// Voxels a second at which `reach_max` follows a player who jumps, 0: at once .. 2^30.
   std::uint64_t speed_max = 0;
-  EditBudget builder_budget{100, 4'000};  // of a player; kBuilderBudgets has names
-  std::uint64_t budgets_per_address = 4;  // of one address, times builder_budget, 0: no limit
+  EditBudget builder_budget{100, 4'000};  // of a player; kNamedBudgets has names
+  std::uint64_t budgets_per_address = 4;  // of one address, times that of a player, 0: no limit
   // World and disk.
   std::uint64_t memory_mib = 512;            // MiB of chunks and of edits that wait, 16..1048576
   std::uint64_t snapshot_edits = 20'000;     // between two rounds of snapshots, 1..10^9

@@ -39,6 +39,7 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.reach_max = static_cast<double>(config.reach_max);
   world.speed_max = static_cast<double>(config.speed_max);
   world.edit_budget = config.builder_budget;
+  world.chunk_loads = chunk_load_budget(config.chunk_loads_per_second);
   world.budgets_per_address = config.budgets_per_address;
   world.idle_us_max = static_cast<TimeUs>(config.idle_s) * kUsPerSecond;
   world.preferred_encoding = config.encoding;

@@ -128,7 +128,7 @@ bool commit_and_broadcast(WorldState& world, LargeEdits large, const Clocks& now
   send_batch(world, *batch, now);
   for (const ChunkKey& key : batch->all_touched) {
     if (world.authority.chunks().stack_size(key) > world.config.stack_load_edits)
-      request_load(world, key);
+      request_load(world, key, now);
   }
   return true;
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/world/cached_chunk_handlers.hpp"
+#include "server/world/quotas.hpp"
 #include "server/world/time_travel.hpp"
 
 namespace runstone {
@@ -163,22 +164,29 @@ bool send_chunk(WorldState& world, SessionId session, const ChunkKey& key, const
   return true;
 }
 
-void request_load(WorldState& world, const ChunkKey& key) {
+void request_load(WorldState& world, const ChunkKey& key, const Clocks& now) {
   if (world.authority.chunks().residency(key) != Residency::absent) return;
   world.loads.request_for_world(key);
-  start_loads(world);
+  start_loads(world, now);
 }
 
-void start_loads(WorldState& world) {
-  const auto next = [&] {
+void start_loads(WorldState& world, const Clocks& now) {
+  WorldChunks& chunks = world.authority.chunks();
+  const auto next_load = [&] {
     return views_wait_for_memory(world) ? world.loads.next_for_world()
-                                        : world.loads.next(world.over_share);
+                                        : world.loads.next(world.loads_wait);
   };
-  while (const auto key = next()) {
+  while (const auto next = next_load()) {
     // Another session may have requested the same chunk before.
-    if (!world.authority.chunks().begin_load(*key)) continue;
+    if (chunks.residency(next->key) != Residency::absent) continue;
+    if (next->session && !pay_load(world, *world.find(*next->session), now)) {
+      world.loads.put_back(*next->session, next->key);
+      world.loads_wait.insert(*next->session);
+      continue;
+    }
+    chunks.begin_load(next->key);
     world.loads.load_started();
-    world.environment.load_chunk(*key);
+    world.environment.load_chunk(next->key);
   }
 }
 
@@ -189,7 +197,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
   world.deliveries.erase(session);
   if (!send_view_states(world, session, now)) return;
   if (mine->history) {
-    deliver_history(world, session);
+    deliver_history(world, session, now);
     return end_delivery(world, session, now);
   }
   WorldChunks& chunks = world.authority.chunks();
@@ -216,7 +224,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
       world.interest.nearest_wanted(session) || interest.count(ChunkInterest::waiting) != 0;
   send_not_modified(world, session, is_more);
   end_delivery(world, session, now);
-  start_loads(world);
+  start_loads(world, now);
 }
 
 void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now) {

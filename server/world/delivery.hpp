@@ -29,9 +29,10 @@ void forget_unsent(WorldState& world, SessionId session);
 bool send_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
                 ChunkInterest then, const Clocks& now);
 /// Queues a load that the world itself needs. Does nothing unless the chunk is absent.
-void request_load(WorldState& world, const ChunkKey& key);
-/// Starts queued loads, up to loads_in_flight_max.
-void start_loads(WorldState& world);
+void request_load(WorldState& world, const ChunkKey& key, const Clocks& now);
+/// Starts queued loads, up to loads_in_flight_max. A load for a session is paid by its player
+/// (pay_load()).
+void start_loads(WorldState& world, const Clocks& now);
 /// Sends a loaded chunk, or "chunk unavailable", to the sessions that wait for it.
 void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now);
 /// Marks chunks as stale for a session because a commit did not fit its queue. The session is

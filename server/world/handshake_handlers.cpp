@@ -7,6 +7,7 @@
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
 #include "server/world/protected_ground.hpp"
+#include "server/world/quotas.hpp"
 #include "server/world/rights_handlers.hpp"
 
 namespace runstone {
@@ -23,7 +24,7 @@ ChunkEncoding choose_encoding(const WorldConfig& config, std::uint8_t offered) {
   return ChunkEncoding::coded;
 }
 
-Welcome welcome_of(const WorldState& world) {
+Welcome welcome_of(const WorldState& world, const PublicKey& key) {
   const WorldConfig& config = world.config;
   Welcome welcome;
   welcome.world_id = config.world_id;
@@ -36,8 +37,8 @@ Welcome welcome_of(const WorldState& world) {
   welcome.materials = config.materials;
   welcome.server_key = config.server_keys.public_key;
   welcome.edit_volume_max = config.edit_volume_max;
-  welcome.edit_budget = config.edit_budget;
-  welcome.view_radius_max = config.view_radius_max;
+  welcome.edit_budget = edit_budget_of(world, key);
+  welcome.view_radius_max = view_radius_max_of(world, key);
   return welcome;
 }
 
@@ -155,7 +156,7 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   // Before any signature: a banned address costs little.
   if (close_if_banned(world, session)) return;
   if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
-  Welcome welcome = welcome_of(world);
+  Welcome welcome = welcome_of(world, mine.key);
   welcome.encoding = choose_encoding(world.config, hello.encodings);
   welcome.features = mine.features;
   world.random(welcome.challenge);

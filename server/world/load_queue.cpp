@@ -23,12 +23,12 @@ std::vector<ChunkKey> LoadQueue::cancel(SessionId session) {
   return keys;
 }
 
-std::optional<ChunkKey> LoadQueue::next_for_world() {
+std::optional<LoadQueue::Next> LoadQueue::next_for_world() {
   if (in_flight_ >= in_flight_max_ || world_keys_.empty()) return std::nullopt;
-  return world_keys_.extract(world_keys_.begin()).value();
+  return Next{world_keys_.extract(world_keys_.begin()).value(), std::nullopt};
 }
 
-std::optional<ChunkKey> LoadQueue::next(const std::set<SessionId>& must_wait) {
+std::optional<LoadQueue::Next> LoadQueue::next(const std::set<SessionId>& must_wait) {
   if (in_flight_ >= in_flight_max_) return std::nullopt;
   const auto first_served = [&](auto lane) {
     return std::find_if(lane, lanes_.end(),
@@ -41,10 +41,10 @@ std::optional<ChunkKey> LoadQueue::next(const std::set<SessionId>& must_wait) {
     return next_for_world();
   }
   last_served_ = lane->first;
-  const ChunkKey key = lane->second.front();
+  const Next next{lane->second.front(), lane->first};
   lane->second.pop_front();
   if (lane->second.empty()) lanes_.erase(lane);
-  return key;
+  return next;
 }
 
 void LoadQueue::load_ended() {

@@ -34,11 +34,17 @@ class LoadQueue {
   /// Removes and returns all keys of the session, in its order.
   std::vector<ChunkKey> cancel(SessionId session);
 
+  struct Next {
+    ChunkKey key;
+    std::optional<SessionId> session;  // nullopt: the world needs it
+  };
   /// Removes and returns the next key. Returns nullopt if none waits or in_flight_max loads are
   /// under way. Skips the sessions that must wait.
-  std::optional<ChunkKey> next(const std::set<SessionId>& must_wait = {});
+  std::optional<Next> next(const std::set<SessionId>& must_wait = {});
   /// As next(), for the world only.
-  std::optional<ChunkKey> next_for_world();
+  std::optional<Next> next_for_world();
+  /// Queues a key that next() returned before the session's other keys.
+  void put_back(SessionId session, const ChunkKey& key) { lanes_[session].push_front(key); }
   /// Counts a load that workers begin or have ended.
   void load_started() { ++in_flight_; }
   void load_ended();

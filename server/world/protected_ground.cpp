@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "protocol/codec/key_fingerprint.hpp"
+#include "server/world/quotas.hpp"
 #include "server/world/rights_handlers.hpp"
 
 namespace runstone {
@@ -23,6 +24,7 @@ Permissions permissions_of(const WorldState& world, const PublicKey& key) {
   const Role& role = world.rights.role_of(key);
   Permissions out;
   out.role = role.name;
+  out.edit_budget = edit_budget_of(world, key);
   if (world.config.operators.contains(key)) {
     out.rights = RightSet::all().bits();
     return out;

@@ -1,5 +1,7 @@
 #include "server/world/request_handlers.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -7,6 +9,7 @@
 #include "protocol/rules/edit_check.hpp"
 #include "protocol/rules/edit_price.hpp"
 #include "server/world/delivery.hpp"
+#include "server/world/quotas.hpp"
 #include "server/world/rights_handlers.hpp"
 
 namespace runstone {
@@ -65,9 +68,9 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   WorldSession& mine = *world.find(session);
   const OperationId op{mine.author, mine.instance, request.client_seq};
   // An invalid descriptor touches nothing: it costs the least that an edit costs.
+  const Payer payer = edit_payer(world, mine.key, mine.address);
   const std::uint64_t price =
-      request.fault ? 1
-                    : edit_price(request.edit, world.config.chunk_edge, world.config.edit_budget);
+      request.fault ? 1 : edit_price(request.edit, world.config.chunk_edge, payer.budget);
   std::optional<RejectReason> refusal;
   std::string detail;
   const bool has_room =
@@ -81,10 +84,10 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   } else if (!has_room) {
     refusal = RejectReason::busy;
     world.authority.reject(op, *refusal);
-  } else if (const auto unpaid =
-                 world.edit_ledger.charge({mine.key, mine.address}, price, now.steady_us)) {
+  } else if (const auto unpaid = world.edit_ledger.charge(payer, price, now.steady_us)) {
     refusal = RejectReason::rate_limited;
-    detail = unpaid->text();
+    detail = fmt::format("the edit budget of your {} is used up: again in {:.1f} s", unpaid->whose,
+                         static_cast<double>(unpaid->wait_us) / 1e6);
     world.authority.reject(op, *refusal);
   } else if (request.fault) {
     refusal = RejectReason::bad_edit;

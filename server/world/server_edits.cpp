@@ -6,6 +6,7 @@
 #include "common/core/assert.hpp"
 #include "protocol/rules/edit_price.hpp"
 #include "server/world/broadcast.hpp"
+#include "server/world/quotas.hpp"
 #include "server/world/world_state.hpp"
 
 namespace runstone {
@@ -13,14 +14,14 @@ namespace {
 
 /// Returns who pays for edits of an author: its key, and the address of its first session. Returns
 /// nullopt if nobody has the number.
-std::optional<EditPayer> payer_of(const WorldState& world, AuthorId author) {
+std::optional<Payer> payer_of(const WorldState& world, AuthorId author) {
   const std::optional<PublicKey> key = world.players.key_of(author);
   if (!key) return std::nullopt;
   for (const auto& [id, session] : world.sessions) {
     if (session.state == SessionStage::open && session.author == author)
-      return EditPayer{*key, session.address};
+      return edit_payer(world, *key, session.address);
   }
-  return EditPayer{*key, std::nullopt};
+  return edit_payer(world, *key, std::nullopt);
 }
 
 void commit_all(WorldState& world, const Clocks& now) {
@@ -40,7 +41,7 @@ ServerEditsResult order_server_edits(WorldState& world, const std::vector<EditOf
   // sequences.
   if (world.authority.resolved().knows(offers.front().op) || offers.back().op.seq > kSequenceMax)
     return {State::taken};
-  const std::optional<EditPayer> paying = payer_of(world, payer);
+  const std::optional<Payer> paying = payer_of(world, payer);
   ServerEditsResult out;
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player);
@@ -53,8 +54,7 @@ ServerEditsResult order_server_edits(WorldState& world, const std::vector<EditOf
       break;
     }
     if (paying) {
-      const std::uint64_t price =
-          edit_price(offer.edit, world.config.chunk_edge, world.config.edit_budget);
+      const std::uint64_t price = edit_price(offer.edit, world.config.chunk_edge, paying->budget);
       if (const auto unpaid = world.edit_ledger.charge(*paying, price, now.steady_us)) {
         out.reason = "the player's edit budget is used up (builder_budget)";
         break;

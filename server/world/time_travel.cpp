@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/world/delivery.hpp"
+#include "server/world/quotas.hpp"
 #include "server/world/rights_handlers.hpp"
 
 namespace runstone {
@@ -105,12 +106,16 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
   begin_state(world, session, request, now);
 }
 
-void deliver_history(WorldState& world, SessionId session) {
+void deliver_history(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   HistoryView& history = *mine.history;
   while (history.loading < kHistoryChunksLoadingMax) {
     const auto key = world.interest.nearest_wanted(session);
     if (!key) break;
+    if (!pay_load(world, mine, now)) {
+      mine.stalled_us = now.steady_us;
+      break;
+    }
     world.interest.set_state(session, *key, ChunkInterest::loading_history);
     ++history.loading;
     world.environment.load_history_chunk(session, history.number, history.seq, *key);

@@ -26,8 +26,9 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
 void on_history_chunk(WorldState& world, SessionId session, HistoryNumber history,
                       const ChunkKey& key, const ChunkPtr& chunk, const Clocks& now);
 
-/// Loads the session's wanted chunks as they were, nearest first. Requires a history view.
-void deliver_history(WorldState& world, SessionId session);
+/// Loads the session's wanted chunks as they were, nearest first. The player pays for each
+/// (pay_load()). Requires a history view.
+void deliver_history(WorldState& world, SessionId session, const Clocks& now);
 /// Forgets which chunks of the past the session has. Call it when the session's view changed,
 /// because the client may have dropped chunks.
 void forget_sent(WorldSession& session);

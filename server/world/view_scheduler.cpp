@@ -5,6 +5,7 @@
 
 #include "server/world/delivery.hpp"
 #include "server/world/protected_ground.hpp"
+#include "server/world/quotas.hpp"
 #include "server/world/time_travel.hpp"
 
 namespace runstone {
@@ -55,8 +56,9 @@ void on_view(WorldState& world, SessionId session, View view, const Clocks& now)
                          "the numbers of views do not ascend");
   }
   mine.view_number = view.number;
-  view.radius_h = std::min(view.radius_h, world.config.view_radius_max);
-  view.radius_v = std::min(view.radius_v, world.config.view_radius_max);
+  const std::uint8_t radius_max = view_radius_max_of(world, mine.key);
+  view.radius_h = std::min(view.radius_h, radius_max);
+  view.radius_v = std::min(view.radius_v, radius_max);
   if (mine.next_view && !mine.next_view->same_chunks(view)) {
     // A client may drop chunks outside of any view that it sent, even one that never took effect
     // here. So chunks outside of a skipped view are sent again.

@@ -19,6 +19,12 @@
 
 namespace runstone {
 
+/// Returns the budget of a player whose view loads so many chunks a second; 0: no limit.
+constexpr Budget chunk_load_budget(std::uint64_t per_second) {
+  constexpr std::uint64_t kSecondsAtOnce = 10;
+  return {per_second, per_second * kSecondsAtOnce};
+}
+
 struct WorldConfig {
   // The world.
   WorldId world_id{};
@@ -42,7 +48,8 @@ struct WorldConfig {
   double reach_max = 0;                       // voxels from the player to the edit; 0: no limit
   double speed_max = 0;                   // voxels a second of a player, for the reach; 0: no limit
   EditBudget edit_budget;                 // of a player's key
-  std::uint64_t budgets_per_address = 0;  // of one address, times edit_budget; 0: no limit
+  Budget chunk_loads;                     // of a player's key: chunks generated or read
+  std::uint64_t budgets_per_address = 0;  // of one address, times those of a key; 0: no limit
   std::size_t loads_per_session_max = 64;  // chunks one session may wait for at a time
   std::size_t loads_in_flight_max = 8;     // with the workers at a time, at least 1
   TimeUs view_interval_us = 50'000;        // between two views of a session that take effect

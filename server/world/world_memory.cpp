@@ -61,7 +61,7 @@ void keep_memory_bounds(WorldState& world) {
   const std::size_t idle_max = world.config.memory.idle_bytes_max;
   world.authority.chunks().evict(idle_max - std::min(idle_max, edits), kEvictionStepsPerTick,
                                  [&](const ChunkKey& key) { return world.interest.is_used(key); });
-  world.over_share = sessions_over_share(world, world_memory_of(world));
+  world.loads_wait = sessions_over_share(world, world_memory_of(world));
   const bool is_short = views_wait_for_memory(world);
   if (std::exchange(world.is_memory_short, is_short) == is_short) return;
   if (!is_short) {

@@ -47,9 +47,9 @@ bool views_wait_for_memory(const WorldState& world);
 /// Returns true if edits must be rejected now.
 bool is_memory_full(const WorldState& world);
 
-/// Makes chunks without users leave memory, finds the sessions whose address sees more than its share
-/// (WorldState::over_share), and warns the operator when the memory is full and when
-/// it is no longer. Call it on each tick.
+/// Makes chunks without users leave memory, sets the sessions whose loads wait
+/// (WorldState::loads_wait) to those whose address sees more than its share, and warns the operator
+/// when the memory is full and when it is no longer. Call it on each tick.
 void keep_memory_bounds(WorldState& world);
 
 }  // namespace runstone

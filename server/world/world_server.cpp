@@ -250,7 +250,7 @@ void WorldServer::step_checkpointer(const Clocks& now) {
     world.loads.cancel_for_world();
   }
   world.checkpointer.step(world.authority, world.durable, now, world.environment,
-                          [&](const ChunkKey& key) { request_load(world, key); });
+                          [&](const ChunkKey& key) { request_load(world, key, now); });
 }
 
 void WorldServer::tick(const Clocks& now) {
@@ -272,7 +272,7 @@ void WorldServer::tick(const Clocks& now) {
   step_checkpointer(now);
   collect_released(world);
   keep_memory_bounds(world);
-  start_loads(world);  // of the chunks that waited for memory
+  start_loads(world, now);  // of the chunks that waited for memory
 }
 
 void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
@@ -289,7 +289,7 @@ void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& n
   // for eviction.
   if (!world.interest.is_used(key)) world.authority.chunks().released(key);
   step_checkpointer(now);
-  start_loads(world);
+  start_loads(world, now);
 }
 
 void WorldServer::chunk_failed(const ChunkKey& key, LoadFailure failure, const std::string& what,
@@ -301,7 +301,7 @@ void WorldServer::chunk_failed(const ChunkKey& key, LoadFailure failure, const s
       world.environment.report(OperatorLogLevel::error,
                                "chunk=" + text_of(key) + " not read, again in " +
                                    std::to_string(*pause_us / 1'000'000) + " s: " + what);
-      start_loads(world);
+      start_loads(world, now);
       return;
     }
   }
@@ -312,7 +312,7 @@ void WorldServer::chunk_failed(const ChunkKey& key, LoadFailure failure, const s
                            "chunk=" + text_of(key) + " quarantined: " + what);
   deliver_loaded(world, key, now);
   step_checkpointer(now);
-  start_loads(world);
+  start_loads(world, now);
 }
 
 void WorldServer::history_opened(SessionId session, std::uint32_t request,

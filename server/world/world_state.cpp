@@ -35,6 +35,7 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
       interest(CoordLimit::of(config.chunk_edge)),
       loads(config.loads_in_flight_max),
       edit_ledger(config.edit_budget, config.budgets_per_address),
+      load_ledger(config.chunk_loads, config.budgets_per_address),
       claim_ledger(config.names_per_address),
       durable(start.log.last),
       view_chunks_left(config.view_chunks_per_tick) {

@@ -8,8 +8,8 @@
 
 #include "common/rights/rights_state.hpp"
 #include "server/interest/interest.hpp"
+#include "server/limits/budget_ledger.hpp"
 #include "server/limits/claim_ledger.hpp"
-#include "server/limits/edit_ledger.hpp"
 #include "server/limits/recent_refusals.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
@@ -48,7 +48,8 @@ struct WorldState {
   ClientInstance rights_instance = 0;    // of the changes of rights that this run makes
   ClientSequence rights_client_seq = 0;  // of the last one
   Sequence rights_seq = 0;               // likewise, in the log; 0: none in this run
-  EditLedger edit_ledger;
+  BudgetLedger edit_ledger;
+  BudgetLedger load_ledger;  // a unit is a chunk that is generated or read for a view
   ClaimLedger claim_ledger;
   RecentRefusals refusals;
   LargeEditPace large_edits;
@@ -60,8 +61,10 @@ struct WorldState {
       true;  // false: edits are rejected busy, because the server stops or the log failed
   bool disk_is_full = false;  // edits are rejected busy until there is space again
   // As of the last tick:
-  bool is_memory_short = false;    // all sessions wait for memory to load chunks
-  std::set<SessionId> over_share;  // those that wait because their address sees much
+  bool is_memory_short = false;  // all sessions wait for memory to load chunks
+  // Sessions for which no chunk is loaded until the next tick, because their address sees more than
+  // its share of the memory, or because a budget is used up.
+  std::set<SessionId> loads_wait;
   bool is_stopping = false;
   TimeUs stop_due_us = 0;  // when a stop that is under way begins no more snapshots
   // Presence.

@@ -120,6 +120,11 @@ Hello any_hello(SplitMix64& rng) {
   return m;
 }
 
+Budget any_budget(SplitMix64& rng) {
+  if (rng.below(2) == 0) return {};
+  return {1 + (any64(rng) >> 1), 1 + (any64(rng) >> 1)};
+}
+
 Welcome any_welcome(SplitMix64& rng) {
   Welcome m;
   draw(rng, m.world_id);
@@ -135,7 +140,7 @@ Welcome any_welcome(SplitMix64& rng) {
   draw(rng, m.signature);
   m.encoding = static_cast<ChunkEncoding>(1 + rng.below(3));
   m.edit_volume_max = any64(rng);
-  if (rng.below(2) == 0) m.edit_budget = {1 + (any64(rng) >> 1), 1 + (any64(rng) >> 1)};
+  m.edit_budget = any_budget(rng);
   m.view_radius_max = static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1));
   m.features = any64(rng);
   return m;
@@ -340,7 +345,7 @@ PlayerList any_player_list(SplitMix64& rng) {
 
 Permissions any_permissions(SplitMix64& rng) {
   return {any_text(rng, 1, kGroundNameBytesMax), static_cast<std::uint32_t>(any64(rng)), any64(rng),
-          any_text(rng, 0, kTextBytesMax)};
+          any_text(rng, 0, kTextBytesMax), any_budget(rng)};
 }
 
 ProtectedGround any_ground(SplitMix64& rng) {

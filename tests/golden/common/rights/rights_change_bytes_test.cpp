@@ -41,6 +41,14 @@ TEST_CASE("the bytes of changes of roles are pinned", "[rights][golden]") {
                       0xac, 0x02,                                    // 300 voxels of one edit
                       0x05,                                          // claims
                       0x80, 0x80, 0x50});                            // voxels of all claims
+  Role guest{"g", {Right::see}, 0, 0, 0};
+  guest.edit_budget = {25, 1'000};
+  guest.view_radius_max = 8;
+  guest.chunk_loads_per_second = 300;
+  check_change_bytes(DefineRole{guest}, {0x0e, 1, 'g', 0x01, 0, 0, 0,  // 14: a role with quotas
+                                         25, 0xe8, 0x07,               // units a second, at once
+                                         8,                            // chunks of a view
+                                         0xac, 0x02});                 // 300 chunks a second
   check_change_bytes(RemoveRole{"a.b"}, {0x02, 3, 'a', '.', 'b'});
   check_change_bytes(GrantRole{counting_key(0x40), "guard"},
                      joined({{0x03}, key_bytes(0x40), {5, 'g', 'u', 'a', 'r', 'd'}}));

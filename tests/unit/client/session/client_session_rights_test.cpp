@@ -51,6 +51,19 @@ TEST_CASE_METHOD(RightsSession, "an edit on protected ground is refused by the n
   CHECK(take<EditRequest>(sent()).size() == 3);  // the refused ones were not sent
 }
 
+TEST_CASE_METHOD(RightsSession, "the edit budget follows the player's role", "[session][rights]") {
+  Permissions poor = kMayBuild;
+  poor.edit_budget = {1, 2};
+  open_with({poor});
+  CHECK(refusal(set({1, 1, 1}, 1)).empty());
+  CHECK(refusal(set({1, 1, 1}, 2)).empty());
+  CHECK(refusal(set({1, 1, 1}, 1)) == "your edit budget is used up for now");
+  receive(poor);  // nothing has changed, so nothing is filled
+  CHECK(refusal(set({1, 1, 1}, 1)) == "your edit budget is used up for now");
+  receive(kMayBuild);
+  CHECK(refusal(set({1, 1, 1}, 1)).empty());
+}
+
 TEST_CASE_METHOD(RightsSession, "another connection begins without boxes", "[session][rights]") {
   open_with({kMayBuild});
   receive(ProtectedGround{{}, {spawn_box(4)}});

@@ -58,6 +58,27 @@ TEST_CASE("changes at the limits are valid and have few bytes", "[rights]") {
   CHECK(validate(GrantRole{key_of(1), ""}).has_value());
 }
 
+TEST_CASE("quotas of a role have their ranges, and a role without any has no bytes for them",
+          "[rights]") {
+  const auto with = [](const Budget& edits, std::uint32_t loads) {
+    Role role{"a", {}, 0, 0, 0};
+    role.edit_budget = edits;
+    role.chunk_loads_per_second = loads;
+    return DefineRole{role};
+  };
+  constexpr auto kLoadsMax = static_cast<std::uint32_t>(kBudgetPerSecondMax);
+  CHECK(validate(with({kBudgetPerSecondMax, kBudgetBurstMax}, kLoadsMax)).has_value());
+  CHECK(invalid(with({kBudgetPerSecondMax + 1, 1}, 0)) == ErrorCode::bad_value);
+  CHECK(invalid(with({1, kBudgetBurstMax + 1}, 0)) == ErrorCode::bad_value);
+  CHECK(invalid(with({1, 0}, 0)) == ErrorCode::bad_value);
+  CHECK(invalid(with({0, 1}, 0)) == ErrorCode::bad_value);
+  CHECK(invalid(with({}, kLoadsMax + 1)) == ErrorCode::bad_value);
+  const Bytes no_quotas{14, 1, 'a', 0, 0, 0, 0, 0, 0, 0, 0};
+  ByteReader in(no_quotas);
+  read_rights_change(in);
+  CHECK_FALSE(in.ok());
+}
+
 TEST_CASE("each field of a change has its range", "[rights]") {
   CHECK(invalid(DefineRole{{"Bad", {}, 0, 0, 0}}) == ErrorCode::bad_value);
   CHECK(invalid(DefineRole{{"a", RightSet::of_bits(1U << kRightCount), 0, 0, 0}}) ==

@@ -11,6 +11,11 @@ TEST_CASE("each change of rights is one readable line", "[admin][rights]") {
   const std::string ana = key_fingerprint(key);
   CHECK(rights_change_text(DefineRole{{"mason", {Right::build, Right::see}, 1000, 3, 4096}}) ==
         "role mason := see,build volume 1000 claims 3 claim-volume 4096");
+  Role slow{"slow", {Right::see}, 0, 0, 0};
+  slow.edit_budget = {25, 900};
+  slow.view_radius_max = 6;
+  slow.chunk_loads_per_second = 100;
+  CHECK(rights_change_text(DefineRole{slow}) == "role slow := see edits 25/900 view 6 loads 100");
   CHECK(rights_change_text(DefineRole{{"nobody", {}, 0, 0, 0}}) == "role nobody := none");
   CHECK(rights_change_text(RemoveRole{"mason"}) == "role mason removed");
   CHECK(rights_change_text(GrantRole{key, "mason"}) == "gave " + ana + " the role mason");

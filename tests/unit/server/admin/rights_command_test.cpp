@@ -4,6 +4,7 @@
 #include <string>
 
 #include "server/admin/command.hpp"
+#include "server/admin/edit_budget_text.hpp"
 
 namespace runstone::rights_command_test {
 namespace {
@@ -41,6 +42,12 @@ TEST_CASE("commands about roles and grants are parsed", "[admin][rights]") {
       parsed<SetRoleCommand>("role set mason build,see,undo volume 1000 claims 3 claim-volume 4096")
           .role;
   CHECK(mason == Role{"mason", {Right::see, Right::build, Right::undo}, 1000, 3, 4096});
+  const Role slow = parsed<SetRoleCommand>("role set slow see edits 25/900 view 6 loads 100").role;
+  CHECK(slow.edit_budget == Budget{25, 900});
+  CHECK(slow.view_radius_max == 6);
+  CHECK(slow.chunk_loads_per_second == 100);
+  CHECK(parsed<SetRoleCommand>("role set slow see edits large").role.edit_budget ==
+        Budget{1'000, 40'000});
   CHECK(parsed<SetRoleCommand>("role set nobody none").role == Role{"nobody", {}, 0, 0, 0});
   CHECK(parsed<RemoveRoleCommand>("role remove mason").role == "mason");
   CHECK(parsed<DefaultRoleCommand>("role default mason").role == "mason");
@@ -131,7 +138,13 @@ TEST_CASE("an error in a command about roles names the wrong word", "[admin][rig
   CHECK(mistake("role set mason see,") ==
         std::string("role set mason \"\": none, or any of ") + kRights);
   CHECK(mistake("role set mason see limit 3") ==
-        "role set \"limit\": volume, claims or claim-volume");
+        "role set \"limit\": volume, claims, claim-volume, edits, view or loads");
+  CHECK(mistake("role set mason see edits unlimited") ==
+        "edits \"unlimited\": " + edit_budget_rule() + "; not unlimited");
+  CHECK(mistake("role set mason see edits 5") ==
+        "edits \"5\": " + edit_budget_rule() + "; not unlimited");
+  CHECK(mistake("role set mason see view 256") == "view \"256\": a number from 0 to 255");
+  CHECK(mistake("role set mason see loads -1") == "loads \"-1\": a number from 0 to 1000000");
   CHECK(mistake("role set mason see claims -1") == "claims \"-1\": a number from 0 to 4294967295");
   CHECK(mistake("role remove mason now") == "role remove mason \"now\": nothing comes after it");
   CHECK(mistake("role default") == std::string("role default: ") + kName + " is missing");

@@ -1,5 +1,6 @@
 #include "server/admin/server_config.hpp"
 
+#include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
 
 #include <catch2/catch.hpp>
@@ -38,7 +39,7 @@ TEST_CASE("a builder budget has a name, or a rate and a burst", "[admin]") {
     CAPTURE(bad);
     const auto set = set_config(config, "builder_budget", bad);
     REQUIRE_FALSE(set.has_value());
-    CHECK(set.error().find("small, normal, large or unlimited") != std::string::npos);
+    CHECK(set.error().find(edit_budget_rule()) != std::string::npos);
     CHECK_FALSE(config.builder_budget.is_limited());
   }
   CHECK_FALSE(set_config(config, "budgets_per_address", "-1").has_value());

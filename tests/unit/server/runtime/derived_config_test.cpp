@@ -19,6 +19,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   config.snapshot_s = 9;
   config.builder_budget = {3, 8};
   config.budgets_per_address = 5;
+  config.chunk_loads_per_second = 30;
   config.sessions_per_key = 6;
   config.sessions_per_address = 7;
   config.stop_s = 4;
@@ -40,6 +41,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   CHECK(world.snapshots.interval_us == 9'000'000);
   CHECK(world.edit_budget == EditBudget{3, 8});
   CHECK(world.budgets_per_address == 5);
+  CHECK(world.chunk_loads == Budget{30, 300});
   CHECK(world.sessions_per_key == 6);
   CHECK(world.sessions_per_address == 7);
   CHECK(world.stop_us_max == 4'000'000);

@@ -1,4 +1,4 @@
-#include "server/limits/edit_ledger.hpp"
+#include "server/limits/budget_ledger.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -7,27 +7,27 @@ namespace {
 
 constexpr AddressBlock kHome = address_block_v4(1), kSchool = address_block_v4(2);
 
-EditPayer payer(std::uint8_t who, AddressBlock from) {
-  EditPayer out;
+constexpr Budget kUsual{10, 20};
+
+Payer payer(std::uint8_t who, AddressBlock from, const Budget& budget = kUsual) {
+  Payer out{{}, from, budget};
   out.key.fill(who);
-  out.address = from;
   return out;
 }
 
 TEST_CASE("a key pays for its edits, from whatever address", "[server]") {
-  EditLedger ledger({10, 20}, 100);
+  BudgetLedger ledger(kUsual, 100);
   CHECK_FALSE(ledger.charge(payer(1, kHome), 15, 0));
   const auto refusal = ledger.charge(payer(1, kSchool), 15, 0);
   REQUIRE(refusal.has_value());
   CHECK(refusal->whose == std::string("key"));
   CHECK(refusal->wait_us == 1'000'000);
-  CHECK(refusal->text() == "the edit budget of your key is used up: again in 1.0 s");
   CHECK_FALSE(ledger.charge(payer(2, kHome), 15, 0));  // another key is not concerned
   CHECK_FALSE(ledger.charge(payer(1, kSchool), 15, 1'000'000));
 }
 
 TEST_CASE("an address pays for all keys that come from it", "[server]") {
-  EditLedger ledger({10, 20}, 3);
+  BudgetLedger ledger(kUsual, 3);
   for (std::uint8_t who = 1; who <= 3; ++who) CHECK_FALSE(ledger.charge(payer(who, kHome), 20, 0));
   const auto refusal = ledger.charge(payer(4, kHome), 20, 0);
   REQUIRE(refusal.has_value());
@@ -37,18 +37,39 @@ TEST_CASE("an address pays for all keys that come from it", "[server]") {
   CHECK_FALSE(ledger.charge(payer(4, kSchool), 20, 0));
 }
 
+TEST_CASE("an address pays in shares of the budget of each key", "[server]") {
+  constexpr Budget kLarge{1'000, 2'000}, kSmall{1, 2};
+  BudgetLedger ledger(kUsual, 2);                                 // an address has 40 units
+  CHECK_FALSE(ledger.charge(payer(1, kHome, kLarge), 2'000, 0));  // 20 units of the address
+  CHECK_FALSE(ledger.charge(payer(2, kHome, kSmall), 2, 0));      // 20 units
+  const auto refusal = ledger.charge(payer(3, kHome), 1, 0);
+  REQUIRE(refusal.has_value());
+  CHECK(refusal->whose == std::string("address"));
+  // A whole budget is never more than the address can ever pay.
+  BudgetLedger one(kUsual, 1);
+  CHECK_FALSE(one.charge(payer(1, kHome, {1, 1'000'000}), 1'000'000, 0));
+}
+
+TEST_CASE("a key whose budget changes begins with a full one", "[server]") {
+  BudgetLedger ledger(kUsual, 0);
+  CHECK_FALSE(ledger.charge(payer(1, kHome), 20, 0));
+  CHECK(ledger.charge(payer(1, kHome), 1, 0));
+  CHECK_FALSE(ledger.charge(payer(1, kHome, {10, 30}), 30, 0));
+  CHECK(ledger.charge(payer(1, kHome, {10, 30}), 1, 0));
+}
+
 TEST_CASE("without limits nothing is refused, and nothing is kept", "[server]") {
-  EditLedger ledger({0, 0}, 4);
-  CHECK_FALSE(ledger.charge(payer(1, kHome), 1'000'000, 0));
+  BudgetLedger ledger({}, 4);
+  CHECK_FALSE(ledger.charge(payer(1, kHome, {}), 1'000'000, 0));
   CHECK(ledger.size() == 0);
-  EditLedger keys_only({10, 20}, 0);
+  BudgetLedger keys_only(kUsual, 0);
   for (std::uint8_t who = 0; who < 200; ++who)
     CHECK_FALSE(keys_only.charge(payer(who, kHome), 20, 0));
 }
 
 TEST_CASE("budgets that have refilled are forgotten", "[server]") {
-  EditLedger ledger({10, 20}, 4);
-  EditPayer fresh = payer(0, {});
+  BudgetLedger ledger(kUsual, 4);
+  Payer fresh = payer(0, {});
   TimeUs now_us = 0;
   std::size_t largest = 0;
   for (std::uint64_t i = 0; i < 100'000; ++i) {  // a new key and address each millisecond
@@ -64,10 +85,13 @@ TEST_CASE("budgets that have refilled are forgotten", "[server]") {
 }
 
 TEST_CASE("huge budgets do not overflow", "[server]") {
-  EditLedger ledger({~0ULL, ~0ULL}, ~0ULL);
-  CHECK_FALSE(ledger.charge(payer(1, kHome), 1'000'000, 0));
-  EditLedger times({100, 4'000}, ~0ULL);
-  CHECK_FALSE(times.charge(payer(1, kHome), 4'000, 0));
+  constexpr Budget kHuge{~0ULL, ~0ULL}, kNormal{100, 4'000};
+  BudgetLedger ledger(kHuge, ~0ULL);
+  CHECK_FALSE(ledger.charge(payer(1, kHome, kHuge), 1'000'000, 0));
+  CHECK_FALSE(ledger.charge(payer(2, kHome, kNormal), 4'000, 0));
+  BudgetLedger times(kNormal, ~0ULL);
+  CHECK_FALSE(times.charge(payer(1, kHome, kNormal), 4'000, 0));
+  CHECK_FALSE(times.charge(payer(2, kHome, kHuge), 1'000'000, 0));
 }
 
 }  // namespace
