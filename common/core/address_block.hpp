@@ -25,4 +25,12 @@ constexpr AddressBlock address_block_v6(const std::array<unsigned char, 16>& add
   return AddressBlock{high};
 }
 
+/// Returns the first block of the range that one owner often has to itself: the /24 of an IPv4
+/// address, the /48 of an IPv6 address.
+constexpr AddressBlock address_range_of(AddressBlock block) {
+  const auto bits = static_cast<std::uint64_t>(block);
+  const bool is_v4 = bits >> 32 == 0xffff;
+  return AddressBlock{is_v4 ? bits & ~std::uint64_t{0xff} : bits & ~std::uint64_t{0xffff}};
+}
+
 }  // namespace runstone

@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <utility>
 
 #include "protocol/codec/body_reader.hpp"
@@ -50,6 +51,10 @@ Result<Message> BodyReader::read(const wire::ProtectedGround& t) const {
   const auto count = count_of(t.boxes(), kGroundBoxesMax);
   if (!removed || !count || *removed + *count == 0)
     return bad("protected ground has no change, or a list of more than 1024");
+  // The verifier checks the alignment of a list, not that of its entries.
+  if (*removed != 0 &&
+      reinterpret_cast<std::uintptr_t>(t.removed()->Data()) % sizeof(Sequence) != 0)
+    return bad("protected ground: removed boxes are not aligned");
   ProtectedGround m;
   if (*removed != 0) m.removed.assign(t.removed()->begin(), t.removed()->end());
   for (std::uint32_t i = 0; i < *removed; ++i) {

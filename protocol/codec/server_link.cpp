@@ -19,8 +19,7 @@ std::string text_of(const ServerLink& link) {
 }
 
 Result<ServerLink, std::string> parse_server_link(std::string_view text) {
-  if (!text.starts_with(kScheme)) return ServerLink{std::string(text), ""};
-  const std::string_view rest = text.substr(kScheme.size());
+  const std::string_view rest = text.starts_with(kScheme) ? text.substr(kScheme.size()) : text;
   const std::size_t address_ends = std::min(rest.find_first_of("/#"), rest.size());
   const std::size_t hash = rest.find('#');
   ServerLink link{std::string(rest.substr(0, address_ends)), ""};

@@ -17,7 +17,8 @@ struct ServerLink {
 
 std::string text_of(const ServerLink& link);
 
-/// Takes a link, or an address alone. The error is a sentence about the text.
+/// Takes a link; what stands before the address may be missing. The error is a sentence about the
+/// text.
 Result<ServerLink, std::string> parse_server_link(std::string_view text);
 
 }  // namespace runstone

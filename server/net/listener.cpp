@@ -16,6 +16,12 @@
 namespace runstone {
 namespace {
 
+/// Returns the budget of an address that may connect so often; 0: no limit.
+Budget connection_budget(std::uint64_t per_second) {
+  constexpr std::uint64_t kSecondsAtOnce = 10;
+  return {per_second, per_second * kSecondsAtOnce};
+}
+
 Result<void, std::string> bind_to(asio::ip::tcp::acceptor& acceptor, const std::string& address) {
   const auto cannot_listen = [&](const std::string& why) {
     return Unexpected<std::string>{"cannot listen on \"" + address + "\": " + why};
@@ -63,7 +69,7 @@ Listener::Listener(asio::io_context& io, asio::any_io_executor decoders, const N
       strand_(asio::make_strand(asio::any_io_executor(io.get_executor()))),
       acceptor_(strand_),
       pause_(strand_),
-      connections_(limits.connections_per_second) {}
+      connections_(connection_budget(limits.connections_per_second)) {}
 
 Result<asio::ip::address, std::string> can_listen(const std::string& address) {
   asio::io_context io;
@@ -118,7 +124,7 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   asio::error_code gone;
   const asio::ip::address from = socket.remote_endpoint(gone).address();
   if (gone) return;
-  if (!connections_.take(address_block(from), steady_now_us())) {
+  if (!connections_.take(address_block(from), 1, steady_now_us())) {
     counters_.refused.fetch_add(1);
     return;  // the destructor closes the socket
   }

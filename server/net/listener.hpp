@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "server/limits/connection_ledger.hpp"
+#include "server/limits/address_ledger.hpp"
 #include "server/net/net_session.hpp"
 
 namespace runstone {
@@ -74,7 +74,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   asio::strand<asio::any_io_executor> strand_;
   asio::ip::tcp::acceptor acceptor_;
   asio::steady_timer pause_;
-  ConnectionLedger connections_;  // used on the strand
+  AddressLedger connections_;  // used on the strand
   std::uint16_t port_ = 0;
   SessionId next_id_ = 1;
   mutable std::mutex mutex_;  // a leaf: guards the members below

@@ -43,7 +43,7 @@ void claim_name(WorldState& world, SessionId session, TimeUs now_us) {
   if (world.names.size() >= kNameClaimsMax)
     return report("not claimed: this world has " + std::to_string(kNameClaimsMax) +
                   " names (names release NAME)");
-  if (!world.claim_ledger.take(mine.address, now_us))
+  if (!world.claim_ledger.take(mine.address, kClaimPrice, now_us))
     return report("not claimed: too many names of its address in an hour (names_per_address)");
   world.environment.log_names({world.names.claim({std::move(folded), mine.name, mine.key})});
   report("claimed by key=" + key_fingerprint(mine.key));

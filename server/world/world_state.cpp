@@ -36,7 +36,7 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
       loads(config.loads_in_flight_max),
       edit_ledger(config.edit_budget, config.budgets_per_address),
       load_ledger(config.chunk_loads, config.budgets_per_address),
-      claim_ledger(config.names_per_address),
+      claim_ledger({config.names_per_address, config.names_per_address * kClaimPrice}),
       durable(start.log.last),
       view_chunks_left(config.view_chunks_per_tick) {
   for (const auto& [key, version] : start.snapshots) authority.chunks().set_saved(key, version);

@@ -8,8 +8,8 @@
 
 #include "common/rights/rights_state.hpp"
 #include "server/interest/interest.hpp"
+#include "server/limits/address_ledger.hpp"
 #include "server/limits/budget_ledger.hpp"
-#include "server/limits/claim_ledger.hpp"
 #include "server/limits/recent_refusals.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
@@ -28,6 +28,8 @@ namespace runstone {
 /// Why edits are rejected, for players and operators: while disk_is_full, and while
 /// is_memory_full().
 inline constexpr const char* kDiskIsFull = "the world's disk is full";
+/// A claim of a name costs its address so much, of names_per_address units a second: an hour's worth.
+inline constexpr std::uint64_t kClaimPrice = 3'600;
 inline constexpr const char* kMemoryIsFull = "the server's memory is full (memory_mib)";
 
 struct WorldState {
@@ -50,7 +52,7 @@ struct WorldState {
   Sequence rights_seq = 0;               // likewise, in the log; 0: none in this run
   BudgetLedger edit_ledger;
   BudgetLedger load_ledger;  // a unit is a chunk that is generated or read for a view
-  ClaimLedger claim_ledger;
+  AddressLedger claim_ledger;
   RecentRefusals refusals;
   LargeEditPace large_edits;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash

@@ -50,6 +50,7 @@ TEST_CASE("a link has an address and perhaps an invite", "[protocol]") {
   CHECK(*parse_server_link("192.0.2.1:5") == ServerLink{"192.0.2.1:5", ""});
   CHECK(*parse_server_link("runstone://a/") == ServerLink{"a", ""});
   CHECK(*parse_server_link("runstone://a#t") == ServerLink{"a", "t"});
+  CHECK(*parse_server_link("a:5/#t") == ServerLink{"a:5", "t"});
   for (const char* wrong :
        {"runstone://", "runstone:///#t", "runstone://a/b#t", "runstone://a/#"}) {
     CAPTURE(wrong);

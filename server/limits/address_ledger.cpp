@@ -1,0 +1,35 @@
+#include "server/limits/address_ledger.hpp"
+
+#include <map>
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kForgetSteps = 1'024;  // budgets more than were kept last time
+
+}  // namespace
+
+bool AddressLedger::take(AddressBlock from, std::uint64_t price, TimeUs now_us) {
+  if (!of_address_.is_limited()) return true;
+  if (size() > 2 * size_kept_ + kForgetSteps) forget_full(now_us);
+  TokenBucket& address =
+      addresses_.try_emplace(from, of_address_.per_second, of_address_.burst).first->second;
+  if (address.wait_us(price, now_us) > 0) return false;
+  TokenBucket& range =
+      ranges_
+          .try_emplace(address_range_of(from), of_address_.per_second * kBudgetsPerRange,
+                       of_address_.burst * kBudgetsPerRange)
+          .first->second;
+  return range.take(price, now_us) && address.take(price, now_us);
+}
+
+void AddressLedger::forget_full(TimeUs now_us) {
+  const auto is_full = [now_us](const auto& entry) {
+    return TokenBucket(entry.second).is_full(now_us);
+  };
+  std::erase_if(addresses_, is_full);
+  std::erase_if(ranges_, is_full);
+  size_kept_ = size();
+}
+
+}  // namespace runstone

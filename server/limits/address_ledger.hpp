@@ -1,0 +1,40 @@
+// AddressLedger: how often the peers of each network address may do what costs the server something
+// before they are known, such as connecting. An address pays from a budget of its own, and from a
+// larger one that its range shares, the /24 of IPv4 or the /48 of IPv6: somebody who has a whole
+// range gains little by it. A budget that has refilled is forgotten, which bounds the memory by the
+// addresses that paid lately.
+// Thread: one. Times are arguments (microseconds of one steady clock).
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+
+#include "common/core/address_block.hpp"
+#include "common/core/budget.hpp"
+#include "common/core/token_bucket.hpp"
+
+namespace runstone {
+
+class AddressLedger {
+ public:
+  /// A range has so many times the budget of an address.
+  static constexpr std::uint64_t kBudgetsPerRange = 16;
+
+  explicit AddressLedger(const Budget& of_address) : of_address_(of_address) {}
+
+  /// Takes the price from both budgets. Returns false, and takes nothing, if one of them has less.
+  /// Cost: O(log addresses), amortised.
+  bool take(AddressBlock from, std::uint64_t price, TimeUs now_us);
+
+  /// Returns the number of budgets that are kept.
+  std::size_t size() const { return addresses_.size() + ranges_.size(); }
+
+ private:
+  void forget_full(TimeUs now_us);
+
+  const Budget of_address_;
+  std::map<AddressBlock, TokenBucket> addresses_, ranges_;
+  std::size_t size_kept_ = 0;  // after the last forget_full()
+};
+
+}  // namespace runstone
