@@ -1,6 +1,7 @@
 // BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier
 // cannot check. Internal to the message decoder. The readers are in session_bodies.cpp,
-// chunk_bodies.cpp, edit_bodies.cpp and rights_bodies.cpp.
+// chunk_bodies.cpp, edit_bodies.cpp, rights_bodies.cpp, chat_bodies.cpp, key_transfer_bodies.cpp and
+// material_bodies.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -70,6 +71,19 @@ struct BodyReader {
   // ---- rights_bodies.cpp
   Result<Message> read(const wire::Permissions& t) const;
   Result<Message> read(const wire::ProtectedGround& t) const;
+
+  // ---- chat_bodies.cpp
+  Result<Message> read(const wire::ChatRequest& t) const;
+  Result<Message> read(const wire::ChatLines& t) const;
+
+  // ---- key_transfer_bodies.cpp
+  Result<Message> read(const wire::KeyRequest& t) const;
+  Result<Message> read(const wire::SealedKey& t) const;
+  Result<Message> read(const wire::KeyDeposit& t) const;
+  Result<Message> read(const wire::KeyDeposited& t) const;
+
+  // ---- material_bodies.cpp
+  Result<Message> read(const wire::MaterialsAdded& t) const;
 
   using TakeEdit = std::function<Result<void>()>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then

@@ -17,7 +17,8 @@ using Bodies =
                wire::Ping, wire::Pong, wire::Goodbye, wire::ChunkUnavailable, wire::HistoryRequest,
                wire::ViewState, wire::CommandRequest, wire::CommandOutput, wire::ReceiveAck,
                wire::UniformChunks, wire::CachedChunks, wire::ChunksNotModified, wire::Permissions,
-               wire::ProtectedGround>;
+               wire::ProtectedGround, wire::ChatRequest, wire::ChatLines, wire::KeyRequest,
+               wire::SealedKey, wire::KeyDeposit, wire::KeyDeposited, wire::MaterialsAdded>;
 static_assert(std::tuple_size_v<Bodies> == kMessageKindCount);
 
 using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);

@@ -43,32 +43,23 @@ struct BodyBuilder {
     return wire::CreateHello(b, m.protocol, key, m.instance, nonce, name, m.encodings, m.features);
   }
   Offset<wire::Welcome> operator()(const Welcome& m) {
-    std::vector<Offset<wire::MaterialRow>> rows;
-    rows.reserve(m.materials.size());
-    for (const MaterialInfo& row : m.materials.rows()) {
-      const auto& c = row.colour;
-      std::uint32_t rgba = 0;
-      for (unsigned i = 0; i < 4; ++i) rgba |= static_cast<std::uint32_t>(c[i]) << (8 * i);
-      const auto name = b.CreateString(row.name);
-      rows.push_back(
-          wire::CreateMaterialRow(b, name, rgba, static_cast<std::uint8_t>(row.visibility)));
-    }
-    const auto materials = b.CreateVector(rows);
+    const auto materials = material_rows(m.materials.rows());
     const auto world_id = bytes_of(b, m.world_id);
     const auto server_key = bytes_of(b, m.server_key);
     const auto challenge = bytes_of(b, m.challenge);
     const auto signature = bytes_of(b, m.signature);
+    const auto salt = optional_bytes(m.password_salt);
     const wire::Position spawn = position_of(m.spawn);
     return wire::CreateWelcome(b, m.protocol, world_id, m.epoch, m.durable, m.head, m.chunk_edge,
                                m.heights.y_min, m.heights.y_max, &spawn, materials, server_key,
                                challenge, signature, static_cast<std::uint8_t>(m.encoding),
                                m.edit_volume_max, m.edit_budget.per_second, m.edit_budget.burst,
-                               m.view_radius_max, m.features);
+                               m.view_radius_max, m.features, salt);
   }
   Offset<wire::ClientAuth> operator()(const ClientAuth& m) {
     const auto signature = bytes_of(b, m.signature);
     const auto ticket = m.ticket.empty() ? 0 : b.CreateString(m.ticket);
-    return wire::CreateClientAuth(b, signature, ticket);
+    return wire::CreateClientAuth(b, signature, ticket, optional_bytes(m.password_key));
   }
   Offset<wire::SessionAccepted> operator()(const SessionAccepted& m) {
     return wire::CreateSessionAccepted(b, m.author, m.resolved);
@@ -200,6 +191,66 @@ struct BodyBuilder {
     return wire::CreateProtectedGround(b, removed, b.CreateVector(boxes));
   }
 
+  Offset<wire::ChatRequest> operator()(const ChatRequest& m) {
+    RUNSTONE_ASSERT(!m.text.empty() && m.text.size() <= kChatBytesMax);
+    return wire::CreateChatRequest(b, b.CreateString(m.text));
+  }
+  Offset<wire::ChatLines> operator()(const ChatLines& m) {
+    RUNSTONE_ASSERT(!m.lines.empty() && m.lines.size() <= kChatLinesMax);
+    std::vector<Offset<wire::ChatLine>> lines;
+    lines.reserve(m.lines.size());
+    for (const ChatLine& line : m.lines) {
+      RUNSTONE_ASSERT(!line.text.empty() && line.text.size() <= kChatBytesMax);
+      const auto name = line.name.empty() ? 0 : b.CreateString(line.name);
+      const auto text = b.CreateString(line.text);
+      lines.push_back(wire::CreateChatLine(b, static_cast<std::uint8_t>(line.kind), line.author,
+                                           name, text, line.utc_us));
+    }
+    return wire::CreateChatLines(b, b.CreateVector(lines));
+  }
+
+  Offset<wire::KeyRequest> operator()(const KeyRequest& m) {
+    return wire::CreateKeyRequest(b, bytes_of(b, m.slot));
+  }
+  Offset<wire::SealedKey> operator()(const SealedKey& m) {
+    RUNSTONE_ASSERT(!m.sealed.empty() && m.sealed.size() <= kSealedKeyBytesMax);
+    return wire::CreateSealedKey(b, bytes_of(b, m.sealed));
+  }
+  Offset<wire::KeyDeposit> operator()(const KeyDeposit& m) {
+    RUNSTONE_ASSERT(!m.sealed.empty() && m.sealed.size() <= kSealedKeyBytesMax);
+    const auto slot = bytes_of(b, m.slot);
+    return wire::CreateKeyDeposit(b, slot, bytes_of(b, m.sealed));
+  }
+  Offset<wire::KeyDeposited> operator()(const KeyDeposited& m) {
+    return wire::CreateKeyDeposited(b, m.seconds, text(m.text));
+  }
+
+  Offset<wire::MaterialsAdded> operator()(const MaterialsAdded& m) {
+    RUNSTONE_ASSERT(m.first != 0 && !m.rows.empty());
+    RUNSTONE_ASSERT(m.first + m.rows.size() <= kMaterialCountMax);
+    return wire::CreateMaterialsAdded(b, m.first, material_rows(m.rows));
+  }
+
+  auto material_rows(std::span<const MaterialInfo> materials)
+      -> Offset<flatbuffers::Vector<Offset<wire::MaterialRow>>> {
+    std::vector<Offset<wire::MaterialRow>> rows;
+    rows.reserve(materials.size());
+    for (const MaterialInfo& row : materials) {
+      const auto& c = row.colour;
+      std::uint32_t rgba = 0;
+      for (unsigned i = 0; i < 4; ++i) rgba |= static_cast<std::uint32_t>(c[i]) << (8 * i);
+      const auto name = b.CreateString(row.name);
+      rows.push_back(
+          wire::CreateMaterialRow(b, name, rgba, static_cast<std::uint8_t>(row.visibility)));
+    }
+    return b.CreateVector(rows);
+  }
+  template <std::size_t N>
+  auto optional_bytes(const std::optional<std::array<std::uint8_t, N>>& bytes)
+      -> Offset<flatbuffers::Vector<std::uint8_t>> {
+    if (!bytes) return 0;
+    return bytes_of(b, *bytes);
+  }
   Offset<wire::Chunks> chunks(std::uint32_t view, std::span<const ChunkEntry> entries) {
     RUNSTONE_ASSERT(view != 0);
     return wire::CreateChunks(b, view, bytes_of(b, list_of(entries)));

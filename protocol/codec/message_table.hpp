@@ -72,6 +72,13 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"ChunksNotModified", server, kChunks, open, 0},
       {"Permissions", server, kControl, open, kFeatureRights},
       {"ProtectedGround", server, kControl, open, kFeatureRights},
+      {"ChatRequest", client, kControl, open, kFeatureChat},
+      {"ChatLines", server, kControl, open, kFeatureChat},
+      {"KeyRequest", client, kControl, authenticating, kFeatureKeyTransfer},
+      {"SealedKey", server, kControl, authenticating, kFeatureKeyTransfer},
+      {"KeyDeposit", client, kControl, open, kFeatureKeyTransfer},
+      {"KeyDeposited", server, kControl, open, kFeatureKeyTransfer},
+      {"MaterialsAdded", server, kEdits, open, kFeatureMaterials},
   }};
 }();
 

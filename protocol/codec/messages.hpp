@@ -24,8 +24,10 @@
 #include "common/edits/descriptor/height_limits.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/chunk.hpp"
+#include "protocol/codec/chat_messages.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/frame.hpp"
+#include "protocol/codec/key_transfer_messages.hpp"
 #include "protocol/codec/rights_messages.hpp"
 #include "protocol/limits.hpp"
 
@@ -34,6 +36,10 @@ namespace runstone {
 using Nonce = std::array<std::uint8_t, kNonceBytes>;
 using Signature = std::array<std::uint8_t, kSignatureBytes>;
 using WorldId = std::array<std::uint8_t, kWorldIdBytes>;
+using PasswordSalt = std::array<std::uint8_t, kPasswordSaltBytes>;
+/// Made from a password and a salt (password_key.hpp). Whoever has it can join like somebody who
+/// knows the password, in worlds with this salt.
+using PasswordKey = std::array<std::uint8_t, kPasswordKeyBytes>;
 
 /// A point in the world, in voxels, for example the eye of a player. VoxelPos names a whole voxel.
 struct WorldPos {
@@ -76,11 +82,13 @@ struct Welcome {
   EditBudget edit_budget;  // of the player's key, for all of its sessions together
   std::uint8_t view_radius_max = 0;
   std::uint64_t features = 0;  // in force for this session; a subset of Hello's
+  std::optional<PasswordSalt> password_salt;  // nullopt: the world has no password
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 struct ClientAuth {
   Signature signature{};
   std::string ticket;  // an invite token (invite_token.hpp); empty: none
+  std::optional<PasswordKey> password_key;
   friend bool operator==(const ClientAuth&, const ClientAuth&) = default;
 };
 struct SessionAccepted {
@@ -406,13 +414,22 @@ struct ReceiveAck {
   friend bool operator==(const ReceiveAck&, const ReceiveAck&) = default;
 };
 
+/// New rows of the material table. It has the class of the edits, so it precedes the commits that
+/// use the materials. A chunk with a new material may overtake it.
+struct MaterialsAdded {
+  Material first = 1;              // id of the first row; at least 1
+  std::vector<MaterialInfo> rows;  // at least 1, without generation rules; first + rows <= 65536
+  friend bool operator==(const MaterialsAdded&, const MaterialsAdded&) = default;
+};
+
 /// The order is that of the enum Kind in the schema.
 using Message =
     std::variant<Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, Chunks,
                  EditRequest, Commit, Reject, Durable, DigestCheck, Move, PlayerPoses, PlayerList,
                  Ping, Pong, Goodbye, ChunkUnavailable, HistoryRequest, ViewState, CommandRequest,
                  CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified,
-                 Permissions, ProtectedGround>;
+                 Permissions, ProtectedGround, ChatRequest, ChatLines, KeyRequest, SealedKey,
+                 KeyDeposit, KeyDeposited, MaterialsAdded>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

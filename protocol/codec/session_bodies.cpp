@@ -5,23 +5,13 @@
 namespace runstone {
 namespace {
 
-using MaterialRows = flatbuffers::Vector<flatbuffers::Offset<wire::MaterialRow>>;
-
-bool take_row(const wire::MaterialRow& row, MaterialInfo& info) {
-  if (!take_text(row.name(), 1, kMaterialNameBytesMax, info.name)) return false;
-  for (unsigned c = 0; c < 4; ++c)
-    info.colour[c] = static_cast<std::uint8_t>(row.rgba() >> (8 * c));
-  if (row.visibility() > static_cast<std::uint8_t>(Visibility::transparent)) return false;
-  info.visibility = static_cast<Visibility>(row.visibility());
-  return true;
-}
-
-Result<void> take_materials(const MaterialRows* rows, MaterialTable& table) {
+Result<void> take_materials(const wire::Welcome& t, MaterialTable& table) {
+  const auto* rows = t.materials();
   const auto count = count_of(rows, kMaterialCountMax);
   if (!count || *count == 0) return bad("welcome.materials has not 1 .. 65536 rows");
   for (std::uint32_t i = 0; i < *count; ++i) {
     MaterialInfo info;
-    if (!take_row(*rows->Get(i), info)) return bad("bad row in welcome.materials");
+    if (!take_material(*rows->Get(i), info)) return bad("bad row in welcome.materials");
     if (i == 0) {
       if (info != table[kEmpty]) return bad("row 0 of welcome.materials is not air");
     } else if (const auto id = table.add(std::move(info)); !id) {
@@ -78,7 +68,9 @@ Result<Message> BodyReader::read(const wire::Welcome& t) const {
   if ((m.edit_budget.per_second == 0) != (m.edit_budget.burst == 0))
     return bad("welcome.edits_per_second and edit_burst are not both 0 or both above");
   if (m.view_radius_max > kViewRadiusMax) return bad("welcome.view_radius_max exceeds 64");
-  if (const auto ok = take_materials(t.materials(), m.materials); !ok)
+  if (t.password_salt() != nullptr && !take_exact(t.password_salt(), m.password_salt.emplace()))
+    return bad("welcome.password_salt is not 16 bytes");
+  if (const auto ok = take_materials(t, m.materials); !ok)
     return Unexpected<Error>{ok.error()};
   return m;
 }
@@ -88,6 +80,8 @@ Result<Message> BodyReader::read(const wire::ClientAuth& t) const {
   if (!take_exact(t.signature(), m.signature)) return bad("client_auth.signature is not 64 bytes");
   if (t.ticket() != nullptr && !take_text(t.ticket(), 1, kTicketBytesMax, m.ticket))
     return bad("client_auth.ticket is not 1 .. 128 bytes of text");
+  if (t.password_key() != nullptr && !take_exact(t.password_key(), m.password_key.emplace()))
+    return bad("client_auth.password_key is not 32 bytes");
   return m;
 }
 

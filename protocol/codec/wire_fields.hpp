@@ -64,6 +64,16 @@ inline bool take_pose(const wire::Pose* from, Pose& to) {
   return true;
 }
 
+/// Requires the row of a material other than air; MaterialTable::add() checks the rest.
+inline bool take_material(const wire::MaterialRow& row, MaterialInfo& info) {
+  if (!take_text(row.name(), 1, kMaterialNameBytesMax, info.name)) return false;
+  for (unsigned c = 0; c < 4; ++c)
+    info.colour[c] = static_cast<std::uint8_t>(row.rgba() >> (8 * c));
+  if (row.visibility() > static_cast<std::uint8_t>(Visibility::transparent)) return false;
+  info.visibility = static_cast<Visibility>(row.visibility());
+  return true;
+}
+
 /// Returns the number of entries of a vector that may be absent, or nullopt if it exceeds
 /// `count_max`.
 template <class Vector>

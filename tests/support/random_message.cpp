@@ -143,6 +143,7 @@ Welcome any_welcome(SplitMix64& rng) {
   m.edit_budget = any_budget(rng);
   m.view_radius_max = static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1));
   m.features = any64(rng);
+  if (rng.below(2) == 0) draw(rng, m.password_salt.emplace());
   return m;
 }
 
@@ -150,6 +151,7 @@ ClientAuth any_client_auth(SplitMix64& rng) {
   ClientAuth m;
   if (rng.below(2) == 0) m.ticket = any_text(rng, 1, kTicketBytesMax);
   draw(rng, m.signature);
+  if (rng.below(2) == 0) draw(rng, m.password_key.emplace());
   return m;
 }
 
@@ -368,6 +370,43 @@ ProtectedGround any_ground(SplitMix64& rng) {
   return m;
 }
 
+ChatLines any_chat_lines(SplitMix64& rng) {
+  ChatLines m;
+  m.lines.resize(1 + rng.below(kChatLinesMax));
+  for (ChatLine& line : m.lines) {
+    line.kind = static_cast<ChatLineKind>(1 + rng.below(rng.below(4) == 0 ? 255 : 4));
+    if (line.kind == ChatLineKind::player) {
+      line.author = rng.below(1000);
+      line.name = any_name(rng);
+    }
+    line.text = any_text(rng, 1, kChatBytesMax);
+    line.utc_us = any_time(rng);
+  }
+  return m;
+}
+
+KeySlot any_slot(SplitMix64& rng) {
+  KeySlot slot;
+  draw(rng, slot);
+  return slot;
+}
+
+Bytes any_sealed(SplitMix64& rng) {
+  Bytes sealed(1 + rng.below(kSealedKeyBytesMax));
+  for (auto& byte : sealed) byte = static_cast<std::uint8_t>(rng.next());
+  return sealed;
+}
+
+MaterialsAdded any_materials_added(SplitMix64& rng) {
+  MaterialTable table = any_materials(rng);
+  if (table.size() == 1) RUNSTONE_ASSERT(table.add({"one", {}, Visibility::empty, {}}).has_value());
+  MaterialsAdded m;
+  m.rows.assign(table.rows().begin() + 1, table.rows().end());
+  const auto ids = static_cast<std::uint32_t>(kMaterialCountMax - m.rows.size());
+  m.first = static_cast<Material>(1 + rng.below(ids));
+  return m;
+}
+
 }  // namespace
 
 EditRequest any_edit_request(SplitMix64& rng) {
@@ -439,9 +478,23 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_chunks_not_modified(rng);
     case kKindOf<Permissions>:
       return any_permissions(rng);
-    default:
-      RUNSTONE_ASSERT(kind == kKindOf<ProtectedGround>);
+    case kKindOf<ProtectedGround>:
       return any_ground(rng);
+    case kKindOf<ChatRequest>:
+      return ChatRequest{any_text(rng, 1, kChatBytesMax)};
+    case kKindOf<ChatLines>:
+      return any_chat_lines(rng);
+    case kKindOf<KeyRequest>:
+      return KeyRequest{any_slot(rng)};
+    case kKindOf<SealedKey>:
+      return SealedKey{any_sealed(rng)};
+    case kKindOf<KeyDeposit>:
+      return KeyDeposit{any_slot(rng), any_sealed(rng)};
+    case kKindOf<KeyDeposited>:
+      return KeyDeposited{rng.below(1000), any_text(rng, 0, kTextBytesMax)};
+    default:
+      RUNSTONE_ASSERT(kind == kKindOf<MaterialsAdded>);
+      return any_materials_added(rng);
   }
 }
 

@@ -30,6 +30,9 @@ const char* text_of(const std::optional<SessionStage>& stage) {
 const char* text_of_feature(std::uint64_t feature) {
   if (feature == 0) return "–";
   if (feature == kFeatureRights) return "rights";
+  if (feature == kFeatureChat) return "chat";
+  if (feature == kFeatureKeyTransfer) return "key transfer";
+  if (feature == kFeatureMaterials) return "materials";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 
