@@ -1,0 +1,96 @@
+// Which values are refused of chat lines, keys for another device and added materials.
+#include <string>
+#include <vector>
+
+#include "tests/unit/protocol/codec/built_message.hpp"
+
+namespace runstone::test {
+namespace {
+
+struct ChatLineFields {
+  std::uint8_t kind = 1;
+  std::uint32_t author = 7;
+  std::string name = "ann", text = "hi";
+  std::int64_t utc_us = 5;
+  std::size_t count = 1;
+  Offset<wire::ChatLines> operator()(FlatBufferBuilder& b) const {
+    std::vector<Offset<wire::ChatLine>> lines;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto n = b.CreateString(name);
+      const auto t = b.CreateString(text);
+      lines.push_back(wire::CreateChatLine(b, kind, author, n, t, utc_us));
+    }
+    return wire::CreateChatLines(b, b.CreateVector(lines));
+  }
+};
+
+struct KeyDepositFields {
+  std::size_t slot = kKeySlotBytes, sealed = 1;
+  Offset<wire::KeyDeposit> operator()(FlatBufferBuilder& b) const {
+    const Vector s = filled(b, slot);
+    return wire::CreateKeyDeposit(b, s, filled(b, sealed));
+  }
+};
+
+struct AddedMaterialFields {
+  std::uint32_t first = 24;
+  std::vector<std::string> names = {"lamp", "ice"};
+  std::uint32_t rgba = 0xff00'0000;
+  std::uint8_t visibility = 1;
+  Offset<wire::MaterialsAdded> operator()(FlatBufferBuilder& b) const {
+    std::vector<Offset<wire::MaterialRow>> rows;
+    for (const std::string& name : names)
+      rows.push_back(wire::CreateMaterialRow(b, b.CreateString(name), rgba, visibility));
+    return wire::CreateMaterialsAdded(b, first, b.CreateVector(rows));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("chat lines are refused with a bad text, name, time or number of lines", "[protocol]") {
+  refuses<ChatLines, ChatLineFields>({
+      [](auto& l) { l.kind = 0; },
+      [](auto& l) { l.kind = 2; },  // the host's lines have no name
+      [](auto& l) { l.kind = 2, l.name = ""; },
+      [](auto& l) { l.name = ""; },
+      [](auto& l) { l.name = " ann"; },
+      [](auto& l) { l.name = std::string(33, 'a'); },
+      [](auto& l) { l.text = ""; },
+      [](auto& l) { l.text = std::string(kChatBytesMax + 1, 'a'); },
+      [](auto& l) { l.text = "a\nb"; },
+      [](auto& l) { l.utc_us = kWireTimeUsMax + 1; },
+      [](auto& l) { l.count = 0; },
+      [](auto& l) { l.count = kChatLinesMax + 1; },
+  });
+  CHECK(passes<ChatLines>(ChatLineFields{200, 0, "", "of a later version", 5, kChatLinesMax}));
+}
+
+TEST_CASE("a key for another device is refused with a slot or a seal of the wrong size",
+          "[protocol]") {
+  refuses<KeyDeposit, KeyDepositFields>({
+      [](auto& k) { k.slot = kKeySlotBytes - 1; },
+      [](auto& k) { k.slot = kKeySlotBytes + 1; },
+      [](auto& k) { k.sealed = 0; },
+      [](auto& k) { k.sealed = kSealedKeyBytesMax + 1; },
+  });
+  CHECK(passes<KeyDeposit>(KeyDepositFields{kKeySlotBytes, kSealedKeyBytesMax}));
+}
+
+TEST_CASE("added materials are refused outside the table, unnamed, twice or half transparent",
+          "[protocol]") {
+  refuses<MaterialsAdded, AddedMaterialFields>({
+      [](auto& m) { m.first = 0; },
+      [](auto& m) { m.first = kMaterialCountMax - 1; },
+      [](auto& m) { m.names.clear(); },
+      [](auto& m) { m.names[1] = ""; },
+      [](auto& m) { m.names[1] = m.names[0]; },
+      [](auto& m) { m.names[1] = std::string(kMaterialNameBytesMax + 1, 'a'); },
+      [](auto& m) { m.rgba = 0x7f00'0000; },  // opaque with alpha
+      [](auto& m) { m.visibility = 3; },
+  });
+  AddedMaterialFields last;
+  last.first = kMaterialCountMax - 2;
+  CHECK(passes<MaterialsAdded>(last));
+}
+
+}  // namespace runstone::test
