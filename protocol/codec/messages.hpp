@@ -20,6 +20,7 @@
 #include "common/core/ids.hpp"
 #include "common/core/public_key.hpp"
 #include "common/core/result.hpp"
+#include "common/core/world_pos.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
 #include "common/materials/material_table.hpp"
@@ -41,11 +42,6 @@ using PasswordSalt = std::array<std::uint8_t, kPasswordSaltBytes>;
 /// knows the password, in worlds with this salt.
 using PasswordKey = std::array<std::uint8_t, kPasswordKeyBytes>;
 
-/// A point in the world, in voxels, for example the eye of a player. VoxelPos names a whole voxel.
-struct WorldPos {
-  double x = 0, y = 0, z = 0;
-  friend bool operator==(const WorldPos&, const WorldPos&) = default;
-};
 struct Pose {
   WorldPos at;
   std::uint16_t yaw = 0;   // 65536 is a turn; 0 looks along +z; grows towards +x

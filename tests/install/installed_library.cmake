@@ -11,7 +11,7 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCM
     "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/build --no-tests=error)
-expect("examples.array_to_quads" "examples.edit_layers" "100% tests passed, 0 tests failed out of 2")
+expect("examples.array_to_quads" "examples.edit_layers" "examples.walk_on_runs" "100% tests passed, 0 tests failed out of 3")
 
 # No flag of this project reaches the user, and no header of the source tree does.
 file(READ ${WORK}/build/compile_commands.json output)

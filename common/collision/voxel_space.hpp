@@ -1,0 +1,36 @@
+// VoxelSpace: the chunks that a query of this room reads, wherever they are kept.
+// find_solid() is the box query that all of them are made of. It reads runs: along each line of the
+// box it looks up one run and walks from there, so no voxel is unpacked.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "common/collision/solid_materials.hpp"
+#include "common/core/coords.hpp"
+#include "common/runs/run_chunk.hpp"
+
+namespace runstone {
+
+class VoxelSpace {
+ public:
+  /// `edge` is the edge of the chunks in voxels.
+  explicit VoxelSpace(std::int32_t edge) : edge_(edge) {}
+  virtual ~VoxelSpace() = default;
+  std::int32_t edge() const { return edge_; }
+  /// Returns the voxels of a chunk, a cube of edge(), or null if they are not known. The pointer is
+  /// valid until the next call.
+  virtual const RunChunk* chunk(ChunkCoord at) const = 0;
+
+ private:
+  std::int32_t edge_;
+};
+
+/// Returns a voxel of `box` that is solid, or nullopt if there is none. A chunk that is not known
+/// counts as solid, so that nobody falls out of a world that is still loading. An empty box has no
+/// voxel. Requires a box within the world.
+/// Cost: O(lines * log runs + runs met), where a line is a row of the box along the fastest axis of
+/// its chunk.
+std::optional<VoxelPos> find_solid(const VoxelSpace& space, const SolidMaterials& solid,
+                                   const VoxelBox& box);
+
+}  // namespace runstone
