@@ -24,7 +24,7 @@ int main() {
   RunChunk chunk = uniform_chunk(Extent::cube(32), kEmpty, AxisOrder::zyx);
   for (unsigned x = 0; x < 32; ++x) fill(chunk, x * 32 * 32, x == 20 ? 32 * 32 : 16 * 32, 1);
   const OneChunk world(chunk);
-  const SolidMaterials solid;  // every material but the empty one
+  const MaterialSet solid;  // every material but the empty one
 
   const BodyBox body{{10.2, 20, 10.2}, {10.8, 21.8, 10.8}};
   const auto ground = sweep(world, solid, body, {0, -10, 0});

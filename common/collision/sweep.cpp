@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "common/core/assert.hpp"
 
@@ -29,6 +30,11 @@ Cells cells_of(double min, double max) {
 VoxelBox box_of_cells(const std::array<Cells, 3>& cells) {
   return {{cells[0].first, cells[1].first, cells[2].first},
           {cells[0].last + 1, cells[1].last + 1, cells[2].last + 1}};
+}
+
+VoxelBox voxels_of(const BodyBox& box) {
+  return box_of_cells({cells_of(box.min.x, box.max.x), cells_of(box.min.y, box.max.y),
+                       cells_of(box.min.z, box.max.z)});
 }
 
 /// One axis of the move: the voxels that the box overlaps, and when its leading face enters the
@@ -82,8 +88,8 @@ struct AxisSweep {
 
 }  // namespace
 
-std::optional<SweepHit> sweep(const VoxelSpace& space, const SolidMaterials& solid,
-                              const BodyBox& box, const WorldPos& move) {
+std::optional<SweepHit> sweep(const VoxelSpace& space, const MaterialSet& solid, const BodyBox& box,
+                              const WorldPos& move) {
   const Numbers min = numbers_of(box.min), max = numbers_of(box.max), by = numbers_of(move);
   for (std::size_t a = 0; a < 3; ++a)
     RUNSTONE_ASSERT(min[a] < max[a] && std::abs(by[a]) <= kSweepMax);
@@ -101,19 +107,21 @@ std::optional<SweepHit> sweep(const VoxelSpace& space, const SolidMaterials& sol
     std::array<Cells, 3> entered;
     for (std::size_t a = 0; a < 3; ++a) entered[a] = axes[a].cells_at(fraction);
     entered[axis] = {layer, layer};
-    if (const auto voxel = find_solid(space, solid, box_of_cells(entered)))
+    if (const auto voxel = find_voxel(space, solid, box_of_cells(entered)))
       return SweepHit{fraction, soonest->face(axis), *voxel};
   }
 }
 
-bool overlaps(const VoxelSpace& space, const SolidMaterials& solid, const BodyBox& box) {
-  const std::array<Cells, 3> cells = {cells_of(box.min.x, box.max.x),
-                                      cells_of(box.min.y, box.max.y),
-                                      cells_of(box.min.z, box.max.z)};
-  return find_solid(space, solid, box_of_cells(cells)).has_value();
+bool overlaps(const VoxelSpace& space, const MaterialSet& materials, const BodyBox& box) {
+  return find_voxel(space, materials, voxels_of(box)).has_value();
 }
 
-Slide slide(const VoxelSpace& space, const SolidMaterials& solid, const BodyBox& box,
+bool is_known(const VoxelSpace& space, const BodyBox& box) {
+  static const MaterialSet kNothingButUnknown(std::vector<bool>(kMaterialCountMax), true);
+  return !find_voxel(space, kNothingButUnknown, voxels_of(box)).has_value();
+}
+
+Slide slide(const VoxelSpace& space, const MaterialSet& solid, const BodyBox& box,
             const WorldPos& move) {
   Slide out;
   Numbers min = numbers_of(box.min), max = numbers_of(box.max), rest = numbers_of(move);

@@ -35,12 +35,15 @@ struct SweepHit {
 
 /// Returns the first solid voxel that the box meets on the way along `move` (voxels), or nullopt if
 /// the way is free. Requires finite numbers, |move| <= kSweepMax on each axis, and that the way lies
-/// within the world. Cost: one find_solid() for each layer of voxels that the box enters.
-std::optional<SweepHit> sweep(const VoxelSpace& space, const SolidMaterials& solid,
-                              const BodyBox& box, const WorldPos& move);
+/// within the world. Cost: one find_voxel() for each layer of voxels that the box enters.
+std::optional<SweepHit> sweep(const VoxelSpace& space, const MaterialSet& solid, const BodyBox& box,
+                              const WorldPos& move);
 
-/// Returns true if a solid voxel overlaps the box.
-bool overlaps(const VoxelSpace& space, const SolidMaterials& solid, const BodyBox& box);
+/// Returns true if a voxel of the set overlaps the box.
+bool overlaps(const VoxelSpace& space, const MaterialSet& materials, const BodyBox& box);
+
+/// Returns true if the space knows every chunk that the box overlaps.
+bool is_known(const VoxelSpace& space, const BodyBox& box);
 
 /// The end of a move that slid along what it met.
 struct Slide {
@@ -50,7 +53,7 @@ struct Slide {
 
 /// Moves the box and, where it meets a solid voxel, goes on with the rest of the move along the other
 /// axes. Same requirements as sweep(). Cost: that of three sweeps.
-Slide slide(const VoxelSpace& space, const SolidMaterials& solid, const BodyBox& box,
+Slide slide(const VoxelSpace& space, const MaterialSet& solid, const BodyBox& box,
             const WorldPos& move);
 
 }  // namespace runstone

@@ -6,24 +6,24 @@
 namespace runstone {
 namespace {
 
-/// Returns the index of a solid voxel in [first, last) of the flattened chunk.
+/// Returns the index of a voxel of the set in [first, last) of the flattened chunk.
 template <class Runs>
-std::optional<VoxelIndex> solid_between(RunCursor<Runs>& cursor, const SolidMaterials& solid,
+std::optional<VoxelIndex> found_between(RunCursor<Runs>& cursor, const MaterialSet& materials,
                                         VoxelIndex first, VoxelIndex last) {
   cursor.jump(first);
   for (VoxelIndex at = first;;) {
-    if (solid.contains(cursor.material())) return at;
+    if (materials.contains(cursor.material())) return at;
     at = cursor.end();
     if (at >= last) return std::nullopt;
     cursor.next();
   }
 }
 
-/// Returns a solid voxel among those from `min` to `max`, both included.
-std::optional<LocalPos> find_in_chunk(const RunChunk& chunk, const SolidMaterials& solid,
+/// Returns a voxel of the set among those from `min` to `max`, both included.
+std::optional<LocalPos> find_in_chunk(const RunChunk& chunk, const MaterialSet& materials,
                                       LocalPos min, LocalPos max) {
   if (chunk.is_uniform()) {
-    if (solid.contains(chunk.runs.material(0))) return min;
+    if (materials.contains(chunk.runs.material(0))) return min;
     return std::nullopt;
   }
   const OrderedExtent extent = ordered(chunk.extent, chunk.order);
@@ -33,7 +33,7 @@ std::optional<LocalPos> find_in_chunk(const RunChunk& chunk, const SolidMaterial
     for (std::uint32_t s = low.s; s <= high.s; ++s) {
       for (std::uint32_t m = low.m; m <= high.m; ++m) {
         const VoxelIndex line = extent.f * (m + extent.m * s);
-        if (const auto at = solid_between(cursor, solid, line + low.f, line + high.f + 1))
+        if (const auto at = found_between(cursor, materials, line + low.f, line + high.f + 1))
           return pos_of(*at, chunk.extent, chunk.order);
       }
     }
@@ -43,7 +43,7 @@ std::optional<LocalPos> find_in_chunk(const RunChunk& chunk, const SolidMaterial
 
 }  // namespace
 
-std::optional<VoxelPos> find_solid(const VoxelSpace& space, const SolidMaterials& solid,
+std::optional<VoxelPos> find_voxel(const VoxelSpace& space, const MaterialSet& materials,
                                    const VoxelBox& box) {
   if (box.empty()) return std::nullopt;
   const std::int32_t edge = space.edge();
@@ -55,10 +55,13 @@ std::optional<VoxelPos> find_solid(const VoxelSpace& space, const SolidMaterials
       for (at.z = first.z; at.z <= last.z; ++at.z) {
         const VoxelBox part = intersect(box, box_of(at, edge));
         const RunChunk* chunk = space.chunk(at);
-        if (chunk == nullptr) return part.min;
+        if (chunk == nullptr) {
+          if (materials.has_unknown()) return part.min;
+          continue;
+        }
         RUNSTONE_DASSERT(chunk->extent == Extent::cube(static_cast<unsigned>(edge)));
         const LocalPos max = local_of({part.max.x - 1, part.max.y - 1, part.max.z - 1}, edge);
-        if (const auto found = find_in_chunk(*chunk, solid, local_of(part.min, edge), max)) {
+        if (const auto found = find_in_chunk(*chunk, materials, local_of(part.min, edge), max)) {
           const VoxelPos origin = origin_of(at, edge);
           return VoxelPos{origin.x + found->x, origin.y + found->y, origin.z + found->z};
         }

@@ -1,11 +1,11 @@
 // VoxelSpace: the chunks that a query of this room reads, wherever they are kept.
-// find_solid() is the box query that all of them are made of. It reads runs: along each line of the
+// find_voxel() is the box query that all of them are made of. It reads runs: along each line of the
 // box it looks up one run and walks from there, so no voxel is unpacked.
 #pragma once
 #include <cstdint>
 #include <optional>
 
-#include "common/collision/solid_materials.hpp"
+#include "common/collision/material_set.hpp"
 #include "common/core/coords.hpp"
 #include "common/runs/run_chunk.hpp"
 
@@ -25,12 +25,11 @@ class VoxelSpace {
   std::int32_t edge_;
 };
 
-/// Returns a voxel of `box` that is solid, or nullopt if there is none. A chunk that is not known
-/// counts as solid, so that nobody falls out of a world that is still loading. An empty box has no
-/// voxel. Requires a box within the world.
+/// Returns a voxel of `box` whose material is in the set, or nullopt if there is none. An empty box
+/// has no voxel. Requires a box within the world.
 /// Cost: O(lines * log runs + runs met), where a line is a row of the box along the fastest axis of
 /// its chunk.
-std::optional<VoxelPos> find_solid(const VoxelSpace& space, const SolidMaterials& solid,
+std::optional<VoxelPos> find_voxel(const VoxelSpace& space, const MaterialSet& materials,
                                    const VoxelBox& box);
 
 }  // namespace runstone

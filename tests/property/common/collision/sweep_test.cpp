@@ -117,13 +117,13 @@ Eighths random_body(SplitMix64& rng) {
   return body;
 }
 
-SolidMaterials all_but_water() { return SolidMaterials({false, false}); }
+MaterialSet all_but_water() { return MaterialSet({false, false}, true); }
 
 }  // namespace
 
 TEST_CASE("a sweep stops where the first voxel is met", "[collision][property]") {
   SplitMix64 rng{Catch::rngSeed()};
-  const SolidMaterials solid = all_but_water();
+  const MaterialSet solid = all_but_water();
   int hits = 0, free_ways = 0;
   for (int world = 0; world < 30; ++world) {
     const SomeChunks chunks(rng);
@@ -149,7 +149,7 @@ TEST_CASE("a sweep stops where the first voxel is met", "[collision][property]")
 
 TEST_CASE("a slide never enters a solid voxel and stops only at one", "[collision][property]") {
   SplitMix64 rng{Catch::rngSeed()};
-  const SolidMaterials solid = all_but_water();
+  const MaterialSet solid = all_but_water();
   int moved_on = 0;
   for (int world = 0; world < 60; ++world) {
     const SomeChunks chunks(rng);

@@ -1,0 +1,61 @@
+// Walker: the body of a player that walks, jumps, steps up and swims among voxels. Time passes in
+// steps of kWalkStepS, so that the same input gives the same way at every frame rate.
+// Pure: voxels, input and time are arguments. One thread.
+#pragma once
+#include "common/collision/sweep.hpp"
+#include "common/collision/voxel_space.hpp"
+#include "common/core/world_pos.hpp"
+
+namespace runstone {
+
+// The body, in voxels. Its position is the middle of its soles.
+inline constexpr double kBodyWidth = 0.6, kBodyHeight = 1.8, kEyeHeight = 1.62;
+inline constexpr double kWalkStepS = 1.0 / 120;  // seconds
+/// A body on the ground walks onto what is at most this high.
+inline constexpr double kStepUpMax = 1.0;
+
+/// What the player wants.
+struct WalkInput {
+  double x = 0, z = 0;  // direction over the ground, of length 1 at most; 1 is full speed
+  bool up = false;      // jump, or rise in water
+  bool down = false;    // sink in water; on the ground: do not step over an edge
+  bool fast = false;
+};
+
+/// The materials that matter to a body. Others let it pass.
+struct BodyMaterials {
+  MaterialSet solid, liquid;
+};
+
+BodyBox body_at(const WorldPos& feet);
+
+class Walker {
+ public:
+  const WorldPos& feet() const { return feet_; }
+  /// Returns the eye. After a step up it follows the body in some tenths of a second.
+  WorldPos eye() const { return {feet_.x, feet_.y + kEyeHeight - step_lag_, feet_.z}; }
+  bool is_on_ground() const { return is_on_ground_; }
+  bool is_in_liquid() const { return is_in_liquid_; }
+  /// Puts the body somewhere, at rest.
+  void place(const WorldPos& feet);
+  /// Lets `seconds` pass. Longer than a quarter of a second counts as that. A body rests where the
+  /// voxels are not known. One that is inside a solid voxel rises until it is free.
+  /// Cost: some sweeps for each step of kWalkStepS.
+  void advance(const VoxelSpace& space, const BodyMaterials& materials, const WalkInput& input,
+               double seconds);
+
+ private:
+  void step(const VoxelSpace& space, const BodyMaterials& materials, const WalkInput& input);
+  /// Moves the body by the velocity, and up onto what is low enough.
+  void move(const VoxelSpace& space, const MaterialSet& solid, const WorldPos& by,
+            bool may_step_up);
+  /// Returns the part of the way over the ground after which the body still stands on something.
+  WorldPos kept_on_edge(const VoxelSpace& space, const MaterialSet& solid, WorldPos by) const;
+
+  WorldPos feet_, velocity_;  // voxels, voxels a second
+  double waiting_s_ = 0;      // time that has passed and is no whole step yet
+  double step_lag_ = 0;       // voxels by which the eye is below its place
+  bool is_on_ground_ = false, is_in_liquid_ = false;
+};
+
+}  // namespace runstone
