@@ -417,8 +417,8 @@ struct ReceiveAck {
 /// New rows of the material table. It has the class of the edits, so it precedes the commits that
 /// use the materials. A chunk with a new material may overtake it.
 struct MaterialsAdded {
-  Material first = 1;              // id of the first row; at least 1
-  std::vector<MaterialInfo> rows;  // at least 1, without generation rules; first + rows <= 65536
+  Material first = 1;             // id of the first row; at least 1
+  std::vector<MaterialRow> rows;  // at least 1, with different names; first + rows <= 65536
   friend bool operator==(const MaterialsAdded&, const MaterialsAdded&) = default;
 };
 

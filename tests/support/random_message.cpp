@@ -401,7 +401,8 @@ MaterialsAdded any_materials_added(SplitMix64& rng) {
   MaterialTable table = any_materials(rng);
   if (table.size() == 1) RUNSTONE_ASSERT(table.add({"one", {}, Visibility::empty, {}}).has_value());
   MaterialsAdded m;
-  m.rows.assign(table.rows().begin() + 1, table.rows().end());
+  for (const MaterialInfo& info : table.rows().subspan(1))
+    m.rows.push_back({info.name, info.colour, info.visibility});
   const auto ids = static_cast<std::uint32_t>(kMaterialCountMax - m.rows.size());
   m.first = static_cast<Material>(1 + rng.below(ids));
   return m;
