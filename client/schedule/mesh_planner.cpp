@@ -177,7 +177,8 @@ void MeshPlanner::mesh_again_from(Material first) {
     const ShownPtr shown = replica_.shown(key);
     if (!shown || !has_material_from(*shown, first)) continue;
     mark_whole(key, state);
-    for_each_beside(key, [this](const ChunkKey& other, State& beside) { mark_whole(other, beside); });
+    for_each_beside(key,
+                    [this](const ChunkKey& other, State& beside) { mark_whole(other, beside); });
   }
 }
 

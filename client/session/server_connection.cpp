@@ -80,7 +80,7 @@ ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
   const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
   if (is_another_world || (welcome_ && welcome_->epoch != welcome.epoch)) clock_.reset();
   outgoing_.push_back(
-      ClientAuth{sign(config_.keys, client_transcript(hello_, welcome, binding_)), config_.ticket, {}});
+      ClientAuth{sign(config_.keys, client_transcript(hello_, welcome, binding_)), config_.ticket});
   welcome_ = std::move(welcome);
   state_ = SessionState::authenticating;
   return is_another_world ? Dispatch::another_world : Dispatch::handled;

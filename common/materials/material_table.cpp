@@ -35,8 +35,7 @@ std::optional<Material> MaterialTable::find(std::string_view name) const {
 }
 
 Result<Material> MaterialTable::add(MaterialInfo info) {
-  if (rows_.size() >= kMaterialCountMax)
-    return fail(ErrorCode::limit_exceeded, kTableIsFull);
+  if (rows_.size() >= kMaterialCountMax) return fail(ErrorCode::limit_exceeded, kTableIsFull);
   if (const auto sound = validate_material(info.name, info.colour, info.visibility); !sound)
     return Unexpected<Error>{sound.error()};
   if (info.generation) {
@@ -48,8 +47,7 @@ Result<Material> MaterialTable::add(MaterialInfo info) {
     }
   }
   const auto id = static_cast<Material>(rows_.size());
-  if (!ids_.emplace(info.name, id).second)
-    return fail(ErrorCode::bad_value, kNameIsTaken);
+  if (!ids_.emplace(info.name, id).second) return fail(ErrorCode::bad_value, kNameIsTaken);
   rows_.push_back(std::move(info));
   return id;
 }

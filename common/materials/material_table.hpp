@@ -96,9 +96,9 @@ struct MaterialFileRow {
   MaterialRow row;
   std::uint32_t line = 0;
 };
-/// Reads `[[material]]` tables that are appended to a table that exists already, so air is not among
-/// them. Fails as parse_material_table() does, and for a generation rule: the generator of a world
-/// makes its terrain of the materials that the world was created with.
+/// Reads `[[material]]` tables for MaterialTable::append(). Air is not among them. Fails as
+/// parse_material_table() does, and for a generation rule: a generator makes terrain of the materials
+/// that its world was created with.
 Result<std::vector<MaterialFileRow>, TextError> parse_material_rows(std::string_view toml,
                                                                     std::string_view file);
 

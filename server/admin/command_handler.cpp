@@ -27,9 +27,8 @@ std::string memory_text(std::size_t bytes) {
 
 /// Returns how many materials were added, the record, and a line for each.
 std::string added_text(const AddedAt& at, const std::vector<MaterialRow>& rows) {
-  std::string text = std::to_string(rows.size()) +
-                     (rows.size() == 1 ? " material" : " materials") + " added (record " +
-                     std::to_string(at.seq) + ")";
+  std::string text = std::to_string(rows.size()) + (rows.size() == 1 ? " material" : " materials") +
+                     " added (record " + std::to_string(at.seq) + ")";
   for (const std::string& line : material_lines(at.first, rows)) text += "\n" + line;
   return text;
 }
@@ -218,8 +217,7 @@ void CommandHandler::log(const LogCommand& command, const Clocks& now, const Com
                   if (!materials) *wrong = materials.error().message();
                   if (!wrong->empty()) return;
                   for (const EditRecord& record : *newest) {
-                    *text +=
-                        log_line(record, names->with_key(record.op.author), *materials) + "\n";
+                    *text += log_line(record, names->with_key(record.op.author), *materials) + "\n";
                   }
                 },
                 [text, wrong, reply](const std::string& error) {

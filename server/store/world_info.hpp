@@ -13,8 +13,8 @@
 
 namespace runstone {
 
-/// The values that `meta` pins when a world is created. None of them changes afterwards, but that a
-/// compaction appends to `materials` what it removes from the log.
+/// The values that `meta` pins when a world is created. None of them changes afterwards, with one
+/// exception: a compaction appends to `materials` the rows that it removes from the log.
 struct WorldMeta {
   WorldId world_id{};
   std::uint16_t chunk_edge = 32;

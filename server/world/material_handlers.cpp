@@ -38,7 +38,8 @@ Result<AddedAt, MaterialsRefusal> add_materials(WorldState& world,
   const OperationId op{0, world.change_instance, ++world.change_client_seq};
   const EditOffer offer{op, Cause::materials, now.steady_us, materials_edit({first, rows}), 0};
   const ServerEditsResult ordered = order_server_edits(world, {offer}, 0, now);
-  if (ordered.state == ServerEditsResult::State::ordered) return AddedAt{world.materials_seq, first};
+  if (ordered.state == ServerEditsResult::State::ordered)
+    return AddedAt{world.materials_seq, first};
   if (ordered.state == ServerEditsResult::State::busy)
     return refusal(std::string(ordered.reason) + ": try again later");
   return refusal("the world takes no changes any more");

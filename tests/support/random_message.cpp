@@ -296,7 +296,8 @@ Commit any_commit(SplitMix64& rng) {
     seq += 1 + (rng.below(2) == 0 ? 0 : rng.below(1'000'000));
     e.seq = seq;
     e.op = {rng.below(1000), rng.next(), any64(rng)};
-    e.cause = static_cast<Cause>(rng.below(kCauseMax));  // a commit has no change of rights
+    // A commit has only edits with voxels.
+    e.cause = static_cast<Cause>(rng.below(static_cast<std::uint32_t>(Cause::rights)));
     e.submitted_us = any_time(rng);
     e.ordered_us = any_time(rng);
     e.edit = any_edit(rng);

@@ -17,8 +17,8 @@ struct AddedMaterials {
   friend bool operator==(const AddedMaterials&, const AddedMaterials&) = default;
 };
 
-/// The rows of one record. So a record is no larger than the largest edit of a player, and the
-/// message about it is short beside a queue of edits.
+/// The rows of one record, at most. A record is then no larger than the largest edit of a player,
+/// and the message about it takes a small part of a session's queue of edits.
 inline constexpr std::size_t kAddedMaterialsMax = 512;
 /// The maximum size of the bytes: `first` and the count, then per row the name with its length,
 /// colour and visibility.
@@ -31,8 +31,8 @@ Result<void> validate(const AddedMaterials& added);
 
 /// Appends the canonical bytes. Requires validate().
 void write_added_materials(ByteWriter& w, const AddedMaterials& added);
-/// Reads what write_added_materials() wrote. A failure is the reader's. The caller validates the
-/// result.
+/// Reads what write_added_materials() wrote. A failure is found in the reader. The result is not
+/// validated.
 AddedMaterials read_added_materials(ByteReader& r);
 
 }  // namespace runstone

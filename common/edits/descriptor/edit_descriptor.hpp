@@ -113,8 +113,7 @@ struct RightsEdit {
 struct MaterialsEdit {
   std::shared_ptr<const AddedMaterials> added;
   friend bool operator==(const MaterialsEdit& a, const MaterialsEdit& b) {
-    return a.added == b.added ||
-           (a.added != nullptr && b.added != nullptr && *a.added == *b.added);
+    return a.added == b.added || (a.added != nullptr && b.added != nullptr && *a.added == *b.added);
   }
 };
 
