@@ -103,6 +103,7 @@ int Client::run_turns(const volatile std::sig_atomic_t& stop) {
   while (!code) {
     network_.receive();
     if (network_.take_world_opened()) on_world_opened();
+    take_new_materials();
     drain_changes();  // before the script asks whether all of it is drawn
     const TimeUs now_us = steady_now_us();
     limit_memory(now_us);
@@ -131,6 +132,14 @@ void Client::on_world_opened() {
   budget_.set_wanted({std::min(options_.view_radius, welcome.view_radius_max),
                       std::min(options_.view_radius_v, welcome.view_radius_max)});
   if (view_.radii() != budget_.radii()) view_.set_radii(budget_.radii());
+}
+
+void Client::take_new_materials() {
+  const auto& welcome = session_.welcome();
+  const std::size_t known = pipeline_.materials().size();
+  if (!session_.is_open() || welcome->materials.size() <= known) return;
+  pipeline_.set_materials(welcome->materials);
+  spdlog::info("the world has {} new materials", welcome->materials.size() - known);
 }
 
 void Client::flush() {

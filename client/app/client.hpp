@@ -44,6 +44,8 @@ class Client {
   /// fails.
   int run_turns(const volatile std::sig_atomic_t& stop);
   void on_world_opened();
+  /// Shows the materials that were added since the world was opened.
+  void take_new_materials();
   void poll_window(TimeUs now_us);
   /// Moves the view by `steps` in time. The step after the newest edit is the live world.
   void scrub(int steps);

@@ -53,6 +53,8 @@ void HeadlessSession::receive(Message message, const Arrival& arrival) {
       return;
     case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
+    case ServerConnection::Dispatch::materials_added:
+      return;
     case ServerConnection::Dispatch::for_session:
       break;
   }

@@ -47,7 +47,13 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
   TimeUs first_us = 0;
   std::string wrong;
   const auto read = reader->read({}, [&](const EditRecord& record) {
-    if (rights_change_of(record.edit) != nullptr) return true;  // the live world has its own
+    if (const AddedMaterials* added = added_materials_of(record.edit)) {
+      const auto appended = log.materials.append(added->first, added->rows);
+      if (!appended)
+        wrong = "edit " + std::to_string(record.version.seq) + ": " + appended.error().what;
+      return appended.has_value();
+    }
+    if (!has_voxels(record.edit)) return true;  // the live world has rights of its own
     if (log.edits == 0) first_us = record.time_us;
     if (!log.materials.knows(material_max(record.edit))) {
       wrong = "edit " + std::to_string(record.version.seq) + " uses material " +

@@ -2,12 +2,22 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "common/mesh/visibility.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
+
+namespace {
+
+bool begins_with(std::span<const MaterialInfo> rows, std::span<const MaterialInfo> first) {
+  return rows.size() >= first.size() && std::ranges::equal(rows.first(first.size()), first);
+}
+
+}  // namespace
 
 MeshPipeline::MeshPipeline(const Replica& replica, std::unique_ptr<DrawThread> draw_thread,
                            bool watched, unsigned workers, std::function<void()> wake)
@@ -20,8 +30,15 @@ MeshPipeline::MeshPipeline(const Replica& replica, std::unique_ptr<DrawThread> d
 
 void MeshPipeline::set_materials(const MaterialTable& materials) {
   if (pool_ && materials_ == materials) return;
+  const std::size_t known = materials_.size();
+  const bool has_grown = pool_ && begins_with(materials.rows(), materials_.rows());
   materials_ = materials;
+  changed_ = true;
   if (draw_thread_) draw_thread_->set_materials(materials_);
+  if (has_grown) {
+    pool_->set_visibility(VisibilityTable(visibilities(materials_)));
+    return planner_.mesh_again_from(static_cast<Material>(known));
+  }
   planner_.forget_meshes();
   pool_.reset();
   open_job_bytes_.clear();

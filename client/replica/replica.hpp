@@ -116,6 +116,8 @@ class Replica {
   void receive(const Reject& reject, TimeUs now_us);
   void receive(const Durable& durable);
   void receive(const DigestCheck& check, TimeUs now_us);
+  /// Local edits may use the materials below `count` from now on.
+  void set_material_count(std::size_t count) { parameters_->material_count = count; }
   void receive(const Permissions& permissions) { ground_.receive(permissions); }
   /// Fails as KnownGround::receive() does.
   Result<void> receive(const ProtectedGround& change) { return ground_.receive(change); }

@@ -14,6 +14,15 @@ std::int64_t distance_squared(ChunkCoord a, ChunkCoord b) {
   return dx * dx + dy * dy + dz * dz;
 }
 
+bool has_material_from(const RunChunk& chunk, Material first) {
+  return chunk.runs.visit([first](const auto& runs) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (runs.material(i) >= first) return true;
+    }
+    return false;
+  });
+}
+
 }  // namespace
 
 std::size_t mesh_bytes(const MeshPtr& mesh) {
@@ -161,6 +170,16 @@ bool MeshPlanner::finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh
 
 void MeshPlanner::forget_meshes() {
   for (auto& [key, state] : states_) mark_whole(key, state);
+}
+
+void MeshPlanner::mesh_again_from(Material first) {
+  for (auto& [key, state] : states_) {
+    const ShownPtr shown = replica_.shown(key);
+    if (!shown || !has_material_from(*shown, first)) continue;
+    mark_whole(key, state);
+    for_each_beside(key,
+                    [this](const ChunkKey& other, State& beside) { mark_whole(other, beside); });
+  }
 }
 
 MeshPtr MeshPlanner::keep(State& state, MeshPtr mesh) {

@@ -12,12 +12,12 @@ constexpr std::size_t kScratchQuadsMax = 65'536;
 }  // namespace
 
 MeshPool::MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, Wake wake)
-    : visibility_(std::move(visibility)),
-      clock_(std::move(clock)),
+    : clock_(std::move(clock)),
       wake_(std::move(wake)),
       // The capacity is large enough that no worker is idle until the main thread pushes again, and
       // small enough that new work does not queue behind old work.
-      capacity_(workers == 0 ? 1 : workers * 8) {
+      capacity_(workers == 0 ? 1 : workers * 8),
+      visibility_(std::make_shared<const VisibilityTable>(std::move(visibility))) {
   for (unsigned i = 0; i < workers; ++i) {
     threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
   }
@@ -26,6 +26,12 @@ MeshPool::MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, 
 MeshPool::~MeshPool() {
   for (std::jthread& thread : threads_) thread.request_stop();
   threads_.clear();
+}
+
+void MeshPool::set_visibility(VisibilityTable visibility) {
+  auto next = std::make_shared<const VisibilityTable>(std::move(visibility));
+  const std::lock_guard lock(mutex_);
+  visibility_ = std::move(next);
 }
 
 bool MeshPool::push(MeshJob job) {
@@ -61,14 +67,16 @@ void MeshPool::work(const std::stop_token& stop) {
   Scratch scratch;
   for (;;) {
     MeshJob job;
+    std::shared_ptr<const VisibilityTable> visibility;
     {
       std::unique_lock lock(mutex_);
       if (!work_there_.wait(lock, stop, [this] { return !jobs_.empty(); }) || stop.stop_requested())
         return;
       job = std::move(jobs_.front());
       jobs_.pop_front();
+      visibility = visibility_;
     }
-    MeshResult result = mesh(job, scratch);
+    MeshResult result = mesh(job, *visibility, scratch);
     {
       const std::lock_guard lock(mutex_);
       results_.push_back(std::move(result));
@@ -77,7 +85,8 @@ void MeshPool::work(const std::stop_token& stop) {
   }
 }
 
-MeshResult MeshPool::mesh(const MeshJob& job, Scratch& scratch) const {
+MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
+                          Scratch& scratch) const {
   MeshResult result;
   result.key = job.key;
   result.number = job.number;
@@ -88,10 +97,10 @@ MeshResult MeshPool::mesh(const MeshJob& job, Scratch& scratch) const {
   const std::int64_t start = clock_();
   if (job.before) {
     scratch.mesh = *job.before;
-    result.layers_only = mesh_rdm_layers(*job.chunk, neighbours, visibility_, job.changed.here,
+    result.layers_only = mesh_rdm_layers(*job.chunk, neighbours, visibility, job.changed.here,
                                          job.changed.beyond, scratch.rdm, scratch.mesh);
   } else {
-    mesh_rdm(*job.chunk, neighbours, visibility_, scratch.rdm, scratch.mesh);
+    mesh_rdm(*job.chunk, neighbours, visibility, scratch.rdm, scratch.mesh);
   }
   result.mesh = scratch.mesh.empty() ? empty_ : std::make_shared<const ChunkMesh>(scratch.mesh);
   if (scratch.mesh.quad_count() > kScratchQuadsMax) scratch.mesh = {};

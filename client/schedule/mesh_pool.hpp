@@ -41,9 +41,11 @@ class MeshPool {
   MeshPool(const MeshPool&) = delete;
   MeshPool& operator=(const MeshPool&) = delete;
 
+  /// Replaces the visibility of materials, for the jobs that begin from now on.
+  void set_visibility(VisibilityTable visibility);
   bool push(MeshJob job);
   /// Meshes on the calling thread. Thread: the one that pushes.
-  MeshResult mesh_here(const MeshJob& job) { return mesh(job, push_scratch_); }
+  MeshResult mesh_here(const MeshJob& job) { return mesh(job, *visibility_, push_scratch_); }
   /// Returns the results so far, in the order in which they were finished.
   std::vector<MeshResult> take_results();
   /// Returns the number of jobs that wait or run, plus the results that were not taken.
@@ -56,14 +58,15 @@ class MeshPool {
     ChunkMesh mesh;  // its capacity grows; the result is a copy of the right size
   };
   void work(const std::stop_token& stop);
-  MeshResult mesh(const MeshJob& job, Scratch& scratch) const;
+  MeshResult mesh(const MeshJob& job, const VisibilityTable& visibility, Scratch& scratch) const;
 
-  const VisibilityTable visibility_;
   const ClockNs clock_;
   const Wake wake_;
   const std::size_t capacity_;
   const MeshPtr empty_ = std::make_shared<const ChunkMesh>();
   mutable std::mutex mutex_;
+  // Never null. The thread that pushes replaces it, under mutex_. Workers copy it under mutex_.
+  std::shared_ptr<const VisibilityTable> visibility_;
   std::condition_variable_any work_there_;
   std::deque<MeshJob> jobs_;  // guarded by mutex_, as are the next two
   std::vector<MeshResult> results_;

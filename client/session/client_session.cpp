@@ -46,6 +46,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
       return replica_->reset();
     case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
+    case ServerConnection::Dispatch::materials_added:
+      return replica_->set_material_count(welcome()->materials.size());
     case ServerConnection::Dispatch::for_session:
       break;
   }

@@ -121,7 +121,7 @@ class ClientSession {
   SessionState state() const { return connection_.state(); }
   bool is_open() const { return connection_.is_open(); }
   const std::optional<SessionEnd>& end() const { return connection_.end(); }
-  /// Returns the welcome of the current or last connection, or nullopt before the first.
+  /// As ServerConnection::welcome().
   const std::optional<Welcome>& welcome() const { return connection_.welcome(); }
   AuthorId author() const { return connection_.author(); }
   OperationId operation(ClientSequence seq) const {

@@ -60,6 +60,8 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
     ++pongs_;
     return Dispatch::handled;
   }
+  if (const auto* added = std::get_if<MaterialsAdded>(&message); added != nullptr && is_open())
+    return on_materials(*added);
   return Dispatch::for_session;
 }
 
@@ -90,6 +92,13 @@ void ServerConnection::on_session_accepted(const SessionAccepted& accepted, Time
   state_ = SessionState::open;
   ping_us_ = now_us - kPingEveryUs;
   move_us_ = now_us - kMoveEveryUs;
+}
+
+ServerConnection::Dispatch ServerConnection::on_materials(const MaterialsAdded& added) {
+  const auto appended = welcome_->materials.append(added.first, added.rows);
+  if (appended) return Dispatch::materials_added;
+  fail_with(GoodbyeReason::malformed_message, appended.error().what);
+  return Dispatch::handled;
 }
 
 void ServerConnection::close(GoodbyeReason reason, std::string text) {

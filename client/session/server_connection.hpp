@@ -55,10 +55,11 @@ class ServerConnection {
     handled,           // by the connection, which may have ended; or it accepts no input any more
     another_world,     // the welcome of another world: what the session holds is of the last world
     session_accepted,  // the connection is open now; the message is SessionAccepted, unchanged
+    materials_added,   // the materials of welcome() are more now
     for_session,       // the session decides whether the message is allowed in this state
   };
-  /// Handles the messages of the handshake, pongs once open, and goodbyes. Leaves other messages as
-  /// they are.
+  /// Handles the messages of the handshake, pongs and new materials once open, and goodbyes. Leaves
+  /// other messages as they are.
   Dispatch receive(Message& message, const Arrival& arrival);
   /// A sound message arrived that did not pass through receive().
   void note_message(TimeUs now_us) { last_message_us_ = now_us; }
@@ -100,7 +101,8 @@ class ServerConnection {
   /// Returns true if there is a connection and it is not to be closed.
   bool accepts_input() const { return state_ != SessionState::offline && !wants_close_; }
   const std::optional<SessionEnd>& end() const { return end_; }
-  /// Returns the welcome of the current or last connection, or nullopt before the first.
+  /// Returns the welcome of the current or last connection, or nullopt before the first. Its material
+  /// table has the rows that came later, too.
   const std::optional<Welcome>& welcome() const { return welcome_; }
   AuthorId author() const { return author_; }
   std::uint64_t connect_count() const { return connect_count_; }
@@ -115,6 +117,7 @@ class ServerConnection {
   SessionStage stage() const;
   Dispatch on_welcome(Welcome welcome);
   void on_session_accepted(const SessionAccepted& accepted, TimeUs now_us);
+  Dispatch on_materials(const MaterialsAdded& added);
 
   SessionConfig config_;
   SessionState state_ = SessionState::offline;

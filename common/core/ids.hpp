@@ -48,9 +48,14 @@ enum class Cause : std::uint8_t {
   undo = 3,
   redo = 4,
   import = 5,
-  rights = 6  // a change of rights, by a player or by the console (author 0)
+  rights = 6,    // a change of rights, by a player or by the console (author 0)
+  materials = 7  // new materials, by the console
 };
-inline constexpr std::uint8_t kCauseMax = 6;
+inline constexpr std::uint8_t kCauseMax = 7;
+/// Returns true if the edits with this cause change voxels. The others change rights or materials.
+constexpr bool changes_voxels(Cause cause) {
+  return cause != Cause::rights && cause != Cause::materials;
+}
 
 using SessionId = std::uint32_t;  // one connection; never reused while the server runs
 

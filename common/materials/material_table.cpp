@@ -2,12 +2,14 @@
 
 #include <cmath>
 #include <functional>
+#include <set>
 #include <utility>
-
-#include "common/core/text.hpp"
 
 namespace runstone {
 namespace {
+
+constexpr const char* kTableIsFull = "more than 65536 materials";
+constexpr const char* kNameIsTaken = "name is already taken";
 
 const char* broken_rule(const SurfaceRule& rule) {
   constexpr double kReach = 10000;
@@ -33,16 +35,9 @@ std::optional<Material> MaterialTable::find(std::string_view name) const {
 }
 
 Result<Material> MaterialTable::add(MaterialInfo info) {
-  if (rows_.size() >= kMaterialCountMax)
-    return fail(ErrorCode::limit_exceeded, "more than 65536 materials");
-  if (info.name.empty() || info.name.size() > kMaterialNameBytesMax ||
-      !is_printable_utf8(info.name)) {
-    return fail(ErrorCode::bad_value,
-                "name must be 1 .. 64 bytes of UTF-8 without control characters");
-  }
-  if (info.visibility == Visibility::opaque && info.colour[3] != 255) {
-    return fail(ErrorCode::bad_value, "colour of an opaque material must not be see-through");
-  }
+  if (rows_.size() >= kMaterialCountMax) return fail(ErrorCode::limit_exceeded, kTableIsFull);
+  if (const auto sound = validate_material(info.name, info.colour, info.visibility); !sound)
+    return Unexpected<Error>{sound.error()};
   if (info.generation) {
     if (const char* what = broken_rule(info.generation->surface))
       return fail(ErrorCode::bad_value, what);
@@ -52,10 +47,34 @@ Result<Material> MaterialTable::add(MaterialInfo info) {
     }
   }
   const auto id = static_cast<Material>(rows_.size());
-  if (!ids_.emplace(info.name, id).second)
-    return fail(ErrorCode::bad_value, "name is already taken");
+  if (!ids_.emplace(info.name, id).second) return fail(ErrorCode::bad_value, kNameIsTaken);
   rows_.push_back(std::move(info));
   return id;
+}
+
+Result<void> MaterialTable::check_rows(std::span<const MaterialRow> rows) const {
+  const std::size_t room = kMaterialCountMax - rows_.size();
+  if (rows.size() > room) return fail(ErrorCode::limit_exceeded, kTableIsFull, room);
+  std::set<std::string_view> names;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const MaterialRow& row = rows[i];
+    if (const auto sound = validate_material(row.name, row.colour, row.visibility); !sound)
+      return fail(sound.error().code, sound.error().what, i);
+    if (find(row.name) || !names.insert(row.name).second)
+      return fail(ErrorCode::bad_value, kNameIsTaken, i);
+  }
+  return {};
+}
+
+Result<void> MaterialTable::append(Material first, std::span<const MaterialRow> rows) {
+  if (first != rows_.size())
+    return fail(ErrorCode::broken_invariant, "materials do not continue the table");
+  if (auto sound = check_rows(rows); !sound) return sound;
+  for (const MaterialRow& row : rows) {
+    const auto added = add({row.name, row.colour, row.visibility, std::nullopt});
+    RUNSTONE_ASSERT(added.has_value());
+  }
+  return {};
 }
 
 std::vector<Visibility> visibilities(const MaterialTable& table) {

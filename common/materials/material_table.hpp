@@ -1,6 +1,6 @@
 // MaterialTable: the properties of each material id. It is a data file (TOML) like the thesis'
-// table (7.4): row i describes id i, and the table does not change while a world is open. Id 0 is
-// always "air", empty.
+// table (7.4): row i describes id i. Rows never change and never leave; a world may get more of them.
+// Id 0 is always "air", empty.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 #include "common/core/bytes.hpp"
 #include "common/core/ids.hpp"
+#include "common/core/material_row.hpp"
 #include "common/core/result.hpp"
-#include "common/core/visibility.hpp"
 
 namespace runstone {
 
@@ -37,9 +37,8 @@ struct GenerationRule {
 };
 
 struct MaterialInfo {
-  std::string name;  // unique, 1 .. 64 bytes of UTF-8 without control characters
-  // sRGB and alpha. Alpha is below 255 only for transparent materials.
-  std::array<std::uint8_t, 4> colour{0, 0, 0, 255};
+  std::string name;  // as that of a MaterialRow
+  MaterialColour colour{0, 0, 0, 255};
   Visibility visibility = Visibility::opaque;
   std::optional<GenerationRule> generation;
   friend bool operator==(const MaterialInfo&, const MaterialInfo&) = default;
@@ -53,8 +52,6 @@ struct TextError {
   std::string what;
   std::string message() const;  // "file:line: key: what"
 };
-
-inline constexpr std::size_t kMaterialNameBytesMax = 64;
 
 class MaterialTable {
  public:
@@ -72,6 +69,13 @@ class MaterialTable {
   /// bad_value for a bad or duplicate name, an opaque material with alpha below 255, or a number
   /// outside its range. Cost: O(log size).
   Result<Material> add(MaterialInfo info);
+  /// Fails if the rows cannot be appended together: with limit_exceeded if the table has no room for
+  /// all of them, and with bad_value for a bad row, or a name that is taken, by the table or by an
+  /// earlier row. The error's offset is the number of the row. Cost: O(rows log size).
+  Result<void> check_rows(std::span<const MaterialRow> rows) const;
+  /// Appends the rows, without generation rules; the first gets the id `first`. Fails as check_rows()
+  /// does, and with broken_invariant if `first` is not size(); then nothing changes.
+  Result<void> append(Material first, std::span<const MaterialRow> rows);
 
   friend bool operator==(const MaterialTable&, const MaterialTable&) = default;
 
@@ -86,6 +90,17 @@ std::vector<Visibility> visibilities(const MaterialTable& table);
 /// Reads `[[material]]` tables in id order, air first. `file` is only for messages. Unknown keys
 /// are errors. docs/materials.md lists the keys.
 Result<MaterialTable, TextError> parse_material_table(std::string_view toml, std::string_view file);
+
+/// A row of a file that adds materials, and the line where it begins.
+struct MaterialFileRow {
+  MaterialRow row;
+  std::uint32_t line = 0;
+};
+/// Reads `[[material]]` tables for MaterialTable::append(). Air is not among them. Fails as
+/// parse_material_table() does, and for a generation rule: a generator makes terrain of the materials
+/// that its world was created with.
+Result<std::vector<MaterialFileRow>, TextError> parse_material_rows(std::string_view toml,
+                                                                    std::string_view file);
 
 /// Returns the table as TOML, which parse_material_table() reads back to an equal table.
 std::string to_toml(const MaterialTable& table);

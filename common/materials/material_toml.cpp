@@ -149,8 +149,8 @@ class TableReader {
   std::optional<TextError> error_;
 };
 
-void read_row(TableReader& in, const toml::table& row, const std::string& path, bool first,
-              MaterialTable& out) {
+/// Reads a row without the checks of MaterialTable::add().
+MaterialInfo read_info(TableReader& in, const toml::table& row, const std::string& path) {
   in.only_keys(row, path, {"name", "colour", "visibility", "generate"});
   const auto name = in.text(row, path, "name");
   if (!name) in.reject(row, path + ".name", "is missing");
@@ -163,8 +163,14 @@ void read_row(TableReader& in, const toml::table& row, const std::string& path, 
     info.colour = {0, 0, 0, 0};
   }
   info.generation = in.generation(row, path);
+  if (name) info.name = *name;
+  return info;
+}
+
+void read_row(TableReader& in, const toml::table& row, const std::string& path, bool first,
+              MaterialTable& out) {
+  MaterialInfo info = read_info(in, row, path);
   if (in.failed()) return;
-  info.name = *name;
   if (first) {
     if (info != out[kEmpty]) {
       in.reject(row, path,
@@ -173,6 +179,35 @@ void read_row(TableReader& in, const toml::table& row, const std::string& path, 
     return;
   }
   if (const auto id = out.add(std::move(info)); !id) in.reject(row, path, id.error().what);
+}
+
+std::string path_of(std::size_t number) { return "material[" + std::to_string(number) + "]"; }
+
+/// Calls act(row, number) for the `[[material]]` tables of a text, until `in` has failed.
+template <class Act>
+void for_each_row(TableReader& in, std::string_view text, Act act) {
+  toml::table root;
+  try {
+    root = toml::parse(text);
+  } catch (const toml::parse_error& bad) {
+    return in.reject_line(static_cast<std::uint32_t>(bad.source().begin.line), "",
+                          std::string(bad.description()));
+  }
+  for (const auto& [key, node] : root) {
+    if (key.str() != "material") {
+      return in.reject_line(static_cast<std::uint32_t>(key.source().begin.line),
+                            std::string(key.str()), "unknown key");
+    }
+  }
+  const toml::node* rows = root.get("material");
+  if (rows == nullptr) return in.reject_line(0, "material", "is missing");
+  if (rows->as_array() == nullptr || !rows->is_array_of_tables())
+    return in.reject(*rows, "material", "must be written as [[material]] tables");
+  std::size_t number = 0;
+  for (const toml::node& row : *rows->as_array()) {
+    act(*row.as_table(), number++);
+    if (in.failed()) return;
+  }
 }
 
 std::string quoted(std::string_view text) {
@@ -217,37 +252,30 @@ std::string colour_text(const std::array<std::uint8_t, 4>& colour) {
 Result<MaterialTable, TextError> parse_material_table(std::string_view toml,
                                                       std::string_view file) {
   TableReader in(file);
-  toml::table root;
-  try {
-    root = toml::parse(toml);
-  } catch (const toml::parse_error& bad) {
-    in.reject_line(static_cast<std::uint32_t>(bad.source().begin.line), "",
-                   std::string(bad.description()));
-    return in.error();
-  }
-  for (const auto& [key, node] : root) {
-    if (key.str() != "material") {
-      in.reject_line(static_cast<std::uint32_t>(key.source().begin.line), std::string(key.str()),
-                     "unknown key");
-      return in.error();
-    }
-  }
   MaterialTable out;
-  const toml::node* rows = root.get("material");
-  if (rows == nullptr) {
-    in.reject_line(0, "material", "is missing");
-    return in.error();
-  }
-  if (rows->as_array() == nullptr || !rows->is_array_of_tables()) {
-    in.reject(*rows, "material", "must be written as [[material]] tables");
-    return in.error();
-  }
-  std::size_t number = 0;
-  for (const toml::node& row : *rows->as_array()) {
-    read_row(in, *row.as_table(), "material[" + std::to_string(number) + "]", number == 0, out);
-    if (in.failed()) return in.error();
-    ++number;
-  }
+  for_each_row(in, toml, [&](const toml::table& row, std::size_t number) {
+    read_row(in, row, path_of(number), number == 0, out);
+  });
+  if (in.failed()) return in.error();
+  return out;
+}
+
+Result<std::vector<MaterialFileRow>, TextError> parse_material_rows(std::string_view toml,
+                                                                    std::string_view file) {
+  TableReader in(file);
+  MaterialTable own;  // finds bad rows, and names that come twice
+  std::vector<MaterialFileRow> out;
+  for_each_row(in, toml, [&](const toml::table& row, std::size_t number) {
+    const std::string path = path_of(number);
+    MaterialInfo info = read_info(in, row, path);
+    if (const toml::node* rule = row.get("generate"))
+      in.reject(*rule, path + ".generate", "a material that is added later cannot be terrain");
+    if (in.failed()) return;
+    out.push_back({{info.name, info.colour, info.visibility},
+                   static_cast<std::uint32_t>(row.source().begin.line)});
+    if (const auto id = own.add(std::move(info)); !id) in.reject(row, path, id.error().what);
+  });
+  if (in.failed()) return in.error();
   return out;
 }
 

@@ -1,5 +1,3 @@
-#include <utility>
-
 #include "protocol/codec/body_reader.hpp"
 
 namespace runstone {
@@ -10,14 +8,13 @@ Result<Message> BodyReader::read(const wire::MaterialsAdded& t) const {
     return bad("materials_added names no rows, or rows outside the table");
   MaterialsAdded m;
   m.first = static_cast<Material>(t.first());
-  // A table of their own checks the rows as far as they do not depend on the world's other rows.
-  MaterialTable rows;
+  m.rows.resize(*count);
   for (std::uint32_t i = 0; i < *count; ++i) {
-    MaterialInfo info;
-    if (!take_material(*t.rows()->Get(i), info)) return bad("bad row in materials_added");
-    if (const auto id = rows.add(std::move(info)); !id) return Unexpected<Error>{id.error()};
+    if (!take_material(*t.rows()->Get(i), m.rows[i])) return bad("bad row in materials_added");
   }
-  m.rows.assign(rows.rows().begin() + 1, rows.rows().end());
+  // An empty table checks the rows as far as they do not depend on the world's other rows.
+  if (const auto sound = MaterialTable{}.check_rows(m.rows); !sound)
+    return Unexpected<Error>{sound.error()};
   return m;
 }
 

@@ -231,11 +231,12 @@ struct BodyBuilder {
     return wire::CreateMaterialsAdded(b, m.first, material_rows(m.rows));
   }
 
-  auto material_rows(std::span<const MaterialInfo> materials)
+  template <class Rows>
+  auto material_rows(const Rows& materials)
       -> Offset<flatbuffers::Vector<Offset<wire::MaterialRow>>> {
     std::vector<Offset<wire::MaterialRow>> rows;
     rows.reserve(materials.size());
-    for (const MaterialInfo& row : materials) {
+    for (const auto& row : materials) {
       const auto& c = row.colour;
       std::uint32_t rgba = 0;
       for (unsigned i = 0; i < 4; ++i) rgba |= static_cast<std::uint32_t>(c[i]) << (8 * i);

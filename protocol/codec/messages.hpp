@@ -84,7 +84,7 @@ struct Welcome {
 struct ClientAuth {
   Signature signature{};
   std::string ticket;  // an invite token (invite_token.hpp); empty: none
-  std::optional<PasswordKey> password_key;
+  std::optional<PasswordKey> password_key = std::nullopt;
   friend bool operator==(const ClientAuth&, const ClientAuth&) = default;
 };
 struct SessionAccepted {
@@ -413,8 +413,8 @@ struct ReceiveAck {
 /// New rows of the material table. It has the class of the edits, so it precedes the commits that
 /// use the materials. A chunk with a new material may overtake it.
 struct MaterialsAdded {
-  Material first = 1;              // id of the first row; at least 1
-  std::vector<MaterialInfo> rows;  // at least 1, without generation rules; first + rows <= 65536
+  Material first = 1;             // id of the first row; at least 1
+  std::vector<MaterialRow> rows;  // at least 1, with different names; first + rows <= 65536
   friend bool operator==(const MaterialsAdded&, const MaterialsAdded&) = default;
 };
 

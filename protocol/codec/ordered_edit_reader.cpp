@@ -14,7 +14,7 @@ Result<void> OrderedEditReader::next(OrderedEdit& edit, std::vector<ChunkCoord>&
   edit.op.instance = in_.u64();
   edit.op.seq = in_.varint();
   const std::uint8_t cause = in_.u8();
-  if (in_.ok() && (cause > kCauseMax || cause == static_cast<std::uint8_t>(Cause::rights)))
+  if (in_.ok() && (cause > kCauseMax || !changes_voxels(static_cast<Cause>(cause))))
     in_.reject(ErrorCode::bad_value, "commit cause is unknown");
   edit.cause = static_cast<Cause>(cause);
   edit.subject = in_.varint_max(edit.seq - 1, "commit subject is not an earlier edit");

@@ -64,8 +64,9 @@ inline bool take_pose(const wire::Pose* from, Pose& to) {
   return true;
 }
 
-/// Requires the row of a material other than air; MaterialTable::add() checks the rest.
-inline bool take_material(const wire::MaterialRow& row, MaterialInfo& info) {
+/// Reads name, colour and visibility of a MaterialRow or MaterialInfo. MaterialTable checks the rest.
+template <class Row>
+bool take_material(const wire::MaterialRow& row, Row& info) {
   if (!take_text(row.name(), 1, kMaterialNameBytesMax, info.name)) return false;
   for (unsigned c = 0; c < 4; ++c)
     info.colour[c] = static_cast<std::uint8_t>(row.rgba() >> (8 * c));

@@ -8,7 +8,7 @@
 namespace runstone {
 
 std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits) {
-  if (!validate(edit) || rights_change_of(edit) != nullptr) return RejectReason::bad_edit;
+  if (!validate(edit) || !has_voxels(edit)) return RejectReason::bad_edit;
   if (material_max(edit) >= limits.material_count) return RejectReason::unknown_material;
   if (!within(edit, limits.heights)) return RejectReason::outside_world;
   if (touched_chunks_bound(edit, limits.chunk_edge) > limits.touched_chunks_max)
@@ -22,7 +22,7 @@ std::optional<RejectReason> check_server_edit(const EditDescriptor& edit,
   EditLimits wider = limits;
   wider.heights = {};
   wider.volume_max = std::numeric_limits<std::uint64_t>::max();
-  if (rights_change_of(edit) != nullptr && validate(edit)) return std::nullopt;
+  if (!has_voxels(edit) && validate(edit)) return std::nullopt;
   return check_edit(edit, wider);
 }
 

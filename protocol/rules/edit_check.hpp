@@ -19,14 +19,14 @@ struct EditLimits {
   std::uint64_t touched_chunks_max = kTouchedChunksMax;
 };
 
-/// Checks a player's edit. A change of rights is none. Returns nullopt if it is allowed, otherwise the first reason of:
-/// bad_edit, unknown_material (the materials of mask and clipboard included), outside_world,
-/// too_large.
+/// Checks a player's edit, which must have voxels. Returns nullopt if it is allowed, otherwise the
+/// first reason of: bad_edit, unknown_material (the materials of mask and clipboard included),
+/// outside_world, too_large.
 std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits);
 
-/// Checks an edit that the server makes: to restore voxels, or to change rights. The limits of height and volume do not
-/// apply, because they may have been wider when the voxels were edited. The limit of touched chunks
-/// applies.
+/// Checks an edit that the server makes: to restore voxels, to change rights or to add materials. The
+/// limits of height and volume do not apply, because they may have been wider when the voxels were
+/// edited. The limit of touched chunks applies.
 std::optional<RejectReason> check_server_edit(const EditDescriptor& edit, const EditLimits& limits);
 
 /// Returns true if every voxel of the geometry's bounding box is at most `reach` voxels away:

@@ -14,14 +14,16 @@ struct CauseName {
   std::string_view name;
   Cause cause;
 };
-constexpr std::array<CauseName, 7> kCauses = {{{"player", Cause::player},
+constexpr std::array<CauseName, 8> kCauses = {{{"player", Cause::player},
                                                {"console", Cause::console},
                                                {"rollback", Cause::rollback},
                                                {"undo", Cause::undo},
                                                {"redo", Cause::redo},
                                                {"import", Cause::import},
-                                               {"rights", Cause::rights}}};
-constexpr const char* kCauseNames = "player, console, rollback, undo, redo, import or rights";
+                                               {"rights", Cause::rights},
+                                               {"materials", Cause::materials}}};
+constexpr const char* kCauseNames =
+    "player, console, rollback, undo, redo, import, rights or materials";
 
 CommandFilter::Author author_of(const std::string& word, CommandReader& reader) {
   if (word.starts_with('#')) {
@@ -55,6 +57,16 @@ bool take_filter(CommandReader& reader, CommandFilter& filter) {
     return false;
   }
   return true;
+}
+
+Result<Command, std::string> materials_command(const Words& words) {
+  if (words.size() == 1) return Command(MaterialsCommand{});
+  if (words.size() == 2) return Command(MaterialsCommand{words[1]});
+  if (words[1] != "add")
+    return failure("materials \"" + words[2] + "\": at most one word comes after materials");
+  if (words.size() != 3)
+    return failure("materials add: one file comes after it, in quotes if it has blanks");
+  return Command(AddMaterialsCommand{words[2]});
 }
 
 Result<Command, std::string> log_command(CommandReader reader) {
@@ -91,6 +103,8 @@ Result<Command, std::string> preview_command(CommandReader reader) {
   if (!reader.error().empty()) return failure("rollback preview " + reader.error());
   if (preview.filter.cause == Cause::rights)
     return failure("rollback preview cause \"rights\": rights undo SEQ takes these records back");
+  if (preview.filter.cause == Cause::materials)
+    return failure("rollback preview cause \"materials\": added materials stay");
   // A preview without filters would select the whole world, most likely by mistake.
   if (preview.filter == CommandFilter{}) {
     return failure(
@@ -139,12 +153,7 @@ Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us)
     if (!*rights) return failure(rights->error());
     return Command(**std::move(rights));
   }
-  if (name == "materials") {
-    if (words->size() > 2) {
-      return failure("materials \"" + (*words)[2] + "\": at most one word comes after materials");
-    }
-    return Command(MaterialsCommand{words->size() == 2 ? (*words)[1] : std::string()});
-  }
+  if (name == "materials") return materials_command(*words);
   if (name == "names" && words->size() > 1) {
     if ((*words)[1] != "release") return failure("names \"" + (*words)[1] + "\": release NAME");
     if (words->size() != 3)

@@ -45,6 +45,10 @@ struct MaterialsCommand {
   std::string part;  // lists the names that contain it; empty: all
   friend bool operator==(const MaterialsCommand&, const MaterialsCommand&) = default;
 };
+struct AddMaterialsCommand {
+  std::string file;
+  friend bool operator==(const AddMaterialsCommand&, const AddMaterialsCommand&) = default;
+};
 struct ReloadCommand {
   friend bool operator==(const ReloadCommand&, const ReloadCommand&) = default;
 };
@@ -86,10 +90,11 @@ struct RollbackListCommand {
   friend bool operator==(const RollbackListCommand&, const RollbackListCommand&) = default;
 };
 
-using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand,
-                             StopCommand, ReloadCommand, BackupCommand, UndoCommand, LogCommand,
-                             NamesCommand, ReleaseNameCommand, RollbackPreviewCommand,
-                             RollbackCommand, RollbackListCommand, RightsCommand>;
+using Command =
+    std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand, AddMaterialsCommand,
+                 StopCommand, ReloadCommand, BackupCommand, UndoCommand, LogCommand, NamesCommand,
+                 ReleaseNameCommand, RollbackPreviewCommand, RollbackCommand, RollbackListCommand,
+                 RightsCommand>;
 
 /// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate
 /// words; a word that contains blanks stands in double quotes. `now_us` (UTC) is the time to which

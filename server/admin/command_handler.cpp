@@ -8,6 +8,7 @@
 #include "server/admin/author_names.hpp"
 #include "server/admin/command_rules.hpp"
 #include "server/admin/log_line.hpp"
+#include "server/admin/material_file.hpp"
 #include "server/admin/material_list.hpp"
 #include "server/admin/name_list.hpp"
 #include "server/admin/player_list.hpp"
@@ -24,6 +25,14 @@ std::string memory_text(std::size_t bytes) {
   return std::to_string(bytes / (1024 * 1024)) + " MiB";
 }
 
+/// Returns how many materials were added, the record, and a line for each.
+std::string added_text(const AddedAt& at, const std::vector<MaterialRow>& rows) {
+  std::string text = std::to_string(rows.size()) + (rows.size() == 1 ? " material" : " materials") +
+                     " added (record " + std::to_string(at.seq) + ")";
+  for (const std::string& line : material_lines(at.first, rows)) text += "\n" + line;
+  return text;
+}
+
 StoreResult<AuthorNames> read_author_names(WorldReader& reader) {
   const auto rows = reader.players();
   if (!rows) return Unexpected<StoreError>{rows.error()};
@@ -35,14 +44,12 @@ StoreResult<AuthorNames> read_author_names(WorldReader& reader) {
 }  // namespace
 
 CommandHandler::CommandHandler(WorldServer& world, RollbackService& rollback,
-                               RollbackService::Workers& workers, MaterialTable materials,
-                               std::string world_folder, OperatorActions actions,
-                               RightsCommands::IsOperator is_operator)
+                               RollbackService::Workers& workers, std::string world_folder,
+                               OperatorActions actions, RightsCommands::IsOperator is_operator)
     : world_(world),
       rollback_(rollback),
       workers_(workers),
       rights_(world, workers, std::move(is_operator)),
-      materials_(std::move(materials)),
       world_folder_(std::move(world_folder)),
       actions_(std::move(actions)) {}
 
@@ -80,8 +87,10 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
   if (const auto* release = std::get_if<ReleaseNameCommand>(&*command))
     return release_name(release->name, reply);
   if (const auto* list = std::get_if<MaterialsCommand>(&*command)) {
-    return reply({material_list(materials_, list->part), true, true});
+    return reply({material_list(world_.materials(), list->part), true, true});
   }
+  if (const auto* add = std::get_if<AddMaterialsCommand>(&*command))
+    return add_materials(add->file, now, reply);
   if (run_action(*command, reply)) return;
   if (const auto* undo = std::get_if<UndoCommand>(&*command)) {
     if (caller.author == 0) {
@@ -199,15 +208,16 @@ void CommandHandler::log(const LogCommand& command, const Clocks& now, const Com
             auto text = std::make_shared<std::string>();
             auto wrong = std::make_shared<std::string>();
             workers_.run(
-                [on_disk, limit, text, wrong, materials = materials_](WorldReader& reader,
-                                                                      const Generator&) {
+                [on_disk, limit, text, wrong](WorldReader& reader, const Generator&) {
                   const auto names = read_author_names(reader);
                   const auto newest = newest_edits(reader, on_disk, limit);
+                  const auto materials = reader.materials();
                   if (!names) *wrong = names.error().message();
                   if (!newest) *wrong = newest.error().message();
+                  if (!materials) *wrong = materials.error().message();
                   if (!wrong->empty()) return;
                   for (const EditRecord& record : *newest) {
-                    *text += log_line(record, names->with_key(record.op.author), materials) + "\n";
+                    *text += log_line(record, names->with_key(record.op.author), *materials) + "\n";
                   }
                 },
                 [text, wrong, reply](const std::string& error) {
@@ -218,6 +228,28 @@ void CommandHandler::log(const LogCommand& command, const Clocks& now, const Com
                   reply({*text, true, true});
                 });
           });
+}
+
+void CommandHandler::add_materials(const std::string& file, const Clocks& now,
+                                   const CommandReply& reply) {
+  using Read = Result<std::vector<MaterialFileRow>, std::string>;
+  auto read = std::make_shared<Read>(std::vector<MaterialFileRow>());
+  workers_.run([read, file](WorldReader&, const Generator&) { *read = read_material_file(file); },
+               [this, read, file, now, reply](const std::string& error) {
+                 const std::string command = "materials add: ";
+                 if (!error.empty()) return refuse(reply, command + error);
+                 if (!*read) return refuse(reply, command + read->error());
+                 std::vector<MaterialRow> rows;
+                 for (const MaterialFileRow& each : **read) rows.push_back(each.row);
+                 const auto added = world_.add_materials(rows, now);
+                 if (added) return reply({added_text(*added, rows), true, true});
+                 TextError wrong{file, 0, "", added.error().what};
+                 if (const auto row = added.error().row) {
+                   wrong.line = (**read)[*row].line;
+                   wrong.key = "material[" + std::to_string(*row) + "]";
+                 }
+                 refuse(reply, command + wrong.message());
+               });
 }
 
 void CommandHandler::preview(const RollbackPreviewCommand& command, const Clocks& now,

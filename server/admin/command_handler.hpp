@@ -18,7 +18,7 @@ class CommandHandler {
  public:
   /// The references must outlive the handler.
   CommandHandler(WorldServer& world, RollbackService& rollback, RollbackService::Workers& workers,
-                 MaterialTable materials, std::string world_folder, OperatorActions actions,
+                 std::string world_folder, OperatorActions actions,
                  RightsCommands::IsOperator is_operator);
 
   /// Carries out one line. `reply` is called on the world strand and must not call this object.
@@ -35,6 +35,7 @@ class CommandHandler {
   void players(const CommandReply& reply);
   void names(const CommandReply& reply) const;
   void release_name(const std::string& name, const CommandReply& reply);
+  void add_materials(const std::string& file, const Clocks& now, const CommandReply& reply);
   void log(const LogCommand& command, const Clocks& now, const CommandReply& reply);
   void preview(const RollbackPreviewCommand& command, const Clocks& now, const CommandReply& reply);
   /// Looks up the authors that a filter names, on a worker. Calls `go_on` with the result, or
@@ -46,7 +47,6 @@ class CommandHandler {
   RollbackService& rollback_;
   RollbackService::Workers& workers_;
   RightsCommands rights_;
-  MaterialTable materials_;
   const std::string world_folder_;  // for the pictures of previews
   const OperatorActions actions_;
 };

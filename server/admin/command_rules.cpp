@@ -132,6 +132,7 @@ constexpr std::array kCommandRows = {
     row<ReleaseNameCommand>({Right::administer},
                             "names release NAME        free a name, so that the next player who "
                             "joins under it owns it"),
+    local_row<AddMaterialsCommand>("materials add FILE        add the materials of a file"),
     local_row<BackupCommand>(
         "backup DIR                copy the world to a new folder, while people go on playing"),
     local_row<ReloadCommand>("reload                    read the settings again"),
@@ -156,7 +157,7 @@ constexpr const char* kBoxHelp =
 constexpr const char* kFilterHelp =
     "FILTERS, any of: author NAME or author #N (several: any of them), "
     "since 1h or since 2026-11-21T23:57:42Z,\n"
-    "  until likewise, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights";
+    "  until likewise, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials";
 
 bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right, bool is_local) {
   if (rule.is_local) return is_local;

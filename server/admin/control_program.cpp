@@ -4,7 +4,9 @@
 #include <asio/local/stream_protocol.hpp>
 #include <asio/read_until.hpp>
 #include <asio/write.hpp>
+#include <filesystem>
 #include <ostream>
+#include <system_error>
 
 #include "common/core/text.hpp"
 #include "server/admin/control_socket.hpp"
@@ -15,6 +17,15 @@ namespace {
 
 bool is_quoted(const std::string& word) {
   return word.size() >= 2 && word.front() == '"' && word.back() == '"';
+}
+
+/// Returns the words of a command. FILE of `materials add FILE` becomes a whole path, because the
+/// server reads it and may run in another folder.
+std::vector<std::string> with_whole_path(std::vector<std::string> words) {
+  std::error_code ignored;
+  if (words.size() == 3 && words[0] == "materials" && words[1] == "add" && !is_quoted(words[2]))
+    words[2] = std::filesystem::absolute(words[2], ignored).string();
+  return words;
 }
 
 }  // namespace
@@ -31,7 +42,7 @@ std::string control_line(const std::vector<std::string>& words) {
 }
 
 Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out) {
-  std::string line = control_line(request.words);
+  std::string line = control_line(with_whole_path(request.words));
   if (!is_printable_utf8(line))
     return Unexpected<std::string>{"control: the command is not one line of UTF-8 text"};
   line += '\n';

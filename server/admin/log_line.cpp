@@ -4,6 +4,7 @@
 #include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/admin/command.hpp"
+#include "server/admin/material_file.hpp"
 #include "server/admin/rights_change_text.hpp"
 
 namespace runstone {
@@ -23,6 +24,8 @@ const char* name_of(EditKind kind) {
       return "paste";
     case EditKind::rights:
       return "rights";
+    case EditKind::materials:
+      return "materials";
   }
   return "?";
 }
@@ -43,6 +46,8 @@ std::string log_line(const EditRecord& record, const std::string& author,
   if (record.subject != 0) line += " of " + std::to_string(record.subject);
   if (const RightsChange* change = rights_change_of(record.edit))
     return line + " " + rights_change_text(*change);
+  if (const AddedMaterials* added = added_materials_of(record.edit))
+    return line + " " + added_materials_text(*added);
   const VoxelBox box = bounding_box(record.edit);
   const EditKind kind = kind_of(record.edit);
   line += std::string(" ") + (restores(record.cause) ? "restored" : name_of(kind)) + " " +

@@ -74,7 +74,9 @@ Result<void, std::string> PreviewPictures::draw_both(WorldReader& reader,
   auto child =
       DrawChild::start({.program = "", .answer_limit = kAnswerMax, .should_continue = wanted});
   if (!child) return Unexpected<std::string>{child.error()};
-  if (auto sent = child->world(edge_, reader.meta().materials); !sent) return sent;
+  const auto materials = reader.materials();
+  if (!materials) return Unexpected<std::string>{materials.error().message()};
+  if (auto sent = child->world(edge_, *materials); !sent) return sent;
 
   std::set<ChunkKey> changed, around;
   for (const ChangedChunk& chunk : changed_) changed.insert(chunk.key);

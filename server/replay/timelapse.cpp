@@ -133,7 +133,9 @@ Result<TimelapseReport, std::string> make_timelapse(
   report.last = moments->back();
   report.chunks = world->chunk_count();
   report.renderer = child->renderer();
-  Result<void, std::string> sent = child->world(edge, reader.meta().materials);
+  const auto materials = reader.materials();
+  if (!materials) return failure(materials.error().message());
+  Result<void, std::string> sent = child->world(edge, *materials);
   const auto send = [&](const ChunkKey& key, const RunChunk& voxels) {
     if (sent) sent = child->chunk(key, voxels);
     ++report.chunks_sent;

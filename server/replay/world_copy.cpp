@@ -19,6 +19,9 @@ constexpr std::size_t kSliceChunks = 256;
 Result<WorldCopy, std::string> fill(WorldReader& source, WorldAt& world, const std::string& folder,
                                     const WorldAt::Progress& progress) {
   WorldMeta meta = source.meta();
+  auto materials = source.materials();
+  if (!materials) return failure(materials.error().message());
+  meta.materials = *std::move(materials);
   draw_identity(meta);
   auto store = create_world(folder, meta);
   if (!store) return failure(store.error().message());

@@ -46,16 +46,15 @@ OperatorActions on_strand(WorldStrand& strand, const OperatorActions& actions) {
 }  // namespace
 
 CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReaders& readers,
-                             std::set<PublicKey> operators, MaterialTable materials,
-                             const std::string& world_folder, const OperatorActions& actions)
+                             std::set<PublicKey> operators, const std::string& world_folder,
+                             const OperatorActions& actions)
     : strand_(strand),
       world_(world),
       readers_(readers),
       operators_(std::move(operators)),
       rollback_(world, *this,
                 [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); }),
-      handler_(world, rollback_, *this, std::move(materials), world_folder,
-               on_strand(strand, actions),
+      handler_(world, rollback_, *this, world_folder, on_strand(strand, actions),
                [this](const PublicKey& key) { return operators_.contains(key); }) {}
 
 void CommandRunner::run(const std::string& line, CommandReply reply) {

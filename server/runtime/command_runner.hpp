@@ -19,8 +19,8 @@ class CommandRunner final : private RollbackService::Workers {
   /// `strand`, `world` and `readers` must outlive the object. `operators`: the keys of the players
   /// who may give every command.
   CommandRunner(WorldStrand& strand, WorldServer& world, WorldReaders& readers,
-                std::set<PublicKey> operators, MaterialTable materials,
-                const std::string& world_folder, const OperatorActions& actions);
+                std::set<PublicKey> operators, const std::string& world_folder,
+                const OperatorActions& actions);
 
   /// Carries out a command of the console or the control socket. The replies come on the world
   /// strand.

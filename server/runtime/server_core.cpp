@@ -51,15 +51,18 @@ Result<void, std::string> ServerCore::recover() {
   if (!epoch) return Unexpected<std::string>{epoch.error().message()};
   start->log.epoch = *epoch;
 
-  const WorldMeta& meta = store_.meta();
+  auto materials = store_.materials();
+  if (!materials) return failure(materials.error());
+  WorldConfig world_config = world_config_of(config_, store_.meta());
+  world_config.materials = *std::move(materials);
   world_ = std::make_unique<WorldServer>(
-      world_config_of(config_, meta), *start, environment_,
+      std::move(world_config), *start, environment_,
       [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
   const auto replayed = replay_log(store_, *start, *world_);
   if (!replayed) return Unexpected<std::string>{replayed.error()};
 
   commands_ = std::make_unique<CommandRunner>(strand_, *world_, readers_, config_.operators,
-                                              meta.materials, config_.world, actions_);
+                                              config_.world, actions_);
   DurableLog::Options options;
   options.queued_records_max = config_.log_queue_records;
   options.reserve_bytes = config_.disk_reserve_mib << 20;

@@ -49,6 +49,11 @@ class LogReader : public virtual WorldInfo {
   /// Calls `each` for all changes of rights, in order, until it returns false. They include those
   /// that a compaction moved out of the log.
   virtual StoreResult<void> read_rights(const EachRecord& each) = 0;
+  /// Returns the material table after edit `at`: meta().materials, and the rows that records of the
+  /// log added. Fails (corrupt) if a record does not continue the table.
+  virtual StoreResult<MaterialTable> materials(Sequence at) = 0;
+  /// Returns the material table in force.
+  StoreResult<MaterialTable> materials() { return materials(kSequenceMax); }
 };
 
 }  // namespace runstone

@@ -1,5 +1,6 @@
 // MetaTable: the values that are pinned when a world is created, and the few that change: epoch,
-// checkpoint, the highest author number, head and end of the log, and the folds of tables.
+// checkpoint, the highest author number, head and end of the log, the folds of tables, and the
+// material table, which compactions extend.
 // Threads: the one that owns the store.
 #pragma once
 #include <cstdint>

@@ -52,6 +52,7 @@ StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
 }
 
 StoreResult<void> SqliteStore::compact(Sequence keyframe) {
+  MaterialTable materials;
   auto compacted = write([&]() -> StoreResult<void> {
     const auto moment = stored_moment(keyframe);  // its digest is checked
     if (!moment) return failed(moment.error());
@@ -71,6 +72,9 @@ StoreResult<void> SqliteStore::compact(Sequence keyframe) {
         return put;
     }
     if (auto kept = keep_rights(keyframe); !kept) return kept;
+    auto kept_materials = keep_materials(keyframe);
+    if (!kept_materials) return failed(kept_materials.error());
+    materials = *std::move(kept_materials);
     if (auto put = meta_table_.put_log_head(moment->at); !put) return put;
     if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", keyframe);
         !gone)
@@ -81,6 +85,7 @@ StoreResult<void> SqliteStore::compact(Sequence keyframe) {
     return keyframes_.remove(keyframe);
   });
   segments_.forget();
+  if (compacted) meta_.materials = std::move(materials);
   return compacted;
 }
 

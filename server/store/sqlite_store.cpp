@@ -128,7 +128,7 @@ StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> recor
     if (const auto numbers = validate_fields(record); !numbers)
       return refuse(where, numbers.error().what);
   }
-  return {};
+  return check_continues_materials(records);
 }
 
 StoreResult<void> SqliteStore::append(std::span<const PlayerRow> players,

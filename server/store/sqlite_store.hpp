@@ -57,6 +57,8 @@ class SqliteStore final : public Store {
   StoreResult<void> read_log(Sequence first, Sequence last, const EachRecord& each) override;
   StoreResult<void> query_log(const LogQuery& query, const EachRecord& each) override;
   StoreResult<void> read_rights(const EachRecord& each) override;
+  using LogReader::materials;
+  StoreResult<MaterialTable> materials(Sequence at) override;
 
   // ChunkReader
   StoreResult<bool> has_base() override;
@@ -147,6 +149,12 @@ class SqliteStore final : public Store {
   StoreResult<void> complete_base(const StoredMoment& moment);
   /// Copies the changes of rights that the log holds up to `last` to the table of their own.
   StoreResult<void> keep_rights(Sequence last);
+  /// Writes the material table after edit `last` to `meta` and returns it.
+  StoreResult<MaterialTable> keep_materials(Sequence last);
+  /// Appends the rows of a record. Fails (corrupt) if they do not continue the table.
+  StoreResult<void> append_materials(const EditRecord& record, MaterialTable& table) const;
+  /// Fails (bad_request) if new materials among the records do not continue the material table.
+  StoreResult<void> check_continues_materials(std::span<const EditRecord> records);
   StoreResult<void> delete_up_to(const char* text, Sequence last);
   StoreResult<void> check_keyframe(const Keyframe& keyframe, const LogRange& range);
   StoreResult<void> save_chunks(ChunkTable& table, ChunkSpan chunks);

@@ -126,6 +126,7 @@ StoreResult<void> SqliteStore::check() {
   if (const auto rows = name_claims(); !rows) return failed(rows.error());
   const auto rights = read_rights([](const EditRecord&) { return true; });
   if (!rights) return failed(rights.error());
+  if (const auto table = materials(); !table) return failed(table.error());
   if (const auto seq = checkpoint(); !seq) return failed(seq.error());
   // A watermark that the log proves to be missing is named before the rows are counted.
   if (auto marks = check_marks_cover_log(); !marks) return marks;

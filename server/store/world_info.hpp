@@ -13,12 +13,13 @@
 
 namespace runstone {
 
-/// The values that `meta` pins when a world is created. None of them changes afterwards.
+/// The values that `meta` pins when a world is created. None of them changes afterwards, with one
+/// exception: a compaction appends to `materials` the rows that it removes from the log.
 struct WorldMeta {
   WorldId world_id{};
   std::uint16_t chunk_edge = 32;
   GeneratorPin generator;
-  MaterialTable materials;
+  MaterialTable materials;  // before the first edit of the log; LogReader::materials() has all
   std::array<std::uint8_t, 32> server_key_seed{};  // Ed25519 identity of this world's server
   WorldPos spawn;
 };

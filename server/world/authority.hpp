@@ -59,6 +59,8 @@ class Authority {
   /// already_resolved. An edit of a player must pass check_edit(), any other edit
   /// check_server_edit(). Requires that the log has room.
   std::optional<RejectReason> submit(const EditOffer& offer);
+  /// Edits may use the materials below `count` from now on.
+  void set_material_count(std::size_t count) { limits_.material_count = count; }
   /// Resolves an operation that was rejected by a check outside of Authority.
   void reject(const OperationId& op, RejectReason reason) { resolved_.reject(op, reason); }
 

@@ -9,6 +9,7 @@
 #include "protocol/codec/commit_encoder.hpp"
 #include "server/interest/audiences.hpp"
 #include "server/world/delivery.hpp"
+#include "server/world/material_handlers.hpp"
 #include "server/world/rights_handlers.hpp"
 
 namespace runstone {
@@ -123,6 +124,7 @@ bool commit_and_broadcast(WorldState& world, LargeEdits large, const Clocks& now
   ++world.counters.commits;
   world.counters.edits_ordered += batch->records.size();
   apply_rights(world, batch->records);
+  apply_materials(world, batch->records);
   std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);
   world.environment.log_append(std::move(players), std::move(batch->records));
   send_batch(world, *batch, now);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "protocol/codec/key_fingerprint.hpp"
+#include "server/world/material_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
 #include "server/world/protected_ground.hpp"
@@ -135,6 +136,8 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   const SessionAccepted accepted{mine.author,
                                  world.authority.resolved().of(mine.author, mine.instance)};
   if (!send_or_close(world, session, accepted)) return;
+  send_materials(world, session);  // those that were added since Welcome
+  if (world.find(session) == nullptr) return;
   start_ground(world, session);
   send_all_poses_to(world, session);
 }
@@ -159,6 +162,7 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   Welcome welcome = welcome_of(world, mine.key);
   welcome.encoding = choose_encoding(world.config, hello.encodings);
   welcome.features = mine.features;
+  mine.materials_known = welcome.materials.size();
   world.random(welcome.challenge);
   welcome.signature =
       sign(world.config.server_keys, server_transcript(hello, welcome, mine.binding));

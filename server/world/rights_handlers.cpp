@@ -165,7 +165,7 @@ Result<Sequence, std::string> change_rights(WorldState& world, const RightsChang
   // What waits was allowed, and is ordered before the change that may forbid it. A claim does not
   // hurry: players could use it to send large edits faster than others.
   if (has_power(world, actor)) commit_all_edits(world, now);
-  const OperationId op{author, world.rights_instance, ++world.rights_client_seq};
+  const OperationId op{author, world.change_instance, ++world.change_client_seq};
   const EditOffer offer{op, Cause::rights, now.steady_us, rights_edit(change), 0};
   const ServerEditsResult ordered = order_server_edits(world, {offer}, author, now);
   if (ordered.state == ServerEditsResult::State::ordered) return world.rights_seq;

@@ -1,4 +1,5 @@
-// Server edits: edits that the server makes itself: rollback, undo, redo, and changes of rights.
+// Server edits: edits that the server makes itself: rollback, undo, redo, changes of rights, and new
+// materials.
 #pragma once
 #include <cstddef>
 #include <vector>

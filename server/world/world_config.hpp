@@ -31,7 +31,7 @@ struct WorldConfig {
   std::uint16_t chunk_edge = 32;
   HeightLimits heights;  // edits must stay within them
   WorldPos spawn;
-  MaterialTable materials;
+  MaterialTable materials;  // in force; it grows when materials are added
   KeyPair server_keys;
   std::uint64_t features = kFeaturesKnown;  // optional parts of the protocol
   std::string public_address;               // HOST or HOST:PORT for links; empty: not known

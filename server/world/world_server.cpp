@@ -15,6 +15,7 @@
 #include "server/world/delivery.hpp"
 #include "server/world/digest_check_scheduler.hpp"
 #include "server/world/handshake_handlers.hpp"
+#include "server/world/material_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
 #include "server/world/protected_ground.hpp"
@@ -215,6 +216,13 @@ Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& cha
                                                          const RightsActor& actor, AuthorId author,
                                                          const Clocks& now) {
   return runstone::change_rights(*state_, change, actor, author, now);
+}
+
+const MaterialTable& WorldServer::materials() const { return state_->config.materials; }
+
+Result<AddedAt, MaterialsRefusal> WorldServer::add_materials(const std::vector<MaterialRow>& rows,
+                                                             const Clocks& now) {
+  return runstone::add_materials(*state_, rows, now);
 }
 
 std::vector<RefusalRow> WorldServer::refusals() const { return state_->refusals.rows(); }

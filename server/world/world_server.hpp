@@ -17,6 +17,7 @@
 #include "common/rights/change_rules.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/limits/recent_refusals.hpp"
+#include "server/world/added_at.hpp"
 #include "server/world/clocks.hpp"
 #include "server/world/server_edits.hpp"
 #include "server/world/world_config.hpp"
@@ -98,6 +99,13 @@ class WorldServer {
   std::optional<AuthorId> author_of(const PublicKey& key) const;
   /// Frees a name. Returns the claim that it had, or the reason why nothing changed.
   Result<NameClaim, std::string> release_name(const std::string& name);
+
+  // Materials.
+  /// Returns the material table in force.
+  const MaterialTable& materials() const;
+  /// See material_handlers.hpp.
+  Result<AddedAt, MaterialsRefusal> add_materials(const std::vector<MaterialRow>& rows,
+                                                  const Clocks& now);
 
   // Rights.
   const RightsState& rights() const;

@@ -51,7 +51,8 @@ struct SentGround {
 /// Times are of the steady clock.
 struct WorldSession {
   SessionStage state = SessionStage::greeting;
-  std::uint64_t features = 0;  // in force, from welcome on
+  std::uint64_t features = 0;       // in force, from welcome on
+  std::size_t materials_known = 0;  // rows of the material table that it has, from welcome on
   TimeUs connected_us = 0;
   TimeUs last_message_us = 0;
   AddressBlock address{};

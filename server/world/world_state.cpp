@@ -44,9 +44,9 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
   players.begin_above(start.author_max);
   for (const NameClaim& claim : start.name_claims) names.restore(claim);
   for (const RightsRecord& record : start.rights) rights.apply(record.change, record.origin);
-  std::array<std::uint8_t, sizeof rights_instance> instance{};
+  std::array<std::uint8_t, sizeof change_instance> instance{};
   random(instance);
-  std::memcpy(&rights_instance, instance.data(), sizeof rights_instance);
+  std::memcpy(&change_instance, instance.data(), sizeof change_instance);
   for (const HighWater& watermark : start.resolved)
     authority.resolved().raise({watermark.author, watermark.instance, watermark.resolved});
 }

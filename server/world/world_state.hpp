@@ -47,9 +47,10 @@ struct WorldState {
   Players players;
   NameClaims names;
   RightsState rights;
-  ClientInstance rights_instance = 0;    // of the changes of rights that this run makes
-  ClientSequence rights_client_seq = 0;  // of the last one
-  Sequence rights_seq = 0;               // likewise, in the log; 0: none in this run
+  ClientInstance change_instance = 0;    // of the changes of rights and materials of this run
+  ClientSequence change_client_seq = 0;  // of the last one
+  Sequence rights_seq = 0;               // of the last change of rights; 0: none in this run
+  Sequence materials_seq = 0;            // likewise, of new materials
   BudgetLedger edit_ledger;
   BudgetLedger load_ledger;  // a unit is a chunk that is generated or read for a view
   AddressLedger claim_ledger;

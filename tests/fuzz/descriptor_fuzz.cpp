@@ -37,12 +37,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     RUNSTONE_ASSERT(again == Bytes(in.begin(), in.end()));
     RUNSTONE_ASSERT(again.size() <= descriptor_bytes_max(kind_of(*edit)));
     const VoxelBox box = bounding_box(*edit);
-    RUNSTONE_ASSERT(touches(*edit, box) && counted_voxels(*edit) > 0);
+    RUNSTONE_ASSERT(touches(*edit, box) == has_voxels(*edit));
+    RUNSTONE_ASSERT((counted_voxels(*edit) > 0) == has_voxels(*edit));
     if (std::holds_alternative<Paste>(edit->shape)) check_paste(*edit);
     const std::uint64_t bound = touched_chunks_bound(*edit, 128);
     if (bound <= 1000) {
       const auto chunks = touched_chunks(*edit, 128);
-      RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= bound);
+      RUNSTONE_ASSERT(chunks.empty() != has_voxels(*edit) && chunks.size() <= bound);
       for (const ChunkCoord at : chunks) RUNSTONE_ASSERT(touches(*edit, box_of(at, 128)));
     }
   }

@@ -162,7 +162,7 @@ bool oracle_covers(const EditDescriptor& edit, VoxelPos at, OracleFault fault) {
     }
     return false;
   }
-  if (std::holds_alternative<RightsEdit>(edit.shape)) return false;
+  if (!has_voxels(edit)) return false;
   // |d| < r + 1/2, with both sides doubled and squared.
   const auto& sphere = std::get<FillSphere>(edit.shape);
   const std::int64_t dx = 2 * (static_cast<std::int64_t>(at.x) - sphere.centre.x);

@@ -296,7 +296,8 @@ Commit any_commit(SplitMix64& rng) {
     seq += 1 + (rng.below(2) == 0 ? 0 : rng.below(1'000'000));
     e.seq = seq;
     e.op = {rng.below(1000), rng.next(), any64(rng)};
-    e.cause = static_cast<Cause>(rng.below(kCauseMax));  // a commit has no change of rights
+    // A commit has only edits with voxels.
+    e.cause = static_cast<Cause>(rng.below(static_cast<std::uint32_t>(Cause::rights)));
     e.submitted_us = any_time(rng);
     e.ordered_us = any_time(rng);
     e.edit = any_edit(rng);
@@ -401,7 +402,8 @@ MaterialsAdded any_materials_added(SplitMix64& rng) {
   MaterialTable table = any_materials(rng);
   if (table.size() == 1) RUNSTONE_ASSERT(table.add({"one", {}, Visibility::empty, {}}).has_value());
   MaterialsAdded m;
-  m.rows.assign(table.rows().begin() + 1, table.rows().end());
+  for (const MaterialInfo& info : table.rows().subspan(1))
+    m.rows.push_back({info.name, info.colour, info.visibility});
   const auto ids = static_cast<std::uint32_t>(kMaterialCountMax - m.rows.size());
   m.first = static_cast<Material>(1 + rng.below(ids));
   return m;

@@ -85,6 +85,23 @@ inline EditDescriptor sample_rights_edit(SplitMix64& rng) {
   return rights_edit(Protect{std::move(box)});
 }
 
+/// Returns materials with random names, and with ids that need not be the next ones of a world.
+inline EditDescriptor sample_materials_edit(SplitMix64& rng) {
+  AddedMaterials added;
+  added.first = static_cast<Material>(1 + rng.below(1000));
+  for (std::uint32_t i = 0; i <= rng.below(3); ++i) {
+    MaterialRow row{"m" + std::to_string(i) + "_" + std::to_string(rng.below(100)), {}, {}};
+    row.visibility = static_cast<Visibility>(rng.below(3));
+    for (std::uint8_t& channel : row.colour) channel = static_cast<std::uint8_t>(rng.next());
+    if (row.visibility == Visibility::opaque) row.colour[3] = 255;
+    added.rows.push_back(row);
+  }
+  return materials_edit(std::move(added));
+}
+
+/// The number of causes whose edits have voxels: 0 .. kVoxelCauses - 1.
+inline constexpr auto kVoxelCauses = static_cast<std::uint32_t>(Cause::rights);
+
 /// Returns record `seq` of two players with two client processes each. Client sequences and times
 /// rise with `seq`.
 inline EditRecord sample_record(SplitMix64& rng, Epoch epoch, Sequence seq) {
@@ -93,7 +110,7 @@ inline EditRecord sample_record(SplitMix64& rng, Epoch epoch, Sequence seq) {
   const auto author = static_cast<AuthorId>(1 + rng.below(2));
   record.op = {author, 0xf000000000000000ULL + rng.below(2), seq};
   record.time_us = 1'700'000'000'000'000 + static_cast<TimeUs>(seq) * 1000;
-  record.cause = static_cast<Cause>(rng.below(kCauseMax));  // an edit of voxels
+  record.cause = static_cast<Cause>(rng.below(kVoxelCauses));
   record.edit = sample_edit(rng);
   if (record.cause == Cause::rollback || record.cause == Cause::undo ||
       record.cause == Cause::redo) {

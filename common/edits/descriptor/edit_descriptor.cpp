@@ -89,6 +89,11 @@ Result<void> validate_shape(const RightsEdit& shape) {
   return validate(*shape.change);
 }
 
+Result<void> validate_shape(const MaterialsEdit& shape) {
+  if (shape.added == nullptr) return fail(ErrorCode::bad_value, "edit of materials without rows");
+  return validate(*shape.added);
+}
+
 void write_position(ByteWriter& w, VoxelPos p) {
   w.svarint(p.x);
   w.svarint(p.y);
@@ -130,6 +135,10 @@ void write_shape(ByteWriter& w, const RightsEdit& shape) {
   Bytes bytes;
   encode(*shape.change, bytes);
   w.bytes(bytes);
+}
+
+void write_shape(ByteWriter& w, const MaterialsEdit& shape) {
+  write_added_materials(w, *shape.added);
 }
 
 std::int32_t read_coordinate(ByteReader& r) {
@@ -197,6 +206,7 @@ bool is_kind(std::uint8_t tag) {
     case EditKind::fill_stroke:
     case EditKind::paste:
     case EditKind::rights:
+    case EditKind::materials:
       return true;
   }
   return false;
@@ -227,6 +237,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
       return read_paste(r);
     case EditKind::rights:
       return RightsEdit{std::make_shared<const RightsChange>(read_rights_change(r))};
+    case EditKind::materials:
+      return MaterialsEdit{std::make_shared<const AddedMaterials>(read_added_materials(r))};
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
@@ -235,13 +247,17 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
 
 EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
-      EditKind::set_voxel,   EditKind::fill_box, EditKind::fill_sphere,
-      EditKind::fill_stroke, EditKind::paste,    EditKind::rights};
+      EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
+      EditKind::paste,     EditKind::rights,   EditKind::materials};
   return kKinds[edit.shape.index()];
 }
 
 EditDescriptor rights_edit(RightsChange change) {
   return {RightsEdit{std::make_shared<const RightsChange>(std::move(change))}, {}, kEmpty};
+}
+
+EditDescriptor materials_edit(AddedMaterials added) {
+  return {MaterialsEdit{std::make_shared<const AddedMaterials>(std::move(added))}, {}, kEmpty};
 }
 
 Result<void> validate(const EditDescriptor& edit) {
@@ -255,10 +271,8 @@ Result<void> validate(const EditDescriptor& edit) {
   if (std::holds_alternative<Paste>(edit.shape) && edit.material != kEmpty) {
     return fail(ErrorCode::bad_value, "paste with a material of its own");
   }
-  if (std::holds_alternative<RightsEdit>(edit.shape) &&
-      (edit.material != kEmpty || edit.mask != Mask{})) {
-    return fail(ErrorCode::bad_value, "edit of rights with a mask or a material");
-  }
+  if (!has_voxels(edit) && (edit.material != kEmpty || edit.mask != Mask{}))
+    return fail(ErrorCode::bad_value, "edit without voxels with a mask or a material");
   return std::visit([](const auto& shape) { return validate_shape(shape); }, edit.shape);
 }
 
@@ -311,8 +325,8 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
 
 Result<EditDescriptor> decode_voxel_edit(ByteView in) {
   auto edit = decode_descriptor(in);
-  if (edit && rights_change_of(*edit) != nullptr)
-    return fail(ErrorCode::unknown_kind, "a change of rights is no edit of voxels");
+  if (edit && !has_voxels(*edit))
+    return fail(ErrorCode::unknown_kind, "a change of rights or materials is no edit of voxels");
   return edit;
 }
 

@@ -2,7 +2,8 @@
 // pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
 // in the log and in exports. The meaning of a kind is frozen; a change is a new kind.
-// One kind has no voxels: it changes who may do what, and stands in the same order as the others.
+// Two kinds have no voxels: one changes who may do what, the other adds materials. They stand in the
+// same order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "common/core/result.hpp"
 #include "common/edits/clipboard/clipboard.hpp"
 #include "common/edits/clipboard/orientation.hpp"
+#include "common/edits/descriptor/added_materials.hpp"
 #include "common/rights/rights_change.hpp"
 
 namespace runstone {
@@ -27,7 +29,8 @@ enum class EditKind : std::uint8_t {
   fill_sphere = 3,
   fill_stroke = 4,
   paste = 6,
-  rights = 7
+  rights = 7,
+  materials = 8
 };
 
 /// The condition on the present voxels of the geometry that an edit may write. The values are
@@ -106,14 +109,23 @@ struct RightsEdit {
   }
 };
 
+/// Adds materials to the world. It has no voxels and touches no chunk.
+struct MaterialsEdit {
+  std::shared_ptr<const AddedMaterials> added;
+  friend bool operator==(const MaterialsEdit& a, const MaterialsEdit& b) {
+    return a.added == b.added || (a.added != nullptr && b.added != nullptr && *a.added == *b.added);
+  }
+};
+
 // The order is that of EditKind.
-using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit>;
+using EditShape =
+    std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit, MaterialsEdit>;
 
 struct EditDescriptor {
   EditShape shape;
   Mask mask;
   // kEmpty removes voxels. It is kEmpty for a paste, whose cells have their own materials, and for
-  // a change of rights, which has no mask either.
+  // edits without voxels, which have no mask either.
   Material material = kEmpty;
   friend bool operator==(const EditDescriptor&, const EditDescriptor&) = default;
 };
@@ -133,15 +145,29 @@ inline const RightsChange* rights_change_of(const EditDescriptor& edit) {
   const auto* rights = std::get_if<RightsEdit>(&edit.shape);
   return rights == nullptr ? nullptr : rights->change.get();
 }
+/// Returns the descriptor that adds materials.
+EditDescriptor materials_edit(AddedMaterials added);
+/// Returns the materials of a descriptor that adds some; null for the other kinds.
+inline const AddedMaterials* added_materials_of(const EditDescriptor& edit) {
+  const auto* materials = std::get_if<MaterialsEdit>(&edit.shape);
+  return materials == nullptr ? nullptr : materials->added.get();
+}
+/// Returns false if the kind of the edit has no voxels.
+inline bool has_voxels(const EditDescriptor& edit) {
+  return !std::holds_alternative<RightsEdit>(edit.shape) &&
+         !std::holds_alternative<MaterialsEdit>(edit.shape);
+}
 
 /// Returns the maximum number of bytes of a descriptor of this kind.
 constexpr std::size_t descriptor_bytes_max(EditKind kind) {
   if (kind == EditKind::paste) return 64 + kClipboardBytesMax;
   if (kind == EditKind::rights) return 64 + kRightsChangeBytesMax;
+  if (kind == EditKind::materials) return 64 + kAddedMaterialsBytesMax;
   return kind == EditKind::fill_stroke ? 1600 : 64;
 }
 // Maximum over all kinds.
 inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::paste);
+static_assert(descriptor_bytes_max(EditKind::materials) <= kDescriptorBytesMax);
 
 /// Fails with the first field outside its range: a position beyond the world, an empty or oversized
 /// box, a radius, the points of a stroke, a paste without a clipboard. A clipboard is always valid.
@@ -159,7 +185,7 @@ Bytes encode(const EditDescriptor& edit);
 /// Decodes exactly one descriptor. Fails if bytes are left over or are not canonical. The result is
 /// valid.
 Result<EditDescriptor> decode_descriptor(ByteView in);
-/// Does the same and fails for a change of rights, which players neither send nor receive as an
+/// Does the same and fails for a kind without voxels, which players neither send nor receive as an
 /// edit.
 Result<EditDescriptor> decode_voxel_edit(ByteView in);
 

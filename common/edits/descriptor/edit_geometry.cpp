@@ -31,14 +31,11 @@ VoxelBox box_of_shape(const FillStroke& shape) {
           {box.max.x + r + 1, box.max.y + r + 1, box.max.z + r + 1}};
 }
 VoxelBox box_of_shape(const Paste& shape) { return box_of(shape); }
+constexpr VoxelPos kNowhere{-kWorldLimit, -kWorldLimit, -kWorldLimit};
 VoxelBox box_of_shape(const RightsEdit& shape) {
-  constexpr VoxelPos kNowhere{-kWorldLimit, -kWorldLimit, -kWorldLimit};
   return place_of(*shape.change).value_or(VoxelBox{kNowhere, kNowhere});
 }
-
-bool has_voxels(const EditDescriptor& edit) {
-  return !std::holds_alternative<RightsEdit>(edit.shape);
-}
+VoxelBox box_of_shape(const MaterialsEdit&) { return {kNowhere, kNowhere}; }
 
 // Returns an upper bound for the voxels of the segment's capsule. Across the longest axis of the
 // segment, each of its n + w layers (w = 2r + 1) is a part of an ellipse of area at most sqrt(3) pi

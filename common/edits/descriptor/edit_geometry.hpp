@@ -10,9 +10,9 @@
 
 namespace runstone {
 
-/// Returns the smallest box that holds the geometry, mask ignored. An edit of rights has no voxels:
-/// its box is the ground that the change protects, so that the log can be searched for it, or else
-/// the empty box at the lowest corner of the world. Cost: O(1); stroke: O(points).
+/// Returns the smallest box that holds the geometry, mask ignored. An edit without voxels has the
+/// empty box at the lowest corner of the world, unless it protects ground: then it has that box, so
+/// that the log can be searched for it. Cost: O(1); stroke: O(points).
 VoxelBox bounding_box(const EditDescriptor& edit);
 
 /// Returns the smallest box that holds the capsule from point `i` of the stroke to the next one.
@@ -21,7 +21,7 @@ VoxelBox segment_box(const FillStroke& stroke, std::size_t i);
 /// Returns the number of voxels that limits count for the geometry, mask ignored. It is never below
 /// the true number. It is exact except for strokes: their segments are counted one by one, from
 /// above (docs/edit-log.md), so the count also bounds their work. For a paste it is the number of
-/// touched cells; for an edit of rights, 0. Cost: O(1); sphere: O(r^2); stroke: O(points).
+/// touched cells; for an edit without voxels, 0. Cost: O(1); sphere: O(r^2); stroke: O(points).
 std::uint64_t counted_voxels(const EditDescriptor& edit);
 
 /// Returns true if the geometry has a voxel in this box. The answer is exact. Cost: O(1); stroke:

@@ -9,7 +9,7 @@ bool validate(const HeightLimits& limits) {
 }
 
 bool within(const EditDescriptor& edit, const HeightLimits& limits) {
-  if (std::holds_alternative<RightsEdit>(edit.shape)) return true;
+  if (!has_voxels(edit)) return true;
   // The bounding box is tight: each kind has a voxel in its lowest and in its highest layer.
   const VoxelBox box = bounding_box(edit);
   return box.min.y >= limits.y_min && box.max.y <= limits.y_max;

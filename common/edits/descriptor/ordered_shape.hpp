@@ -107,8 +107,8 @@ void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, A
     }
   } else if (const auto* paste = std::get_if<Paste>(&edit.shape)) {
     for_each_pasted_box(*paste, chunk, order, part);
-  } else if (std::holds_alternative<RightsEdit>(edit.shape)) {
-    return;  // it has no voxels
+  } else if (!has_voxels(edit)) {
+    return;
   } else if (const auto shape = clip(edit, origin, extent, order)) {
     part(*shape, edit.material);
   }

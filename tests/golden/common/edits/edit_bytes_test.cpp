@@ -82,6 +82,40 @@ TEST_CASE("descriptor bytes of a paste are pinned", "[edits][golden]") {
                0xff, 0xff, 0xff, 0x01});                  // (2^21 - 1) * 2 + 1
 }
 
+const AddedMaterials kWoolAndIce{
+    300,
+    {{"wool", {0xb8, 0x32, 0x2f, 0xff}, Visibility::opaque},
+     {"ice \u00e9", {0xcf, 0xe8, 0xf0, 0x48}, Visibility::transparent}}};
+
+TEST_CASE("descriptor bytes of new materials are pinned", "[edits][golden]") {
+  check_bytes(materials_edit(kWoolAndIce),
+              {0x08, 0x00, 0x00,                      // new materials, no mask, no material
+               0xac, 0x02, 0x01,                      // the first is 300, and there are two
+               0x04, 'w',  'o',  'o',  'l',           //
+               0xb8, 0x32, 0x2f, 0xff, 0x01,          // colour, opaque
+               0x06, 'i',  'c',  'e',  ' ',  0xc3,    //
+               0xa9, 0xcf, 0xe8, 0xf0, 0x48, 0x02});  // colour, transparent
+}
+
+TEST_CASE("record bytes of new materials are pinned", "[edits][golden]") {
+  EditRecord record;
+  record.version = {2, 300};
+  record.op = {0, 1, 5};
+  record.cause = Cause::materials;
+  record.edit = materials_edit({1, {{"a", {1, 2, 3, 255}, Visibility::opaque}}});
+  const Bytes golden = {0x01, 0x00, 0x02, 0xac, 0x02, 0x00,  // version, log, epoch, seq, author
+                        0x01, 0,    0,    0,    0,    0,    0,    0,  // instance
+                        0x05, 0x00, 0x07, 0x00,  // client sequence, time, cause, subject
+                        0xff, 0xff, 0xff, 0xff, 0x03, 0xff, 0xff, 0xff, 0xff, 0x03,  // -2^29
+                        0xff, 0xff, 0xff, 0xff, 0x03, 0x00, 0x00, 0x00,              // empty
+                        0x0c, 0x08, 0x00, 0x00, 0x01, 0x00, 0x01, 'a',               // descriptor
+                        0x01, 0x02, 0x03, 0xff, 0x01};
+  CHECK(encode_record(record) == golden);
+  const auto decoded = decode_record(golden);
+  REQUIRE(decoded.has_value());
+  CHECK(*decoded == record);
+}
+
 TEST_CASE("record bytes are pinned", "[edits][golden]") {
   const EditRecord record = pinned_record();
   const Bytes golden = {

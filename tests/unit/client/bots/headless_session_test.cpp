@@ -43,6 +43,7 @@ struct Bench {
     welcome.materials = default_material_table();
     welcome.server_key = keys.public_key;
     welcome.view_radius_max = 4;
+    welcome.features = features;
     welcome.signature = sign(keys, server_transcript(hello, welcome, std::nullopt));
     give(welcome);
     REQUIRE(std::holds_alternative<ClientAuth>(session->take_outgoing().at(0)));
@@ -81,6 +82,7 @@ struct Bench {
   OperationId own(ClientSequence seq) const { return {kAuthor, config.instance, seq}; }
   const Violations& violations() const { return session->versions().violations(); }
 
+  std::uint64_t features = 0;
   SessionConfig config;
   KeyPair keys = test::keys(9);
   FleetStatistics fleet;
@@ -255,4 +257,22 @@ TEST_CASE("a message that was not requested ends the session with its reason", "
   CHECK(bench.session->wants_close());
   REQUIRE(bench.session->end().has_value());
   CHECK(bench.session->end()->reason == GoodbyeReason::unexpected_message);
+}
+
+TEST_CASE("a headless session takes new materials, and ends if they do not fit",
+          "[bots][headless]") {
+  Bench bench;
+  const auto first = static_cast<Material>(default_material_table().size());
+  const MaterialsAdded added{first, {{"lime", {1, 2, 3, 255}, Visibility::opaque}}};
+  bench.give(added);
+  CHECK(bench.session->wants_close());  // the feature is not in force
+  CHECK(bench.session->end()->reason == GoodbyeReason::unexpected_message);
+  bench.features = kFeatureMaterials;
+  bench.session->disconnected();
+  bench.greet(1, 0);
+  bench.give(added);
+  CHECK_FALSE(bench.session->wants_close());
+  CHECK(bench.session->welcome()->materials.find("lime") == first);
+  bench.give(added);
+  CHECK(bench.session->end()->reason == GoodbyeReason::malformed_message);
 }

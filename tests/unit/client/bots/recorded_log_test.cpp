@@ -113,3 +113,25 @@ TEST_CASE("the world must have the materials that the edits use, by id and name"
   CHECK(other.error() == "material 4 is \"" + default_material_table()[4].name +
                              "\" in the file and \"other\" in the world");
 }
+
+TEST_CASE("materials that the recorded log adds are known from there on", "[bots][play]") {
+  const auto first = static_cast<Material>(default_material_table().size());
+  EditRecord added = voxel(2, 0, 5'000, 0);
+  added.cause = Cause::materials;
+  added.edit = materials_edit({first, {{"lime", {1, 2, 3, 255}, Visibility::opaque}}});
+  const std::vector<RlogPlayer> players = {{2, {}, "bob"}};
+  const auto read = [&](const std::vector<EditRecord>& records) {
+    const Bytes file = rlog_of(world_of_defaults(), players, records, {0, 2});
+    return read_recorded_log(source_of(file));
+  };
+  const auto log = read({voxel(1, 2, 5'000, 1), added, voxel(3, 2, 6'000, first)});
+  REQUIRE(log.has_value());
+  CHECK(log->edits == 2);
+  CHECK(log->materials.find("lime") == first);
+  CHECK(check_materials(*log, default_material_table()).error().find("\"lime\" in the file") !=
+        std::string::npos);
+  CHECK_FALSE(read({voxel(1, 2, 5'000, first)}).has_value());
+  added.edit = materials_edit({1, {{"lime", {1, 2, 3, 255}, Visibility::opaque}}});
+  CHECK(read({voxel(1, 2, 5'000, 1), added}).error() ==
+        "edit 2: materials do not continue the table");
+}

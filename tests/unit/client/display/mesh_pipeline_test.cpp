@@ -44,8 +44,9 @@ struct Fixture {
     pipeline.mesh();  // meshes
     pipeline.mesh();  // queues the meshes for upload
   }
-  void edit(VoxelPos at) {
-    REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{at}, {}, 1}), {}).has_value());
+  void edit(VoxelPos at, Material material = 1) {
+    const EditDescriptor set{SetVoxel{at}, {}, material};
+    REQUIRE(replica.receive(world.commit({9, 1, ++edits}, set), {}).has_value());
     turn();
   }
   void order() {
@@ -222,6 +223,35 @@ TEST_CASE_METHOD(Fixture, "when materials change their look, all chunks are mesh
                 [] { return std::vector<Marker>{}; });
   take_frames(pipeline.frames_presented() + 1);
   CHECK(screen_log.lines()[screen_log.lines().size() - 2] == "upload 0 quads 0");
+}
+
+TEST_CASE_METHOD(Fixture, "a chunk with a material that was unknown is meshed again when it comes",
+                 "[client_app][materials]") {
+  const auto meshes = [this] {
+    ClientReport report;
+    pipeline.add_to(report);
+    return report.meshes.jobs;
+  };
+  edit({5, 5, 5});
+  edit({6, 5, 5}, 2);  // beside it, of a material that the table lacks: taken for opaque
+  CHECK(pipeline.gpu_bytes() == 10 * sizeof(Quad));
+  MaterialTable grown = pipeline.materials();
+  REQUIRE(grown.append(2, std::vector<MaterialRow>{{"ice", {9, 9, 9, 90}, Visibility::transparent}})
+              .has_value());
+  const auto before = meshes();
+  pipeline.set_materials(grown);
+  CHECK(pipeline.materials().size() == 3);
+  turn();
+  CHECK(meshes() == before + 1);
+  CHECK(pipeline.gpu_bytes() == 11 * sizeof(Quad));  // the opaque voxel is seen through the other
+  edit({6, 5, 6}, 2);  // no face between the two of ice, whose other faces merge
+  CHECK(pipeline.gpu_bytes() == 12 * sizeof(Quad));
+  REQUIRE(grown.append(3, std::vector<MaterialRow>{{"lime", {9, 9, 9, 255}, Visibility::opaque}})
+              .has_value());
+  const auto unused = meshes();
+  pipeline.set_materials(grown);
+  turn();
+  CHECK(meshes() == unused);  // no chunk has it
 }
 
 TEST_CASE_METHOD(Fixture, "the bytes of meshes count while their chunk is in view",

@@ -124,3 +124,43 @@ TEST_CASE("the built-in table keeps its ids and the thesis' rules", "[materials]
   CHECK(table[*table.find("water")].visibility == Visibility::transparent);
   CHECK(table[*table.find("glass")].visibility == Visibility::transparent);
 }
+
+TEST_CASE("rows are appended together or not at all, and the error names the bad one",
+          "[materials]") {
+  MaterialTable table;
+  REQUIRE(table.add(named("stone")).has_value());
+  const MaterialRow wool{"wool", {1, 2, 3, 255}, Visibility::opaque};
+  const MaterialRow ice{"ice", {1, 2, 3, 90}, Visibility::transparent};
+  const auto refused = [&](Material first, const std::vector<MaterialRow>& rows) {
+    const MaterialTable before = table;
+    const auto appended = table.append(first, rows);
+    REQUIRE_FALSE(appended.has_value());
+    CHECK(table == before);
+    return appended.error();
+  };
+  CHECK(refused(1, {wool}).code == ErrorCode::broken_invariant);
+  CHECK(refused(3, {wool}).code == ErrorCode::broken_invariant);
+  CHECK(refused(2, {wool, {"stone", {}, Visibility::empty}}).offset == 1);
+  CHECK(refused(2, {wool, ice, wool}).offset == 2);
+  CHECK(refused(2, {{"air", {}, Visibility::empty}}).code == ErrorCode::bad_value);
+  REQUIRE(table.append(2, std::vector{wool, ice}).has_value());
+  CHECK(table.size() == 4);
+  CHECK(table.find("ice") == Material{3});
+  CHECK(table[3].visibility == Visibility::transparent);
+  CHECK(table.append(4, {}).has_value());
+}
+
+TEST_CASE("a full table takes no rows", "[materials]") {
+  MaterialTable table;
+  while (table.size() < kMaterialCountMax - 1)
+    REQUIRE(table.add(named(std::to_string(table.size()))).has_value());
+  const auto last = static_cast<Material>(table.size());
+  const MaterialRow one{"one", {1, 2, 3, 255}, Visibility::opaque};
+  const MaterialRow two{"two", {1, 2, 3, 255}, Visibility::opaque};
+  const auto refused = table.append(last, std::vector{one, two});
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(refused.error().code == ErrorCode::limit_exceeded);
+  CHECK(refused.error().offset == 1);
+  CHECK(table.append(last, std::vector{one}).has_value());
+  CHECK(table.check_rows(std::vector{two}).error().code == ErrorCode::limit_exceeded);
+}

@@ -166,3 +166,35 @@ TEST_CASE("the first material is air", "[materials]") {
                  "surface = {}\n")
             .key == "material[0]");
 }
+
+TEST_CASE("a file of added materials has rows with their lines, without air", "[materials]") {
+  const auto rows = parse_material_rows(
+      "# wool\n[[material]]\nname = \"lime\"\ncolour = \"#80ff20\"\n\n"
+      "[[material]]\nname = \"ice\"\ncolour = \"#a0c0ff80\"\nvisibility = \"transparent\"\n",
+      "wool.toml");
+  REQUIRE(rows.has_value());
+  REQUIRE(rows->size() == 2);
+  CHECK((*rows)[0].row == MaterialRow{"lime", {0x80, 0xff, 0x20, 0xff}, Visibility::opaque});
+  CHECK((*rows)[0].line == 2);
+  CHECK((*rows)[1].row == MaterialRow{"ice", {0xa0, 0xc0, 0xff, 0x80}, Visibility::transparent});
+  CHECK((*rows)[1].line == 6);
+}
+
+TEST_CASE("an error in a file of added materials names file, line and key", "[materials]") {
+  const auto message = [](const std::string& toml) {
+    const auto rows = parse_material_rows(toml, "wool.toml");
+    REQUIRE_FALSE(rows.has_value());
+    return rows.error().message();
+  };
+  CHECK(message("") == "wool.toml: material: is missing");
+  CHECK(message("[[material]]\nname = 3\n") == "wool.toml:2: material[0].name: must be a string");
+  CHECK(message("[[material]]\nname = \"a\"\ncolour = \"#80\"\n") ==
+        "wool.toml:3: material[0].colour: must be \"#rrggbb\" or \"#rrggbbaa\"");
+  CHECK(message("[[material]]\nname = \"a\"\ncolour = \"#808080\"\n"
+                "[material.generate]\nsurface = {}\n") ==
+        "wool.toml:4: material[0].generate: a material that is added later cannot be terrain");
+  const std::string twice = "[[material]]\nname = \"a\"\ncolour = \"#808080\"\n";
+  CHECK(message(twice + twice) == "wool.toml:4: material[1]: name is already taken");
+  CHECK(message("[[material]]\nname = \"air\"\nvisibility = \"empty\"\n") ==
+        "wool.toml:1: material[0]: name is already taken");
+}

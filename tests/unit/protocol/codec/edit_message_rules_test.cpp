@@ -107,6 +107,7 @@ TEST_CASE("a commit is refused if its fields contradict each other", "[protocol]
       [](auto& c) { c.edit.author = 1ULL << 32; },
       [](auto& c) { c.edit.cause = kCauseMax + 1; },
       [](auto& c) { c.edit.cause = static_cast<std::uint8_t>(Cause::rights); },
+      [](auto& c) { c.edit.cause = static_cast<std::uint8_t>(Cause::materials); },
       [](auto& c) { c.edit.subject = 10; },  // its own subject
       [=](auto& c) { c.edit.ordered_us = max + 1; },
       [=](auto& c) { c.edit.ordered_us = -max - 1; },

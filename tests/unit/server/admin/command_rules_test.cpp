@@ -45,7 +45,8 @@ TEST_CASE("each command needs its right", "[admin][rights]") {
                            "names release ana", "stop", "rights undo 3"}) {
     CHECK(rule(line).any_of == RightSet{Right::administer});
   }
-  for (const char* line : {"backup copy", "reload"}) CHECK(rule(line).is_local);
+  for (const char* line : {"backup copy", "reload", "materials add wool.toml"})
+    CHECK(rule(line).is_local);
 }
 
 TEST_CASE("a refusal names the missing right and the caller's role", "[admin][rights]") {

@@ -34,6 +34,8 @@ TEST_CASE("commands without arguments are parsed", "[admin][command]") {
   parsed<PlayersCommand>("players");
   CHECK(parsed<MaterialsCommand>("materials").part.empty());
   CHECK(parsed<MaterialsCommand>("materials wool").part == "wool");
+  CHECK(parsed<MaterialsCommand>("materials add").part == "add");
+  CHECK(parsed<AddMaterialsCommand>("materials add \"my wool.toml\"").file == "my wool.toml");
   parsed<StopCommand>("stop");
   CHECK_FALSE(parsed<UndoCommand>("undo").is_redo);
   CHECK(parsed<UndoCommand>("redo").is_redo);
@@ -88,6 +90,8 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
         "rollback preview \"by\": author, since, until, box, cause or picture");
   CHECK(mistake("rollback preview cause rights") ==
         "rollback preview cause \"rights\": rights undo SEQ takes these records back");
+  CHECK(mistake("rollback preview cause materials") ==
+        "rollback preview cause \"materials\": added materials stay");
   CHECK(mistake("log since yesterday") ==
         "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, "
         "1w) or when (2026-11-21T23:57:42Z, in UTC)");
@@ -99,11 +103,13 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("log box 1 2 3 4 5 6000000000") ==
         "log box \"6000000000\": a whole number from -536870912 to 536870911");
   CHECK(mistake("log cause rage") ==
-        "log cause \"rage\": player, console, rollback, undo, redo, import or rights");
+        "log cause \"rage\": player, console, rollback, undo, redo, import, rights or materials");
   CHECK(mistake("log limit 0") == "log limit \"0\": a number from 1 to 1000");
   CHECK(mistake("log \"a") == "a \" is missing at the end");
   CHECK(mistake("materials wool red") ==
         "materials \"red\": at most one word comes after materials");
+  CHECK(mistake("materials add my wool.toml") ==
+        "materials add: one file comes after it, in quotes if it has blanks");
   CHECK(mistake("backup") == "backup: the new folder comes after it");
   CHECK(mistake("reload now") == "reload \"now\": nothing comes after reload");
   CHECK(mistake("undo it") == "undo \"it\": nothing comes after undo");
@@ -113,7 +119,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
 
 TEST_CASE("answers and filters use the same names of causes", "[admin][command]") {
   for (const Cause cause : {Cause::player, Cause::console, Cause::rollback, Cause::undo,
-                            Cause::redo, Cause::import, Cause::rights}) {
+                            Cause::redo, Cause::import, Cause::rights, Cause::materials}) {
     CHECK(parsed<LogCommand>("log cause " + std::string(name_of(cause))).filter.cause == cause);
   }
 }

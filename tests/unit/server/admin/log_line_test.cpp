@@ -37,3 +37,21 @@ TEST_CASE("the edit of an undo, redo or rollback is called restored in the log",
           begin + std::string(name_of(cause)) + " of 9100 restored 7 8 9");
   }
 }
+
+TEST_CASE("a line of the log about new materials has their ids and names", "[server]") {
+  AddedMaterials added{35, {}};
+  for (int i = 0; i < 8; ++i) added.rows.push_back({"m" + std::to_string(i), {0, 0, 0, 255}, {}});
+  EditRecord record;
+  record.version = {2, 9120};
+  record.time_us = 1'795'305'462'000'000;
+  record.cause = Cause::materials;
+  const std::string begin = "9120 2026-11-21T23:57:42Z the server materials 35 m0, 36 m1, ";
+  const auto line_of = [&] {
+    record.edit = materials_edit(added);
+    return log_line(record, "the server", MaterialTable());
+  };
+  CHECK(line_of().starts_with(begin));
+  CHECK(line_of().ends_with(", 42 m7"));
+  added.rows.push_back({"m8", {0, 0, 0, 255}, {}});
+  CHECK(line_of().ends_with(", 42 m7 and 1 more"));
+}

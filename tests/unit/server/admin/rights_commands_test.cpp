@@ -14,7 +14,7 @@ constexpr SessionId kFirst = 1, kSecond = 2;  // the key of session n is that of
 /// A world with two players, and its commands.
 struct RightsBench : RollbackBench {
   RightsBench()
-      : handler(bench.server, service, *this, config().materials, folder.path(), {},
+      : handler(bench.server, service, *this, folder.path(), {},
                 [this](const PublicKey& key) { return key == operator_key; }) {
     join(kFirst);
     join(kSecond);

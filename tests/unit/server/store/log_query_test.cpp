@@ -24,7 +24,7 @@ std::vector<EditRecord> mixed_records(std::uint64_t seed, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     records.push_back(session.next());
     if (rng.below(10) == 0) records.back().edit = sample_edit(rng);
-    if (rng.below(20) == 0) records.back().cause = static_cast<Cause>(1 + rng.below(kCauseMax));
+    if (rng.below(20) == 0) records.back().cause = static_cast<Cause>(1 + rng.below(kVoxelCauses));
     if (records.back().cause == Cause::rights) records.back().edit = sample_rights_edit(rng);
     if (i > 0 && rng.below(8) == 0) records.back().time_us = records[i - 1].time_us;  // equal times
     if (i > 0) records.back().time_us = std::max(records.back().time_us, records[i - 1].time_us);

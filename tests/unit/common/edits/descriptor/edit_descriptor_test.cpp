@@ -3,8 +3,10 @@
 #include "common/edits/clipboard/clipboard_builder.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_memory.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
 #include "tests/support/edit_oracle.hpp"
+#include "tests/support/sample_world.hpp"
 
 namespace runstone::test {
 namespace {
@@ -34,7 +36,8 @@ EditRecord random_record(SplitMix64& rng) {
   if (rng.below(2) == 0) record.log = static_cast<LogId>(any(~0U));
   record.edit = record.cause == Cause::rights
                     ? rights_edit(Unprotect{"box" + std::to_string(rng.below(10))})
-                    : random_edit_anywhere(rng);
+                : record.cause == Cause::materials ? sample_materials_edit(rng)
+                                                   : random_edit_anywhere(rng);
   return record;
 }
 
@@ -307,7 +310,7 @@ TEST_CASE("a record has room for descriptors of later kinds, up to its own bound
     REQUIRE_FALSE(decoded.has_value());
     return decoded.error();
   };
-  constexpr std::uint8_t kLater = 8;
+  constexpr std::uint8_t kLater = 9;
   CHECK(with_descriptor_of(65, 1).code == ErrorCode::limit_exceeded);  // the kind's bound
   // The length is allowed; this build does not know the kind.
   CHECK(with_descriptor_of(65, kLater).code == ErrorCode::unknown_kind);
@@ -344,11 +347,38 @@ TEST_CASE("a change of rights is an edit without voxels", "[edits]") {
   CHECK(error_of({RightsEdit{}, {}, kEmpty}) == ErrorCode::bad_value);
 }
 
+TEST_CASE("new materials are an edit without voxels", "[edits]") {
+  const EditDescriptor wool = materials_edit({35, {{"wool", {1, 2, 3, 255}, Visibility::opaque}}});
+  const auto decoded = decode_descriptor(encode(wool));
+  REQUIRE(decoded.has_value());
+  CHECK(*decoded == wool);
+  CHECK_FALSE(decode_voxel_edit(encode(wool)).has_value());
+  CHECK_FALSE(has_voxels(wool));
+  CHECK(touched_chunks(wool, 16).empty());
+  CHECK(touched_chunks_bound(wool, 16) == 0);
+  CHECK(counted_voxels(wool) == 0);
+  CHECK(bounding_box(wool).empty());
+  CHECK_FALSE(touches(wool, {{-9, -9, -9}, {9, 9, 9}}));
+  std::vector<IndexSpan> spans;
+  append_spans(wool, {0, 0, 0}, Extent::cube(16), AxisOrder::xyz, spans);
+  CHECK(spans.empty());
+  CHECK(memory_bytes(wool) > sizeof(EditDescriptor));
+  CHECK(error_of({wool.shape, {}, 1}) == ErrorCode::bad_value);
+  CHECK(error_of({wool.shape, {MaskKind::only_empty, kEmpty}, kEmpty}) == ErrorCode::bad_value);
+  CHECK(error_of({MaterialsEdit{}, {}, kEmpty}) == ErrorCode::bad_value);
+}
+
 TEST_CASE("the cause of a record is that of its edit", "[edits]") {
   const EditDescriptor grant = rights_edit(GrantRole{{}, kModeratorRole});
   CHECK(validate_fields({{1, 1}, {}, 0, Cause::rights, grant}).has_value());
   CHECK_FALSE(validate_fields({{1, 1}, {}, 0, Cause::console, grant}).has_value());
   CHECK_FALSE(validate_fields({{1, 1}, {}, 0, Cause::rights, kVoxel}).has_value());
+  const EditDescriptor wool = materials_edit({35, {{"wool", {1, 2, 3, 255}, {}}}});
+  CHECK(validate_fields({{1, 1}, {}, 0, Cause::materials, wool}).has_value());
+  for (const Cause other : {Cause::console, Cause::rights})
+    CHECK_FALSE(validate_fields({{1, 1}, {}, 0, other, wool}).has_value());
+  for (const EditDescriptor& edit : {kVoxel, grant})
+    CHECK_FALSE(validate_fields({{1, 1}, {}, 0, Cause::materials, edit}).has_value());
 }
 
 TEST_CASE("a record's numbers stay within 63 bits and its subject before itself", "[edits]") {

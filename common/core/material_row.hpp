@@ -1,0 +1,31 @@
+// MaterialRow: what everybody sees of a material: its row in the material table, without the rule
+// by which generators use it.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "common/core/result.hpp"
+#include "common/core/visibility.hpp"
+
+namespace runstone {
+
+/// sRGB and alpha. Alpha is below 255 only for materials that are not opaque.
+using MaterialColour = std::array<std::uint8_t, 4>;
+
+struct MaterialRow {
+  std::string name;  // unique in a table; 1 .. 64 bytes of UTF-8 without control characters
+  MaterialColour colour{0, 0, 0, 255};
+  Visibility visibility = Visibility::opaque;
+  friend bool operator==(const MaterialRow&, const MaterialRow&) = default;
+};
+
+inline constexpr std::size_t kMaterialNameBytesMax = 64;
+
+/// Fails (bad_value) for a bad name, and for an opaque material with alpha below 255.
+Result<void> validate_material(std::string_view name, const MaterialColour& colour,
+                               Visibility visibility);
+
+}  // namespace runstone

@@ -1,0 +1,57 @@
+#include "common/edits/descriptor/added_materials.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+namespace runstone {
+
+Result<void> validate(const AddedMaterials& added) {
+  if (added.rows.empty()) return fail(ErrorCode::bad_value, "no materials are added");
+  if (added.rows.size() > kAddedMaterialsMax)
+    return fail(ErrorCode::limit_exceeded, "too many materials are added");
+  if (added.first == kEmpty || added.first + added.rows.size() > kMaterialCountMax)
+    return fail(ErrorCode::bad_value, "ids of added materials out of range");
+  std::vector<std::string_view> names;
+  names.reserve(added.rows.size());
+  for (const MaterialRow& row : added.rows) {
+    if (row.visibility > Visibility::transparent)
+      return fail(ErrorCode::bad_value, "unknown visibility");
+    if (auto sound = validate_material(row.name, row.colour, row.visibility); !sound) return sound;
+    names.push_back(row.name);
+  }
+  std::sort(names.begin(), names.end());
+  if (std::adjacent_find(names.begin(), names.end()) != names.end())
+    return fail(ErrorCode::bad_value, "two added materials have one name");
+  return {};
+}
+
+void write_added_materials(ByteWriter& w, const AddedMaterials& added) {
+  w.varint(added.first);
+  w.varint(added.rows.size() - 1);
+  for (const MaterialRow& row : added.rows) {
+    w.varint(row.name.size());
+    w.bytes({reinterpret_cast<const std::uint8_t*>(row.name.data()), row.name.size()});
+    w.bytes(row.colour);
+    w.u8(static_cast<std::uint8_t>(row.visibility));
+  }
+}
+
+AddedMaterials read_added_materials(ByteReader& r) {
+  AddedMaterials added;
+  added.first = static_cast<Material>(r.varint_max(0xffff, "material id exceeds 16 bits"));
+  const std::uint64_t count =
+      1 + r.varint_max(kAddedMaterialsMax - 1, "too many materials are added");
+  while (r.ok() && added.rows.size() < count) {
+    MaterialRow row;
+    const std::uint64_t length = r.varint_max(kMaterialNameBytesMax, "material name too long");
+    const ByteView name = r.bytes(static_cast<std::size_t>(length));
+    row.name.assign(name.begin(), name.end());
+    const ByteView colour = r.bytes(row.colour.size());
+    std::copy(colour.begin(), colour.end(), row.colour.begin());
+    row.visibility = static_cast<Visibility>(r.u8());
+    added.rows.push_back(std::move(row));
+  }
+  return added;
+}
+
+}  // namespace runstone

@@ -1,0 +1,51 @@
+#include "server/admin/material_file.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kRowsInLine = 8;
+
+}  // namespace
+
+Result<std::vector<MaterialFileRow>, std::string> read_material_file(const std::string& file) {
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(file, error);
+  if (!is_file) return failure(file + ": " + (error ? error.message() : "is no file"));
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return failure(file + ": cannot be read");
+  std::string toml(kMaterialFileBytesMax + 1, '\0');
+  in.read(toml.data(), static_cast<std::streamsize>(toml.size()));
+  toml.resize(static_cast<std::size_t>(in.gcount()));
+  if (toml.size() > kMaterialFileBytesMax)
+    return failure(file + ": is larger than " + std::to_string(kMaterialFileBytesMax) + " bytes");
+  auto rows = parse_material_rows(toml, file);
+  if (!rows) return failure(rows.error().message());
+  return *std::move(rows);
+}
+
+std::vector<std::string> material_lines(Material first, std::span<const MaterialRow> rows) {
+  std::vector<std::string> lines;
+  lines.reserve(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    lines.push_back(std::to_string(first + i) + " " + rows[i].name);
+  return lines;
+}
+
+std::string added_materials_text(const AddedMaterials& added) {
+  const std::span<const MaterialRow> rows(added.rows);
+  std::string text;
+  for (const std::string& line :
+       material_lines(added.first, rows.first(std::min(rows.size(), kRowsInLine)))) {
+    text += (text.empty() ? "" : ", ") + line;
+  }
+  if (rows.size() > kRowsInLine)
+    text += " and " + std::to_string(rows.size() - kRowsInLine) + " more";
+  return text;
+}
+
+}  // namespace runstone

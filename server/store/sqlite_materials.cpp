@@ -1,0 +1,69 @@
+// The part of SqliteStore that knows the material table: `meta` has the table before the first edit
+// of the log, and records of the log append to it.
+#include <string>
+#include <utility>
+
+#include "server/store/sqlite_result.hpp"
+#include "server/store/sqlite_store.hpp"
+
+namespace runstone {
+
+StoreResult<MaterialTable> SqliteStore::materials(Sequence at) {
+  return at_one_moment<MaterialTable>([&]() -> StoreResult<MaterialTable> {
+    // The row is read anew: since this store was opened, a compaction may have moved records into it.
+    const auto rows = meta_table_.read_all();
+    if (!rows) return failed(rows.error());
+    auto meta = meta_of(*rows);
+    if (!meta) {
+      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "meta key=" + meta.error(),
+                                     "is missing or has an impossible value"}};
+    }
+    MaterialTable table = std::move(meta->materials);
+    StoreResult<void> appended;
+    LogQuery in_log;
+    in_log.cause = Cause::materials;
+    in_log.last = at;
+    const auto read = query_log(in_log, [&](const EditRecord& record) {
+      appended = append_materials(record, table);
+      return appended.has_value();
+    });
+    if (!read) return failed(read.error());
+    if (!appended) return failed(appended.error());
+    return table;
+  });
+}
+
+StoreResult<void> SqliteStore::append_materials(const EditRecord& record,
+                                                MaterialTable& table) const {
+  const AddedMaterials& added = *added_materials_of(record.edit);
+  const auto appended = table.append(added.first, added.rows);
+  if (appended) return {};
+  return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(),
+                                 "edit_log seq=" + std::to_string(record.version.seq),
+                                 appended.error().what}};
+}
+
+StoreResult<void> SqliteStore::check_continues_materials(std::span<const EditRecord> records) {
+  std::optional<MaterialTable> table;
+  for (const EditRecord& record : records) {
+    if (added_materials_of(record.edit) == nullptr) continue;
+    if (!table) {
+      auto read = materials(kSequenceMax);
+      if (!read) return failed(read.error());
+      table = *std::move(read);
+    }
+    if (const auto fits = append_materials(record, *table); !fits)
+      return refuse(fits.error().where, fits.error().what);
+  }
+  return {};
+}
+
+StoreResult<MaterialTable> SqliteStore::keep_materials(Sequence last) {
+  auto table = materials(last);
+  if (!table) return table;
+  if (const auto put = meta_table_.put("materials", to_toml(*table)); !put)
+    return failed(put.error());
+  return table;
+}
+
+}  // namespace runstone

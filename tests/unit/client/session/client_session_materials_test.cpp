@@ -1,0 +1,92 @@
+// What a session does with materials that are added while it is connected.
+#include "tests/unit/client/session/session_bench.hpp"
+
+namespace runstone::test {
+
+using namespace session_bench;
+
+namespace {
+
+const std::vector<MaterialRow> kLime = {{"lime", {1, 2, 3, 255}, Visibility::opaque}};
+const auto kFirst = static_cast<Material>(default_material_table().size());
+
+struct MaterialSession : SessionBench {
+  void open_with(std::uint64_t features) {
+    greet();
+    Welcome welcome = server.make_welcome();
+    welcome.features = features;
+    welcome.signature =
+        sign(server.keys_of_server, server_transcript(server.hello, welcome, std::nullopt));
+    receive(welcome);
+    receive(SessionAccepted{6, 0});
+    REQUIRE(session.is_open());
+    static_cast<void>(sent());
+  }
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(MaterialSession, "an edit with a new material is predicted as soon as it is known",
+                 "[session][materials]") {
+  open_with(kFeatureMaterials);
+  CHECK((server.hello.features & kFeatureMaterials) != 0);
+  CHECK_FALSE(session.submit(set({1, 1, 1}, kFirst), now, now).has_value());
+  receive(MaterialsAdded{kFirst, kLime});
+  CHECK(session.is_open());
+  CHECK(session.welcome()->materials.find("lime") == kFirst);
+  CHECK(session.submit(set({1, 1, 1}, kFirst), now, now).has_value());
+  CHECK_FALSE(session.submit(set({1, 1, 1}, kFirst + 1), now, now).has_value());
+  pong();
+  session.tick(now);
+  CHECK(take<EditRequest>(sent()).size() == 1);
+}
+
+TEST_CASE_METHOD(MaterialSession,
+                 "new materials that do not fit the client's table end the session",
+                 "[session][materials]") {
+  open_with(kFeatureMaterials);
+  MaterialsAdded wrong{kFirst, kLime};
+  SECTION("a gap") { wrong.first = static_cast<Material>(kFirst + 1); }
+  SECTION("an overlap") { wrong.first = static_cast<Material>(kFirst - 1); }
+  SECTION("a name that is taken") { wrong.rows[0].name = default_material_table()[1].name; }
+  receive(wrong);
+  REQUIRE(session.end().has_value());
+  CHECK(session.end()->reason == GoodbyeReason::malformed_message);
+  CHECK_FALSE(session.end()->final);
+  CHECK(session.welcome()->materials == default_material_table());
+}
+
+TEST_CASE_METHOD(MaterialSession,
+                 "without the feature, and before the session is open, they end it",
+                 "[session][materials]") {
+  SECTION("the feature is not in force") {
+    open_with(kFeatureRights);
+    receive(MaterialsAdded{kFirst, kLime});
+  }
+  SECTION("before session accepted") {
+    greet();
+    Welcome welcome = server.make_welcome();
+    welcome.features = kFeatureMaterials;
+    welcome.signature =
+        sign(server.keys_of_server, server_transcript(server.hello, welcome, std::nullopt));
+    receive(welcome);
+    receive(MaterialsAdded{kFirst, kLime});
+    receive(SessionAccepted{6, 0});
+  }
+  REQUIRE(session.end().has_value());
+  CHECK(session.end()->reason == GoodbyeReason::unexpected_message);
+}
+
+TEST_CASE_METHOD(MaterialSession, "another connection takes the table of its welcome",
+                 "[session][materials]") {
+  open_with(kFeatureMaterials);
+  receive(MaterialsAdded{kFirst, kLime});
+  session.disconnected();
+  open_with(kFeatureMaterials);  // a server that lost the record
+  CHECK(session.welcome()->materials == default_material_table());
+  CHECK_FALSE(session.submit(set({1, 1, 1}, kFirst), now, now).has_value());
+  receive(MaterialsAdded{kFirst, kLime});
+  CHECK(session.submit(set({1, 1, 1}, kFirst), now, now).has_value());
+}
+
+}  // namespace runstone::test
