@@ -19,6 +19,10 @@ bool is_printable_utf8(std::string_view text);
 /// Cost: O(bytes).
 bool is_plain_name(std::string_view text);
 
+/// Returns true if the text has a character that is invisible, that changes the direction of the text
+/// around it, or that is a blank other than U+0020. Requires well-formed UTF-8. Cost: O(bytes).
+bool has_unseen_character(std::string_view text);
+
 /// Returns the longest prefix of well-formed `text` that has at most `bytes_max` bytes and cuts no
 /// character.
 std::string_view cut_utf8(std::string_view text, std::size_t bytes_max);

@@ -88,7 +88,7 @@ struct Welcome {
 struct ClientAuth {
   Signature signature{};
   std::string ticket;  // an invite token (invite_token.hpp); empty: none
-  std::optional<PasswordKey> password_key;
+  std::optional<PasswordKey> password_key = std::nullopt;
   friend bool operator==(const ClientAuth&, const ClientAuth&) = default;
 };
 struct SessionAccepted {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "protocol/codec/key_fingerprint.hpp"
+#include "server/world/chat_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
 #include "server/world/protected_ground.hpp"
@@ -137,6 +138,7 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   if (!send_or_close(world, session, accepted)) return;
   start_ground(world, session);
   send_all_poses_to(world, session);
+  send_recent_chat(world, session);
 }
 
 }  // namespace
