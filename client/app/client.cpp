@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -77,7 +78,8 @@ Client::Client(ClientOptions options, const Script* script)
       tool_(session_, player_, pipeline_.recorder()),
       budget_(options_.memory_mib << 20, {options_.view_radius, options_.view_radius_v}),
       view_(session_, player_, budget_.radii()),
-      actions_(session_, player_, pipeline_, tool_, view_, options_.screenshot_dir) {
+      chat_(session_, script == nullptr && ::isatty(STDIN_FILENO) == 1),
+      actions_(session_, player_, pipeline_, tool_, view_, chat_, options_.screenshot_dir) {
   shows_ground_ = options_.show_protected;
   spdlog::info("renderer={}", pipeline_.renderer_name());
   if (script != nullptr) runner_.emplace(*script, actions_);
@@ -110,6 +112,7 @@ int Client::run_turns(const volatile std::sig_atomic_t& stop) {
     poll_window(now_us);
     pipeline_.take_drawn();
     log_players(now_us);
+    chat_.step();
     view_.update_completeness(now_us);
     if (runner_) runner_->step(now_us);
     flush();  // local edits go first, because following the player may take long

@@ -16,6 +16,7 @@
 #include "client/app/player.hpp"
 #include "client/app/player_log.hpp"
 #include "client/app/script_actions.hpp"
+#include "client/app/terminal_chat.hpp"
 #include "client/app/threaded_session.hpp"
 #include "client/app/view_follower.hpp"
 #include "client/display/mesh_pipeline.hpp"
@@ -84,6 +85,7 @@ class Client {
   EditTool tool_;
   MemoryBudget budget_;
   ViewFollower view_;
+  TerminalChat chat_;
   ScriptActions actions_;
   std::optional<ScriptRunner> runner_;
 

@@ -15,13 +15,14 @@
 namespace runstone {
 
 ScriptActions::ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline,
-                             EditTool& tool, const ViewFollower& view,
+                             EditTool& tool, const ViewFollower& view, TerminalChat& chat,
                              std::string screenshot_folder)
     : session_(session),
       player_(player),
       pipeline_(pipeline),
       tool_(tool),
       view_(view),
+      chat_(chat),
       screenshot_folder_(std::move(screenshot_folder)) {}
 
 void ScriptActions::move_to(const WorldPos& eye) {
@@ -61,6 +62,11 @@ bool ScriptActions::synced(std::uint64_t mark) const {
 
 void ScriptActions::travel(const HistoryRequest& request) {
   static_cast<void>(session_.request_history(request));
+}
+
+std::string ScriptActions::say(const std::string& text) {
+  const auto sent = session_.chat(text);
+  return sent ? std::string() : sent.error();
 }
 
 std::string ScriptActions::command(const std::string& text) {

@@ -7,6 +7,7 @@
 
 #include "client/app/edit_tool.hpp"
 #include "client/app/player.hpp"
+#include "client/app/terminal_chat.hpp"
 #include "client/app/view_follower.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/replica/copy_box.hpp"
@@ -20,7 +21,7 @@ class ScriptActions final : public ScriptHost {
  public:
   /// All but `screenshot_folder` must outlive this object.
   ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline, EditTool& tool,
-                const ViewFollower& view, std::string screenshot_folder);
+                const ViewFollower& view, TerminalChat& chat, std::string screenshot_folder);
 
   bool ready() const override { return session_.connect_count() != 0; }
   WorldPos eye() const override { return player_.eye(); }
@@ -49,6 +50,8 @@ class ScriptActions final : public ScriptHost {
   void travel(const HistoryRequest& request) override;
   bool travelling() const override { return session_.loading_history(); }
   std::string travel_refusal() const override { return session_.history_refusal(); }
+  std::string say(const std::string& text) override;
+  bool take_chat(const std::string& text) override { return chat_.take_heard(text); }
   std::string command(const std::string& text) override;
   bool commanding() const override { return session_.commanding(); }
   bool show_answer() override;
@@ -69,6 +72,7 @@ class ScriptActions final : public ScriptHost {
   MeshPipeline& pipeline_;
   EditTool& tool_;
   const ViewFollower& view_;
+  TerminalChat& chat_;
   const std::string screenshot_folder_;
 };
 

@@ -12,15 +12,15 @@ namespace runstone {
 namespace {
 
 /// Returns the configuration without what only a player needs.
-SessionConfig without_rights(SessionConfig config) {
-  config.features &= ~kFeatureRights;
+SessionConfig for_bot(SessionConfig config) {
+  config.features &= ~(kFeatureRights | kFeatureChat);
   return config;
 }
 
 }  // namespace
 
 HeadlessSession::HeadlessSession(SessionConfig config, FleetStatistics& fleet, TimeUs (*clock)())
-    : connection_(without_rights(std::move(config))), fleet_(fleet), clock_now_(clock) {
+    : connection_(for_bot(std::move(config))), fleet_(fleet), clock_now_(clock) {
   on_walked_ = [this](const WalkedEdit& edit) { return on_edit(edit); };
 }
 

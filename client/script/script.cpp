@@ -201,7 +201,13 @@ script::Step travel_step(Words& words) {
 }
 
 script::Step wait_step(Words& words) {
-  const std::string_view what = words.word("SECONDS, loaded, durable or synced");
+  const std::string_view what = words.word("SECONDS, loaded, durable, synced or chat");
+  if (what == "chat") {
+    script::WaitChat wait{number<double>(words, "SECONDS", 0, 1e6), {}};
+    wait.text = words.rest();
+    if (wait.text.empty()) throw LineError{"expected TEXT"};
+    return wait;
+  }
   std::optional<script::Until> until;
   if (what == "loaded") until = script::Until::loaded;
   if (what == "durable") until = script::Until::durable;
@@ -213,7 +219,7 @@ script::Step wait_step(Words& words) {
   }
   const auto seconds = to_number<double>(what);
   if (!seconds || *seconds < 0) {
-    throw LineError{"\"" + std::string(what) + "\" is none of SECONDS, loaded, durable, synced"};
+    throw LineError{"\"" + std::string(what) + "\" is none of SECONDS, loaded, durable, synced, chat"};
   }
   return script::Wait{*seconds};
 }
@@ -286,6 +292,12 @@ script::Step step_of(std::string_view verb, Words& words) {
   if (verb == "digests") return script::Digests{std::string(words.word("FILE"))};
   if (verb == "travel") return travel_step(words);
   if (verb == "undo" || verb == "redo") return script::Command{std::string(verb)};
+  if (verb == "say") {
+    script::Say say{std::string(words.rest())};
+    if (say.text.empty()) throw LineError{"expected TEXT"};
+    if (say.text.size() > kChatBytesMax) throw LineError{"TEXT has at most 512 bytes"};
+    return say;
+  }
   if (verb == "command") {
     script::Command command{std::string(words.rest())};
     if (command.text.empty()) throw LineError{"expected TEXT"};

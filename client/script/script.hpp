@@ -125,6 +125,15 @@ struct HistoryRequest {
   Sequence seq = 0;        // for HistoryTarget::sequence
   double seconds_ago = 0;  // for HistoryTarget::time
 };
+/// A line of chat.
+struct Say {
+  std::string text;
+};
+/// Waits for a line of chat that contains the text.
+struct WaitChat {
+  double seconds_max = 0;
+  std::string text;
+};
 /// A command for the server, such as undo.
 struct Command {
   std::string text;
@@ -133,7 +142,7 @@ struct Quit {};
 
 using Step = std::variant<Move, Walk, Roam, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste,
                           Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End, Burst,
-                          Digests, HistoryRequest, Command, Quit>;
+                          Digests, HistoryRequest, Say, WaitChat, Command, Quit>;
 
 }  // namespace script
 

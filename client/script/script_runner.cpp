@@ -401,6 +401,24 @@ ScriptRunner::Progress ScriptRunner::run(const script::HistoryRequest& c) {
   return Progress::waits;
 }
 
+ScriptRunner::Progress ScriptRunner::run(const script::Say& c) {
+  const std::string refusal = host_.say(c.text);
+  if (!refusal.empty()) fail("the line is not sent: " + refusal);
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::WaitChat& c) {
+  start();
+  if (host_.take_chat(c.text)) return Progress::done;
+  const TimeUs due_us = after(state_.at_us, c.seconds_max);
+  if (now_us_ >= due_us) {
+    fail("nobody wrote \"" + c.text + "\" in time");
+    return Progress::done;
+  }
+  due_us_ = due_us;
+  return Progress::waits;
+}
+
 ScriptRunner::Progress ScriptRunner::run(const script::Command& c) {
   if (!started_) {
     start();

@@ -64,6 +64,8 @@ class ScriptRunner {
   Progress run(const script::Burst& c);
   Progress run(const script::Digests& c);
   Progress run(const script::HistoryRequest& c);
+  Progress run(const script::Say& c);
+  Progress run(const script::WaitChat& c);
   Progress run(const script::Command& c);
   Progress run(const script::Quit& c);
 

@@ -7,6 +7,7 @@
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
 #include "protocol/codec/view_size.hpp"
+#include "protocol/rules/chat_text.hpp"
 
 namespace runstone {
 
@@ -31,6 +32,7 @@ void ClientSession::disconnected() {
   lookups_stale_ += std::exchange(lookups_open_, 0);
   others_.clear();
   history_.clear();
+  chat_.disconnected();
   if (is_commanding_) command_lines_ = {"the connection ended before the answer came"};
   is_commanding_ = false;
   early_.clear();
@@ -43,6 +45,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
       return;
     case ServerConnection::Dispatch::another_world:
       lost_.clear();
+      chat_.clear();
       return replica_->reset();
     case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
@@ -93,6 +96,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           on_player_list(m);
         } else if constexpr (std::is_same_v<T, CommandOutput>) {
           on_command_output(std::move(m));
+        } else if constexpr (std::is_same_v<T, ChatLines>) {
+          chat_.receive(std::move(m));
         } else {
           connection_.fail_with(GoodbyeReason::unexpected_message, "message of a client");
         }
@@ -208,6 +213,15 @@ Result<void> ClientSession::command(std::string text) {
   is_command_ok_ = false;
   command_lines_.clear();
   connection_.send(CommandRequest{++command_, std::move(text)});
+  return {};
+}
+
+Result<void, std::string> ClientSession::chat(std::string_view line) {
+  if (!is_open()) return failure("no world is open");
+  if ((welcome()->features & kFeatureChat) == 0) return failure("the server has no chat");
+  auto text = chat_text(line);
+  if (!text) return failure(text.error());
+  connection_.send(ChatRequest{*std::move(text)});
   return {};
 }
 

@@ -11,11 +11,13 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "client/replica/cache_lookup.hpp"
 #include "client/replica/replica.hpp"
+#include "client/session/chat_inbox.hpp"
 #include "client/session/edit_allowance.hpp"
 #include "client/session/history_requests.hpp"
 #include "client/session/lost_edits.hpp"
@@ -108,6 +110,12 @@ class ClientSession {
   /// Returns true if the newest command has completed and succeeded.
   bool command_ok() const { return is_command_ok_; }
 
+  /// Sends a line to everybody. Fails with one line of text unless open, if the server has no chat, or
+  /// as chat_text() does. The server answers with the line itself, or with one that says why not.
+  Result<void, std::string> chat(std::string_view line);
+  /// Returns the lines that arrived since the last call, ChatInbox::kLinesMax at most.
+  std::vector<ChatLine> drain_chat() { return chat_.drain(); }
+
   /// Returns the chunks to look up in the cache before the next view is sent, or nullopt if there
   /// are none. The view waits for receive_cache_result(), at most kCacheWaitUsMax.
   std::optional<CacheLookup> take_cache_lookup();
@@ -169,6 +177,8 @@ class ClientSession {
   std::uint32_t command_ = 0;  // id of the newest command
   bool is_commanding_ = false, is_command_ok_ = false;
   std::vector<std::string> command_lines_;  // kCommandLinesKept at most
+
+  ChatInbox chat_;
 
   bool is_server_read_only_ = false;
   EditAllowance allowance_;

@@ -32,6 +32,12 @@ std::uint32_t next_character(std::string_view text, std::size_t& at) {
   return character;
 }
 
+bool is_unseen(std::uint32_t character) {
+  return std::ranges::any_of(kUnseen, [character](const CharacterRange& range) {
+    return character >= range.first && character <= range.last;
+  });
+}
+
 }  // namespace
 
 bool is_printable_utf8(std::string_view text) {
@@ -70,16 +76,28 @@ bool is_printable_utf8(std::string_view text) {
 }
 
 bool is_plain_name(std::string_view text) {
-  if (text.empty() || text.front() == ' ' || text.back() == ' ' || !is_printable_utf8(text))
-    return false;
+  return !text.empty() && text.front() != ' ' && text.back() != ' ' && is_printable_utf8(text) &&
+         text.find_first_of("\"\\") == std::string_view::npos && !has_unseen_character(text);
+}
+
+bool has_unseen_character(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
-    const std::uint32_t character = next_character(text, at);
-    const bool is_unseen = std::ranges::any_of(kUnseen, [&](const CharacterRange& range) {
-      return character >= range.first && character <= range.last;
-    });
-    if (is_unseen || character == '"' || character == '\\') return false;
+    if (is_unseen(next_character(text, at))) return true;
   }
-  return true;
+  return false;
+}
+
+std::string with_unseen_replaced(std::string_view text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t first = at;
+    if (is_unseen(next_character(text, at))) {
+      out += '?';
+    } else {
+      out += text.substr(first, at - first);
+    }
+  }
+  return out;
 }
 
 std::string_view cut_utf8(std::string_view text, std::size_t bytes_max) {

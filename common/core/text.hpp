@@ -2,6 +2,7 @@
 // screens.
 #pragma once
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace runstone {
@@ -18,6 +19,14 @@ bool is_printable_utf8(std::string_view text);
 ///     default ignorable and bidirectional controls), because two names must not look the same.
 /// Cost: O(bytes).
 bool is_plain_name(std::string_view text);
+
+/// Returns true if the text has a character that is invisible, that changes the direction of the text
+/// around it, or that is a blank other than U+0020. Requires well-formed UTF-8. Cost: O(bytes).
+bool has_unseen_character(std::string_view text);
+
+/// Returns the text with a question mark in place of each such character. Requires well-formed UTF-8.
+/// Cost: O(bytes).
+std::string with_unseen_replaced(std::string_view text);
 
 /// Returns the longest prefix of well-formed `text` that has at most `bytes_max` bytes and cuts no
 /// character.

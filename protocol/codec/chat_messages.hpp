@@ -26,7 +26,7 @@ enum class ChatLineKind : std::uint8_t {
 
 struct ChatLine {
   ChatLineKind kind = ChatLineKind::player;
-  AuthorId author = 0;  // of ChatLineKind::player, otherwise 0
+  AuthorId author = 0;  // of ChatLineKind::player, 0 if it is not known any more; otherwise 0
   std::string name;     // of ChatLineKind::player: 1 .. kPlayerNameBytesMax bytes; otherwise empty
   std::string text;     // 1 .. kChatBytesMax bytes
   TimeUs utc_us = 0;    // when the server took the line

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "protocol/rules/chat_text.hpp"
 #include "server/admin/command_reader.hpp"
 
 namespace runstone {
@@ -89,6 +90,41 @@ Result<Command, std::string> log_command(CommandReader reader) {
   return Command(log);
 }
 
+Result<Command, std::string> chat_command(const Words& words, TimeUs now_us) {
+  if (words.size() < 2 || words[1] != "log")
+    return failure("chat: log comes after it, and then by, since or limit");
+  CommandReader reader(words, 2, now_us);
+  ChatQuery query;
+  while (!reader.at_end()) {
+    const std::string word = reader.take("", "");
+    if (word == "by") {
+      query.by = reader.take(word, "a name, a fingerprint, a key or server");
+    } else if (word == "since") {
+      query.since_us = reader.moment(word);
+    } else if (word == "limit") {
+      query.limit = static_cast<std::uint64_t>(
+          reader.number(word, 1, static_cast<std::int64_t>(kChatLinesListedMax)));
+    } else {
+      return failure("chat log \"" + word + "\": by, since or limit");
+    }
+  }
+  if (!reader.error().empty()) return failure("chat log " + reader.error());
+  return Command(ChatLogCommand{std::move(query)});
+}
+
+/// Parses what comes after `say`: the rest of the line, also with single quotes in it. A text that is
+/// quoted as a whole is taken without its quotes.
+Result<Command, std::string> say_command(std::string_view rest) {
+  const std::size_t last = rest.find_last_not_of(' ');
+  rest = rest.substr(0, last == std::string_view::npos ? 0 : last + 1);
+  rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+  const bool is_quoted = rest.size() >= 2 && rest.front() == '"' && rest.find('"', 1) == rest.size() - 1;
+  if (is_quoted) rest = rest.substr(1, rest.size() - 2);
+  auto text = chat_text(rest);
+  if (!text) return failure("say: the text is refused: " + text.error());
+  return Command(SayCommand{*std::move(text)});
+}
+
 Result<Command, std::string> preview_command(CommandReader reader) {
   RollbackPreviewCommand preview;
   while (!reader.at_end()) {
@@ -143,11 +179,16 @@ Result<Command, std::string> rollback_command(const Words& words, TimeUs now_us)
 }  // namespace
 
 Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us) {
+  constexpr std::string_view kSay = "say ";
+  const std::string_view begin = line.substr(std::min(line.find_first_not_of(' '), line.size()));
+  if (begin.starts_with(kSay)) return say_command(begin.substr(kSay.size()));
   const auto words = command_words(line);
   if (!words) return failure(words.error());
   if (words->empty()) return failure("no command: `help` names them");
   const std::string& name = words->front();
   if (name == "log") return log_command(CommandReader(*words, 1, now_us));
+  if (name == "say") return say_command("");
+  if (name == "chat") return chat_command(*words, now_us);
   if (name == "rollback") return rollback_command(*words, now_us);
   if (auto rights = parse_rights_command(*words, now_us)) {
     if (!*rights) return failure(rights->error());

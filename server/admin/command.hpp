@@ -14,6 +14,7 @@
 #include "common/core/result.hpp"
 #include "protocol/limits.hpp"
 #include "server/admin/rights_command.hpp"
+#include "server/chat/chat_query.hpp"
 
 namespace runstone {
 
@@ -76,6 +77,14 @@ struct ReleaseNameCommand {
   std::string name;
   friend bool operator==(const ReleaseNameCommand&, const ReleaseNameCommand&) = default;
 };
+struct SayCommand {
+  std::string text;  // a chat_text()
+  friend bool operator==(const SayCommand&, const SayCommand&) = default;
+};
+struct ChatLogCommand {
+  ChatQuery query;
+  friend bool operator==(const ChatLogCommand&, const ChatLogCommand&) = default;
+};
 struct RollbackPreviewCommand {
   CommandFilter filter;
   bool picture = false;  // draw the area before and after the rollback
@@ -93,8 +102,8 @@ struct RollbackListCommand {
 using Command =
     std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand, AddMaterialsCommand,
                  StopCommand, ReloadCommand, BackupCommand, UndoCommand, LogCommand, NamesCommand,
-                 ReleaseNameCommand, RollbackPreviewCommand, RollbackCommand, RollbackListCommand,
-                 RightsCommand>;
+                 ReleaseNameCommand, SayCommand, ChatLogCommand, RollbackPreviewCommand,
+                 RollbackCommand, RollbackListCommand, RightsCommand>;
 
 /// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate
 /// words; a word that contains blanks stands in double quotes. `now_us` (UTC) is the time to which

@@ -59,6 +59,14 @@ bool CommandHandler::run_action(const Command& command, const CommandReply& repl
     if (actions_.stop) actions_.stop();
     return true;
   }
+  if (const auto* chat = std::get_if<ChatLogCommand>(&command)) {
+    if (!actions_.list_chat) {
+      refuse(reply, "chat log: this server keeps no log of the chat (chat_days = 0)");
+    } else {
+      actions_.list_chat(chat->query, reply);
+    }
+    return true;
+  }
   const auto* backup = std::get_if<BackupCommand>(&command);
   const bool is_reload = std::holds_alternative<ReloadCommand>(command);
   if (backup == nullptr && !is_reload) return false;
@@ -91,6 +99,8 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
   }
   if (const auto* add = std::get_if<AddMaterialsCommand>(&*command))
     return add_materials(add->file, now, reply);
+  if (const auto* spoken = std::get_if<SayCommand>(&*command))
+    return say(caller, spoken->text, reply);
   if (run_action(*command, reply)) return;
   if (const auto* undo = std::get_if<UndoCommand>(&*command)) {
     if (caller.author == 0) {
@@ -164,6 +174,13 @@ void CommandHandler::release_name(const std::string& name, const CommandReply& r
   reply({"\"" + released->name + "\" was owned by " + key_fingerprint(released->key) +
              "; the next player who joins under it owns it",
          true, true});
+}
+
+void CommandHandler::say(const CommandCaller& caller, const std::string& text,
+                         const CommandReply& reply) {
+  const std::size_t sessions = world_.say(text, caller.actor.key.value_or(PublicKey{}));
+  reply({"sent to " + std::to_string(sessions) + (sessions == 1 ? " session" : " sessions"), true,
+         true});
 }
 
 void CommandHandler::resolve(const CommandFilter& filter, const std::string& command,

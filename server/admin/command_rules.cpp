@@ -91,6 +91,9 @@ constexpr std::array kCommandRows = {
                                  "bans                      the bans, mutes and freezes in force"),
     row<ListRefusalsCommand>({Right::moderate},
                              "refusals                  what players were refused lately"),
+    row<ChatLogCommand>({Right::moderate},
+                        "chat log [by PLAYER] [since MOMENT] [limit N]\n"
+                        "                          the newest lines of the chat, the last one at the bottom"),
     row<LogCommand>({Right::roll_back},
                     "log FILTERS [limit N]     the newest edits, the last one at the bottom"),
     row<RollbackPreviewCommand>(
@@ -133,6 +136,8 @@ constexpr std::array kCommandRows = {
                             "names release NAME        free a name, so that the next player who "
                             "joins under it owns it"),
     local_row<AddMaterialsCommand>("materials add FILE        add the materials of a file"),
+    row<SayCommand>({Right::administer},
+                    "say TEXT                  write to all players, as the server"),
     local_row<BackupCommand>(
         "backup DIR                copy the world to a new folder, while people go on playing"),
     local_row<ReloadCommand>("reload                    read the settings again"),

@@ -1,8 +1,9 @@
-// OperatorActions: commands that the program around a server carries out, not the world.
+// OperatorActions: commands that the program or the runtime around a world carries out.
 #pragma once
 #include <functional>
 #include <string>
 
+#include "server/chat/chat_query.hpp"
 #include "server/rollback/command_reply.hpp"
 
 namespace runstone {
@@ -15,6 +16,8 @@ struct OperatorActions {
   std::function<void(CommandReply)> reload;
   /// Copies the world to a new folder.
   std::function<void(const std::string& folder, CommandReply)> back_up;
+  /// Answers with lines of the log of the chat. The runtime sets it.
+  std::function<void(const ChatQuery&, CommandReply)> list_chat;
 };
 
 }  // namespace runstone

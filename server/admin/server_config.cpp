@@ -9,6 +9,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/hex.hpp"
+#include "protocol/rules/chat_text.hpp"
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
 #include "server/admin/reserved_names.hpp"
@@ -123,6 +124,16 @@ FormField builder_budget_field() {
           [](const ServerConfig& config) { return text_of(config.builder_budget); }};
 }
 
+FormField message_of_the_day_field() {
+  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+            auto line = text.empty() ? Result<std::string, std::string>(text) : chat_text(text);
+            if (!line) return "must be one line of text: " + line.error();
+            config.message_of_the_day = *std::move(line);
+            return std::nullopt;
+          },
+          [](const ServerConfig& config) { return config.message_of_the_day; }};
+}
+
 FormField reserved_names_field() {
   return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
             auto names = parse_reserved_names(text);
@@ -216,6 +227,12 @@ const std::vector<Field>& fields() {
        builder_budget_field()},
       number("budgets_per_address", &C::budgets_per_address, 0, 1'000'000,
              "times the budgets of a player for all players of one address, 0: no limit"),
+      number("chat_per_minute", &C::chat_per_minute, 0, 60'000,
+             "lines of chat a minute of a player, ten of them at once, 0: no limit"),
+      number("chat_days", &C::chat_days, 0, 36'500,
+             "days for which the log of the chat keeps lines, 0: nothing is written to disk"),
+      {"message_of_the_day", "text for players who join, at most 512 bytes; empty: none",
+       message_of_the_day_field()},
       number("memory_mib", &C::memory_mib, 16, 1'048'576,
              "MiB of chunks and of edits that wait, then views wait and edits are rejected"),
       number("snapshot_edits", &C::snapshot_edits, 1, 1'000'000'000,

@@ -80,6 +80,10 @@ struct ServerConfig {
   std::uint64_t speed_max = 0;
   EditBudget builder_budget{100, 4'000};  // of a player; kNamedBudgets has names
   std::uint64_t budgets_per_address = 4;  // of one address, times that of a player, 0: no limit
+  // Chat.
+  std::uint64_t chat_per_minute = 30;  // lines of a player, ten at once, 0: no limit .. 60000
+  std::uint64_t chat_days = 30;        // for which lines stay on disk, 0: none is written .. 36500
+  std::string message_of_the_day;      // for players who join; empty: none
   // World and disk.
   std::uint64_t memory_mib = 512;            // MiB of chunks and of edits that wait, 16..1048576
   std::uint64_t snapshot_edits = 20'000;     // between two rounds of snapshots, 1..10^9

@@ -24,8 +24,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kDatabase = "world.sqlite", kMark = "world.durable";
 /// Files that a running server or reader makes. They mean nothing in a copy.
-constexpr std::array<std::string_view, 4> kMadeAnew = {"world.sqlite-wal", "world.sqlite-shm",
-                                                       "world.lock", "control.sock"};
+constexpr std::array<std::string_view, 6> kMadeAnew = {"world.sqlite-wal", "world.sqlite-shm",
+                                                       "chat.sqlite-wal",  "chat.sqlite-shm",
+                                                       "world.lock",       "control.sock"};
 constexpr std::uintmax_t kConfigurationBytesMax = 1 << 20;
 
 double seconds_since(Clock::time_point begin) {

@@ -3,7 +3,8 @@
 //   - the database, which has the world, the players and the server's secret key;
 //   - the durable mark;
 //   - configuration: the files *.toml that lie in the folder.
-// Locks, sockets, pictures of previews and files that Runstone does not know are not copied.
+// Locks, sockets, pictures of previews and files that Runstone does not know are not copied, and neither
+// is the log of the chat: a copy would keep what players wrote beyond its retention.
 #pragma once
 #include <string>
 #include <vector>

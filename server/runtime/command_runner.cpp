@@ -40,6 +40,11 @@ OperatorActions on_strand(WorldStrand& strand, const OperatorActions& actions) {
       back_up(folder, posted(std::move(reply)));
     };
   }
+  if (actions.list_chat) {
+    out.list_chat = [posted, list = actions.list_chat](const ChatQuery& query, CommandReply reply) {
+      list(query, posted(std::move(reply)));
+    };
+  }
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "server/runtime/derived_config.hpp"
 
 #include "server/admin/reserved_names.hpp"
+#include "server/world/chat_state.hpp"
 
 namespace runstone {
 namespace {
@@ -41,6 +42,8 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.edit_budget = config.builder_budget;
   world.chunk_loads = chunk_load_budget(config.chunk_loads_per_second);
   world.budgets_per_address = config.budgets_per_address;
+  world.chat_budget = chat_budget(config.chat_per_minute);
+  world.message_of_the_day = config.message_of_the_day;
   world.idle_us_max = static_cast<TimeUs>(config.idle_s) * kUsPerSecond;
   world.preferred_encoding = config.encoding;
   world.digest_check_interval_us = static_cast<TimeUs>(config.digest_check_ms) * kUsPerMs;

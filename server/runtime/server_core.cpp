@@ -17,6 +17,7 @@ namespace runstone {
 namespace {
 
 constexpr auto kTickInterval = std::chrono::milliseconds(50);
+constexpr auto kChatRetentionInterval = std::chrono::minutes(10);
 constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for the last of them
 
 }  // namespace
@@ -40,7 +41,10 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       environment_(sessions_, *listener_, sender_, readers_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
-      activity_(strand_, std::chrono::seconds(config.counters_s), [this] { write_activity(); }) {}
+      activity_(strand_, std::chrono::seconds(config.counters_s), [this] { write_activity(); }),
+      chat_retention_(strand_, kChatRetentionInterval, [this] {
+        chat_log_->forget_before(chat_kept_from_us(config_, world_->rights_time()));
+      }) {}
 
 ServerCore::~ServerCore() = default;
 
@@ -50,6 +54,9 @@ Result<void, std::string> ServerCore::recover() {
   const auto epoch = store_.raise_epoch();
   if (!epoch) return Unexpected<std::string>{epoch.error().message()};
   start->log.epoch = *epoch;
+
+  chat_log_ = open_chat_log(config_, read_clocks().utc_us);
+  if (chat_log_) start->chat = newest_chat(*chat_log_);
 
   auto materials = store_.materials();
   if (!materials) return failure(materials.error());
@@ -61,8 +68,14 @@ Result<void, std::string> ServerCore::recover() {
   const auto replayed = replay_log(store_, *start, *world_);
   if (!replayed) return Unexpected<std::string>{replayed.error()};
 
+  OperatorActions actions = actions_;
+  if (chat_log_) {
+    actions.list_chat = [this](const ChatQuery& query, const CommandReply& reply) {
+      runstone::list_chat(*chat_log_, query, reply);
+    };
+  }
   commands_ = std::make_unique<CommandRunner>(strand_, *world_, readers_, config_.operators,
-                                              config_.world, actions_);
+                                              config_.world, actions);
   DurableLog::Options options;
   options.queued_records_max = config_.log_queue_records;
   options.reserve_bytes = config_.disk_reserve_mib << 20;
@@ -71,7 +84,7 @@ Result<void, std::string> ServerCore::recover() {
   log_ = std::make_unique<DurableLog>(strand_, store_, config_.world, generator_, options,
                                       log_events());
   // A task that on_space posted from the constructor runs later, because no thread runs the strand.
-  environment_.attach(*world_, *log_, *commands_);
+  environment_.attach(*world_, *log_, *commands_, chat_log_.get());
   logger("world").info("world={} epoch={} seq={} checkpoint={} replayed={} players={} snapshots={}",
                        config_.world, *epoch, start->log.last, start->checkpoint, *replayed,
                        start->players.size(), start->snapshots.size());
@@ -104,6 +117,7 @@ DurableLog::Events ServerCore::log_events() {
 void ServerCore::start() {
   listener_->start();
   ticks_.start();
+  if (chat_log_) chat_retention_.start();
   if (config_.counters_s > 0) activity_.start();
 }
 
@@ -178,6 +192,7 @@ void ServerCore::finish_stop_if_flushed() {
   if (!gives_up && !world_->is_flushed()) return;
   ticks_.stop();
   activity_.stop();
+  chat_retention_.stop();
   stopping_->set_value();
   stopping_.reset();
 }
@@ -188,6 +203,7 @@ StopState ServerCore::stop_state() const {
 
 void ServerCore::stop_writer() {
   readers_.stop();
+  if (chat_log_) chat_log_->stop();
   log_->stop();
 }
 

@@ -17,6 +17,7 @@
 #include "server/admin/server_config.hpp"
 #include "server/net/listener.hpp"
 #include "server/runtime/activity_line.hpp"
+#include "server/runtime/chat_logging.hpp"
 #include "server/runtime/chunk_sender.hpp"
 #include "server/runtime/chunk_source.hpp"
 #include "server/runtime/command_runner.hpp"
@@ -69,7 +70,8 @@ class ServerCore final : public NetEvents {
   /// future becomes ready when this is done. It also becomes ready if the log fails, or if the disk
   /// is full and `stop_s` is over.
   std::future<void> begin_stop();
-  /// Ends the readers, the keyframe thread and the log writer, which writes what is queued.
+  /// Ends the readers, the log of the chat, the keyframe thread and the log writer, which writes what
+  /// is queued.
   /// Requires that the future of begin_stop() is ready.
   void stop_writer();
   /// Returns what the stop has left undone. Requires stop_writer(), and that no thread runs the
@@ -133,12 +135,13 @@ class ServerCore final : public NetEvents {
   WorldReaders readers_;
   ServerEnvironment environment_;
   CommitScheduler commits_;
-  PeriodicTask ticks_, activity_;
+  PeriodicTask ticks_, activity_, chat_retention_;
   ActivitySample sampled_;  // at the last write_activity(). Used on the world strand
   // The answer of begin_stop(), set while it waits. Used on the world strand.
   std::shared_ptr<std::promise<void>> stopping_;
 
   // These parts exist from recover() on.
+  std::unique_ptr<ChatLog> chat_log_;  // null if chat_days is 0
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<DurableLog> log_;
   std::unique_ptr<CommandRunner> commands_;

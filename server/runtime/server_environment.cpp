@@ -70,6 +70,10 @@ void ServerEnvironment::log_names(std::vector<NameChange> changes) {
   log_->writer().change_names(std::move(changes));
 }
 
+void ServerEnvironment::log_chat(const ChatEntry& entry) {
+  if (chat_log_ != nullptr) chat_log_->append(entry);
+}
+
 void ServerEnvironment::load_chunk(const ChunkKey& key) {
   readers_.load_chunk(key, [this, key](StoreResult<Chunk> loaded) {
     if (loaded) {

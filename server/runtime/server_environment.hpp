@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/chat/chat_log.hpp"
 #include "server/net/listener.hpp"
 #include "server/runtime/chunk_sender.hpp"
 #include "server/runtime/command_runner.hpp"
@@ -28,7 +29,9 @@ class ServerEnvironment final : public WorldEnvironment {
 
   /// Connects the parts that are made after recovery, because they need the world. Call it once,
   /// before the first session connects. All must outlive the object.
-  void attach(WorldServer& world, DurableLog& log, CommandRunner& commands) {
+  /// `chat_log` may be null.
+  void attach(WorldServer& world, DurableLog& log, CommandRunner& commands, ChatLog* chat_log) {
+    chat_log_ = chat_log;
     world_ = &world;
     log_ = &log;
     commands_ = &commands;
@@ -55,6 +58,7 @@ class ServerEnvironment final : public WorldEnvironment {
   std::size_t log_queued_bytes() const override;
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
   void log_names(std::vector<NameChange> changes) override;
+  void log_chat(const ChatEntry& entry) override;
   void load_chunk(const ChunkKey& key) override;
   void open_history(SessionId session, const HistoryRequest& request) override;
   void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
@@ -76,6 +80,7 @@ class ServerEnvironment final : public WorldEnvironment {
   WorldServer* world_ = nullptr;
   DurableLog* log_ = nullptr;
   CommandRunner* commands_ = nullptr;
+  ChatLog* chat_log_ = nullptr;
   std::int64_t enqueue_ns_ = 0;
 };
 

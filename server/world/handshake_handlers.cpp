@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "protocol/codec/key_fingerprint.hpp"
+#include "server/world/chat_handlers.hpp"
 #include "server/world/material_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
@@ -140,6 +141,7 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   if (world.find(session) == nullptr) return;
   start_ground(world, session);
   send_all_poses_to(world, session);
+  send_recent_chat(world, session);
 }
 
 }  // namespace

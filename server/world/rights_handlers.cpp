@@ -117,6 +117,12 @@ std::optional<std::string> freeze_text(const WorldState& world, const PublicKey&
   return restriction_text(kMayNotEdit, found->value);
 }
 
+std::optional<std::string> chat_refusal(const WorldState& world, const PublicKey& key) {
+  const RightsDecision decision = decide(world, key, Right::chat);
+  if (decision.is_allowed) return std::nullopt;
+  return refusal_text(world, key, decision);
+}
+
 std::optional<std::string> address_refusal(const WorldState& world, const PublicKey& key,
                                            AddressBlock address) {
   if (is_operator(world, key) || world.rights.role_of(key).rights.has(Right::administer))

@@ -20,6 +20,9 @@ RightsActor actor_of(const WorldState& world, const PublicKey& key);
 RightsDecision decide(const WorldState& world, const PublicKey& key, Right right);
 /// Returns why the player may not edit at all, if a restriction forbids it, or nullopt.
 std::optional<std::string> freeze_text(const WorldState& world, const PublicKey& key);
+/// Returns why the player may not write to the others, or nullopt: a mute with its reason and end, or
+/// the role.
+std::optional<std::string> chat_refusal(const WorldState& world, const PublicKey& key);
 /// Returns why nobody with this key may join from this address, for goodbye not_admitted, or nullopt.
 /// Administrators may join from everywhere, so that no ban of addresses locks them out.
 std::optional<std::string> address_refusal(const WorldState& world, const PublicKey& key,

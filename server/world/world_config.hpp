@@ -13,6 +13,7 @@
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/world/authority.hpp"
+#include "server/world/chat_entry.hpp"
 #include "server/world/checkpointer.hpp"
 #include "server/world/player_rows.hpp"
 #include "server/world/world_memory.hpp"
@@ -50,6 +51,8 @@ struct WorldConfig {
   EditBudget edit_budget;                 // of a player's key
   Budget chunk_loads;                     // of a player's key: chunks generated or read
   std::uint64_t budgets_per_address = 0;  // of one address, times those of a key; 0: no limit
+  Budget chat_budget;                     // of a player's key, see chat_state.hpp
+  std::string message_of_the_day;         // a chat_text(), or empty: none
   std::size_t loads_per_session_max = 64;  // chunks one session may wait for at a time
   std::size_t loads_in_flight_max = 8;     // with the workers at a time, at least 1
   TimeUs view_interval_us = 50'000;        // between two views of a session that take effect
@@ -81,6 +84,7 @@ struct WorldStart {
   std::vector<PlayerRow> players;
   std::vector<NameClaim> name_claims;
   std::vector<RightsRecord> rights;  // all changes of rights, in the order of the log
+  std::vector<ChatEntry> chat;       // the newest lines, the last one last
   AuthorId author_max = 0;           // the highest author number ever stored
   std::vector<HighWater> resolved;
 };

@@ -13,6 +13,7 @@
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/world/chat_entry.hpp"
 #include "server/world/player_rows.hpp"
 
 namespace runstone {
@@ -101,6 +102,8 @@ class WorldEnvironment {
   /// Queues changes of names for the log writer, ahead of all records that are queued later.
   /// Requires log_has_room(1). Answer: WorldServer::names_durable().
   virtual void log_names(std::vector<NameChange> changes) = 0;
+  /// Queues a line for the log of the chat. If that queue is full, the line is not logged.
+  virtual void log_chat(const ChatEntry& /*entry*/) {}
   /// Loads a chunk on a worker: its newest snapshot, else the base, else generated. Called at most
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().
   virtual void load_chunk(const ChunkKey& key) = 0;

@@ -11,6 +11,7 @@
 #include "protocol/codec/server_link.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/cached_chunk_handlers.hpp"
+#include "server/world/chat_handlers.hpp"
 #include "server/world/command_handlers.hpp"
 #include "server/world/delivery.hpp"
 #include "server/world/digest_check_scheduler.hpp"
@@ -46,6 +47,8 @@ void on_open_message(WorldState& world, SessionId session, const Message& messag
   if (const auto* command = std::get_if<CommandRequest>(&message)) {
     return on_command(world, session, *command, now);
   }
+  if (const auto* chat = std::get_if<ChatRequest>(&message))
+    return on_chat(world, session, *chat, now);
 }
 
 void close_silent_sessions(WorldState& world, const Clocks& now) {
@@ -110,6 +113,7 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   mine.speed_max = config.speed_max;
   mine.operators = config.operators;
   mine.public_address = config.public_address;
+  mine.message_of_the_day = config.message_of_the_day;
   rights_changed(*state_, {});
 }
 
@@ -227,6 +231,10 @@ Result<AddedAt, MaterialsRefusal> WorldServer::add_materials(const std::vector<M
 
 std::vector<RefusalRow> WorldServer::refusals() const { return state_->refusals.rows(); }
 
+std::size_t WorldServer::say(const std::string& text, const PublicKey& by) {
+  return runstone::say(*state_, text, by);
+}
+
 InviteId WorldServer::new_invite_id() {
   std::array<std::uint8_t, sizeof(InviteId)> bytes{};
   state_->random(bytes);
@@ -271,6 +279,7 @@ void WorldServer::tick(const Clocks& now) {
   apply_due_views(world, now);
   send_due_ground(world);
   broadcast_player_list(world);
+  broadcast_chat(world);
   broadcast_poses(world, now);
   broadcast_durable(world, now);
   send_due_digest_checks(world, now);

@@ -59,8 +59,9 @@ class WorldServer {
   bool has_ready_edits(TimeUs now_us) const;
   /// Orders and sends the queued edits of one commit. Others that are queued may follow later.
   void commit_one(const Clocks& now);
-  /// Takes over the limits that may change while the world runs: sessions of a key and of an
-  /// address, the time without a message, reach, speed and the operators. Sessions that are open stay.
+  /// Takes over what may change while the world runs: sessions of a key and of an address, the time
+  /// without a message, reach, speed, the operators and the message of the day. Sessions that are open
+  /// stay.
   void reconfigure(const WorldConfig& config);
   /// Orders and sends queued edits as long as has_ready_edits().
   void commit(const Clocks& now);
@@ -123,6 +124,9 @@ class WorldServer {
                                               AuthorId author, const Clocks& now);
   /// Returns what players were refused lately, the newest last.
   std::vector<RefusalRow> refusals() const;
+  /// Sends a line of the host to everybody. `by` and the requirement: see chat_handlers.hpp. Returns
+  /// the number of sessions that get it.
+  std::size_t say(const std::string& text, const PublicKey& by);
   /// Returns a random number for a new invite.
   InviteId new_invite_id();
   /// Returns the link with which players accept an invite. It has the server's public address, or

@@ -29,6 +29,9 @@ static_assert(kUniformWaitingMax <= kUniformChunksMax);
 /// The rate of commands is low because an undo reads the log.
 inline constexpr std::uint64_t kCommandsPerSecond = 10, kCommandBurst = 20;
 
+/// A session gets so many lines that say why its own lines are not passed on.
+inline constexpr std::uint64_t kChatAnswersPerSecond = 1, kChatAnswerBurst = 3;
+
 /// A session's view of the past.
 struct HistoryView {
   HistoryNumber number{};
@@ -76,6 +79,7 @@ struct WorldSession {
   std::vector<Reject> pending_rejects;
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};
   std::optional<std::uint32_t> command;  // id of the command under way
+  TokenBucket chat_answers{kChatAnswersPerSecond, kChatAnswerBurst};
   // Views (view_scheduler.hpp).
   std::uint32_t view_number = 0;          // of the newest view that the client sent
   std::optional<View> next_view;          // the newest view, until it takes effect

@@ -37,12 +37,17 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
       edit_ledger(config.edit_budget, config.budgets_per_address),
       load_ledger(config.chunk_loads, config.budgets_per_address),
       claim_ledger({config.names_per_address, config.names_per_address * kClaimPrice}),
+      chat(config.chat_budget, config.budgets_per_address),
       durable(start.log.last),
       view_chunks_left(config.view_chunks_per_tick) {
   for (const auto& [key, version] : start.snapshots) authority.chunks().set_saved(key, version);
   for (const PlayerRow& player : start.players) players.restore(player);
   players.begin_above(start.author_max);
   for (const NameClaim& claim : start.name_claims) names.restore(claim);
+  for (const ChatEntry& entry : start.chat) {
+    chat.add(entry.line);
+    chat.recent.back().author = players.author_of(entry.key).value_or(0);
+  }
   for (const RightsRecord& record : start.rights) rights.apply(record.change, record.origin);
   std::array<std::uint8_t, sizeof change_instance> instance{};
   random(instance);

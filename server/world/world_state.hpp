@@ -12,6 +12,7 @@
 #include "server/limits/budget_ledger.hpp"
 #include "server/limits/recent_refusals.hpp"
 #include "server/world/authority.hpp"
+#include "server/world/chat_state.hpp"
 #include "server/world/checkpointer.hpp"
 #include "server/world/large_edit_pace.hpp"
 #include "server/world/load_queue.hpp"
@@ -55,6 +56,7 @@ struct WorldState {
   BudgetLedger load_ledger;  // a unit is a chunk that is generated or read for a view
   AddressLedger claim_ledger;
   RecentRefusals refusals;
+  ChatState chat;
   LargeEditPace large_edits;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick

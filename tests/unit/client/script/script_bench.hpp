@@ -1,5 +1,6 @@
 // ScriptBench: a script runner, and a host that plays its client.
 #pragma once
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <memory>
@@ -30,6 +31,7 @@ struct FakeScriptHost final : ScriptHost {
   mutable std::vector<VoxelBox> copied;
   std::vector<std::string> files;
   std::vector<HistoryRequest> travels;
+  std::vector<std::string> said, heard;  // lines of chat
   bool is_travelling = false;
   std::string refusal;
 
@@ -87,6 +89,16 @@ struct FakeScriptHost final : ScriptHost {
   bool travelling() const override { return is_travelling; }
   std::vector<std::string> commands;
   bool is_commanding = false, is_command_ok = true;
+  std::string say(const std::string& text) override {
+    said.push_back(text);
+    return refusal;
+  }
+  bool take_chat(const std::string& text) override {
+    const auto found = std::find(heard.begin(), heard.end(), text);
+    if (found == heard.end()) return false;
+    heard.erase(heard.begin(), found + 1);
+    return true;
+  }
   std::string command(const std::string& text) override {
     commands.push_back(text);
     return {};

@@ -330,6 +330,35 @@ TEST_CASE(
   CHECK(again.failures()[1] == "t:3: the server refused \"undo\"");
 }
 
+TEST_CASE("say sends a line, and wait chat waits for one, but not for ever", "[bots]") {
+  const auto script = *parse_script(
+      "say hello  # all\nwait chat 2.5 <ana> hi #1\nsay bye\nwait chat 1 nothing\nsay end\n", "t");
+  FakeScriptHost host;
+  ScriptRunner runner(script, host);
+  runner.step(1'000'000);
+  CHECK(host.said == std::vector<std::string>{"hello  # all"});
+  CHECK(runner.due_us() == 3'500'000);
+  host.heard = {"<bea> hi", "<ana> hi #1"};
+  runner.step(1'100'000);
+  CHECK(host.heard.empty());
+  CHECK(host.said.back() == "bye");
+  runner.step(2'100'000);
+  CHECK(runner.finished());
+  CHECK(host.said.back() == "end");
+  CHECK(runner.failures() == std::vector<std::string>{"t:4: nobody wrote \"nothing\" in time"});
+
+  FakeScriptHost refusing;
+  refusing.refusal = "no world is open";
+  ScriptRunner again(script, refusing);
+  again.step(1'000'000);
+  CHECK(again.failures() ==
+        std::vector<std::string>{"t:1: the line is not sent: no world is open"});
+
+  for (const char* bad : {"say", "say   ", "wait chat", "wait chat hello", "wait chat 5"})
+    CHECK_FALSE(parse_script(bad, "t").has_value());
+  CHECK_FALSE(parse_script("say " + std::string(513, 'a'), "t").has_value());
+}
+
 TEST_CASE("a command of too many bytes, or none, is a mistake of the script", "[bots]") {
   CHECK_FALSE(parse_script("command", "t").has_value());
   CHECK_FALSE(parse_script("command " + std::string(1025, 'a'), "t").has_value());

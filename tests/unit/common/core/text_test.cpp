@@ -60,6 +60,16 @@ TEST_CASE("a name can be seen, typed and quoted", "[core]") {
   }
 }
 
+TEST_CASE("characters that cannot be seen are found and replaced", "[core]") {
+  const std::string hidden = "a\xe2\x80\xae" "b\xc2\xad";  // U+202E, U+00AD
+  CHECK(has_unseen_character(hidden));
+  CHECK(with_unseen_replaced(hidden) == "a?b?");
+  const std::string plain = "\"a b\" \\ \xc3\xa9\xe2\x82\xac\xf0\x9f\xa7\xb1";
+  CHECK_FALSE(has_unseen_character(plain));
+  CHECK(with_unseen_replaced(plain) == plain);
+  CHECK_FALSE(has_unseen_character(""));
+}
+
 TEST_CASE("text is cut between characters", "[core]") {
   const std::string_view text =
       "a\xc3\xa9\xe2\x82\xac\xf0\x9f\xa7\xb1";  // characters of 1, 2, 3 and 4 bytes

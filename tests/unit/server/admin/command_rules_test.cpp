@@ -32,7 +32,8 @@ TEST_CASE("each command needs its right", "[admin][rights]") {
     CHECK(rule(line).any_of == RightSet{Right::claim, Right::protect});
   }
   for (const char* line :
-       {"status", "names", "kick ana", "ban ana", "mute ana", "freeze ana", "unban ana", "bans"}) {
+       {"status", "names", "kick ana", "ban ana", "mute ana", "freeze ana", "unban ana", "bans",
+        "chat log"}) {
     CHECK(rule(line).any_of == RightSet{Right::moderate});
   }
   for (const char* line :
@@ -42,7 +43,7 @@ TEST_CASE("each command needs its right", "[admin][rights]") {
   for (const char* line : {"grant ana mason", "revoke ana", "grants"})
     CHECK(rule(line).any_of == RightSet{Right::grant});
   for (const char* line : {"role set mason see", "role remove mason", "role default mason",
-                           "names release ana", "stop", "rights undo 3"}) {
+                           "names release ana", "stop", "rights undo 3", "say hello"}) {
     CHECK(rule(line).any_of == RightSet{Right::administer});
   }
   for (const char* line : {"backup copy", "reload", "materials add wool.toml"})

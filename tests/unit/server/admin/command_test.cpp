@@ -42,6 +42,36 @@ TEST_CASE("commands without arguments are parsed", "[admin][command]") {
   parsed<RollbackListCommand>("rollback list");
 }
 
+TEST_CASE("say takes the rest of the line", "[admin][command]") {
+  CHECK(parsed<SayCommand>("say hello").text == "hello");
+  CHECK(parsed<SayCommand>("  say  restart at 10, don't log off ").text ==
+        "restart at 10, don't log off");
+  CHECK(parsed<SayCommand>("say \"restart at ten\"").text == "restart at ten");
+  CHECK(parsed<SayCommand>("say press \"home\" now").text == "press \"home\" now");
+  CHECK(parsed<SayCommand>("say \"a\" and \"b\"").text == "\"a\" and \"b\"");
+  CHECK(mistake("say") == "say: the text is refused: it is empty");
+  CHECK(mistake("say \" \"") == "say: the text is refused: it is empty");
+  CHECK(mistake("say a\xe2\x80\xae" "b") ==
+        "say: the text is refused: it has invisible characters");
+  CHECK(mistake("say " + std::string(513, 'x')) ==
+        "say: the text is refused: it has more than 512 bytes");
+  CHECK(mistake("say a\nb").starts_with("say: the text is refused: it has control characters"));
+  CHECK(mistake("saying") == "\"saying\" is no command: `help` names them");
+}
+
+TEST_CASE("chat log selects lines by player, age and number", "[admin][command]") {
+  CHECK(parsed<ChatLogCommand>("chat log").query == ChatQuery{});
+  const ChatQuery query =
+      parsed<ChatLogCommand>("chat log by \"the mole\" since 1h limit 1000").query;
+  CHECK(query == ChatQuery{"the mole", kNow - 3'600'000'000, 1'000});
+  CHECK(mistake("chat") == "chat: log comes after it, and then by, since or limit");
+  CHECK(mistake("chat hello") == "chat: log comes after it, and then by, since or limit");
+  CHECK(mistake("chat log of ana") == "chat log \"of\": by, since or limit");
+  CHECK(mistake("chat log limit 1001") ==
+        "chat log limit \"1001\": a number from 1 to 1000");
+  CHECK(mistake("chat log by") == "chat log by: a name, a fingerprint, a key or server is missing");
+}
+
 TEST_CASE("a filter selects by author, time, place and cause", "[admin][command]") {
   const auto preview = parsed<RollbackPreviewCommand>(
       "rollback preview author #3 author \"the mole\" since 1h until 2001-09-09T01:46:40Z box 5 60 "

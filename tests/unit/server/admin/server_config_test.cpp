@@ -16,6 +16,7 @@ TEST_CASE("the printed configuration reads back to an equal one", "[admin]") {
   config.encoding = ChunkEncoding::raw;
   config.log_level = LogLevel::warn;
   config.operators = {PublicKey{1}, PublicKey{0xab}};
+  config.message_of_the_day = "build with \"care\", \\o/";
   ServerConfig read;
   REQUIRE(read_config_toml(read, to_toml(config), "printed").has_value());
   CHECK(read == config);
@@ -43,6 +44,20 @@ TEST_CASE("a builder budget has a name, or a rate and a burst", "[admin]") {
     CHECK_FALSE(config.builder_budget.is_limited());
   }
   CHECK_FALSE(set_config(config, "budgets_per_address", "-1").has_value());
+}
+
+TEST_CASE("the message of the day is one line of chat, or nothing", "[admin]") {
+  ServerConfig config;
+  REQUIRE(set_config(config, "message_of_the_day", " build with care ").has_value());
+  CHECK(config.message_of_the_day == "build with care");
+  for (const std::string bad : {std::string("   "), std::string("a\nb"), std::string(513, 'x')}) {
+    const auto set = set_config(config, "message_of_the_day", bad);
+    REQUIRE_FALSE(set.has_value());
+    CHECK(set.error().find("must be one line of text: it ") != std::string::npos);
+    CHECK(config.message_of_the_day == "build with care");
+  }
+  REQUIRE(set_config(config, "message_of_the_day", "").has_value());
+  CHECK(config.message_of_the_day.empty());
 }
 
 TEST_CASE("every setting is printed on one line and has a help text", "[admin]") {

@@ -43,6 +43,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::vector<PlayerRow> players;
   std::vector<EditRecord> records;
   std::vector<NameChange> names;
+  std::vector<ChatEntry> chat;
   std::deque<ChunkKey> loads;
   struct HistoryLoad {
     SessionId session = 0;
@@ -110,6 +111,7 @@ class FakeEnvironment : public WorldEnvironment {
   void log_names(std::vector<NameChange> changes) override {
     names.insert(names.end(), changes.begin(), changes.end());
   }
+  void log_chat(const ChatEntry& entry) override { chat.push_back(entry); }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
   void command(SessionId /*session*/, AuthorId /*author*/, const PublicKey& /*key*/,
                const std::string& text) override {

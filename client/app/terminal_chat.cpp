@@ -1,0 +1,82 @@
+#include "client/app/terminal_chat.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "common/core/text.hpp"
+
+namespace runstone {
+namespace {
+
+void print(const std::string& line) {
+  std::fputs((line + "\n").c_str(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+std::string printed_line(const ChatLine& line) {
+  const std::string text = with_unseen_replaced(line.text);
+  switch (line.kind) {
+    case ChatLineKind::player: {
+      // The name "ana> hello <bea" would read as a line of Ana.
+      std::string name = line.name;
+      std::replace(name.begin(), name.end(), '<', '(');
+      std::replace(name.begin(), name.end(), '>', ')');
+      return "<" + name + "> " + text;
+    }
+    case ChatLineKind::server:
+      return "[server] " + text;
+    case ChatLineKind::message_of_the_day:
+      return "[today] " + text;
+    case ChatLineKind::refused:
+      return "[not sent] " + text;
+  }
+  return "[chat] " + text;  // a kind that this client does not know
+}
+
+TerminalChat::TerminalChat(ClientSession& session, bool reads) : session_(session) {
+  if (reads) input_.emplace(STDIN_FILENO);
+}
+
+void TerminalChat::step() {
+  if (input_) {
+    for (const std::string& typed : input_->take_lines()) send(typed);
+  }
+  if (is_answer_due_ && !session_.commanding()) {
+    is_answer_due_ = false;
+    for (const std::string& line : session_.command_lines()) print(line);
+  }
+  for (const ChatLine& line : session_.drain_chat()) {
+    heard_.push_back(printed_line(line));
+    if (heard_.size() > kHeardMax) heard_.pop_front();
+    print(heard_.back());
+  }
+}
+
+void TerminalChat::send(const std::string& typed) {
+  if (typed.find_first_not_of(' ') == std::string::npos) return;
+  std::string why;
+  if (typed.starts_with('/')) {
+    const auto given = session_.command(typed.substr(1));
+    is_answer_due_ = is_answer_due_ || given.has_value();
+    if (!given) why = given.error().what;
+  } else if (const auto sent = session_.chat(typed); !sent) {
+    why = sent.error();
+  }
+  if (!why.empty()) print("[not sent] " + why);
+}
+
+bool TerminalChat::take_heard(const std::string& text) {
+  const auto found = std::find_if(heard_.begin(), heard_.end(), [&](const std::string& line) {
+    return line.find(text) != std::string::npos;
+  });
+  if (found == heard_.end()) return false;
+  heard_.erase(heard_.begin(), found + 1);
+  return true;
+}
+
+}  // namespace runstone

@@ -1,0 +1,43 @@
+// TerminalChat: the chat of runstone-client in its terminal. Lines of players and of the server are
+// printed on standard output. Lines that the player types are sent; a line that begins with a slash is
+// a command for the server. One thread.
+#pragma once
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "client/app/line_input.hpp"
+#include "client/session/client_session.hpp"
+
+namespace runstone {
+
+/// Returns a line as it is printed: "<ana> hello", "[server] ...", "[today] ..." for the message of the
+/// day, or "[not sent] ..." with the reason why a line of this client was not passed on. Only a line of
+/// a player begins with "<", and it begins with the player's name. Characters that could not be seen
+/// are question marks.
+std::string printed_line(const ChatLine& line);
+
+class TerminalChat {
+ public:
+  /// Lines that scripts may still wait for. The oldest one is forgotten.
+  static constexpr std::size_t kHeardMax = 256;
+
+  /// `session` must outlive the object. `reads`: the player types lines on standard input.
+  TerminalChat(ClientSession& session, bool reads);
+
+  /// Sends what was typed, and prints what arrived.
+  void step();
+  /// Returns true if a printed line contains the text, and forgets the lines up to it.
+  bool take_heard(const std::string& text);
+
+ private:
+  void send(const std::string& typed);
+
+  ClientSession& session_;
+  std::optional<LineInput> input_;
+  std::deque<std::string> heard_;
+  bool is_answer_due_ = false;  // of a command that was typed
+};
+
+}  // namespace runstone

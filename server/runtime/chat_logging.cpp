@@ -1,0 +1,41 @@
+#include "server/runtime/chat_logging.hpp"
+
+#include <future>
+
+#include "server/admin/chat_list.hpp"
+#include "server/runtime/logging.hpp"
+#include "server/world/chat_state.hpp"
+
+namespace runstone {
+
+std::unique_ptr<ChatLog> open_chat_log(const ServerConfig& config, TimeUs now_us) {
+  if (config.chat_days == 0) {
+    remove_chat_log(config.world);
+    return nullptr;
+  }
+  return std::make_unique<ChatLog>(config.world, chat_kept_from_us(config, now_us),
+                                   [](const std::string& line) { logger("store").warn("{}", line); });
+}
+
+TimeUs chat_kept_from_us(const ServerConfig& config, TimeUs now_us) {
+  constexpr TimeUs kDayUs = 86'400'000'000;
+  return now_us - static_cast<TimeUs>(config.chat_days) * kDayUs;
+}
+
+std::vector<ChatEntry> newest_chat(ChatLog& log) {
+  std::promise<std::vector<ChatEntry>> newest;
+  const bool is_taken = log.search({"", std::nullopt, kChatRecentMax}, [&](const ChatLog::Found& found) {
+    newest.set_value(found ? *found : std::vector<ChatEntry>());
+  });
+  return is_taken ? newest.get_future().get() : std::vector<ChatEntry>();
+}
+
+void list_chat(ChatLog& log, const ChatQuery& query, const CommandReply& reply) {
+  const bool is_taken = log.search(query, [reply](const ChatLog::Found& found) {
+    if (!found) return refuse(reply, "chat log: " + found.error());
+    reply({chat_list(*found), true, true});
+  });
+  if (!is_taken) refuse(reply, "chat log: too many commands read it now: try again later");
+}
+
+}  // namespace runstone

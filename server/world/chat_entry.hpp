@@ -1,0 +1,16 @@
+// ChatEntry: a line of the chat as the log of the chat keeps it.
+#pragma once
+#include "common/core/public_key.hpp"
+#include "protocol/codec/chat_messages.hpp"
+
+namespace runstone {
+
+struct ChatEntry {
+  /// Of a player, or of the host. The log does not keep the author number, because the one of a player
+  /// who never edits may be another player's after a restart.
+  ChatLine line;
+  PublicKey key{};  // of the player who wrote it; zeros: the console wrote it
+  friend bool operator==(const ChatEntry&, const ChatEntry&) = default;
+};
+
+}  // namespace runstone
