@@ -132,6 +132,7 @@ void Client::on_world_opened() {
   const Welcome& welcome = *session_.welcome();
   player_.enter(welcome.world_id, welcome.spawn);
   pipeline_.set_materials(welcome.materials);
+  body_materials_ = body_materials(welcome.materials);
   budget_.set_wanted({std::min(options_.view_radius, welcome.view_radius_max),
                       std::min(options_.view_radius_v, welcome.view_radius_max)});
   if (view_.radii() != budget_.radii()) view_.set_radii(budget_.radii());
@@ -142,6 +143,7 @@ void Client::take_new_materials() {
   const std::size_t known = pipeline_.materials().size();
   if (!session_.is_open() || welcome->materials.size() <= known) return;
   pipeline_.set_materials(welcome->materials);
+  body_materials_ = body_materials(welcome->materials);
   spdlog::info("the world has {} new materials", welcome->materials.size() - known);
 }
 
@@ -158,7 +160,7 @@ void Client::poll_window(TimeUs now_us) {
   polled_us_ = now_us;
   if (input.close || input.escape) end_requested_ = true;
   if (runner_) return;  // the script moves the player
-  player_.steer(input, std::min(seconds, 0.1), pipeline_.materials().size());
+  move_player(input, std::min(seconds, 0.1));
   for (int i = 0; i < input.remove_clicks; ++i) tool_.remove(now_us);
   for (int i = 0; i < input.place_clicks; ++i) tool_.place(now_us);
   if (input.scrub != 0) scrub(input.scrub);
@@ -169,6 +171,15 @@ void Client::poll_window(TimeUs now_us) {
   if (input.screenshot)
     static_cast<void>(actions_.screenshot(fmt::format("runstone-{}.png", now_us)));
   pipeline_.moved();
+}
+
+void Client::move_player(const WindowInput& input, double seconds) {
+  player_.turn(input, pipeline_.materials().size());
+  if (input.walking % 2 != 0) player_.set_walking(!player_.is_walking());
+  if (!player_.is_walking()) return player_.fly(input, seconds);
+  const Replica& replica = session_.replica();
+  if (!replica.opened()) return;
+  player_.walk(input, seconds, ShownSpace(replica), body_materials_);
 }
 
 void Client::scrub(int steps) {

@@ -19,6 +19,7 @@
 #include "client/app/terminal_chat.hpp"
 #include "client/app/threaded_session.hpp"
 #include "client/app/view_follower.hpp"
+#include "client/body/shown_space.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/net/wake_up.hpp"
 #include "client/platform/window.hpp"
@@ -48,6 +49,7 @@ class Client {
   /// Shows the materials that were added since the world was opened.
   void take_new_materials();
   void poll_window(TimeUs now_us);
+  void move_player(const WindowInput& input, double seconds);
   /// Moves the view by `steps` in time. The step after the newest edit is the live world.
   void scrub(int steps);
   void follow_player(TimeUs now_us);
@@ -82,6 +84,7 @@ class Client {
   std::unique_ptr<Window> window_;  // null off screen
   MeshPipeline pipeline_;
   Player player_;
+  BodyMaterials body_materials_;  // of the world
   EditTool tool_;
   MemoryBudget budget_;
   ViewFollower view_;

@@ -12,12 +12,35 @@ constexpr double kPitchMax = kPi / 2 - 0.01;  // looking straight up has no forw
 constexpr double kRadiansPerPixel = 0.0025;
 constexpr double kSpeed = 12, kSpeedFast = 60;  // voxels a second
 
+/// Returns the direction over the ground that the keys mean, of length 1 at most.
+WalkInput over_ground(const WindowInput& input, double yaw) {
+  const double forward = (input.forward ? 1 : 0) - (input.back ? 1 : 0);
+  const double right = (input.right ? 1 : 0) - (input.left ? 1 : 0);
+  const double scale = forward != 0 && right != 0 ? std::numbers::sqrt2 / 2 : 1;
+  const double sine = std::sin(yaw), cosine = std::cos(yaw);
+  WalkInput out;
+  // In right-handed coordinates with y up, -x is to the right of +z.
+  out.x = (forward * sine - right * cosine) * scale;
+  out.z = (forward * cosine + right * sine) * scale;
+  return out;
+}
+
 }  // namespace
 
 void Player::enter(const WorldId& world, const WorldPos& spawn) {
   if (world_ == world) return;
   world_ = world;
-  eye_ = spawn;
+  move_to(spawn);
+}
+
+void Player::move_to(const WorldPos& eye) {
+  eye_ = eye;
+  walker_.place_eye(eye);
+}
+
+void Player::set_walking(bool is_walking) {
+  is_walking_ = is_walking;
+  walker_.place_eye(eye_);
 }
 
 void Player::look(double yaw, double pitch) {
@@ -56,25 +79,33 @@ ChunkCoord Player::chunk(std::int32_t edge) const {
   return chunk_of({down(eye_.x), down(eye_.y), down(eye_.z)}, edge);
 }
 
-void Player::steer(const WindowInput& input, double seconds, std::size_t material_count) {
-  // In right-handed coordinates with y up, -x is to the right of +z. So moving the mouse right
-  // lowers the yaw.
+void Player::turn(const WindowInput& input, std::size_t material_count) {
+  // Moving the mouse right lowers the yaw, because -x is to the right of +z.
   look(yaw_ - input.look_dx * kRadiansPerPixel, pitch_ - input.look_dy * kRadiansPerPixel);
-  const double forward = (input.forward ? 1 : 0) - (input.back ? 1 : 0);
-  const double right = (input.right ? 1 : 0) - (input.left ? 1 : 0);
-  const double up = (input.up ? 1 : 0) - (input.down ? 1 : 0);
-  const double distance = (input.fast ? kSpeedFast : kSpeed) * seconds;
-  const double sine = std::sin(yaw_), cosine = std::cos(yaw_);
-  eye_.x += (forward * sine - right * cosine) * distance;
-  eye_.z += (forward * cosine + right * sine) * distance;
-  eye_.y += up * distance;
-
   if (material_count < 2) return;
   const int last = static_cast<int>(std::min<std::size_t>(material_count, 65536)) - 1;
   int held = held_;
   if (input.digit >= 0) held = input.digit == 0 ? 10 : input.digit;
   held += input.scroll;
   held_ = static_cast<Material>(std::clamp(held, 1, last));
+}
+
+void Player::fly(const WindowInput& input, double seconds) {
+  const WalkInput way = over_ground(input, yaw_);
+  const double distance = (input.fast ? kSpeedFast : kSpeed) * seconds;
+  eye_.x += way.x * distance;
+  eye_.z += way.z * distance;
+  eye_.y += ((input.up ? 1 : 0) - (input.down ? 1 : 0)) * distance;
+}
+
+void Player::walk(const WindowInput& input, double seconds, const VoxelSpace& space,
+                  const BodyMaterials& materials) {
+  WalkInput way = over_ground(input, yaw_);
+  way.up = input.up;
+  way.down = input.down;
+  way.fast = input.fast;
+  walker_.advance(space, materials, way, seconds);
+  eye_ = walker_.eye();
 }
 
 }  // namespace runstone

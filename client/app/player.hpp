@@ -1,9 +1,10 @@
-// Player: the position and direction of the eye that flies through the world, and the selected
-// material.
+// Player: the position and direction of the eye, which flies through the world or walks in it, and
+// the selected material.
 #pragma once
 #include <cstddef>
 #include <optional>
 
+#include "client/body/walker.hpp"
 #include "client/platform/window.hpp"
 #include "client/render/renderer.hpp"
 #include "client/replica/ray_pick.hpp"
@@ -17,7 +18,10 @@ inline constexpr double kReach = 64;  // voxels from the eye to the voxel that a
 class Player {
  public:
   const WorldPos& eye() const { return eye_; }
-  void move_to(const WorldPos& eye) { eye_ = eye; }
+  void move_to(const WorldPos& eye);
+  bool is_walking() const { return is_walking_; }
+  /// Lets the player walk, with a body that falls and is stopped by voxels, or fly.
+  void set_walking(bool is_walking);
   /// Call it when a world opens. The player keeps the position if the world is the one of the last
   /// call, and otherwise moves to `spawn`.
   void enter(const WorldId& world, const WorldPos& spawn);
@@ -33,14 +37,20 @@ class Player {
 
   /// Returns the material that a click places.
   Material held() const { return held_; }
-  /// Applies keys, mouse and wheel of the last `seconds`. Materials 1 to material_count - 1 can be
-  /// selected.
-  void steer(const WindowInput& input, double seconds, std::size_t material_count);
+  /// Applies mouse, wheel and number keys. Materials 1 to material_count - 1 can be selected.
+  void turn(const WindowInput& input, std::size_t material_count);
+  /// Applies the keys of the last `seconds` to a player that flies. Requires !is_walking().
+  void fly(const WindowInput& input, double seconds);
+  /// Does the same for one that walks. Requires is_walking(). Cost: Walker::advance().
+  void walk(const WindowInput& input, double seconds, const VoxelSpace& space,
+            const BodyMaterials& materials);
 
  private:
   std::optional<WorldId> world_;  // of the last enter()
   WorldPos eye_;
   double yaw_ = 0, pitch_ = 0;
+  bool is_walking_ = false;
+  Walker walker_;  // valid while the player walks
   Material held_ = 1;
 };
 

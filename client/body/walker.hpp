@@ -2,6 +2,7 @@
 // steps of kWalkStepS, so that the same input gives the same way at every frame rate.
 // Pure: voxels, input and time are arguments. One thread.
 #pragma once
+#include "client/body/body_materials.hpp"
 #include "common/collision/sweep.hpp"
 #include "common/collision/voxel_space.hpp"
 #include "common/core/world_pos.hpp"
@@ -22,11 +23,6 @@ struct WalkInput {
   bool fast = false;
 };
 
-/// The materials that matter to a body. Others let it pass.
-struct BodyMaterials {
-  MaterialSet solid, liquid;
-};
-
 BodyBox body_at(const WorldPos& feet);
 
 class Walker {
@@ -34,6 +30,8 @@ class Walker {
   const WorldPos& feet() const { return feet_; }
   /// Returns the eye. After a step up it follows the body in some tenths of a second.
   WorldPos eye() const { return {feet_.x, feet_.y + kEyeHeight - step_lag_, feet_.z}; }
+  /// Puts the body where its eye is at `eye`, at rest.
+  void place_eye(const WorldPos& eye) { place({eye.x, eye.y - kEyeHeight, eye.z}); }
   bool is_on_ground() const { return is_on_ground_; }
   bool is_in_liquid() const { return is_in_liquid_; }
   /// Puts the body somewhere, at rest.

@@ -103,6 +103,7 @@ Window::Window(int width, int height, const std::string& title)
     if (key == GLFW_KEY_Y && (mods & GLFW_MOD_CONTROL) != 0) state.pending.redo = true;
     if (key == GLFW_KEY_HOME) state.pending.live = true;
     if (key == GLFW_KEY_G) ++state.pending.ground;
+    if (key == GLFW_KEY_F) ++state.pending.walking;
     if (key == GLFW_KEY_ESCAPE) {
       if (state.captured) return state.capture(false);
       state.pending.escape = true;

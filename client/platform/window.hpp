@@ -24,6 +24,7 @@ struct WindowInput {
   bool undo = false, redo = false;  // Ctrl+Z, Ctrl+Y pressed
   bool live = false;                // Home pressed
   int ground = 0;                   // presses of G
+  int walking = 0;                  // presses of F
   bool close = false;               // the window's close button
 };
 

@@ -15,17 +15,27 @@ namespace runstone {
 /// sRGB and alpha. Alpha is below 255 only for materials that are not opaque.
 using MaterialColour = std::array<std::uint8_t, 4>;
 
+/// What a material is to the body of a player. Values are frozen: tables, records and messages hold
+/// them. A material that is empty lets every body pass and has the value `solid`.
+enum class MaterialBody : std::uint8_t {
+  solid = 0,     // stops it
+  liquid = 1,    // it swims
+  passable = 2,  // it passes
+};
+
 struct MaterialRow {
   std::string name;  // unique in a table; 1 .. 64 bytes of UTF-8 without control characters
   MaterialColour colour{0, 0, 0, 255};
   Visibility visibility = Visibility::opaque;
+  MaterialBody body = MaterialBody::solid;
   friend bool operator==(const MaterialRow&, const MaterialRow&) = default;
 };
 
 inline constexpr std::size_t kMaterialNameBytesMax = 64;
 
-/// Fails (bad_value) for a bad name, and for an opaque material with alpha below 255.
+/// Fails (bad_value) for a bad name, for an opaque material with alpha below 255, and for a body that
+/// is unknown or that an empty material has.
 Result<void> validate_material(std::string_view name, const MaterialColour& colour,
-                               Visibility visibility);
+                               Visibility visibility, MaterialBody body);
 
 }  // namespace runstone

@@ -293,9 +293,12 @@ MaterialInfo material_of_luanti_node(std::string_view name, bool keep_all) {
       break;
     case Kind::thin:
       out.visibility = keep_all ? Visibility::transparent : Visibility::empty;
+      if (keep_all) out.body = MaterialBody::passable;
       out.colour[3] = kThinAlpha;
       break;
   }
+  // Luanti's games name the two nodes of a liquid so.
+  if (name.ends_with("_source") || name.ends_with("_flowing")) out.body = MaterialBody::liquid;
   return out;
 }
 

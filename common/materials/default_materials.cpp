@@ -9,6 +9,7 @@ struct PaletteRow {
   const char* name;
   std::uint32_t rgba;
   Visibility visibility = Visibility::opaque;
+  MaterialBody body = MaterialBody::solid;
 };
 
 constexpr PaletteRow kPalette[] = {
@@ -17,7 +18,7 @@ constexpr PaletteRow kPalette[] = {
     {"sand", 0xe2cf98ff},
     {"dirt", 0x7d5a3cff},
     {"stone", 0x8b8d90ff},
-    {"water", 0x2f74b5a8, Visibility::transparent},
+    {"water", 0x2f74b5a8, Visibility::transparent, MaterialBody::liquid},
     {"snow", 0xf2f6faff},
     {"gravel", 0x87807aff},
     {"clay", 0xa7a9b6ff},
@@ -66,7 +67,7 @@ MaterialTable make_default_table() {
     const std::array<std::uint8_t, 4> colour = {
         static_cast<std::uint8_t>(row.rgba >> 24), static_cast<std::uint8_t>(row.rgba >> 16),
         static_cast<std::uint8_t>(row.rgba >> 8), static_cast<std::uint8_t>(row.rgba)};
-    const auto id = table.add({row.name, colour, row.visibility, thesis_rule(row.name)});
+    const auto id = table.add({row.name, colour, row.visibility, thesis_rule(row.name), row.body});
     RUNSTONE_ASSERT(id.has_value());
   }
   return table;

@@ -36,7 +36,8 @@ std::optional<Material> MaterialTable::find(std::string_view name) const {
 
 Result<Material> MaterialTable::add(MaterialInfo info) {
   if (rows_.size() >= kMaterialCountMax) return fail(ErrorCode::limit_exceeded, kTableIsFull);
-  if (const auto sound = validate_material(info.name, info.colour, info.visibility); !sound)
+  if (const auto sound = validate_material(info.name, info.colour, info.visibility, info.body);
+      !sound)
     return Unexpected<Error>{sound.error()};
   if (info.generation) {
     if (const char* what = broken_rule(info.generation->surface))
@@ -58,7 +59,8 @@ Result<void> MaterialTable::check_rows(std::span<const MaterialRow> rows) const 
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const MaterialRow& row = rows[i];
-    if (const auto sound = validate_material(row.name, row.colour, row.visibility); !sound)
+    if (const auto sound = validate_material(row.name, row.colour, row.visibility, row.body);
+        !sound)
       return fail(sound.error().code, sound.error().what, i);
     if (find(row.name) || !names.insert(row.name).second)
       return fail(ErrorCode::bad_value, kNameIsTaken, i);
@@ -71,7 +73,7 @@ Result<void> MaterialTable::append(Material first, std::span<const MaterialRow> 
     return fail(ErrorCode::broken_invariant, "materials do not continue the table");
   if (auto sound = check_rows(rows); !sound) return sound;
   for (const MaterialRow& row : rows) {
-    const auto added = add({row.name, row.colour, row.visibility, std::nullopt});
+    const auto added = add({row.name, row.colour, row.visibility, std::nullopt, row.body});
     RUNSTONE_ASSERT(added.has_value());
   }
   return {};

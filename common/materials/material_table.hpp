@@ -41,6 +41,7 @@ struct MaterialInfo {
   MaterialColour colour{0, 0, 0, 255};
   Visibility visibility = Visibility::opaque;
   std::optional<GenerationRule> generation;
+  MaterialBody body = MaterialBody::solid;
   friend bool operator==(const MaterialInfo&, const MaterialInfo&) = default;
 };
 

@@ -21,6 +21,7 @@ std::string TextError::message() const {
 namespace {
 
 constexpr const char* kVisibilityNames[] = {"empty", "opaque", "transparent"};
+constexpr const char* kBodyNames[] = {"solid", "liquid", "passable"};
 
 /// The first error is kept. The results of later reads are not used.
 class TableReader {
@@ -98,6 +99,16 @@ class TableReader {
     return Visibility::opaque;
   }
 
+  MaterialBody body(const toml::table& table, const std::string& path) {
+    const auto written = text(table, path, "body");
+    if (!written) return MaterialBody::solid;
+    for (std::uint8_t i = 0; i < 3; ++i) {
+      if (*written == kBodyNames[i]) return static_cast<MaterialBody>(i);
+    }
+    reject(*table.get("body"), path + ".body", R"(must be "solid", "liquid" or "passable")");
+    return MaterialBody::solid;
+  }
+
   std::optional<SurfaceRule> surface(const toml::table& table, const std::string& path,
                                      std::string_view key) {
     const toml::node* node = table.get(key);
@@ -151,11 +162,12 @@ class TableReader {
 
 /// Reads a row without the checks of MaterialTable::add().
 MaterialInfo read_info(TableReader& in, const toml::table& row, const std::string& path) {
-  in.only_keys(row, path, {"name", "colour", "visibility", "generate"});
+  in.only_keys(row, path, {"name", "colour", "visibility", "body", "generate"});
   const auto name = in.text(row, path, "name");
   if (!name) in.reject(row, path + ".name", "is missing");
   MaterialInfo info;
   info.visibility = in.visibility(row, path);
+  info.body = in.body(row, path);
   // A material that is never drawn needs no colour.
   if (info.visibility != Visibility::empty || row.contains("colour")) {
     info.colour = in.colour(row, path);
@@ -271,7 +283,7 @@ Result<std::vector<MaterialFileRow>, TextError> parse_material_rows(std::string_
     if (const toml::node* rule = row.get("generate"))
       in.reject(*rule, path + ".generate", "a material that is added later cannot be terrain");
     if (in.failed()) return;
-    out.push_back({{info.name, info.colour, info.visibility},
+    out.push_back({{info.name, info.colour, info.visibility, info.body},
                    static_cast<std::uint32_t>(row.source().begin.line)});
     if (const auto id = own.add(std::move(info)); !id) in.reject(row, path, id.error().what);
   });
@@ -287,6 +299,8 @@ std::string to_toml(const MaterialTable& table) {
     out += "colour = " + quoted(colour_text(row.colour)) + "\n";
     out += std::string("visibility = \"") +
            kVisibilityNames[static_cast<std::size_t>(row.visibility)] + "\"\n";
+    if (row.body != MaterialBody::solid)
+      out += std::string("body = \"") + kBodyNames[static_cast<std::size_t>(row.body)] + "\"\n";
     if (!row.generation) continue;
     out += "[material.generate]\nsurface = " + surface_text(row.generation->surface) + "\n";
     if (row.generation->reversed)

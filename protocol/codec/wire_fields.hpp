@@ -64,7 +64,7 @@ inline bool take_pose(const wire::Pose* from, Pose& to) {
   return true;
 }
 
-/// Reads name, colour and visibility of a MaterialRow or MaterialInfo. MaterialTable checks the rest.
+/// Reads name, colour, visibility and body of a MaterialRow or MaterialInfo. MaterialTable checks the rest.
 template <class Row>
 bool take_material(const wire::MaterialRow& row, Row& info) {
   if (!take_text(row.name(), 1, kMaterialNameBytesMax, info.name)) return false;
@@ -72,6 +72,8 @@ bool take_material(const wire::MaterialRow& row, Row& info) {
     info.colour[c] = static_cast<std::uint8_t>(row.rgba() >> (8 * c));
   if (row.visibility() > static_cast<std::uint8_t>(Visibility::transparent)) return false;
   info.visibility = static_cast<Visibility>(row.visibility());
+  if (row.body() > static_cast<std::uint8_t>(MaterialBody::passable)) return false;
+  info.body = static_cast<MaterialBody>(row.body());
   return true;
 }
 

@@ -16,7 +16,8 @@ Result<void> validate(const AddedMaterials& added) {
   for (const MaterialRow& row : added.rows) {
     if (row.visibility > Visibility::transparent)
       return fail(ErrorCode::bad_value, "unknown visibility");
-    if (auto sound = validate_material(row.name, row.colour, row.visibility); !sound) return sound;
+    if (auto sound = validate_material(row.name, row.colour, row.visibility, row.body); !sound)
+      return sound;
     names.push_back(row.name);
   }
   std::sort(names.begin(), names.end());
@@ -32,7 +33,8 @@ void write_added_materials(ByteWriter& w, const AddedMaterials& added) {
     w.varint(row.name.size());
     w.bytes({reinterpret_cast<const std::uint8_t*>(row.name.data()), row.name.size()});
     w.bytes(row.colour);
-    w.u8(static_cast<std::uint8_t>(row.visibility));
+    w.u8(static_cast<std::uint8_t>(static_cast<unsigned>(row.visibility) |
+                                   static_cast<unsigned>(row.body) << 2));
   }
 }
 
@@ -48,7 +50,9 @@ AddedMaterials read_added_materials(ByteReader& r) {
     row.name.assign(name.begin(), name.end());
     const ByteView colour = r.bytes(row.colour.size());
     std::copy(colour.begin(), colour.end(), row.colour.begin());
-    row.visibility = static_cast<Visibility>(r.u8());
+    const std::uint8_t kind = r.u8();
+    row.visibility = static_cast<Visibility>(kind & 3);
+    row.body = static_cast<MaterialBody>(kind >> 2);
     added.rows.push_back(std::move(row));
   }
   return added;

@@ -29,38 +29,69 @@ TEST_CASE("forward moves in the direction of sight, and right moves to the right
   Player player;
   WindowInput input;
   input.forward = true;
-  player.steer(input, 1, 10);
+  player.fly(input, 1);
   CHECK(player.eye().z > 1);  // yaw 0 looks along +z
   CHECK(player.eye().x == Approx(0).margin(1e-9));
   player = Player();
   input = {};
   input.right = true;
-  player.steer(input, 1, 10);
+  player.fly(input, 1);
   CHECK(player.eye().x < -1);  // in right-handed coordinates with y up, -x is to the right of +z
   player = Player();
   input = {};
   input.look_dx = 100;  // the mouse moves right
-  player.steer(input, 1, 10);
+  player.turn(input, 10);
   CHECK(player.direction().x < 0);
   input = {};
   input.look_dy = -100;  // and up
-  player.steer(input, 1, 10);
+  player.turn(input, 10);
   CHECK(player.direction().y > 0);
+}
+
+TEST_CASE("a player who walks is where the body's eye is, and flies on from there",
+          "[client_app]") {
+  // Stone below y = 0.
+  class Ground final : public VoxelSpace {
+   public:
+    Ground() : VoxelSpace(16) {}
+    const RunChunk* chunk(ChunkCoord at) const override { return at.y < 0 ? &stone_ : &empty_; }
+
+   private:
+    RunChunk stone_ = uniform_chunk(Extent::cube(16), 1);
+    RunChunk empty_ = uniform_chunk(Extent::cube(16), kEmpty);
+  };
+  const Ground ground;
+  const BodyMaterials materials = body_materials(default_material_table());
+  Player player;
+  player.move_to({0.5, 10, 0.5});
+  player.set_walking(true);
+  WindowInput input;
+  for (int i = 0; i < 200; ++i) player.walk(input, 0.02, ground, materials);
+  CHECK(player.eye().y == Approx(kEyeHeight).margin(1e-4));
+  input.forward = true;
+  for (int i = 0; i < 50; ++i) player.walk(input, 0.02, ground, materials);
+  CHECK(player.eye().z > 4);
+  player.set_walking(false);
+  input.forward = false;
+  input.up = true;
+  player.fly(input, 1);
+  CHECK(player.eye().y > 10);
+  CHECK(player.eye().z > 4);
 }
 
 TEST_CASE("digits and the wheel select one of the world's materials", "[client_app]") {
   Player player;
   WindowInput input;
   input.digit = 4;
-  player.steer(input, 0, 8);
+  player.turn(input, 8);
   CHECK(player.held() == 4);
   input = {};
   input.scroll = -10;
-  player.steer(input, 0, 8);
+  player.turn(input, 8);
   CHECK(player.held() == 1);
   input = {};
   input.digit = 0;
-  player.steer(input, 0, 8);
+  player.turn(input, 8);
   CHECK(player.held() == 7);
 }
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <vector>
 
 #include "tests/support/random_chunk.hpp"
 
@@ -65,6 +66,27 @@ Walker standing_at(const Ground& ground, double x, double y, double z) {
 }
 
 }  // namespace
+
+TEST_CASE("materials are solid, liquid or passable as their table says", "[body]") {
+  MaterialTable table;
+  REQUIRE(table.add({"stone", {1, 2, 3, 255}, Visibility::opaque, std::nullopt}).has_value());
+  REQUIRE(table.add({"mark", {0, 0, 0, 0}, Visibility::empty, std::nullopt}).has_value());
+  REQUIRE(table.add({"water", {1, 2, 3, 90}, Visibility::transparent, std::nullopt,
+                     MaterialBody::liquid})
+              .has_value());
+  REQUIRE(table.add({"fern", {1, 2, 3, 90}, Visibility::transparent, std::nullopt,
+                     MaterialBody::passable})
+              .has_value());
+  REQUIRE(table.add({"glass", {1, 2, 3, 90}, Visibility::transparent, std::nullopt}).has_value());
+  const BodyMaterials body = body_materials(table);
+  const std::vector<bool> solid = {false, true, false, false, false, true, true};
+  const std::vector<bool> liquid = {false, false, false, true, false, false, false};
+  for (Material id = 0; id < solid.size(); ++id) {
+    CAPTURE(id);
+    CHECK(body.solid.contains(id) == solid[id]);
+    CHECK(body.liquid.contains(id) == liquid[id]);
+  }
+}
 
 TEST_CASE("a walker falls to the ground and walks at its speed", "[body]") {
   const Ground ground;

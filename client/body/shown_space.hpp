@@ -1,0 +1,32 @@
+// ShownSpace: the shown runs of a replica as the space in which a player moves. One thread.
+#pragma once
+#include "client/replica/replica.hpp"
+#include "common/collision/voxel_space.hpp"
+
+namespace runstone {
+
+class ShownSpace final : public VoxelSpace {
+ public:
+  /// Requires an open replica, which must outlive the space.
+  explicit ShownSpace(const Replica& replica)
+      : VoxelSpace(replica.chunk_edge()), replica_(replica) {}
+
+  /// A chunk that is not shown is not known, within the world and beyond it.
+  const RunChunk* chunk(ChunkCoord at) const override {
+    if (!is_read_ || at != at_) {
+      shown_ = replica_.shown({0, at});
+      at_ = at;
+      is_read_ = true;
+    }
+    return shown_.get();
+  }
+
+ private:
+  const Replica& replica_;
+  // The chunk that was read last, because the next one is mostly the same.
+  mutable ShownPtr shown_;
+  mutable ChunkCoord at_;
+  mutable bool is_read_ = false;
+};
+
+}  // namespace runstone
