@@ -104,6 +104,7 @@ MaterialTable any_materials(SplitMix64& rng) {
     draw(rng, info.colour);
     info.visibility = static_cast<Visibility>(rng.below(3));
     if (info.visibility == Visibility::opaque) info.colour[3] = 255;
+    if (info.visibility != Visibility::empty) info.body = static_cast<MaterialBody>(rng.below(3));
     RUNSTONE_ASSERT(table.add(std::move(info)).has_value());
   }
   return table;
@@ -403,7 +404,7 @@ MaterialsAdded any_materials_added(SplitMix64& rng) {
   if (table.size() == 1) RUNSTONE_ASSERT(table.add({"one", {}, Visibility::empty, {}}).has_value());
   MaterialsAdded m;
   for (const MaterialInfo& info : table.rows().subspan(1))
-    m.rows.push_back({info.name, info.colour, info.visibility});
+    m.rows.push_back({info.name, info.colour, info.visibility, info.body});
   const auto ids = static_cast<std::uint32_t>(kMaterialCountMax - m.rows.size());
   m.first = static_cast<Material>(1 + rng.below(ids));
   return m;

@@ -26,6 +26,10 @@ TEST_CASE("ground is opaque, water and glass are transparent, plants are empty",
   CHECK(visibility_of("default:sand_with_kelp") == Visibility::opaque);
   CHECK(visibility_of("default:water_source") == Visibility::transparent);
   CHECK(visibility_of("default:glass") == Visibility::transparent);
+  CHECK(material_of_luanti_node("default:water_flowing", false).body == MaterialBody::liquid);
+  CHECK(material_of_luanti_node("default:lava_source", false).body == MaterialBody::liquid);
+  CHECK(material_of_luanti_node("default:glass", false).body == MaterialBody::solid);
+  CHECK(material_of_luanti_node("default:grass_3", true).body == MaterialBody::passable);
   CHECK(visibility_of("default:grass_3") == Visibility::empty);
   CHECK(visibility_of("default:grass_3", true) == Visibility::transparent);
   CHECK(visibility_of("default:torch_wall") == Visibility::empty);

@@ -31,6 +31,8 @@ MaterialTable random_table(SplitMix64& random) {
     info.visibility = static_cast<Visibility>(random.below(3));
     for (auto& channel : info.colour) channel = static_cast<std::uint8_t>(random.below(256));
     if (info.visibility == Visibility::opaque) info.colour[3] = 255;
+    if (info.visibility != Visibility::empty)
+      info.body = static_cast<MaterialBody>(random.below(3));
     if (random.below(2) == 0) info.generation = GenerationRule{surface(), std::nullopt};
     if (info.generation && random.below(2) == 0) info.generation->reversed = surface();
     REQUIRE(table.add(info).has_value());
@@ -113,6 +115,7 @@ TEST_CASE("every mistake in a row is reported at its key", "[materials]") {
       {"name = \"r\"\ncolour = 1\n", 6, "material[1].colour"},
       {"name = \"r\"\ncolour = \"#102030\"\nvisibility = \"glassy\"\n", 7,
        "material[1].visibility"},
+      {"name = \"r\"\ncolour = \"#102030\"\nbody = \"soft\"\n", 7, "material[1].body"},
       {"name = \"r\"\ncolour = \"#102030\"\ncolor = \"#102030\"\n", 7, "material[1].color"},
       {"name = \"r\"\ncolour = \"#10203040\"\n", 4, "material[1]"},
       {"name = \"air\"\ncolour = \"#102030\"\n", 4, "material[1]"},

@@ -32,6 +32,7 @@ struct WelcomeFields {
     std::string name;
     std::uint32_t rgba;
     std::uint8_t visibility;
+    std::uint8_t body = 0;
   };
   std::vector<Row> rows = {{"air", 0, 0}, {"stone", 0xff808080, 1}};
   bool has_spawn = true;
@@ -39,7 +40,7 @@ struct WelcomeFields {
     std::vector<Offset<wire::MaterialRow>> table;
     for (const Row& row : rows) {
       table.push_back(
-          wire::CreateMaterialRow(b, b.CreateString(row.name), row.rgba, row.visibility));
+          wire::CreateMaterialRow(b, b.CreateString(row.name), row.rgba, row.visibility, row.body));
     }
     const auto materials = b.CreateVector(table);
     const auto w = filled(b, world_id), k = filled(b, server_key), c = filled(b, challenge),
@@ -116,6 +117,7 @@ TEST_CASE("welcome is refused with a field of the wrong size or range", "[protoc
                                    [](auto& w) { w.rows[1].name = std::string(65, 'a'); },
                                    [](auto& w) { w.rows[1].name = "\xff"; },
                                    [](auto& w) { w.rows[1].visibility = 3; },
+                                   [](auto& w) { w.rows[1].body = 3; },
                                    [](auto& w) { w.rows[1].rgba = 0x7f000000; }});
 }
 
