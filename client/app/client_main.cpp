@@ -61,7 +61,7 @@ int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop)
 }
 
 int key_program(int argc, const char* const* argv) {
-  const auto parsed = runstone::parse_key_request(argc, argv);
+  const auto parsed = runstone::parse_key_command(argc, argv);
   if (!parsed.request) return parsed.exit_code;
   const auto done = runstone::run_key_program(*parsed.request, std::cin, std::cout);
   if (done) return runstone::kExitOk;

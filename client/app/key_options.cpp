@@ -4,21 +4,21 @@
 
 namespace runstone {
 
-ParsedKeyRequest parse_key_request(int argc, const char* const* argv) {
-  KeyRequest out;
+ParsedKeyCommand parse_key_command(int argc, const char* const* argv) {
+  KeyCommand out;
   CLI::App app{"Shows a player's key, and moves it to another computer.", "runstone-client key"};
   app.require_subcommand(1);
-  const auto add = [&](const char* name, KeyRequest::Verb verb, const char* help) {
+  const auto add = [&](const char* name, KeyCommand::Verb verb, const char* help) {
     CLI::App* command = app.add_subcommand(name, help);
     command->add_option("--key", out.key_file, "file of the key")->required();
     command->callback([&out, verb] { out.verb = verb; });
     return command;
   };
-  add("show", KeyRequest::Verb::show, "print the public key and its fingerprint");
-  CLI::App* exported = add("export", KeyRequest::Verb::export_key,
+  add("show", KeyCommand::Verb::show, "print the public key and its fingerprint");
+  CLI::App* exported = add("export", KeyCommand::Verb::export_key,
                            "print the key as a line of text that a passphrase protects");
   exported->add_option("--out", out.file, "write the line to this new file instead");
-  CLI::App* imported = add("import", KeyRequest::Verb::import_key,
+  CLI::App* imported = add("import", KeyCommand::Verb::import_key,
                            "make the key file from an exported line; an existing file stays");
   imported->add_option("--in", out.file, "read the line from this file; default: standard input");
   for (CLI::App* command : {exported, imported}) {

@@ -1,11 +1,11 @@
-// KeyRequest: the command line of `runstone-client key` as a value.
+// KeyCommand: the command line of `runstone-client key` as a value.
 #pragma once
 #include <optional>
 #include <string>
 
 namespace runstone {
 
-struct KeyRequest {
+struct KeyCommand {
   enum class Verb { show, export_key, import_key } verb{};
   std::string key_file;
   std::string file;             // exported to, or imported from; empty: the terminal
@@ -14,11 +14,11 @@ struct KeyRequest {
 
 /// The request, or the exit code of a program that has nothing more to do: 0 after help, 2 after an
 /// error. The help text or the error was printed.
-struct ParsedKeyRequest {
-  std::optional<KeyRequest> request;
+struct ParsedKeyCommand {
+  std::optional<KeyCommand> request;
   int exit_code = 0;
 };
 /// Parses the words from "key" on.
-ParsedKeyRequest parse_key_request(int argc, const char* const* argv);
+ParsedKeyCommand parse_key_command(int argc, const char* const* argv);
 
 }  // namespace runstone

@@ -31,7 +31,7 @@ std::string first_line(std::istream& in) {
 }
 
 /// Returns the passphrase of an export. At the terminal it is typed twice.
-Result<std::string, std::string> new_passphrase(const KeyRequest& request) {
+Result<std::string, std::string> new_passphrase(const KeyCommand& request) {
   const bool is_asked = request.passphrase_file.empty();
   auto first = is_asked ? ask_passphrase("passphrase for the exported key: ")
                         : read_passphrase(request.passphrase_file);
@@ -46,7 +46,7 @@ Result<std::string, std::string> new_passphrase(const KeyRequest& request) {
   return first;
 }
 
-Done export_key(const KeyRequest& request, std::ostream& out, SealCost cost) {
+Done export_key(const KeyCommand& request, std::ostream& out, SealCost cost) {
   const KeySeed seed = load_key_seed(request.key_file);
   const auto passphrase = new_passphrase(request);
   if (!passphrase) return key_failure(passphrase.error());
@@ -61,7 +61,7 @@ Done export_key(const KeyRequest& request, std::ostream& out, SealCost cost) {
   return {};
 }
 
-Done import_key(const KeyRequest& request, std::istream& in, std::ostream& out) {
+Done import_key(const KeyCommand& request, std::istream& in, std::ostream& out) {
   std::ifstream file;
   if (!request.file.empty()) file.open(request.file);
   const std::string line = first_line(request.file.empty() ? in : file);
@@ -81,16 +81,16 @@ Done import_key(const KeyRequest& request, std::istream& in, std::ostream& out) 
 
 }  // namespace
 
-Done run_key_program(const KeyRequest& request, std::istream& in, std::ostream& out,
+Done run_key_program(const KeyCommand& request, std::istream& in, std::ostream& out,
                      SealCost cost) {
   try {
     switch (request.verb) {
-      case KeyRequest::Verb::show:
+      case KeyCommand::Verb::show:
         print(load_key_seed(request.key_file), out);
         return {};
-      case KeyRequest::Verb::export_key:
+      case KeyCommand::Verb::export_key:
         return export_key(request, out, cost);
-      case KeyRequest::Verb::import_key:
+      case KeyCommand::Verb::import_key:
         return import_key(request, in, out);
     }
   } catch (const std::exception& error) {

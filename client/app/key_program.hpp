@@ -13,7 +13,7 @@ inline constexpr std::size_t kPassphraseBytesMin = 8;
 
 /// Carries out the request. `in` is read by an import without a file; `cost` is that of an export.
 /// No file is overwritten. The error is one line.
-Result<void, std::string> run_key_program(const KeyRequest& request, std::istream& in,
+Result<void, std::string> run_key_program(const KeyCommand& request, std::istream& in,
                                           std::ostream& out, SealCost cost = {});
 
 }  // namespace runstone
