@@ -91,7 +91,7 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
     return reply({material_list(materials_, list->part), true, true});
   }
   if (const auto* spoken = std::get_if<SayCommand>(&*command))
-    return say(caller, spoken->text, reply);
+    return say(caller, spoken->text, now, reply);
   if (run_action(*command, reply)) return;
   if (const auto* undo = std::get_if<UndoCommand>(&*command)) {
     if (caller.author == 0) {
@@ -167,9 +167,9 @@ void CommandHandler::release_name(const std::string& name, const CommandReply& r
          true, true});
 }
 
-void CommandHandler::say(const CommandCaller& caller, const std::string& text,
+void CommandHandler::say(const CommandCaller& caller, const std::string& text, const Clocks& now,
                          const CommandReply& reply) {
-  const std::size_t sessions = world_.say(text, caller.actor.key.value_or(PublicKey{}));
+  const std::size_t sessions = world_.say(text, caller.actor.key.value_or(PublicKey{}), now);
   reply({"sent to " + std::to_string(sessions) + (sessions == 1 ? " session" : " sessions"), true,
          true});
 }

@@ -223,8 +223,8 @@ Result<Sequence, std::string> WorldServer::change_rights(const RightsChange& cha
 
 std::vector<RefusalRow> WorldServer::refusals() const { return state_->refusals.rows(); }
 
-std::size_t WorldServer::say(const std::string& text, const PublicKey& by) {
-  return runstone::say(*state_, text, by);
+std::size_t WorldServer::say(const std::string& text, const PublicKey& by, const Clocks& now) {
+  return runstone::say(*state_, text, by, now);
 }
 
 InviteId WorldServer::new_invite_id() {

@@ -102,7 +102,7 @@ TEST_CASE("random chat stays within the bounds of players, addresses, messages a
       std::advance(from, static_cast<std::ptrdiff_t>(rng.below(static_cast<std::uint32_t>(open.size()))));
       bench.server.received(from->first, ChatRequest{random_line(rng)}, bench.now());
     }
-    if (rng.below(100) == 0) bench.server.say("a word of the host", {});
+    if (rng.below(100) == 0) bench.server.say("a word of the host", {}, bench.now());
     const TimeUs accepted_us = bench.time_us;
     bench.tick(static_cast<TimeUs>(rng.below(rng.below(20) == 0 ? 40'000'000 : 400'000)));
     for (const ChatEntry& entry : bench.environment.chat) {
