@@ -95,10 +95,11 @@ struct RollbackListCommand {
   friend bool operator==(const RollbackListCommand&, const RollbackListCommand&) = default;
 };
 
-using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand,
-                             StopCommand, ReloadCommand, BackupCommand, UndoCommand, LogCommand,
-                             NamesCommand, ReleaseNameCommand, SayCommand, ChatLogCommand, RollbackPreviewCommand,
-                             RollbackCommand, RollbackListCommand, RightsCommand>;
+using Command =
+    std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand, StopCommand,
+                 ReloadCommand, BackupCommand, UndoCommand, LogCommand, NamesCommand,
+                 ReleaseNameCommand, SayCommand, ChatLogCommand, RollbackPreviewCommand,
+                 RollbackCommand, RollbackListCommand, RightsCommand>;
 
 /// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate
 /// words; a word that contains blanks stands in double quotes. `now_us` (UTC) is the time to which

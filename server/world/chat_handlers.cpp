@@ -65,10 +65,9 @@ std::optional<ChatRefusal> pay_line(WorldState& world, const WorldSession& mine,
     return std::nullopt;
   }
   const bool is_of_key = std::string_view(unpaid->whose) == "key";
-  return ChatRefusal{
-      (is_of_key ? "you write too fast" : "too many lines come from your address") +
-          again_in(unpaid->wait_us),
-      is_of_key ? "too fast" : "too fast from one address"};
+  return ChatRefusal{(is_of_key ? "you write too fast" : "too many lines come from your address") +
+                         again_in(unpaid->wait_us),
+                     is_of_key ? "too fast" : "too fast from one address"};
 }
 
 void refuse_line(WorldState& world, SessionId session, const ChatRefusal& refusal,
@@ -131,8 +130,7 @@ void broadcast_chat(WorldState& world) {
   for (const auto& [id, session] : world.sessions) {
     if (has_chat(session)) readers.push_back(id);
   }
-  world.counters.queue_full +=
-      world.environment.send_to_all(readers, encode_message(lines)).size();
+  world.counters.queue_full += world.environment.send_to_all(readers, encode_message(lines)).size();
   for (const ChatLine& line : lines.lines) world.chat.add(line);
 }
 

@@ -81,7 +81,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   if (data[0] % 6 == 1) check_token(text);  // a ticket of the wire may have any bytes
-  check_chat_line(text);  // a terminal may have any bytes
+  check_chat_line(text);                    // a terminal may have any bytes
   // The wire, the terminal and `control` accept only such texts.
   if (!is_printable_utf8(text)) return 0;
   switch (data[0] % 6) {

@@ -89,7 +89,8 @@ TEST_CASE("players write to each other, the host speaks and mutes, and a restart
     CHECK(contains(log, ": hello\n"));
     CHECK(contains(log, " server: restart at ten\n"));
     CHECK_FALSE(contains(log, "more gold"));
-    const std::string of_mole = chat_log(world, {"by", "player2", "since", "1h", "limit", "5"}).text;
+    const std::string of_mole =
+        chat_log(world, {"by", "player2", "since", "1h", "limit", "5"}).text;
     CHECK(contains(of_mole, ": buy gold\n"));
     CHECK_FALSE(contains(of_mole, "hello"));
     CHECK(server->stop().is_clean);

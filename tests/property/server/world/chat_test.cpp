@@ -52,8 +52,9 @@ std::string random_line(SplitMix64& rng) {
 
 }  // namespace
 
-TEST_CASE("random chat stays within the bounds of players, addresses, messages and the newest lines",
-          "[world][chat][property]") {
+TEST_CASE(
+    "random chat stays within the bounds of players, addresses, messages and the newest lines",
+    "[world][chat][property]") {
   SplitMix64 rng{Catch::rngSeed()};
   CAPTURE(Catch::rngSeed());
   WorldConfig c = config();
@@ -99,7 +100,8 @@ TEST_CASE("random chat stays within the bounds of players, addresses, messages a
     bench.environment.chat.clear();
     for (std::uint64_t i = rng.below(30); i > 0; --i) {
       auto from = open.begin();
-      std::advance(from, static_cast<std::ptrdiff_t>(rng.below(static_cast<std::uint32_t>(open.size()))));
+      std::advance(from,
+                   static_cast<std::ptrdiff_t>(rng.below(static_cast<std::uint32_t>(open.size()))));
       bench.server.received(from->first, ChatRequest{random_line(rng)}, bench.now());
     }
     if (rng.below(100) == 0) bench.server.say("a word of the host", {}, bench.now());

@@ -19,7 +19,10 @@ TEST_CASE("only a line of a player begins with a name", "[client][chat]") {
   CHECK(printed_line({ChatLineKind::refused, 0, "", "you are muted", 0}) ==
         "[not sent] you are muted");
   CHECK(printed_line({static_cast<ChatLineKind>(9), 0, "", "news", 0}) == "[chat] news");
-  CHECK(printed_line({ChatLineKind::player, 7, "ana", "a\xe2\x80\xae" "b", 0}) == "<ana> a?b");
+  CHECK(printed_line({ChatLineKind::player, 7, "ana",
+                      "a\xe2\x80\xae"
+                      "b",
+                      0}) == "<ana> a?b");
 }
 
 TEST_CASE("typed lines are read as they are complete, without waiting", "[client][chat]") {

@@ -127,7 +127,9 @@ TEST_CASE("a line that nobody could read is refused with what is wrong", "[world
   ChatBench bench;
   bench.enter(1, 1);
   bench.write(1, "   ");
-  bench.write(1, "a\xe2\x80\xae" "b");
+  bench.write(1,
+              "a\xe2\x80\xae"
+              "b");
   bench.tick();
   CHECK(bench.texts(1).empty());
   CHECK(bench.refused(1) == Texts{"it is empty", "it has invisible characters"});
@@ -182,8 +184,7 @@ TEST_CASE("a key and an address write so many lines a minute", "[world][chat]") 
 TEST_CASE("all players together write a bounded number of lines", "[world][chat]") {
   ChatBench bench;
   constexpr std::uint8_t kPlayers = 70;
-  for (std::uint8_t who = 1; who <= kPlayers; ++who)
-    bench.enter(who, who, address_block_v4(who));
+  for (std::uint8_t who = 1; who <= kPlayers; ++who) bench.enter(who, who, address_block_v4(who));
   for (std::uint8_t who = 1; who <= kPlayers; ++who) bench.write(who, "hello");
   bench.tick();
   CHECK(bench.texts(1).size() == kChatLinesAtOnce);
