@@ -43,12 +43,12 @@ TerminalChat::TerminalChat(ClientSession& session, bool reads) : session_(sessio
 }
 
 void TerminalChat::step() {
-  if (input_) {
-    for (const std::string& typed : input_->take_lines()) send(typed);
-  }
-  if (is_answer_due_ && !session_.commanding()) {
+  if (is_answer_due_ && !session_.commanding()) {  // before the next command takes its place
     is_answer_due_ = false;
     for (const std::string& line : session_.command_lines()) print(line);
+  }
+  if (input_) {
+    for (const std::string& typed : input_->take_lines()) send(typed);
   }
   for (const ChatLine& line : session_.drain_chat()) {
     heard_.push_back(printed_line(line));
