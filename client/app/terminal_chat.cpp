@@ -1,7 +1,5 @@
 #include "client/app/terminal_chat.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <utility>
@@ -38,8 +36,8 @@ std::string printed_line(const ChatLine& line) {
   return "[chat] " + text;  // a kind that this client does not know
 }
 
-TerminalChat::TerminalChat(ClientSession& session, bool reads) : session_(session) {
-  if (reads) input_.emplace(STDIN_FILENO);
+TerminalChat::TerminalChat(ClientSession& session, std::optional<int> input) : session_(session) {
+  if (input) input_.emplace(*input);
 }
 
 void TerminalChat::step() {
