@@ -53,6 +53,12 @@ std::unique_ptr<DrawThread> make_draw_thread(const ClientOptions& options, Windo
   return std::make_unique<DrawThread>(make_screen, priority, std::move(wake));
 }
 
+/// Returns the terminal in which a person may type. A script plays alone.
+std::optional<int> terminal_of(const Script* script) {
+  if (script != nullptr || ::isatty(STDIN_FILENO) != 1) return std::nullopt;
+  return STDIN_FILENO;
+}
+
 std::string moment_text(const std::optional<PastMoment>& past) {
   if (!past) return {};
   const std::time_t seconds = past->utc_us / 1'000'000;
@@ -78,7 +84,7 @@ Client::Client(ClientOptions options, const Script* script)
       tool_(session_, player_, pipeline_.recorder()),
       budget_(options_.memory_mib << 20, {options_.view_radius, options_.view_radius_v}),
       view_(session_, player_, budget_.radii()),
-      chat_(session_, script == nullptr && ::isatty(STDIN_FILENO) == 1),
+      chat_(session_, terminal_of(script)),
       actions_(session_, player_, pipeline_, tool_, view_, chat_, options_.screenshot_dir) {
   shows_ground_ = options_.show_protected;
   spdlog::info("renderer={}", pipeline_.renderer_name());

@@ -1,7 +1,5 @@
 #include "client/app/terminal_chat.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <utility>
@@ -38,17 +36,17 @@ std::string printed_line(const ChatLine& line) {
   return "[chat] " + text;  // a kind that this client does not know
 }
 
-TerminalChat::TerminalChat(ClientSession& session, bool reads) : session_(session) {
-  if (reads) input_.emplace(STDIN_FILENO);
+TerminalChat::TerminalChat(ClientSession& session, std::optional<int> input) : session_(session) {
+  if (input) input_.emplace(*input);
 }
 
 void TerminalChat::step() {
-  if (input_) {
-    for (const std::string& typed : input_->take_lines()) send(typed);
-  }
-  if (is_answer_due_ && !session_.commanding()) {
+  if (is_answer_due_ && !session_.commanding()) {  // before the next command takes its place
     is_answer_due_ = false;
     for (const std::string& line : session_.command_lines()) print(line);
+  }
+  if (input_) {
+    for (const std::string& typed : input_->take_lines()) send(typed);
   }
   for (const ChatLine& line : session_.drain_chat()) {
     heard_.push_back(printed_line(line));

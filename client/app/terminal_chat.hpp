@@ -23,8 +23,9 @@ class TerminalChat {
   /// Lines that scripts may still wait for. The oldest one is forgotten.
   static constexpr std::size_t kHeardMax = 256;
 
-  /// `session` must outlive the object. `reads`: the player types lines on standard input.
-  TerminalChat(ClientSession& session, bool reads);
+  /// `session` must outlive the object. `input`: the descriptor of the terminal in which the player
+  /// types, or nullopt.
+  TerminalChat(ClientSession& session, std::optional<int> input);
 
   /// Sends what was typed, and prints what arrived.
   void step();

@@ -219,7 +219,8 @@ script::Step wait_step(Words& words) {
   }
   const auto seconds = to_number<double>(what);
   if (!seconds || *seconds < 0) {
-    throw LineError{"\"" + std::string(what) + "\" is none of SECONDS, loaded, durable, synced, chat"};
+    throw LineError{"\"" + std::string(what) +
+                    "\" is none of SECONDS, loaded, durable, synced, chat"};
   }
   return script::Wait{*seconds};
 }

@@ -100,7 +100,7 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
   if (const auto* add = std::get_if<AddMaterialsCommand>(&*command))
     return add_materials(add->file, now, reply);
   if (const auto* spoken = std::get_if<SayCommand>(&*command))
-    return say(caller, spoken->text, reply);
+    return say(caller, spoken->text, now, reply);
   if (run_action(*command, reply)) return;
   if (const auto* undo = std::get_if<UndoCommand>(&*command)) {
     if (caller.author == 0) {
@@ -176,9 +176,9 @@ void CommandHandler::release_name(const std::string& name, const CommandReply& r
          true, true});
 }
 
-void CommandHandler::say(const CommandCaller& caller, const std::string& text,
+void CommandHandler::say(const CommandCaller& caller, const std::string& text, const Clocks& now,
                          const CommandReply& reply) {
-  const std::size_t sessions = world_.say(text, caller.actor.key.value_or(PublicKey{}));
+  const std::size_t sessions = world_.say(text, caller.actor.key.value_or(PublicKey{}), now);
   reply({"sent to " + std::to_string(sessions) + (sessions == 1 ? " session" : " sessions"), true,
          true});
 }

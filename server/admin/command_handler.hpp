@@ -34,7 +34,8 @@ class CommandHandler {
   void status(const CommandReply& reply) const;
   void players(const CommandReply& reply);
   void names(const CommandReply& reply) const;
-  void say(const CommandCaller& caller, const std::string& text, const CommandReply& reply);
+  void say(const CommandCaller& caller, const std::string& text, const Clocks& now,
+           const CommandReply& reply);
   void release_name(const std::string& name, const CommandReply& reply);
   void add_materials(const std::string& file, const Clocks& now, const CommandReply& reply);
   void log(const LogCommand& command, const Clocks& now, const CommandReply& reply);

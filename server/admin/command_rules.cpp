@@ -91,9 +91,10 @@ constexpr std::array kCommandRows = {
                                  "bans                      the bans, mutes and freezes in force"),
     row<ListRefusalsCommand>({Right::moderate},
                              "refusals                  what players were refused lately"),
-    row<ChatLogCommand>({Right::moderate},
-                        "chat log [by PLAYER] [since MOMENT] [limit N]\n"
-                        "                          the newest lines of the chat, the last one at the bottom"),
+    row<ChatLogCommand>(
+        {Right::moderate},
+        "chat log [by PLAYER] [since MOMENT] [limit N]\n"
+        "                          the newest lines of the chat, the last one at the bottom"),
     row<LogCommand>({Right::roll_back},
                     "log FILTERS [limit N]     the newest edits, the last one at the bottom"),
     row<RollbackPreviewCommand>(

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::string_view, 12> kReloaded = {
     "log_level", "log_format",      "sessions_per_key", "sessions_per_address",
     "idle_s",    "operators",       "public_address",   "reach_max",
-    "speed_max", "tls_certificate", "tls_key", "message_of_the_day"};
+    "speed_max", "tls_certificate", "tls_key",          "message_of_the_day"};
 
 std::string list_of(const std::vector<std::string>& names) {
   std::string text;

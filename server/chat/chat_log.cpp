@@ -24,8 +24,7 @@ ChatLog::ChatLog(const std::string& folder, TimeUs forget_before_us, OnWarning o
   Work begin;
   begin.forget_before_us = forget_before_us;
   carry_out(begin);
-  if (!failure_.empty())
-    on_warning_("the chat is not logged for now: " + file_ + ": " + failure_);
+  if (!failure_.empty()) on_warning_("the chat is not logged for now: " + file_ + ": " + failure_);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -159,8 +158,8 @@ bool ChatLog::with_database(const std::function<sql::Result<void>(ChatDatabase&)
 
 void ChatLog::set_aside(const sql::Error& why) {
   database_.reset();
-  on_warning_("the log of the chat is damaged (" + file_ + ": " + why.what + "): renamed to " + file_ +
-              ".damaged, and a new one is begun");
+  on_warning_("the log of the chat is damaged (" + file_ + ": " + why.what + "): renamed to " +
+              file_ + ".damaged, and a new one is begun");
   std::error_code ignored;
   std::filesystem::rename(file_, file_ + ".damaged", ignored);
   remove_files(file_);

@@ -24,7 +24,8 @@ bool is_written_by(const ChatEntry& entry, const std::string& by) {
   if (by.empty()) return true;
   if (entry.line.kind == ChatLineKind::server) return folded_name(by) == "server";
   return folded_name(entry.line.name) == folded_name(by) ||
-         is_same_key_text(key_fingerprint(entry.key), by) || is_same_key_text(to_hex(entry.key), by);
+         is_same_key_text(key_fingerprint(entry.key), by) ||
+         is_same_key_text(to_hex(entry.key), by);
 }
 
 }  // namespace runstone

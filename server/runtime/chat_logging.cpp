@@ -13,8 +13,9 @@ std::unique_ptr<ChatLog> open_chat_log(const ServerConfig& config, TimeUs now_us
     remove_chat_log(config.world);
     return nullptr;
   }
-  return std::make_unique<ChatLog>(config.world, chat_kept_from_us(config, now_us),
-                                   [](const std::string& line) { logger("store").warn("{}", line); });
+  return std::make_unique<ChatLog>(
+      config.world, chat_kept_from_us(config, now_us),
+      [](const std::string& line) { logger("store").warn("{}", line); });
 }
 
 TimeUs chat_kept_from_us(const ServerConfig& config, TimeUs now_us) {
@@ -23,11 +24,13 @@ TimeUs chat_kept_from_us(const ServerConfig& config, TimeUs now_us) {
 }
 
 std::vector<ChatEntry> newest_chat(ChatLog& log) {
-  std::promise<std::vector<ChatEntry>> newest;
-  const bool is_taken = log.search({"", std::nullopt, kChatRecentMax}, [&](const ChatLog::Found& found) {
-    newest.set_value(found ? *found : std::vector<ChatEntry>());
-  });
-  return is_taken ? newest.get_future().get() : std::vector<ChatEntry>();
+  // The thread of the log may still be in set_value() when the value is here.
+  const auto newest = std::make_shared<std::promise<std::vector<ChatEntry>>>();
+  const bool is_taken =
+      log.search({"", std::nullopt, kChatRecentMax}, [newest](const ChatLog::Found& found) {
+        newest->set_value(found ? *found : std::vector<ChatEntry>());
+      });
+  return is_taken ? newest->get_future().get() : std::vector<ChatEntry>();
 }
 
 void list_chat(ChatLog& log, const ChatQuery& query, const CommandReply& reply) {

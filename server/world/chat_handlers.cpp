@@ -32,10 +32,16 @@ bool has_chat(const WorldSession& session) {
   return session.state == SessionStage::open && (session.features & kFeatureChat) != 0;
 }
 
+/// Returns the time of a line: that of the log, which a wrong clock does not set back.
+TimeUs time_of_line(WorldState& world, const Clocks& now) {
+  world.authority.log_clock().advance(now);  // commits do it too, but the first one may come later
+  return world.authority.log_clock().time();
+}
+
 /// Returns how long the author must wait until the same line may come again: 0 if it may come now.
 /// Cost: O(kChatRecentMax + kChatLinesMax).
-TimeUs repeat_wait_us(const WorldState& world, AuthorId author, const std::string& text) {
-  const TimeUs now_us = rights_time(world);
+TimeUs repeat_wait_us(const WorldState& world, AuthorId author, const std::string& text,
+                      TimeUs now_us) {
   TimeUs wait_us = 0;
   const auto look_at = [&](const ChatLine& line) {
     const TimeUs age_us = now_us - line.utc_us;
@@ -59,10 +65,9 @@ std::optional<ChatRefusal> pay_line(WorldState& world, const WorldSession& mine,
     return std::nullopt;
   }
   const bool is_of_key = std::string_view(unpaid->whose) == "key";
-  return ChatRefusal{
-      (is_of_key ? "you write too fast" : "too many lines come from your address") +
-          again_in(unpaid->wait_us),
-      is_of_key ? "too fast" : "too fast from one address"};
+  return ChatRefusal{(is_of_key ? "you write too fast" : "too many lines come from your address") +
+                         again_in(unpaid->wait_us),
+                     is_of_key ? "too fast" : "too fast from one address"};
 }
 
 void refuse_line(WorldState& world, SessionId session, const ChatRefusal& refusal,
@@ -74,7 +79,7 @@ void refuse_line(WorldState& world, SessionId session, const ChatRefusal& refusa
   ChatLine line;
   line.kind = ChatLineKind::refused;
   line.text = cut_utf8(refusal.text, kChatBytesMax);
-  line.utc_us = rights_time(world);
+  line.utc_us = time_of_line(world, now);
   send_or_skip(world, session, encode_message(ChatLines{{std::move(line)}}));
 }
 
@@ -92,27 +97,29 @@ void on_chat(WorldState& world, SessionId session, const ChatRequest& request, c
   auto text = chat_text(request.text);
   if (!text) return refuse({text.error(), text.error()});
   if (const auto why = chat_refusal(world, mine.key)) return refuse({*why, *why});
-  if (const TimeUs wait_us = repeat_wait_us(world, mine.author, *text); wait_us > 0)
+  const TimeUs utc_us = time_of_line(world, now);
+  if (const TimeUs wait_us = repeat_wait_us(world, mine.author, *text, utc_us); wait_us > 0)
     return refuse({"you wrote that just now" + again_in(wait_us), "the same line again"});
   if (const auto unpaid = pay_line(world, mine, now.steady_us)) return refuse(*unpaid);
-  add_line(world,
-           {ChatLineKind::player, mine.author, mine.name, *std::move(text), rights_time(world)},
+  add_line(world, {ChatLineKind::player, mine.author, mine.name, *std::move(text), utc_us},
            mine.key);
 }
 
-std::size_t say(WorldState& world, const std::string& text, const PublicKey& by) {
-  add_line(world, {ChatLineKind::server, 0, "", text, rights_time(world)}, by);
+std::size_t say(WorldState& world, const std::string& text, const PublicKey& by,
+                const Clocks& now) {
+  add_line(world, {ChatLineKind::server, 0, "", text, time_of_line(world, now)}, by);
   return static_cast<std::size_t>(
       std::count_if(world.sessions.begin(), world.sessions.end(),
                     [](const auto& entry) { return has_chat(entry.second); }));
 }
 
-void send_recent_chat(WorldState& world, SessionId session) {
+void send_recent_chat(WorldState& world, SessionId session, const Clocks& now) {
   if (!has_chat(*world.find(session))) return;
   ChatLines recent{{world.chat.recent.begin(), world.chat.recent.end()}};
   const std::string& today = world.config.message_of_the_day;
   if (!today.empty())
-    recent.lines.push_back({ChatLineKind::message_of_the_day, 0, "", today, rights_time(world)});
+    recent.lines.push_back(
+        {ChatLineKind::message_of_the_day, 0, "", today, time_of_line(world, now)});
   if (!recent.lines.empty()) send_or_skip(world, session, encode_message(recent));
 }
 
@@ -123,8 +130,7 @@ void broadcast_chat(WorldState& world) {
   for (const auto& [id, session] : world.sessions) {
     if (has_chat(session)) readers.push_back(id);
   }
-  world.counters.queue_full +=
-      world.environment.send_to_all(readers, encode_message(lines)).size();
+  world.counters.queue_full += world.environment.send_to_all(readers, encode_message(lines)).size();
   for (const ChatLine& line : lines.lines) world.chat.add(line);
 }
 

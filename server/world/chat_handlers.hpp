@@ -19,10 +19,10 @@ void on_chat(WorldState& world, SessionId session, const ChatRequest& request, c
 
 /// Queues a line of the host. `by` is the key of the player who gave the command; zeros: the console.
 /// Returns the number of sessions that get the line. Requires a text that chat_text() returned.
-std::size_t say(WorldState& world, const std::string& text, const PublicKey& by);
+std::size_t say(WorldState& world, const std::string& text, const PublicKey& by, const Clocks& now);
 
 /// Sends a session that has opened the newest lines, and then the message of the day.
-void send_recent_chat(WorldState& world, SessionId session);
+void send_recent_chat(WorldState& world, SessionId session, const Clocks& now);
 
 /// Sends the lines that wait to every session. Call it on every tick.
 void broadcast_chat(WorldState& world);

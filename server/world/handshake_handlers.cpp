@@ -141,7 +141,7 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   if (world.find(session) == nullptr) return;
   start_ground(world, session);
   send_all_poses_to(world, session);
-  send_recent_chat(world, session);
+  send_recent_chat(world, session, now);
 }
 
 }  // namespace

@@ -231,8 +231,8 @@ Result<AddedAt, MaterialsRefusal> WorldServer::add_materials(const std::vector<M
 
 std::vector<RefusalRow> WorldServer::refusals() const { return state_->refusals.rows(); }
 
-std::size_t WorldServer::say(const std::string& text, const PublicKey& by) {
-  return runstone::say(*state_, text, by);
+std::size_t WorldServer::say(const std::string& text, const PublicKey& by, const Clocks& now) {
+  return runstone::say(*state_, text, by, now);
 }
 
 InviteId WorldServer::new_invite_id() {

@@ -126,7 +126,7 @@ class WorldServer {
   std::vector<RefusalRow> refusals() const;
   /// Sends a line of the host to everybody. `by` and the requirement: see chat_handlers.hpp. Returns
   /// the number of sessions that get it.
-  std::size_t say(const std::string& text, const PublicKey& by);
+  std::size_t say(const std::string& text, const PublicKey& by, const Clocks& now);
   /// Returns a random number for a new invite.
   InviteId new_invite_id();
   /// Returns the link with which players accept an invite. It has the server's public address, or

@@ -1,5 +1,5 @@
 // The target reads any bytes as the texts that players and operators give: links, invite tokens,
-// addresses, lists of keys and commands. What is understood is written as text that means the same,
+// addresses, lists of keys, commands and lines of chat. What is understood is written as text that means the same,
 // and every message about a mistake is printable.
 #include <cstdint>
 #include <string_view>
@@ -8,6 +8,8 @@
 #include "common/core/text.hpp"
 #include "protocol/codec/invite_token.hpp"
 #include "protocol/codec/server_link.hpp"
+#include "protocol/limits.hpp"
+#include "protocol/rules/chat_text.hpp"
 #include "server/admin/address_range_text.hpp"
 #include "server/admin/command.hpp"
 #include "server/admin/edit_budget_text.hpp"
@@ -60,6 +62,17 @@ void check_command(std::string_view text) {
   RUNSTONE_ASSERT(command || (!command.error().empty() && is_printable_utf8(command.error())));
 }
 
+void check_chat_line(std::string_view text) {
+  const auto line = chat_text(text);
+  if (!line) {
+    RUNSTONE_ASSERT(is_printable_utf8(line.error()));
+    return;
+  }
+  const auto again = chat_text(*line);
+  RUNSTONE_ASSERT(again && *again == *line && line->size() <= kChatBytesMax);
+  RUNSTONE_ASSERT(with_unseen_replaced(*line) == *line);
+}
+
 }  // namespace
 }  // namespace runstone
 
@@ -68,6 +81,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   if (data[0] % 6 == 1) check_token(text);  // a ticket of the wire may have any bytes
+  check_chat_line(text);                    // a terminal may have any bytes
   // The wire, the terminal and `control` accept only such texts.
   if (!is_printable_utf8(text)) return 0;
   switch (data[0] % 6) {

@@ -52,8 +52,9 @@ std::string random_line(SplitMix64& rng) {
 
 }  // namespace
 
-TEST_CASE("random chat stays within the bounds of players, addresses, messages and the newest lines",
-          "[world][chat][property]") {
+TEST_CASE(
+    "random chat stays within the bounds of players, addresses, messages and the newest lines",
+    "[world][chat][property]") {
   SplitMix64 rng{Catch::rngSeed()};
   CAPTURE(Catch::rngSeed());
   WorldConfig c = config();
@@ -99,10 +100,11 @@ TEST_CASE("random chat stays within the bounds of players, addresses, messages a
     bench.environment.chat.clear();
     for (std::uint64_t i = rng.below(30); i > 0; --i) {
       auto from = open.begin();
-      std::advance(from, static_cast<std::ptrdiff_t>(rng.below(static_cast<std::uint32_t>(open.size()))));
+      std::advance(from,
+                   static_cast<std::ptrdiff_t>(rng.below(static_cast<std::uint32_t>(open.size()))));
       bench.server.received(from->first, ChatRequest{random_line(rng)}, bench.now());
     }
-    if (rng.below(100) == 0) bench.server.say("a word of the host", {});
+    if (rng.below(100) == 0) bench.server.say("a word of the host", {}, bench.now());
     const TimeUs accepted_us = bench.time_us;
     bench.tick(static_cast<TimeUs>(rng.below(rng.below(20) == 0 ? 40'000'000 : 400'000)));
     for (const ChatEntry& entry : bench.environment.chat) {

@@ -61,7 +61,9 @@ TEST_CASE("a name can be seen, typed and quoted", "[core]") {
 }
 
 TEST_CASE("characters that cannot be seen are found and replaced", "[core]") {
-  const std::string hidden = "a\xe2\x80\xae" "b\xc2\xad";  // U+202E, U+00AD
+  const std::string hidden =
+      "a\xe2\x80\xae"
+      "b\xc2\xad";  // U+202E, U+00AD
   CHECK(has_unseen_character(hidden));
   CHECK(with_unseen_replaced(hidden) == "a?b?");
   const std::string plain = "\"a b\" \\ \xc3\xa9\xe2\x82\xac\xf0\x9f\xa7\xb1";

@@ -30,10 +30,10 @@ TEST_CASE("a line of chat that is empty, too long or cannot be seen is refused",
     CHECK(fault(bad) == "it has control characters, or is no UTF-8 text");
   }
   for (const char* bad : {"a\xe2\x80\xae"
-                          "b",                 // U+202E, right to left from here
-                          "\xe2\x80\x8b",      // U+200B, no width
-                          "a\xe2\x81\xa6z",    // U+2066
-                          "\xc2\xa0"}) {       // U+00A0, a blank that is not trimmed
+                          "b",               // U+202E, right to left from here
+                          "\xe2\x80\x8b",    // U+200B, no width
+                          "a\xe2\x81\xa6z",  // U+2066
+                          "\xc2\xa0"}) {     // U+00A0, a blank that is not trimmed
     CAPTURE(bad);
     CHECK(fault(bad) == "it has invisible characters");
   }

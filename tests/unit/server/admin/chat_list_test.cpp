@@ -16,8 +16,8 @@ TEST_CASE("the list of chat lines names the player with the fingerprint", "[admi
                    {{ChatLineKind::server, 0, "", "restart", 1'000'000}, {}},
                    {{ChatLineKind::server, 0, "", "now", 2'000'000}, key}}) ==
         "1970-01-01T00:00:00Z the mole " + print +
-            ": hi: all\n1970-01-01T00:00:01Z server: restart\n1970-01-01T00:00:02Z server " + print +
-            ": now");
+            ": hi: all\n1970-01-01T00:00:01Z server: restart\n1970-01-01T00:00:02Z server " +
+            print + ": now");
 }
 
 }  // namespace

@@ -31,9 +31,8 @@ TEST_CASE("each command needs its right", "[admin][rights]") {
        {"claim a 0 0 0 1 1 1", "protect a 0 0 0 1 1 1", "protect a add ana", "unprotect a"}) {
     CHECK(rule(line).any_of == RightSet{Right::claim, Right::protect});
   }
-  for (const char* line :
-       {"status", "names", "kick ana", "ban ana", "mute ana", "freeze ana", "unban ana", "bans",
-        "chat log"}) {
+  for (const char* line : {"status", "names", "kick ana", "ban ana", "mute ana", "freeze ana",
+                           "unban ana", "bans", "chat log"}) {
     CHECK(rule(line).any_of == RightSet{Right::moderate});
   }
   for (const char* line :

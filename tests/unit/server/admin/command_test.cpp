@@ -51,8 +51,8 @@ TEST_CASE("say takes the rest of the line", "[admin][command]") {
   CHECK(parsed<SayCommand>("say \"a\" and \"b\"").text == "\"a\" and \"b\"");
   CHECK(mistake("say") == "say: the text is refused: it is empty");
   CHECK(mistake("say \" \"") == "say: the text is refused: it is empty");
-  CHECK(mistake("say a\xe2\x80\xae" "b") ==
-        "say: the text is refused: it has invisible characters");
+  CHECK(mistake("say a\xe2\x80\xae"
+                "b") == "say: the text is refused: it has invisible characters");
   CHECK(mistake("say " + std::string(513, 'x')) ==
         "say: the text is refused: it has more than 512 bytes");
   CHECK(mistake("say a\nb").starts_with("say: the text is refused: it has control characters"));
@@ -67,8 +67,7 @@ TEST_CASE("chat log selects lines by player, age and number", "[admin][command]"
   CHECK(mistake("chat") == "chat: log comes after it, and then by, since or limit");
   CHECK(mistake("chat hello") == "chat: log comes after it, and then by, since or limit");
   CHECK(mistake("chat log of ana") == "chat log \"of\": by, since or limit");
-  CHECK(mistake("chat log limit 1001") ==
-        "chat log limit \"1001\": a number from 1 to 1000");
+  CHECK(mistake("chat log limit 1001") == "chat log limit \"1001\": a number from 1 to 1000");
   CHECK(mistake("chat log by") == "chat log by: a name, a fingerprint, a key or server is missing");
 }
 

@@ -50,7 +50,7 @@ TEST_CASE("the message of the day is one line of chat, or nothing", "[admin]") {
   ServerConfig config;
   REQUIRE(set_config(config, "message_of_the_day", " build with care ").has_value());
   CHECK(config.message_of_the_day == "build with care");
-  for (const std::string bad : {std::string("   "), std::string("a\nb"), std::string(513, 'x')}) {
+  for (const std::string& bad : {std::string("   "), std::string("a\nb"), std::string(513, 'x')}) {
     const auto set = set_config(config, "message_of_the_day", bad);
     REQUIRE_FALSE(set.has_value());
     CHECK(set.error().find("must be one line of text: it ") != std::string::npos);

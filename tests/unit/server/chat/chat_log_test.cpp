@@ -51,9 +51,9 @@ struct LogBench {
         limits_);
   }
   ChatLog::Found find(const ChatQuery& query) {
-    std::promise<ChatLog::Found> found;
-    REQUIRE(log->search(query, [&](const ChatLog::Found& f) { found.set_value(f); }));
-    return found.get_future().get();
+    const auto found = std::make_shared<std::promise<ChatLog::Found>>();
+    REQUIRE(log->search(query, [found](const ChatLog::Found& f) { found->set_value(f); }));
+    return found->get_future().get();
   }
   Texts texts(const std::string& by = "", std::uint64_t limit = kChatLinesListedMax) {
     const auto found = find({by, std::nullopt, limit});

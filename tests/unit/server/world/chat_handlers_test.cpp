@@ -18,9 +18,7 @@ WorldConfig chat_config(std::uint64_t per_minute = 0) {
 
 struct ChatBench : WorldBench {
   explicit ChatBench(WorldConfig c = chat_config(), WorldStart start = {})
-      : WorldBench(std::move(c), std::move(start)) {
-    tick();
-  }
+      : WorldBench(std::move(c), std::move(start)) {}
 
   void enter(SessionId session, std::uint8_t who, AddressBlock from = kHome,
              std::uint64_t features = kFeatureChat) {
@@ -80,6 +78,7 @@ TEST_CASE("a line goes to everybody with the feature, encoded once, and to the l
   CHECK(got[0].author == 1);
   CHECK(got[0].name == "player1");
   CHECK(got[0].text == "hello");
+  CHECK(got[0].utc_us == 1'001'000'000);  // also before the first tick
   CHECK(got[1].text == "hi");
   CHECK(bench.lines(3).empty());
   std::vector<EncodedMessage> sent;
@@ -98,7 +97,7 @@ TEST_CASE("a muted player is told the reason and the end, and may write again af
   ChatBench bench;
   bench.enter(1, 1);
   bench.enter(2, 2);
-  const TimeUs until_us = bench.server.rights_time() + 60'000'000;
+  const TimeUs until_us = bench.now().utc_us + 60'000'000;
   bench.change(Restrict{RestrictionKind::mute, player_key(1), until_us, "spam"});
   bench.write(1, "hello");
   bench.tick();
@@ -128,7 +127,9 @@ TEST_CASE("a line that nobody could read is refused with what is wrong", "[world
   ChatBench bench;
   bench.enter(1, 1);
   bench.write(1, "   ");
-  bench.write(1, "a\xe2\x80\xae" "b");
+  bench.write(1,
+              "a\xe2\x80\xae"
+              "b");
   bench.tick();
   CHECK(bench.texts(1).empty());
   CHECK(bench.refused(1) == Texts{"it is empty", "it has invisible characters"});
@@ -183,8 +184,7 @@ TEST_CASE("a key and an address write so many lines a minute", "[world][chat]") 
 TEST_CASE("all players together write a bounded number of lines", "[world][chat]") {
   ChatBench bench;
   constexpr std::uint8_t kPlayers = 70;
-  for (std::uint8_t who = 1; who <= kPlayers; ++who)
-    bench.enter(who, who, address_block_v4(who));
+  for (std::uint8_t who = 1; who <= kPlayers; ++who) bench.enter(who, who, address_block_v4(who));
   for (std::uint8_t who = 1; who <= kPlayers; ++who) bench.write(who, "hello");
   bench.tick();
   CHECK(bench.texts(1).size() == kChatLinesAtOnce);
@@ -256,9 +256,9 @@ TEST_CASE("the host writes to everybody, without a limit, and the key is logged"
   ChatBench bench(chat_config(1));
   bench.enter(1, 1);
   bench.enter(2, 2, kHome, 0);
-  CHECK(bench.server.say("restart at ten", player_key(9)) == 1);
+  CHECK(bench.server.say("restart at ten", player_key(9), bench.now()) == 1);
   for (std::size_t i = 0; i < 2 * kChatLinesMax; ++i)
-    CHECK(bench.server.say("again", {}) == 1);
+    CHECK(bench.server.say("again", {}, bench.now()) == 1);
   bench.tick();
   CHECK(bench.texts(1, ChatLineKind::server).size() == 1 + 2 * kChatLinesMax);
   CHECK(bench.texts(1, ChatLineKind::server)[0] == "restart at ten");
