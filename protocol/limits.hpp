@@ -19,12 +19,12 @@ inline constexpr std::uint64_t kFeatureCommands = 1;    // CommandRequest and Co
 inline constexpr std::uint64_t kFeatureReceiveAck = 2;  // ReceiveAck, by which terrain is paced
 inline constexpr std::uint64_t kFeatureNames = 4;   // the client keeps its key: it claims its name
 inline constexpr std::uint64_t kFeatureRights = 8;  // Permissions and ProtectedGround
-inline constexpr std::uint64_t kFeatureChat = 16;        // ChatRequest and ChatLines
+inline constexpr std::uint64_t kFeatureChat = 16;   // ChatRequest and ChatLines
 inline constexpr std::uint64_t kFeatureKeyTransfer = 32;  // KeyRequest, KeyDeposit, their answers
-inline constexpr std::uint64_t kFeatureMaterials = 64;   // MaterialsAdded
-inline constexpr std::uint64_t kFeaturesKnown =
-    kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
-    kFeatureKeyTransfer | kFeatureMaterials;
+inline constexpr std::uint64_t kFeatureMaterials = 64;    // MaterialsAdded
+inline constexpr std::uint64_t kFeaturesKnown = kFeatureCommands | kFeatureReceiveAck |
+                                                kFeatureNames | kFeatureRights | kFeatureChat |
+                                                kFeatureKeyTransfer | kFeatureMaterials;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -60,7 +60,6 @@ static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 32) <= kServerControl
 inline constexpr std::size_t kNonceBytes = 32;
 inline constexpr std::size_t kSignatureBytes = 64;
 inline constexpr std::size_t kTicketBytesMax = 128;
-inline constexpr std::size_t kPasswordSaltBytes = 16;
 inline constexpr std::size_t kPasswordKeyBytes = 32;
 inline constexpr std::size_t kWorldIdBytes = 16;
 inline constexpr std::size_t kPlayerNameBytesMax = 32;

@@ -23,6 +23,7 @@
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/rights/join_password.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/chat_messages.hpp"
 #include "protocol/codec/chunk_codec.hpp"
@@ -36,7 +37,6 @@ namespace runstone {
 using Nonce = std::array<std::uint8_t, kNonceBytes>;
 using Signature = std::array<std::uint8_t, kSignatureBytes>;
 using WorldId = std::array<std::uint8_t, kWorldIdBytes>;
-using PasswordSalt = std::array<std::uint8_t, kPasswordSaltBytes>;
 /// Made from a password and a salt (password_key.hpp). Whoever has it can join like somebody who
 /// knows the password, in worlds with this salt.
 using PasswordKey = std::array<std::uint8_t, kPasswordKeyBytes>;
@@ -81,14 +81,14 @@ struct Welcome {
   std::uint64_t edit_volume_max = 0;
   EditBudget edit_budget;  // of the player's key, for all of its sessions together
   std::uint8_t view_radius_max = 0;
-  std::uint64_t features = 0;  // in force for this session; a subset of Hello's
+  std::uint64_t features = 0;                 // in force for this session; a subset of Hello's
   std::optional<PasswordSalt> password_salt;  // nullopt: the world has no password
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 struct ClientAuth {
   Signature signature{};
   std::string ticket;  // an invite token (invite_token.hpp); empty: none
-  std::optional<PasswordKey> password_key;
+  std::optional<PasswordKey> password_key = std::nullopt;
   friend bool operator==(const ClientAuth&, const ClientAuth&) = default;
 };
 struct SessionAccepted {

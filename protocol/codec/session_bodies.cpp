@@ -70,8 +70,7 @@ Result<Message> BodyReader::read(const wire::Welcome& t) const {
   if (m.view_radius_max > kViewRadiusMax) return bad("welcome.view_radius_max exceeds 64");
   if (t.password_salt() != nullptr && !take_exact(t.password_salt(), m.password_salt.emplace()))
     return bad("welcome.password_salt is not 16 bytes");
-  if (const auto ok = take_materials(t, m.materials); !ok)
-    return Unexpected<Error>{ok.error()};
+  if (const auto ok = take_materials(t, m.materials); !ok) return Unexpected<Error>{ok.error()};
   return m;
 }
 

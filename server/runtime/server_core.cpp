@@ -53,7 +53,7 @@ Result<void, std::string> ServerCore::recover() {
 
   const WorldMeta& meta = store_.meta();
   world_ = std::make_unique<WorldServer>(
-      world_config_of(config_, meta), *start, environment_,
+      world_config_of(config_, meta, port()), *start, environment_,
       [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
   const auto replayed = replay_log(store_, *start, *world_);
   if (!replayed) return Unexpected<std::string>{replayed.error()};
@@ -135,7 +135,7 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
     ConfigReload reloaded = reload_config(running_, *read);
     running_ = std::move(reloaded.config);
     start_logging(running_.log_level, running_.log_format);
-    world_->reconfigure(world_config_of(running_, store_.meta()));
+    world_->reconfigure(world_config_of(running_, store_.meta(), port()));
     commands_->set_operators(running_.operators);
     logger("app").info("reload: {}", reloaded.text());
     reply({reloaded.text(), true, true});

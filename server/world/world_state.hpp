@@ -13,6 +13,7 @@
 #include "server/limits/recent_refusals.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/checkpointer.hpp"
+#include "server/world/key_deposits.hpp"
 #include "server/world/large_edit_pace.hpp"
 #include "server/world/load_queue.hpp"
 #include "server/world/load_retries.hpp"
@@ -30,6 +31,13 @@ namespace runstone {
 inline constexpr const char* kDiskIsFull = "the world's disk is full";
 /// A claim of a name costs its address so much, of names_per_address units a second: an hour's worth.
 inline constexpr std::uint64_t kClaimPrice = 3'600;
+/// A wrong password or device code costs its address so much of kGuessBudget, and so does a key that
+/// is left for another device: ten at once, then one a minute. People mistype less often, and whoever
+/// guesses gets nowhere. A setting would only serve to weaken it.
+inline constexpr std::uint64_t kGuessPrice = 60;
+inline constexpr Budget kGuessBudget{1, 10 * kGuessPrice};
+inline constexpr const char* kTooManyGuesses =
+    "too many wrong passwords or codes came from your network: wait a minute";
 inline constexpr const char* kMemoryIsFull = "the server's memory is full (memory_mib)";
 
 struct WorldState {
@@ -53,6 +61,8 @@ struct WorldState {
   BudgetLedger edit_ledger;
   BudgetLedger load_ledger;  // a unit is a chunk that is generated or read for a view
   AddressLedger claim_ledger;
+  AddressLedger guess_ledger{kGuessBudget}, deposit_ledger{kGuessBudget};
+  KeyDeposits key_deposits;
   RecentRefusals refusals;
   LargeEditPace large_edits;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
