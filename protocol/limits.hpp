@@ -60,7 +60,6 @@ static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 32) <= kServerControl
 inline constexpr std::size_t kNonceBytes = 32;
 inline constexpr std::size_t kSignatureBytes = 64;
 inline constexpr std::size_t kTicketBytesMax = 128;
-inline constexpr std::size_t kPasswordSaltBytes = 16;
 inline constexpr std::size_t kPasswordKeyBytes = 32;
 inline constexpr std::size_t kWorldIdBytes = 16;
 inline constexpr std::size_t kPlayerNameBytesMax = 32;

@@ -62,8 +62,8 @@ int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop)
 
 int key_program(int argc, const char* const* argv) {
   const auto parsed = runstone::parse_key_command(argc, argv);
-  if (!parsed.request) return parsed.exit_code;
-  const auto done = runstone::run_key_program(*parsed.request, std::cin, std::cout);
+  if (!parsed.command) return parsed.exit_code;
+  const auto done = runstone::run_key_program(*parsed.command, std::cin, std::cout);
   if (done) return runstone::kExitOk;
   std::fprintf(stderr, "runstone-client key: %s\n", done.error().c_str());
   return runstone::kExitNoStart;

@@ -25,8 +25,26 @@ ParsedKeyCommand parse_key_command(int argc, const char* const* argv) {
     command->add_option("--passphrase-file", out.passphrase_file,
                         "take the first line of this file as the passphrase; default: ask for it");
   }
+  std::string address;
+  bool insecure = false;
+  CLI::App* send = add("send", KeyCommand::Verb::send,
+                       "leave the key at a server for another device, and print a one-time code");
+  CLI::App* receive = add("receive", KeyCommand::Verb::receive,
+                          "make the key file by a one-time code; an existing file stays");
+  for (CLI::App* command : {send, receive}) {
+    command->add_option("--connect", address, "the server: HOST or HOST:PORT")->required();
+    command->add_flag("--insecure", insecure,
+                      "do not encrypt the connection; for servers that run with --insecure");
+  }
+  receive->add_option("CODE", out.code, "the code of `key send`; default: ask for it");
   try {
     app.parse(argc, argv);
+    if (send->parsed() || receive->parsed()) {
+      auto server = parse_host_port(address, kDefaultPort);
+      if (!server) throw CLI::ValidationError("--connect", server.error());
+      out.server = *std::move(server);
+      if (insecure) out.tls.reset();
+    }
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e);
     return {std::nullopt, code == 0 ? 0 : 2};

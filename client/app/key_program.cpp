@@ -5,6 +5,7 @@
 #include <istream>
 #include <ostream>
 
+#include "client/app/key_transfer.hpp"
 #include "client/net/key_file.hpp"
 #include "common/core/hex.hpp"
 #include "common/os/passphrase.hpp"
@@ -31,67 +32,77 @@ std::string first_line(std::istream& in) {
 }
 
 /// Returns the passphrase of an export. At the terminal it is typed twice.
-Result<std::string, std::string> new_passphrase(const KeyCommand& request) {
-  const bool is_asked = request.passphrase_file.empty();
-  auto first = is_asked ? ask_passphrase("passphrase for the exported key: ")
-                        : read_passphrase(request.passphrase_file);
-  if (!first) return first;
-  if (first->size() < kPassphraseBytesMin)
+Result<std::string, std::string> new_passphrase(const KeyCommand& command) {
+  const bool is_asked = command.passphrase_file.empty();
+  auto passphrase = is_asked ? ask_new_passphrase("passphrase for the exported key: ")
+                             : read_passphrase(command.passphrase_file);
+  if (passphrase && passphrase->size() < kPassphraseBytesMin)
     return key_failure("the passphrase has fewer than " + std::to_string(kPassphraseBytesMin) +
                        " bytes: take some words");
-  if (!is_asked) return first;
-  const auto second = ask_passphrase("again: ");
-  if (!second) return second;
-  if (*first != *second) return key_failure("the two passphrases differ");
-  return first;
+  return passphrase;
 }
 
-Done export_key(const KeyCommand& request, std::ostream& out, SealCost cost) {
-  const KeySeed seed = load_key_seed(request.key_file);
-  const auto passphrase = new_passphrase(request);
+Done export_key(const KeyCommand& command, std::ostream& out, SealCost cost) {
+  const KeySeed seed = load_key_seed(command.key_file);
+  const auto passphrase = new_passphrase(command);
   if (!passphrase) return key_failure(passphrase.error());
   const auto line = seal_key(seed, *passphrase, cost);
   if (!line) return key_failure(line.error());
-  if (request.file.empty()) {
+  if (command.file.empty()) {
     out << *line << "\n";
     return {};
   }
-  write_new_secret_file(request.file, *line + "\n");
+  write_new_secret_file(command.file, *line + "\n");
   print(seed, out);
   return {};
 }
 
-Done import_key(const KeyCommand& request, std::istream& in, std::ostream& out) {
+Done import_key(const KeyCommand& command, std::istream& in, std::ostream& out) {
   std::ifstream file;
-  if (!request.file.empty()) file.open(request.file);
-  const std::string line = first_line(request.file.empty() ? in : file);
+  if (!command.file.empty()) file.open(command.file);
+  const std::string line = first_line(command.file.empty() ? in : file);
   if (line.empty())
-    return key_failure((request.file.empty() ? "standard input" : request.file) +
+    return key_failure((command.file.empty() ? "standard input" : command.file) +
                        ": cannot be read, or its first line is empty");
-  const auto passphrase = request.passphrase_file.empty()
+  const auto passphrase = command.passphrase_file.empty()
                               ? ask_passphrase("passphrase of the exported key: ")
-                              : read_passphrase(request.passphrase_file);
+                              : read_passphrase(command.passphrase_file);
   if (!passphrase) return key_failure(passphrase.error());
   const auto seed = open_sealed_key(line, *passphrase);
   if (!seed) return key_failure(seed.error());
-  save_new_key(request.key_file, *seed);
+  save_new_key(command.key_file, *seed);
+  print(*seed, out);
+  return {};
+}
+
+Done receive(KeyCommand command, std::istream& in, std::ostream& out) {
+  if (command.code.empty()) {
+    out << "code: " << std::flush;
+    command.code = first_line(in);
+  }
+  const auto seed = receive_key(command, out);
+  if (!seed) return key_failure(seed.error());
   print(*seed, out);
   return {};
 }
 
 }  // namespace
 
-Done run_key_program(const KeyCommand& request, std::istream& in, std::ostream& out,
+Done run_key_program(const KeyCommand& command, std::istream& in, std::ostream& out,
                      SealCost cost) {
   try {
-    switch (request.verb) {
+    switch (command.verb) {
       case KeyCommand::Verb::show:
-        print(load_key_seed(request.key_file), out);
+        print(load_key_seed(command.key_file), out);
         return {};
       case KeyCommand::Verb::export_key:
-        return export_key(request, out, cost);
+        return export_key(command, out, cost);
       case KeyCommand::Verb::import_key:
-        return import_key(request, in, out);
+        return import_key(command, in, out);
+      case KeyCommand::Verb::send:
+        return send_key(command, out);
+      case KeyCommand::Verb::receive:
+        return receive(command, in, out);
     }
   } catch (const std::exception& error) {
     return key_failure(error.what());

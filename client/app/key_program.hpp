@@ -1,4 +1,5 @@
-// runstone-client key: shows a player's key, exports it as a line of text, and imports it.
+// runstone-client key: shows a player's key, exports it as a line of text and imports it, or moves it
+// to another device by a one-time code.
 #pragma once
 #include <iosfwd>
 
@@ -11,9 +12,10 @@ namespace runstone {
 /// Passphrases of fewer bytes are refused for an export.
 inline constexpr std::size_t kPassphraseBytesMin = 8;
 
-/// Carries out the request. `in` is read by an import without a file; `cost` is that of an export.
+/// Carries out the command. `in` is read by an import without a file, and for a code that the command
+/// lacks; `cost` is that of an export.
 /// No file is overwritten. The error is one line.
-Result<void, std::string> run_key_program(const KeyCommand& request, std::istream& in,
+Result<void, std::string> run_key_program(const KeyCommand& command, std::istream& in,
                                           std::ostream& out, SealCost cost = {});
 
 }  // namespace runstone

@@ -6,6 +6,7 @@
 
 #include "common/core/text.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/passphrase.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/server_link.hpp"
 #include "protocol/limits.hpp"
@@ -26,7 +27,7 @@ std::string parse_size(const std::string& text, ClientOptions& out) {
 
 /// Values that are converted to options after the whole command line was read.
 struct RawOptions {
-  std::string address, size, encoding = "auto", authorities;
+  std::string address, size, encoding = "auto", authorities, password_file;
   unsigned view = ClientOptions{}.view_radius, view_v = 0;
   bool no_render = false, no_cache = false, insecure = false;
 };
@@ -49,6 +50,11 @@ void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
       });
   app.add_option("--key", out.key_file,
                  "file of the identity; created if missing. Default: a new identity each time");
+  app.add_option("--password-file", raw.password_file,
+                 "join with the world's password, the first line of this file, if the server asks "
+                 "for one; default: ask for it")
+      ->needs("--key")
+      ->excludes(insecure);
   app.add_option("--view", raw.view, "view radius in chunks, horizontal")
       ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
   app.add_option("--view-vertical", raw.view_v,
@@ -125,6 +131,11 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
     out.server = *std::move(server);
   }
   if (raw.insecure) out.tls.reset();
+  if (!raw.password_file.empty()) {
+    auto password = read_passphrase(raw.password_file);
+    if (!password) throw CLI::ValidationError("--password-file", password.error());
+    out.password = *std::move(password);
+  }
   if (app.count("--ca") != 0) {
     if (raw.authorities.empty()) throw CLI::ValidationError("--ca", "names no file");
     auto tls =

@@ -16,6 +16,7 @@ struct ClientOptions {
   std::string name = "builder";
   std::string key_file;            // empty: a new key, for this process only
   std::string ticket;              // an invite token from the link; empty: none
+  std::string password;            // of the world; empty: none was given
   std::uint8_t view_radius = 6;    // chunks, horizontal
   std::uint8_t view_radius_v = 3;  // chunks, vertical
   bool headless = false;           // off screen, no display needed

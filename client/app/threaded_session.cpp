@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <utility>
 #include <variant>
 
 #include "client/net/key_file.hpp"
 #include "common/core/hex.hpp"
+#include "common/os/passphrase.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 
@@ -36,6 +38,7 @@ std::unique_ptr<CacheThread> make_cache(const ClientOptions& options,
 SessionConfig session_config(const ClientOptions& options, bool has_cache) {
   SessionConfig config;
   config.ticket = options.ticket;
+  if (!options.password.empty()) config.password = std::make_shared<PasswordKeys>(options.password);
   config.has_cache = has_cache;
   config.keys = options.key_file.empty() ? random_key() : load_or_create_key(options.key_file);
   if (!options.key_file.empty()) {
@@ -82,6 +85,24 @@ void ThreadedSession::receive() {
     if (const auto* gone = std::get_if<LinkDisconnected>(&event)) on_disconnected(*gone);
     if (auto* received = std::get_if<LinkReceived>(&event)) on_received(*received);
   }
+  if (can_ask_password()) ask_password();
+}
+
+bool ThreadedSession::can_ask_password() const {
+  return session_.lacks_password() && !is_password_asked_ && !options_.key_file.empty() &&
+         ::isatty(STDIN_FILENO) == 1;
+}
+
+void ThreadedSession::ask_password() {
+  is_password_asked_ = true;
+  net_->stop(0);  // it would connect again meanwhile
+  const auto password = ask_passphrase("password of this world: ");
+  if (!password || password->empty()) return;
+  events_.clear();
+  connection_ = 0;
+  session_.disconnected();
+  session_.set_password(std::make_shared<PasswordKeys>(*password));
+  start(steady_now_us());
 }
 
 void ThreadedSession::on_connected(const LinkConnected& event) {
@@ -196,7 +217,9 @@ void ThreadedSession::finish() {
 std::optional<std::string> ThreadedSession::refusal() const {
   const auto& end = session_.end();
   if (!end || !end->final) return std::nullopt;
-  return end->text;
+  if (!session_.lacks_password()) return end->text;
+  return end->text + "; this world has a password: start with " +
+         (options_.key_file.empty() ? "--key FILE and " : "") + "--password-file FILE";
 }
 
 std::optional<std::string> ThreadedSession::timeout(TimeUs now_us) const {

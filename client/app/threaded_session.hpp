@@ -34,7 +34,9 @@ class ThreadedSession {
   /// Starts the network thread, which connects until finish() and connects again after each loss.
   /// Call once.
   void start(TimeUs now_us);
-  /// Handles what the network thread received, for kReceiveUsMax at most.
+  /// Handles what the network thread received, for kReceiveUsMax at most. If the server refused a
+  /// player without a password and the world has one, asks for it at the terminal, once, and connects
+  /// again.
   void receive();
   /// Returns true if receive() left events for the next call.
   bool has_events() const { return !events_.empty(); }
@@ -69,6 +71,9 @@ class ThreadedSession {
   void count_snapshots(const Chunks& chunks, const LinkReceived& event);
   void on_disconnected(const LinkDisconnected& event);
   void on_world_opened();
+  /// Returns true if there is somebody to ask, and a key file that keeps the role of the password.
+  bool can_ask_password() const;
+  void ask_password();
   /// Gives the cache a batch of chunks. Returns false if there was none.
   bool keep_chunks(std::size_t count_max);
   void keep_all_chunks();
@@ -82,7 +87,8 @@ class ThreadedSession {
   std::deque<LinkEvent> events_;     // taken from the network thread, not handled yet
   ConnectionNumber connection_ = 0;  // 0: none
   std::uint64_t connects_handled_ = 0;
-  bool world_opened_ = false;          // until take_world_opened()
+  bool world_opened_ = false;  // until take_world_opened()
+  bool is_password_asked_ = false;
   std::optional<TimeUs> lost_us_ = 0;  // when the last world was lost; nullopt while one is open
   std::string last_failure_;           // why the last attempt to connect failed
   TimeUs kept_us_ = 0;                 // when the cache last got a batch

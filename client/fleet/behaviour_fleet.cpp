@@ -55,9 +55,13 @@ struct BehaviourFleet::Parts {
     net.host = options.server.host;
     net.port = options.server.port;
     net.tls = options.tls;
+    if (!options.password.empty()) password = std::make_shared<PasswordKeys>(options.password);
     // All keys are read or drawn before the first bot connects, so that a missing file fails at the
     // start.
-    for (std::size_t i = 0; i < options.count; ++i) configs.push_back(config_of(options, i));
+    for (std::size_t i = 0; i < options.count; ++i) {
+      configs.push_back(config_of(options, i));
+      configs.back().session.password = password;
+    }
   }
 
   void join(TimeUs now_us) {
@@ -162,6 +166,7 @@ struct BehaviourFleet::Parts {
 
   const BotOptions options;
   LinkConfig net;
+  std::shared_ptr<PasswordKeys> password;  // null: none
   std::vector<BotConfig> configs;
   asio::io_context io{1};
   asio::steady_timer timer{io};

@@ -4,6 +4,7 @@
 
 #include "common/core/text.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/passphrase.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -50,15 +51,15 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   CLI::App app{"Runstone bots: many players in one process, seeded, open loop.", "runstone-bot"};
   // The last value wins, as in the other programs.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  std::string address, role = "build", mix;
+  std::string address, role = "build", mix, password_file;
   unsigned view = out.view_radius;
   std::uint64_t edits = 0;
   app.add_option("--connect", address,
                  "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort))
       ->required();
   bool insecure = false;
-  app.add_flag("--insecure", insecure,
-               "do not encrypt connections; for servers that run with --insecure");
+  CLI::Option* const no_encryption = app.add_flag(
+      "--insecure", insecure, "do not encrypt connections; for servers that run with --insecure");
   app.add_option("--count", out.count, "bots")->check(CLI::Range(1, 10'000));
   CLI::Option* behaviour =
       app.add_option("--behaviour", role, std::string("what they do: ") + kRoleNames)
@@ -82,6 +83,10 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
          "--key-dir", out.key_dir,
          "folder of their key files, which are made if missing; default: new keys each time")
       ->check(CLI::ExistingDirectory);
+  app.add_option("--password-file", password_file,
+                 "join with the world's password, the first line of this file")
+      ->needs("--key-dir")
+      ->excludes(no_encryption);
   app.add_option("--rate", out.rate, "edits, or joins of a join storm, a second, each bot")
       ->check(CLI::Range(0.001, 100'000.0));
   app.add_option("--duration", out.seconds, "seconds for which edits are due")
@@ -117,6 +122,11 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
     auto server = parse_host_port(address, kDefaultPort);
     if (!server) throw CLI::ValidationError("--connect", server.error());
     out.server = *std::move(server);
+    if (!password_file.empty()) {
+      auto password = read_passphrase(password_file);
+      if (!password) throw CLI::ValidationError("--password-file", password.error());
+      out.password = *std::move(password);
+    }
     if (app.count("--mix") != 0) out.roles = roles_of(mix);
   } catch (const CLI::ParseError& e) {
     return {std::nullopt, app.exit(e) == 0 ? 0 : 2};

@@ -23,6 +23,7 @@ struct BotOptions {
   double join_rate = 100;              // bots a second that join
   std::string name = "bot";            // bots are NAME-1, NAME-2, ...; a single bot is NAME
   std::string key_dir;                 // has a key file for each bot; empty: new keys each time
+  std::string password;                // of the world; empty: none
   double rate = 5;                     // edits (of a join storm: joins) per second and bot
   double seconds = 10;                 // for which edits are due
   std::optional<std::uint64_t> edits;  // at most, each bot

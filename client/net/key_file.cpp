@@ -18,14 +18,6 @@ namespace {
 
 constexpr const char* kPinsSuffix = ".servers";
 
-template <std::size_t N>
-bool parse_hex(const std::string& text, std::array<std::uint8_t, N>& out) {
-  if (text.size() != 2 * N) return false;
-  std::size_t read = 0;
-  return sodium_hex2bin(out.data(), N, text.data(), text.size(), nullptr, &read, nullptr) == 0 &&
-         read == N;
-}
-
 [[noreturn]] void throw_error(const std::string& file, const std::string& why) {
   throw std::runtime_error(file + ": " + why);
 }
@@ -60,7 +52,7 @@ KeySeed load_key_seed(const std::string& file) {
   std::ifstream in(file);
   std::string line;
   KeySeed seed;
-  if (!std::getline(in, line) || !parse_hex(line, seed))
+  if (!std::getline(in, line) || !read_hex(line, seed))
     throw_error(file, "is not a key file (64 hex digits)");
   return seed;
 }
@@ -108,7 +100,7 @@ std::map<WorldId, PublicKey> load_pinned_servers(const std::string& key_file) {
     std::string world, key;
     WorldId world_id;
     PublicKey server_key;
-    if (!(fields >> world >> key) || !parse_hex(world, world_id) || !parse_hex(key, server_key)) {
+    if (!(fields >> world >> key) || !read_hex(world, world_id) || !read_hex(key, server_key)) {
       throw_error(file + ":" + std::to_string(number),
                   "expected a world id and a server key in hex");
     }

@@ -3,9 +3,11 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "client/session/password_keys.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -16,12 +18,14 @@ struct SessionConfig {
   std::string name = "builder";
   ClientInstance instance = 1;               // random per process
   std::uint8_t encodings = kEncodingsKnown;  // as in Hello
-  /// kFeatureNames is added if the key is kept for later runs.
-  std::uint64_t features = kFeaturesKnown & ~kFeatureNames;
-  View view;                            // requested; the server's limit cuts the radii
-  std::map<WorldId, PublicKey> pinned;  // server keys seen before
-  std::string ticket;                   // an invite token, sent with the signature; empty: none
-  bool has_cache = false;               // a ClientSession looks chunks up in a cache
+  /// kFeatureNames is added if the key is kept for later runs. Keys are moved by
+  /// KeyTransferSession.
+  std::uint64_t features = kFeaturesKnown & ~kFeatureNames & ~kFeatureKeyTransfer;
+  View view;                               // requested; the server's limit cuts the radii
+  std::map<WorldId, PublicKey> pinned;     // server keys seen before
+  std::string ticket;                      // an invite token, sent with the signature; empty: none
+  std::shared_ptr<PasswordKeys> password;  // sent to worlds that have one; null: none
+  bool has_cache = false;                  // a ClientSession looks chunks up in a cache
 };
 
 /// Returns the hello. `nonce` must be fresh and random, so that old welcomes cannot be replayed.

@@ -125,6 +125,11 @@ class ClientSession {
   /// Returns the world as its server describes it now, or nullopt unless open.
   std::optional<CachedWorld> cached_world() const;
   void set_pose(const Pose& pose) { connection_.set_pose(pose); }
+  /// See ServerConnection.
+  void set_password(std::shared_ptr<PasswordKeys> password) {
+    connection_.set_password(std::move(password));
+  }
+  bool lacks_password() const { return connection_.lacks_password(); }
 
   SessionState state() const { return connection_.state(); }
   bool is_open() const { return connection_.is_open(); }

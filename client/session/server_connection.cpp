@@ -22,6 +22,7 @@ void ServerConnection::connected(const Nonce& nonce, const std::optional<Channel
                                  TimeUs now_us) {
   disconnected();
   end_.reset();
+  lacks_password_ = false;
   hello_ = make_hello(config_, nonce);
   binding_ = binding;
   outgoing_.push_back(hello_);
@@ -42,6 +43,8 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
   last_message_us_ = arrival.now_us;
   if (const auto* goodbye = std::get_if<Goodbye>(&message)) {
     end_ = SessionEnd{goodbye->reason, goodbye->text, true, is_final(goodbye->reason)};
+    lacks_password_ = state_ == SessionState::authenticating && welcome_->password_salt &&
+                      !config_.password && goodbye->reason == GoodbyeReason::not_admitted;
     wants_close_ = true;
     return Dispatch::handled;
   }
@@ -72,18 +75,35 @@ SessionStage ServerConnection::stage() const {
 }
 
 ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
-  if (const auto fault = check_welcome(hello_, welcome, binding_, config_.pinned)) {
-    end_ = SessionEnd{fault->reason, fault->text, false, true};
-    close(fault->reason, fault->text);
-    return Dispatch::handled;
+  if (const auto fault = check_welcome(hello_, welcome, binding_, config_.pinned))
+    return give_up(fault->reason, fault->text);
+  ClientAuth auth{sign(config_.keys, client_transcript(hello_, welcome, binding_)), config_.ticket};
+  if (config_.password && welcome.password_salt) {
+    if (!binding_)
+      return give_up(GoodbyeReason::closing, "a password is sent on encrypted connections only");
+    const auto key = config_.password->key_for(*welcome.password_salt);
+    if (!key) return give_up(GoodbyeReason::closing, key.error());
+    auth.password_key = *key;
   }
   const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
   if (is_another_world || (welcome_ && welcome_->epoch != welcome.epoch)) clock_.reset();
-  outgoing_.push_back(
-      ClientAuth{sign(config_.keys, client_transcript(hello_, welcome, binding_)), config_.ticket});
+  outgoing_.push_back(std::move(auth));
   welcome_ = std::move(welcome);
   state_ = SessionState::authenticating;
   return is_another_world ? Dispatch::another_world : Dispatch::handled;
+}
+
+ServerConnection::Dispatch ServerConnection::give_up(GoodbyeReason reason,
+                                                     const std::string& text) {
+  end_ = SessionEnd{reason, text, false, true};
+  close(reason, text);
+  return Dispatch::handled;
+}
+
+void ServerConnection::set_password(std::shared_ptr<PasswordKeys> password) {
+  config_.password = std::move(password);
+  lacks_password_ = false;
+  end_.reset();
 }
 
 void ServerConnection::on_session_accepted(const SessionAccepted& accepted, TimeUs now_us) {

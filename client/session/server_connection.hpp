@@ -80,6 +80,8 @@ class ServerConnection {
   /// Sends chunk requests of at most kChunkRequestKeysMax keys each. Requires strictly ascending
   /// keys.
   void request_chunks(const std::vector<ChunkKey>& keys);
+  /// Gives the password to send from the next connection on.
+  void set_password(std::shared_ptr<PasswordKeys> password);
   /// Sets the requested view; its number is ignored. send_view() sends it.
   void set_view(const View& view) { config_.view = view; }
   /// Returns the view in force: the requested one within the server's limits. Its number is that
@@ -101,6 +103,9 @@ class ServerConnection {
   /// Returns true if there is a connection and it is not to be closed.
   bool accepts_input() const { return state_ != SessionState::offline && !wants_close_; }
   const std::optional<SessionEnd>& end() const { return end_; }
+  /// Returns true if the server admitted the player no further than the handshake, the world has a
+  /// password, and none was sent.
+  bool lacks_password() const { return lacks_password_; }
   /// Returns the welcome of the current or last connection, or nullopt before the first. Its material
   /// table has the rows that came later, too.
   const std::optional<Welcome>& welcome() const { return welcome_; }
@@ -116,6 +121,8 @@ class ServerConnection {
   /// Returns the stage of the handshake. Requires a connection.
   SessionStage stage() const;
   Dispatch on_welcome(Welcome welcome);
+  /// Ends the connection for a reason for which another attempt is pointless.
+  Dispatch give_up(GoodbyeReason reason, const std::string& text);
   void on_session_accepted(const SessionAccepted& accepted, TimeUs now_us);
   Dispatch on_materials(const MaterialsAdded& added);
 
@@ -124,6 +131,7 @@ class ServerConnection {
   std::vector<Message> outgoing_;
   bool wants_close_ = false;
   std::optional<SessionEnd> end_;
+  bool lacks_password_ = false;
   Hello hello_;
   std::optional<ChannelBinding> binding_;  // of the current connection
   std::optional<Welcome> welcome_;

@@ -54,6 +54,15 @@ Result<std::string, std::string> ask_passphrase(const std::string& prompt) {
   return line;
 }
 
+Result<std::string, std::string> ask_new_passphrase(const std::string& prompt) {
+  auto first = ask_passphrase(prompt);
+  if (!first) return first;
+  const auto second = ask_passphrase("again: ");
+  if (!second) return second;
+  if (*first != *second) return Unexpected<std::string>{"the two lines differ"};
+  return first;
+}
+
 Result<std::string, std::string> read_passphrase(const std::string& file) {
   std::ifstream in(file);
   std::string line;

@@ -10,6 +10,9 @@ namespace runstone {
 /// process has no terminal, or if the input ends.
 Result<std::string, std::string> ask_passphrase(const std::string& prompt);
 
+/// Asks twice for a new one. Fails also if the two differ.
+Result<std::string, std::string> ask_new_passphrase(const std::string& prompt);
+
 /// Returns the first line of a file. Fails if the file cannot be read or its first line is empty.
 Result<std::string, std::string> read_passphrase(const std::string& file);
 

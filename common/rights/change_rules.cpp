@@ -192,14 +192,9 @@ class ChangeCheck {
     if (!rights_.has(Right::administer)) {
       if (auto lacks = needs(Right::grant)) return lacks;
     }
-    const Decided<Role>* role = state_.find_role(change.invite.role);
-    if (role == nullptr) return no_role(change.invite.role);
-    if (auto reason = refused_gift(role->value.rights, {})) return reason;
+    if (auto reason = refused_joining_role(change.invite.role)) return reason;
     if (change.invite.until_us <= now_us_) return "The invite would have ended already.";
     if (state_.invites().contains(change.invite.id)) return "There is such an invite already.";
-    if (!role->value.rights.has(Right::see)) {
-      return "Players with the role " + quoted(change.invite.role) + " may not join.";
-    }
     const auto usable =
         std::count_if(state_.invites().begin(), state_.invites().end(), [this](const auto& invite) {
           return state_.usable_invite(invite.first, now_us_) != nullptr;
@@ -212,7 +207,6 @@ class ChangeCheck {
 
   Refusal refused_kind(const AcceptInvite& change) const {
     if (actor_.key != change.key) return "Nobody accepts an invite for somebody else.";
-    if (state_.grants().contains(change.key)) return "You have a role already.";
     const auto found = state_.invites().find(change.invite);
     if (found == state_.invites().end()) {
       return "The invite was cancelled, has ended, or is of another world.";
@@ -220,11 +214,21 @@ class ChangeCheck {
     const OpenInvite& open = found->second.value;
     if (open.invite.until_us <= now_us_) return "The invite has ended.";
     if (open.accepted >= open.invite.uses) return "The invite was used as often as it may be.";
-    if (state_.find_role(open.invite.role) == nullptr) return no_role(open.invite.role);
-    if (state_.grants().size() >= kGrantsMax) {
-      return "As many players have a role as the world can hold.";
-    }
+    return refused_first_grant(change.key, open.invite.role);
+  }
+
+  Refusal refused_kind(const SetPassword& change) const {
+    if (auto lacks = needs(Right::administer)) return lacks;
+    if (change.password) return refused_joining_role(change.password->role);
+    if (!state_.password().value) return "The world has no password.";
     return std::nullopt;
+  }
+
+  Refusal refused_kind(const AcceptPassword& change) const {
+    if (actor_.key != change.key) return "Nobody joins with a password for somebody else.";
+    const std::optional<JoinPassword>& password = state_.password().value;
+    if (!password) return "The world has no password.";
+    return refused_first_grant(change.key, password->role);
   }
 
   Refusal refused_kind(const CancelInvite& change) const {
@@ -232,6 +236,24 @@ class ChangeCheck {
       if (auto lacks = needs(Right::grant)) return lacks;
     }
     if (!state_.invites().contains(change.invite)) return "There is no such invite.";
+    return std::nullopt;
+  }
+
+  /// Checks a role that players get when they join.
+  Refusal refused_joining_role(const std::string& name) const {
+    const Decided<Role>* role = state_.find_role(name);
+    if (role == nullptr) return no_role(name);
+    if (auto reason = refused_gift(role->value.rights, {})) return reason;
+    if (role->value.rights.has(Right::see)) return std::nullopt;
+    return "Players with the role " + quoted(name) + " may not join.";
+  }
+
+  /// Checks the role that a player gets on joining.
+  Refusal refused_first_grant(const PublicKey& key, const std::string& role) const {
+    if (state_.grants().contains(key)) return "You have a role already.";
+    if (state_.find_role(role) == nullptr) return no_role(role);
+    if (state_.grants().size() >= kGrantsMax)
+      return "As many players have a role as the world can hold.";
     return std::nullopt;
   }
 

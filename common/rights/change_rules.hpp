@@ -1,6 +1,7 @@
 // Change rules: who may make which change of rights. The rules:
 //   - Grants need the right `grant` or `administer`; restrictions need `moderate`; roles, the
-//     default role, and bans of more addresses than an IPv4 /24 or an IPv6 /48 need `administer`.
+//     default role, the password, and bans of more addresses than an IPv4 /24 or an IPv6 /48 need
+//     `administer`.
 //   - A player gives only what lies within the player's own rights, and gives roles and
 //     restrictions to, and takes them from, only players who have fewer rights. Administrators act
 //     on everybody. No player acts on itself.
@@ -51,9 +52,9 @@ struct RightsRecord {
   ChangeOrigin origin;
 };
 /// Returns the change that takes the record's change back: it restores what the records before it
-/// say of the same role, grant, default role, restriction or box. `records` are given in log order
-/// from the first to the newest. Returns nullopt if there is no record `seq`, or if it no longer
-/// decides anything, because a later one has replaced it. Cost: O(records log n).
+/// say of the same role, grant, default role, password, restriction or box. `records` are given in
+/// log order from the first to the newest. Returns nullopt if there is no record `seq`, or if it no
+/// longer decides anything, because a later one has replaced it. Cost: O(records log n).
 std::optional<RightsChange> inverse_of(const std::vector<RightsRecord>& records, Sequence seq);
 
 }  // namespace runstone

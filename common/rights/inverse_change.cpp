@@ -7,7 +7,7 @@ namespace {
 
 /// Names the part of the state that a change sets.
 struct ChangedCell {
-  enum class Kind : std::uint8_t { role, grant, default_role, restriction, box, invite };
+  enum class Kind : std::uint8_t { role, grant, default_role, restriction, box, invite, password };
   Kind kind{};
   std::string name;  // of the role or box; the number of the invite
   RestrictionKind restriction{};
@@ -34,13 +34,17 @@ ChangedCell cell_of_kind(const AcceptInvite& c) { return {CellKind::grant, {}, {
 ChangedCell cell_of_kind(const CancelInvite& c) {
   return {CellKind::invite, std::to_string(c.invite), {}, {}};
 }
+ChangedCell cell_of_kind(const SetPassword&) { return {CellKind::password, {}, {}, {}}; }
+ChangedCell cell_of_kind(const AcceptPassword& c) { return {CellKind::grant, {}, {}, c.key}; }
 
-/// What an accepted invite grants depends on all records about invites and grants.
-bool is_about_invites(const RightsChange& change) {
+/// What a player got on joining depends on all records about invites, passwords and grants.
+bool is_about_joining(const RightsChange& change) {
   return std::holds_alternative<GrantRole>(change) ||
          std::holds_alternative<CreateInvite>(change) ||
          std::holds_alternative<AcceptInvite>(change) ||
-         std::holds_alternative<CancelInvite>(change);
+         std::holds_alternative<CancelInvite>(change) ||
+         std::holds_alternative<SetPassword>(change) ||
+         std::holds_alternative<AcceptPassword>(change);
 }
 
 ChangedCell cell_of(const RightsChange& change) {
@@ -66,6 +70,8 @@ RightsChange restoring(const RightsState& state, const ChangedCell& cell) {
     }
     case CellKind::default_role:
       return SetDefaultRole{state.default_role().value};
+    case CellKind::password:
+      return SetPassword{state.password().value};
     case CellKind::restriction: {
       const auto* old = state.find_restriction(cell.restriction, cell.subject);
       if (old == nullptr) return Lift{cell.restriction, cell.subject};
@@ -104,7 +110,7 @@ std::optional<RightsChange> inverse_of(const std::vector<RightsRecord>& records,
   if (is_replaced) return std::nullopt;
   RightsState before;
   for (auto record = records.begin(); record != at; ++record) {
-    if (cell_of(record->change) == cell || is_about_invites(record->change))
+    if (cell_of(record->change) == cell || is_about_joining(record->change))
       before.apply(record->change, record->origin);
   }
   return restoring(before, cell);

@@ -1,8 +1,10 @@
 #include "common/rights/rights_change.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/core/assert.hpp"
@@ -25,10 +27,12 @@ enum class ChangeTag : std::uint8_t {
   create_invite = 9,
   accept_invite = 10,
   cancel_invite = 11,
+  set_password = 12,
+  accept_password = 13,
   define_role_with_quotas = 14
 };
 static_assert(std::variant_size_v<RightsChange> ==
-              static_cast<std::uint8_t>(ChangeTag::cancel_invite));
+              static_cast<std::uint8_t>(ChangeTag::accept_password));
 
 ChangeTag tag_of(const RightsChange& change) {
   const auto* define = std::get_if<DefineRole>(&change);
@@ -161,6 +165,13 @@ Result<void> check_change(const CreateInvite& change) {
 Result<void> check_change(const AcceptInvite& /*change*/) { return {}; }
 Result<void> check_change(const CancelInvite& /*change*/) { return {}; }
 
+Result<void> check_change(const SetPassword& change) {
+  if (!change.password) return {};
+  return check_name(change.password->role, "bad name of a role");
+}
+
+Result<void> check_change(const AcceptPassword& /*change*/) { return {}; }
+
 void write_text(ByteWriter& w, std::string_view text) {
   w.varint(text.size());
   w.bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -245,6 +256,15 @@ void write_change(ByteWriter& w, const AcceptInvite& change) {
 
 void write_change(ByteWriter& w, const CancelInvite& change) { w.u64(change.invite); }
 
+void write_change(ByteWriter& w, const SetPassword& change) {
+  if (!change.password) return write_text(w, {});
+  write_text(w, change.password->role);
+  w.bytes(change.password->salt);
+  w.bytes(change.password->hash);
+}
+
+void write_change(ByteWriter& w, const AcceptPassword& change) { w.bytes(change.key); }
+
 std::string read_text(ByteReader& r, std::size_t bytes_max, const char* what) {
   const ByteView text = r.bytes(static_cast<std::size_t>(r.varint_max(bytes_max, what)));
   return {text.begin(), text.end()};
@@ -252,12 +272,15 @@ std::string read_text(ByteReader& r, std::size_t bytes_max, const char* what) {
 
 std::string read_name(ByteReader& r) { return read_text(r, kRightsNameBytesMax, "name too long"); }
 
-PublicKey read_key(ByteReader& r) {
-  PublicKey key{};
-  const ByteView bytes = r.bytes(kPublicKeyBytes);
-  std::copy(bytes.begin(), bytes.end(), key.begin());
-  return key;
+template <std::size_t N>
+std::array<std::uint8_t, N> read_array(ByteReader& r) {
+  std::array<std::uint8_t, N> out{};
+  const ByteView bytes = r.bytes(N);
+  std::copy(bytes.begin(), bytes.end(), out.begin());
+  return out;
 }
+
+PublicKey read_key(ByteReader& r) { return read_array<kPublicKeyBytes>(r); }
 
 RestrictionSubject read_subject(ByteReader& r) {
   const std::uint8_t form = r.u8();
@@ -305,6 +328,15 @@ Invite read_invite(ByteReader& r) {
       static_cast<std::uint32_t>(r.varint_max(kInviteUsesMax, "uses of an invite out of range"));
   invite.until_us = read_end_time(r);
   return invite;
+}
+
+SetPassword read_password(ByteReader& r) {
+  JoinPassword password;
+  password.role = read_name(r);
+  if (password.role.empty()) return {};
+  password.salt = read_array<kPasswordSaltBytes>(r);
+  password.hash = read_array<kPasswordHashBytes>(r);
+  return {std::move(password)};
 }
 
 Restrict read_restrict(ByteReader& r) {
@@ -387,6 +419,10 @@ RightsChange read_change_fields(ByteReader& r, ChangeTag tag) {
     }
     case ChangeTag::cancel_invite:
       return CancelInvite{r.u64()};
+    case ChangeTag::set_password:
+      return read_password(r);
+    case ChangeTag::accept_password:
+      return AcceptPassword{read_key(r)};
     case ChangeTag::define_role_with_quotas:
       return DefineRole{read_role_with_quotas(r)};
   }

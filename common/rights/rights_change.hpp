@@ -13,6 +13,7 @@
 #include "common/core/result.hpp"
 #include "common/rights/address_range.hpp"
 #include "common/rights/invite.hpp"
+#include "common/rights/join_password.hpp"
 #include "common/rights/protected_box.hpp"
 #include "common/rights/role.hpp"
 
@@ -91,9 +92,21 @@ struct CancelInvite {
   friend bool operator==(const CancelInvite&, const CancelInvite&) = default;
 };
 
+/// Sets the password of the world, in place of the one before.
+struct SetPassword {
+  std::optional<JoinPassword> password;  // nullopt: the world has no password from now on
+  friend bool operator==(const SetPassword&, const SetPassword&) = default;
+};
+/// Gives a player without a granted role the role of the password.
+struct AcceptPassword {
+  PublicKey key{};
+  friend bool operator==(const AcceptPassword&, const AcceptPassword&) = default;
+};
+
 // The order is that of the stored tags, from 1. A DefineRole with quotas is stored with a tag of its own.
-using RightsChange = std::variant<DefineRole, RemoveRole, GrantRole, SetDefaultRole, Restrict, Lift,
-                                  Protect, Unprotect, CreateInvite, AcceptInvite, CancelInvite>;
+using RightsChange =
+    std::variant<DefineRole, RemoveRole, GrantRole, SetDefaultRole, Restrict, Lift, Protect,
+                 Unprotect, CreateInvite, AcceptInvite, CancelInvite, SetPassword, AcceptPassword>;
 
 inline constexpr std::size_t kRightsChangeBytesMax = 4096;
 

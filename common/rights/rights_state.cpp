@@ -119,6 +119,15 @@ void RightsState::apply_kind(const CancelInvite& change, const ChangeOrigin& /*o
   invites_.erase(change.invite);
 }
 
+void RightsState::apply_kind(const SetPassword& change, const ChangeOrigin& origin) {
+  password_ = {change.password, origin};
+}
+
+void RightsState::apply_kind(const AcceptPassword& change, const ChangeOrigin& origin) {
+  if (!password_.value || grants_.contains(change.key)) return;
+  grants_[change.key] = {password_.value->role, origin};
+}
+
 const Decided<OpenInvite>* RightsState::usable_invite(InviteId id, TimeUs now_us) const {
   const auto found = invites_.find(id);
   if (found == invites_.end()) return nullptr;

@@ -97,6 +97,10 @@ class RightsState {
   /// Returns the invite if a player may accept it at `now_us` (UTC), or null.
   const Decided<OpenInvite>* usable_invite(InviteId id, TimeUs now_us) const;
 
+  // The password.
+  /// Returns the password with which players join, or nullopt, and the record that decided it.
+  const Decided<std::optional<JoinPassword>>& password() const { return password_; }
+
   // Restrictions.
   /// Returns the restriction of a player that holds at `now_us` (UTC), or null. Cost: O(log
   /// restrictions).
@@ -165,12 +169,15 @@ class RightsState {
   void apply_kind(const CreateInvite& change, const ChangeOrigin& origin);
   void apply_kind(const AcceptInvite& change, const ChangeOrigin& origin);
   void apply_kind(const CancelInvite& change, const ChangeOrigin& origin);
+  void apply_kind(const SetPassword& change, const ChangeOrigin& origin);
+  void apply_kind(const AcceptPassword& change, const ChangeOrigin& origin);
   void remove_box(const std::string& name);
 
   std::map<std::string, Decided<Role>> roles_;
   Decided<std::string> default_role_;
   std::map<PublicKey, Decided<std::string>> grants_;
   std::map<InviteId, Decided<OpenInvite>> invites_;
+  Decided<std::optional<JoinPassword>> password_;
 
   std::map<std::pair<PublicKey, RestrictionKind>, Decided<Restrict>> by_key_;
   std::map<AddressRange, Decided<Restrict>> address_bans_;

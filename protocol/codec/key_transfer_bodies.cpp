@@ -28,6 +28,7 @@ Result<Message> BodyReader::read(const wire::KeyDeposit& t) const {
   KeyDeposit m;
   if (!take_exact(t.slot(), m.slot)) return bad("key_deposit.slot is not 16 bytes");
   if (!take_sealed(t.sealed(), m.sealed)) return bad("key_deposit.sealed is not 1 .. 512 bytes");
+  if (!take_exact(t.signature(), m.signature)) return bad("key_deposit.signature is not 64 bytes");
   return m;
 }
 

@@ -25,9 +25,11 @@ struct SealedKey {
   friend bool operator==(const SealedKey&, const SealedKey&) = default;
 };
 
+/// Leaves a sealed key, in place of ClientAuth.
 struct KeyDeposit {
   KeySlot slot{};
-  Bytes sealed;  // 1 .. kSealedKeyBytesMax
+  Bytes sealed;                                           // 1 .. kSealedKeyBytesMax
+  std::array<std::uint8_t, kSignatureBytes> signature{};  // over the client transcript
   friend bool operator==(const KeyDeposit&, const KeyDeposit&) = default;
 };
 struct KeyDeposited {

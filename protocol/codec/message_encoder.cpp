@@ -219,7 +219,8 @@ struct BodyBuilder {
   Offset<wire::KeyDeposit> operator()(const KeyDeposit& m) {
     RUNSTONE_ASSERT(!m.sealed.empty() && m.sealed.size() <= kSealedKeyBytesMax);
     const auto slot = bytes_of(b, m.slot);
-    return wire::CreateKeyDeposit(b, slot, bytes_of(b, m.sealed));
+    const auto sealed = bytes_of(b, m.sealed);
+    return wire::CreateKeyDeposit(b, slot, sealed, bytes_of(b, m.signature));
   }
   Offset<wire::KeyDeposited> operator()(const KeyDeposited& m) {
     return wire::CreateKeyDeposited(b, m.seconds, text(m.text));

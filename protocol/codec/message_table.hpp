@@ -76,8 +76,8 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"ChatLines", server, kControl, open, kFeatureChat},
       {"KeyRequest", client, kControl, authenticating, kFeatureKeyTransfer},
       {"SealedKey", server, kControl, authenticating, kFeatureKeyTransfer},
-      {"KeyDeposit", client, kControl, open, kFeatureKeyTransfer},
-      {"KeyDeposited", server, kControl, open, kFeatureKeyTransfer},
+      {"KeyDeposit", client, kControl, authenticating, kFeatureKeyTransfer},
+      {"KeyDeposited", server, kControl, authenticating, kFeatureKeyTransfer},
       {"MaterialsAdded", server, kEdits, open, kFeatureMaterials},
   }};
 }();

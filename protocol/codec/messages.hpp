@@ -24,6 +24,7 @@
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/rights/join_password.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/chat_messages.hpp"
 #include "protocol/codec/chunk_codec.hpp"
@@ -37,7 +38,6 @@ namespace runstone {
 using Nonce = std::array<std::uint8_t, kNonceBytes>;
 using Signature = std::array<std::uint8_t, kSignatureBytes>;
 using WorldId = std::array<std::uint8_t, kWorldIdBytes>;
-using PasswordSalt = std::array<std::uint8_t, kPasswordSaltBytes>;
 /// Made from a password and a salt (password_key.hpp). Whoever has it can join like somebody who
 /// knows the password, in worlds with this salt.
 using PasswordKey = std::array<std::uint8_t, kPasswordKeyBytes>;

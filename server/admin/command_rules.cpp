@@ -133,6 +133,12 @@ constexpr std::array kCommandRows = {
     row<UndoRightsCommand>({Right::administer},
                            "rights undo SEQ           take back a record that changed rights "
                            "(log cause rights)"),
+    local_row<SetPasswordCommand>(
+        "password set [role ROLE]  give the world a password, which control asks for"),
+    row<ClearPasswordCommand>({Right::administer},
+                              "password clear            take the world's password away"),
+    row<ShowPasswordCommand>({Right::administer},
+                             "password                  whether the world has a password"),
     row<ReleaseNameCommand>({Right::administer},
                             "names release NAME        free a name, so that the next player who "
                             "joins under it owns it"),

@@ -1,14 +1,22 @@
 #include "server/admin/control_program.hpp"
 
+#include <sodium.h>
+#include <unistd.h>
+
 #include <asio/io_context.hpp>
 #include <asio/local/stream_protocol.hpp>
 #include <asio/read_until.hpp>
 #include <asio/write.hpp>
 #include <filesystem>
+#include <iostream>
 #include <ostream>
 #include <system_error>
+#include <variant>
 
 #include "common/core/text.hpp"
+#include "common/os/passphrase.hpp"
+#include "protocol/codec/password_key.hpp"
+#include "server/admin/command.hpp"
 #include "server/admin/control_socket.hpp"
 
 namespace runstone {
@@ -41,8 +49,33 @@ std::string control_line(const std::vector<std::string>& words) {
   return line;
 }
 
-Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out) {
-  std::string line = control_line(with_whole_path(request.words));
+Result<std::string, std::string> read_new_password() {
+  if (::isatty(STDIN_FILENO) == 1) return ask_new_passphrase("password for the world: ");
+  std::string line;
+  if (!std::getline(std::cin, line))
+    return failure("password set: standard input is no terminal and has no line");
+  return line;
+}
+
+Result<std::string, std::string> with_password(const std::string& line, const ReadPassword& read) {
+  const auto command = parse_command(line, 0);
+  const auto* rights = command ? std::get_if<RightsCommand>(&*command) : nullptr;
+  const auto* set = rights == nullptr ? nullptr : std::get_if<SetPasswordCommand>(rights);
+  if (set == nullptr || set->has_verifier) return line;  // the server answers mistakes
+  const auto text = read();
+  if (!text) return failure(text.error());
+  PasswordSalt salt{};
+  randombytes_buf(salt.data(), salt.size());
+  const auto password = join_password(*text, salt, set->password.role);
+  if (!password) return failure("password set: " + password.error());
+  return line + " verifier " + verifier_text(*password);
+}
+
+Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out,
+                                         const ReadPassword& read_password) {
+  auto completed = with_password(control_line(with_whole_path(request.words)), read_password);
+  if (!completed) return failure(completed.error());
+  std::string line = *std::move(completed);
   if (!is_printable_utf8(line))
     return Unexpected<std::string>{"control: the command is not one line of UTF-8 text"};
   line += '\n';

@@ -1,5 +1,6 @@
 // runstone-server control: sends one command to a running server and prints the answer.
 #pragma once
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -18,9 +19,19 @@ struct ControlRequest {
 /// has removed the quotes around them.
 std::string control_line(const std::vector<std::string>& words);
 
+/// Returns a new password: typed twice at the terminal without being shown or, if standard input is
+/// no terminal, its first line.
+Result<std::string, std::string> read_new_password();
+using ReadPassword = std::function<Result<std::string, std::string>()>;
+
+/// Returns the line, and for `password set` adds what the world keeps of the password that is read
+/// now. So the password itself leaves this process in no form.
+Result<std::string, std::string> with_password(const std::string& line, const ReadPassword& read);
+
 /// Sends the command and prints each line of the answer to `out` as it arrives. Returns true if the
 /// command succeeded. The error is one line: the command has control characters such as a newline,
 /// or no server runs that world. Blocks until the answer is complete.
-Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out);
+Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out,
+                                         const ReadPassword& read_password = read_new_password);
 
 }  // namespace runstone

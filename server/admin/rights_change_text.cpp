@@ -47,6 +47,13 @@ std::string line_for(const AcceptInvite& change) {
 std::string line_for(const CancelInvite& change) {
   return "cancelled the invite " + invite_id_text(change.invite);
 }
+std::string line_for(const SetPassword& change) {
+  if (!change.password) return "removed the password";
+  return "set a password for the role " + change.password->role;
+}
+std::string line_for(const AcceptPassword& change) {
+  return key_fingerprint(change.key) + " joined with the password";
+}
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/core/hex.hpp"
 #include "server/admin/address_range_text.hpp"
 #include "server/admin/edit_budget_text.hpp"
 
@@ -220,6 +221,42 @@ Parsed invite_command(CommandReader reader, TimeUs now_us) {
   return parsed_or_error(reader, command);
 }
 
+/// Takes what verifier_text() makes.
+bool take_verifier(CommandReader& reader, JoinPassword& password) {
+  constexpr std::size_t kSaltDigits = 2 * kPasswordSaltBytes;
+  const std::string rule =
+      std::to_string(kSaltDigits + 2 * kPasswordHashBytes) + " hexadecimal digits";
+  const std::string text = reader.take("password set verifier", rule);
+  const std::size_t salt_ends = std::min(kSaltDigits, text.size());
+  if (read_hex(text.substr(0, salt_ends), password.salt) &&
+      read_hex(text.substr(salt_ends), password.hash))
+    return true;
+  reader.wrong("password set verifier: " + rule);
+  return false;
+}
+
+Parsed password_command(CommandReader reader) {
+  if (reader.at_end()) return RightsCommand(ShowPasswordCommand{});
+  if (reader.take_word("clear")) {
+    reader.expect_end("password clear");
+    return parsed_or_error(reader, ClearPasswordCommand{});
+  }
+  if (!reader.take_word("set")) return failure("password: set or clear comes after it");
+  SetPasswordCommand command;
+  command.password.role = kBuilderRole;
+  while (!reader.at_end()) {
+    if (reader.take_word("role")) {
+      command.password.role = take_rights_name(reader, "password set role");
+    } else if (reader.take_word("verifier")) {
+      command.has_verifier = take_verifier(reader, command.password);
+    } else {
+      // The word may be a password, so it is not repeated.
+      reader.wrong("password set: only role ROLE comes after it; control asks for the password");
+    }
+  }
+  return parsed_or_error(reader, command);
+}
+
 /// Takes a box: six numbers, or `columns` and four.
 VoxelBox take_ground(CommandReader& reader, const std::string& word) {
   if (!reader.take_word("columns")) return reader.box(word);
@@ -342,6 +379,10 @@ Parsed player_and_role(CommandReader reader) {
 
 }  // namespace
 
+std::string verifier_text(const JoinPassword& password) {
+  return to_hex(password.salt) + to_hex(password.hash);
+}
+
 std::optional<Parsed> parse_rights_command(const std::vector<std::string>& words, TimeUs now_us) {
   const std::string& name = words.front();
   CommandReader reader(words, 1, now_us);
@@ -378,6 +419,7 @@ std::optional<Parsed> parse_rights_command(const std::vector<std::string>& words
   if (name == "rights") return undo_rights_command(reader);
   if (name == "invite") return invite_command(reader, now_us);
   if (name == "invites") return alone(ListInvitesCommand{});
+  if (name == "password") return password_command(reader);
   if (name == "refusals") return alone(ListRefusalsCommand{});
   return std::nullopt;
 }

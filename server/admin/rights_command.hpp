@@ -60,6 +60,18 @@ struct ListInvitesCommand {
   friend bool operator==(const ListInvitesCommand&, const ListInvitesCommand&) = default;
 };
 
+struct SetPasswordCommand {
+  JoinPassword password;
+  bool has_verifier = false;  // false: salt and hash are missing; the control program adds them
+  friend bool operator==(const SetPasswordCommand&, const SetPasswordCommand&) = default;
+};
+struct ClearPasswordCommand {
+  friend bool operator==(const ClearPasswordCommand&, const ClearPasswordCommand&) = default;
+};
+struct ShowPasswordCommand {
+  friend bool operator==(const ShowPasswordCommand&, const ShowPasswordCommand&) = default;
+};
+
 struct ListRefusalsCommand {
   friend bool operator==(const ListRefusalsCommand&, const ListRefusalsCommand&) = default;
 };
@@ -141,7 +153,11 @@ using RightsCommand =
                  GrantCommand, RevokeCommand, ListGrantsCommand, RestrictCommand, LiftCommand,
                  ListRestrictionsCommand, KickCommand, ProtectCommand, BoxMembersCommand,
                  ClaimCommand, UnprotectCommand, ListBoxesCommand, WhyCommand, UndoRightsCommand,
-                 CreateInviteCommand, CancelInviteCommand, ListInvitesCommand, ListRefusalsCommand>;
+                 CreateInviteCommand, CancelInviteCommand, ListInvitesCommand, ListRefusalsCommand,
+                 SetPasswordCommand, ClearPasswordCommand, ShowPasswordCommand>;
+
+/// Returns what follows the word `verifier` of `password set`: salt and hash in hexadecimal digits.
+std::string verifier_text(const JoinPassword& password);
 
 /// Parses the words of a line, of which there is at least one. Returns nullopt if the first word is
 /// no command about rights. The error is one line of text for the person who typed the command.

@@ -426,4 +426,29 @@ void RightsCommands::carry_out(const ListRefusalsCommand& /*command*/, const Cal
   });
 }
 
+void RightsCommands::carry_out(const SetPasswordCommand& command, const Call& call) {
+  if (!command.has_verifier) {
+    return refuse(call.reply,
+                  "the password is typed where nobody sees it: runstone-server control --world "
+                  "FOLDER password set");
+  }
+  std::string text = "players without a granted role join with the password and get the role " +
+                     command.password.role;
+  const Decided<Role>* usual = world_.rights().find_role(world_.rights().default_role().value);
+  if (usual != nullptr && usual->value.rights.has(Right::see))
+    text += "; others still join as " + usual->value.name + " (role default nobody keeps them out)";
+  change(call, SetPassword{command.password}, text);
+}
+
+void RightsCommands::carry_out(const ClearPasswordCommand& /*command*/, const Call& call) {
+  change(call, SetPassword{std::nullopt},
+         "the world has no password; players who joined with it keep their role");
+}
+
+void RightsCommands::carry_out(const ShowPasswordCommand& /*command*/, const Call& call) {
+  with_players(call, {}, [this, call](const Players& players, const Keys&) {
+    call.reply({password_line(world_.rights(), *players), true, true});
+  });
+}
+
 }  // namespace runstone

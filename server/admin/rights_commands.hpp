@@ -65,6 +65,9 @@ class RightsCommands {
   void carry_out(const CancelInviteCommand& command, const Call& call);
   void carry_out(const ListInvitesCommand& command, const Call& call);
   void carry_out(const ListRefusalsCommand& command, const Call& call);
+  void carry_out(const SetPasswordCommand& command, const Call& call);
+  void carry_out(const ClearPasswordCommand& command, const Call& call);
+  void carry_out(const ShowPasswordCommand& command, const Call& call);
 
   /// Looks up players on a worker. Calls `go_on` with what is known and with the key of each word,
   /// or refuses the command if a word means nobody or several players.

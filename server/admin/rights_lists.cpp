@@ -75,6 +75,13 @@ std::string invite_list(const RightsState& state, TimeUs now_us, const KnownPlay
   return lines.text("there are no invites in force (invite makes one)");
 }
 
+std::string password_line(const RightsState& state, const KnownPlayers& players) {
+  const Decided<std::optional<JoinPassword>>& password = state.password();
+  if (!password.value) return "the world has no password (password set gives it one)";
+  return "the world has a password; who joins with it gets the role " + password.value->role +
+         "; " + origin_text(password.by, players);
+}
+
 std::string restriction_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players) {
   RightsLines lines;
   for (const Decided<Restrict>* restriction : state.restrictions()) {

@@ -18,6 +18,8 @@ std::string role_list(const RightsState& state, const KnownPlayers& players);
 std::string grant_list(const RightsState& state, const KnownPlayers& players);
 /// Returns one line per invite that can be accepted: number, role, uses, end, and record.
 std::string invite_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players);
+/// Returns one line: whether the world has a password, its role, and record.
+std::string password_line(const RightsState& state, const KnownPlayers& players);
 /// Returns one line per restriction in force: whom it is for, its end, reason, and record.
 std::string restriction_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players);
 /// Returns one line per row: player, what was refused, how often and when last.

@@ -128,6 +128,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
 }
 
 std::uint16_t Server::port() const { return parts_->core->port(); }
+bool Server::is_new_world() const { return parts_->world.is_new; }
 void Server::command(const std::string& line, CommandReply reply) {
   parts_->core->command(line, std::move(reply));
 }

@@ -31,6 +31,8 @@ class Server {
   ~Server();
 
   std::uint16_t port() const;
+  /// Returns true if start() made the world.
+  bool is_new_world() const;
   void log_counters();
   /// Carries out a command as an operator. Replies come from another thread; the last one has
   /// is_done. A server that stops may leave out replies.

@@ -27,6 +27,7 @@
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
 #include "server/app/backup_child.hpp"
+#include "server/app/first_invite.hpp"
 #include "server/app/new_world.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
@@ -141,6 +142,15 @@ void log_stop(const StopReport& report, const ServerConfig& config) {
   if (!report.error.empty()) logger("store").error("{}", report.error);
 }
 
+/// Prints the link for the first administrator, but not into a journal, which others may read.
+void welcome_administrator(Server& server) {
+  if (!is_journal(STDOUT_FILENO)) {
+    std::cout << make_first_invite(server) << std::endl;
+  } else {
+    logger("app").info("this world has no administrator: control invite role administrator");
+  }
+}
+
 int run(const ServerOptions& options) {
   const auto config = read_config(options);
   if (!config) return cannot_start(config.error());
@@ -176,6 +186,7 @@ int run(const ServerOptions& options) {
   auto server = Server::start(*config, options.creation, end, actions, options.accept_losses);
   if (!server) return cannot_start(server.error());
   running = *std::move(server);
+  if (running->is_new_world() && config->operators.empty()) welcome_administrator(*running);
   std::shared_ptr<Console> console;
   if (options.console || ::isatty(STDIN_FILENO) == 1) {
     const auto run_line = [&running](const std::string& line, CommandReply reply) {

@@ -23,6 +23,16 @@ bool AddressLedger::take(AddressBlock from, std::uint64_t price, TimeUs now_us) 
   return range.take(price, now_us) && address.take(price, now_us);
 }
 
+bool AddressLedger::has(AddressBlock from, std::uint64_t price, TimeUs now_us) const {
+  const auto has = [&](const std::map<AddressBlock, TokenBucket>& budgets, AddressBlock of) {
+    const auto found = budgets.find(of);
+    if (found == budgets.end()) return price <= of_address_.burst;
+    return TokenBucket(found->second).wait_us(price, now_us) == 0;
+  };
+  if (!of_address_.is_limited()) return true;
+  return has(addresses_, from) && has(ranges_, address_range_of(from));
+}
+
 void AddressLedger::forget_full(TimeUs now_us) {
   const auto is_full = [now_us](const auto& entry) {
     return TokenBucket(entry.second).is_full(now_us);

@@ -26,6 +26,9 @@ class AddressLedger {
   /// Cost: O(log addresses), amortised.
   bool take(AddressBlock from, std::uint64_t price, TimeUs now_us);
 
+  /// Returns true if take() would take the price. Cost: O(log addresses).
+  bool has(AddressBlock from, std::uint64_t price, TimeUs now_us) const;
+
   /// Returns the number of budgets that are kept.
   std::size_t size() const { return addresses_.size() + ranges_.size(); }
 

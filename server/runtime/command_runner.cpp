@@ -2,6 +2,7 @@
 
 #include <sodium.h>
 
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,6 +20,12 @@ namespace {
 bool has_power(RightSet rights) {
   return rights.has(Right::roll_back) || rights.has(Right::moderate) || rights.has(Right::grant) ||
          rights.has(Right::administer);
+}
+
+/// Returns the text of a command for the log. Somebody may type the password itself by mistake.
+std::string logged_text(const std::string& command) {
+  const std::size_t first = std::min(command.find_first_not_of(" \""), command.size());
+  return command.compare(first, 8, "password") == 0 ? "password ..." : command;
 }
 
 /// Returns the actions with replies that may be called from any thread.
@@ -76,7 +83,7 @@ void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key
     const CommandCaller caller{author, {key, operators_.contains(key)}};
     if (caller.actor.is_operator || has_power(world_.rights().role_of(key).rights))
       logger("app").info("command author={} key={} command=\"{}\"", author, key_fingerprint(key),
-                         text);
+                         logged_text(text));
     const auto reply = [this, session](const CommandAnswer& answer) {
       world_.answer_command(session, answer_lines(answer.text), answer.is_done, answer.is_ok);
     };

@@ -1,5 +1,9 @@
 #include "server/runtime/derived_config.hpp"
 
+#include <asio/ip/address.hpp>
+
+#include "common/os/host_port.hpp"
+#include "protocol/default_port.hpp"
 #include "server/admin/reserved_names.hpp"
 #include "server/world/chat_state.hpp"
 
@@ -14,9 +18,21 @@ constexpr std::size_t kHandshakesMax = 64;
 constexpr std::size_t kKib = 1024;
 constexpr TimeUs kUsPerMs = 1'000, kUsPerSecond = 1'000'000;
 
+/// Returns the address in links. Without a public one, only that of a server for this machine is
+/// known.
+std::string link_address(const ServerConfig& config, std::uint16_t port) {
+  if (!config.public_address.empty()) return config.public_address;
+  const auto listen = parse_listen_address(config.listen, kDefaultPort);
+  if (!listen) return "HOST";
+  asio::error_code error;
+  const auto address = asio::ip::make_address(listen->host, error);
+  const bool is_local = listen->host == "localhost" || (!error && address.is_loopback());
+  return to_string(HostPort{is_local ? listen->host : "HOST", port});
+}
+
 }  // namespace
 
-WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
+WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, std::uint16_t port) {
   WorldConfig world;
   world.world_id = meta.world_id;
   world.chunk_edge = meta.chunk_edge;
@@ -32,7 +48,7 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
   world.names_per_address = config.names_per_address;
   world.reserved_names = folded_reserved_names(config.reserved_names);
   world.operators = config.operators;
-  world.public_address = config.public_address;
+  world.link_address = link_address(config, port);
   world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
   world.view_interval_us = static_cast<TimeUs>(config.view_interval_ms) * kUsPerMs;
   world.loads_in_flight_max = kLoadsPerWorker * config.worker_threads;

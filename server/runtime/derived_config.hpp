@@ -8,7 +8,8 @@
 
 namespace runstone {
 
-WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta);
+/// `port`: the one that the server listens at.
+WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, std::uint16_t port);
 NetLimits net_limits_of(const ServerConfig& config);
 
 }  // namespace runstone

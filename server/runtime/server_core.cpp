@@ -60,7 +60,7 @@ Result<void, std::string> ServerCore::recover() {
 
   auto materials = store_.materials();
   if (!materials) return failure(materials.error());
-  WorldConfig world_config = world_config_of(config_, store_.meta());
+  WorldConfig world_config = world_config_of(config_, store_.meta(), port());
   world_config.materials = *std::move(materials);
   world_ = std::make_unique<WorldServer>(
       std::move(world_config), *start, environment_,
@@ -152,7 +152,7 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
     ConfigReload reloaded = reload_config(running_, *read);
     running_ = std::move(reloaded.config);
     start_logging(running_.log_level, running_.log_format);
-    world_->reconfigure(world_config_of(running_, store_.meta()));
+    world_->reconfigure(world_config_of(running_, store_.meta(), port()));
     commands_->set_operators(running_.operators);
     logger("app").info("reload: {}", reloaded.text());
     reply({reloaded.text(), true, true});

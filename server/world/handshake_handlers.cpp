@@ -91,22 +91,52 @@ bool close_if_banned(WorldState& world, SessionId session) {
   return true;
 }
 
-/// Closes a session whose player may not see the world. A ticket is used only if that helps: a
-/// player who has a role keeps it.
-bool close_if_not_admitted(WorldState& world, SessionId session, const std::string& ticket,
+/// Gives a player without a granted role the role of an invite or, if there is none, of the password.
+/// Returns why nothing was granted, or nullopt. The session may be closed on return.
+std::optional<std::string> accept_credentials(WorldState& world, SessionId session,
+                                              const ClientAuth& auth, const Clocks& now) {
+  if (world.rights.grants().contains(world.find(session)->key)) return std::nullopt;
+  std::optional<std::string> no_invite;
+  if (!auth.ticket.empty()) no_invite = accept_invite(world, session, auth.ticket, now);
+  const bool is_decided = !auth.ticket.empty() && !no_invite;
+  if (is_decided || !auth.password_key) return no_invite;
+  const auto no_password = accept_password(world, session, *auth.password_key, now);
+  if (!no_password || !no_invite) return no_password;
+  if (no_invite->ends_with('.')) no_invite->pop_back();
+  return *no_invite + "; " + *no_password;
+}
+
+/// Closes a session whose player may not see the world. An invite or a password is used only if that
+/// helps: a player who has a role keeps it.
+bool close_if_not_admitted(WorldState& world, SessionId session, const ClientAuth& auth,
                            const Clocks& now) {
   const PublicKey key = world.find(session)->key;
   const AddressBlock address = world.find(session)->address;
-  std::optional<std::string> no_invite;
-  if (!ticket.empty() && !world.rights.grants().contains(key)) {
-    no_invite = accept_invite(world, session, ticket, now);
-    if (world.find(session) == nullptr) return true;  // the new role closed it
-  }
+  const auto no_role = accept_credentials(world, session, auth, now);
+  if (world.find(session) == nullptr) return true;  // the new role closed it
   auto why = join_refusal(world, key, address);
-  if (!why) return false;
-  if (no_invite) *why += " (" + *no_invite + ")";
+  if (!why) {
+    if (no_role) world.refusals.add(key, "role: " + *no_role, now.utc_us);
+    return false;
+  }
+  if (no_role) *why += " (" + *no_role + ")";
   world.refusals.add(key, "join: " + *why, now.utc_us);
   close_session(world, session, GoodbyeReason::not_admitted, *why);
+  return true;
+}
+
+/// Closes a session that has proved its key already.
+bool close_if_authenticated(WorldState& world, SessionId session) {
+  if (!world.find(session)->is_authenticated) return false;
+  close_session(world, session, GoodbyeReason::unexpected_message, "client auth came twice");
+  return true;
+}
+
+bool close_if_forged(WorldState& world, SessionId session, const Signature& signature) {
+  const WorldSession& mine = *world.find(session);
+  if (verify(mine.key, mine.auth_transcript, signature)) return false;
+  close_session(world, session, GoodbyeReason::not_authenticated,
+                "the signature does not match the key");
   return true;
 }
 
@@ -165,6 +195,9 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   welcome.encoding = choose_encoding(world.config, hello.encodings);
   welcome.features = mine.features;
   mine.materials_known = welcome.materials.size();
+  // A client sends what it makes of the password on encrypted connections only.
+  const std::optional<JoinPassword>& password = world.rights.password().value;
+  if (password && mine.binding) welcome.password_salt = password->salt;
   world.random(welcome.challenge);
   welcome.signature =
       sign(world.config.server_keys, server_transcript(hello, welcome, mine.binding));
@@ -178,25 +211,54 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
 
 void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth,
                     const Clocks& now) {
-  WorldSession& mine = *world.find(session);
-  if (mine.is_authenticated) {
-    close_session(world, session, GoodbyeReason::unexpected_message, "client auth came twice");
+  if (close_if_authenticated(world, session) || close_if_forged(world, session, auth.signature))
     return;
-  }
-  if (!verify(mine.key, mine.auth_transcript, auth.signature)) {
-    close_session(world, session, GoodbyeReason::not_authenticated,
-                  "the signature does not match the key");
-    return;
-  }
   // The name may have been claimed since hello. A session without a seat claims nothing.
   if (close_if_no_seat(world, session) || close_if_no_name(world, session) ||
-      close_if_not_admitted(world, session, auth.ticket, now))
+      close_if_not_admitted(world, session, auth, now))
     return;
+  WorldSession& mine = *world.find(session);
   mine.auth_transcript = {};
   mine.is_authenticated = true;
   world.environment.opened(session);  // connections without a key no longer replace it
   claim_name(world, session, now.steady_us);
   if (!waits_for_claim(world, mine)) open_session(world, session, now);
+}
+
+void on_key_request(WorldState& world, SessionId session, const KeyRequest& request,
+                    const Clocks& now) {
+  if (close_if_authenticated(world, session)) return;
+  const AddressBlock address = world.find(session)->address;
+  if (!world.guess_ledger.has(address, kGuessPrice, now.steady_us))
+    return close_session(world, session, GoodbyeReason::not_admitted, kTooManyGuesses);
+  auto sealed = world.key_deposits.take(request.slot, now.steady_us);
+  if (!sealed) {
+    world.guess_ledger.take(address, kGuessPrice, now.steady_us);
+    return close_session(world, session, GoodbyeReason::not_admitted,
+                         "no key is here for this code: it was mistyped, used before, or too old");
+  }
+  if (send_or_close(world, session, SealedKey{*std::move(sealed)}))
+    close_session(world, session, GoodbyeReason::closing, "the key was sent");
+}
+
+void on_key_deposit(WorldState& world, SessionId session, const KeyDeposit& deposit,
+                    const Clocks& now) {
+  if (close_if_authenticated(world, session) ||
+      close_if_forged(world, session, deposit.signature) ||
+      close_if_not_admitted(world, session, {}, now))
+    return;
+  const WorldSession& mine = *world.find(session);
+  std::optional<std::string> why;
+  if (!world.deposit_ledger.take(mine.address, kGuessPrice, now.steady_us)) {
+    why = "too many keys were left from your network: wait a minute";
+  } else {
+    why = world.key_deposits.put(mine.key, mine.address, deposit, now.steady_us);
+  }
+  if (why) world.refusals.add(mine.key, "key for another device: " + *why, now.utc_us);
+  constexpr auto kSeconds = static_cast<std::uint32_t>(kDepositUs / 1'000'000);
+  const KeyDeposited answer{why ? 0 : kSeconds, why.value_or("")};
+  if (send_or_close(world, session, answer))
+    close_session(world, session, GoodbyeReason::closing, "that is all");
 }
 
 void open_authenticated(WorldState& world, const Clocks& now) {

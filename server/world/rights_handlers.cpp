@@ -6,6 +6,7 @@
 #include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "protocol/codec/invite_token.hpp"
+#include "protocol/codec/password_key.hpp"
 #include "protocol/rules/refusal_text.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/protected_ground.hpp"
@@ -66,6 +67,18 @@ bool has_power(const WorldState& world, const RightsActor& actor) {
 void commit_all_edits(WorldState& world, const Clocks& now) {
   while (commit_and_broadcast(world, LargeEdits::all, now)) {
   }
+}
+
+/// Makes the change that gives the player of the session a role. Returns why it was refused, as a
+/// sentence, or nullopt.
+std::optional<std::string> take_role(WorldState& world, const WorldSession& mine,
+                                     const RightsChange& change, const Clocks& now) {
+  const PublicKey key = mine.key;
+  const AuthorId author = world.players.enter(key, mine.name);
+  const auto accepted = change_rights(world, change, actor_of(world, key), author, now);
+  if (accepted) return std::nullopt;
+  world.gone_authors.push_back(author);
+  return accepted.error();
 }
 
 /// Returns the player whom a change is about, or null.
@@ -185,13 +198,20 @@ std::optional<std::string> accept_invite(WorldState& world, SessionId session,
   const WorldConfig& config = world.config;
   const auto invite = invite_of(ticket, config.world_id, config.server_keys.public_key);
   if (!invite) return "the invite is not one of this world";
-  const PublicKey key = world.find(session)->key;
-  const AuthorId author = world.players.enter(key, world.find(session)->name);
-  const auto accepted =
-      change_rights(world, AcceptInvite{*invite, key}, actor_of(world, key), author, now);
-  if (accepted) return std::nullopt;
-  world.gone_authors.push_back(author);
-  return accepted.error();
+  const WorldSession& mine = *world.find(session);
+  return take_role(world, mine, AcceptInvite{*invite, mine.key}, now);
+}
+
+std::optional<std::string> accept_password(WorldState& world, SessionId session,
+                                           const PasswordKey& key, const Clocks& now) {
+  const WorldSession& mine = *world.find(session);
+  const std::optional<JoinPassword>& password = world.rights.password().value;
+  if (!password) return "the world has no password";
+  if (!mine.binding) return "a password needs an encrypted connection";
+  if (!world.guess_ledger.has(mine.address, kGuessPrice, now.steady_us)) return kTooManyGuesses;
+  if (is_key_of(*password, key)) return take_role(world, mine, AcceptPassword{mine.key}, now);
+  world.guess_ledger.take(mine.address, kGuessPrice, now.steady_us);
+  return "the password is wrong";
 }
 
 void apply_rights(WorldState& world, const std::vector<EditRecord>& records) {

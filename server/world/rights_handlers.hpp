@@ -53,6 +53,10 @@ Result<Sequence, std::string> change_rights(WorldState& world, const RightsChang
 /// may not see the world.
 std::optional<std::string> accept_invite(WorldState& world, SessionId session,
                                          const std::string& ticket, const Clocks& now);
+/// Does the same with the key of the world's password. A wrong one is charged to the player's
+/// address.
+std::optional<std::string> accept_password(WorldState& world, SessionId session,
+                                           const PasswordKey& key, const Clocks& now);
 /// Takes over the changes of rights among these records, which were ordered just now, closes the
 /// sessions that may not stay, and marks the others for what changes for them.
 void apply_rights(WorldState& world, const std::vector<EditRecord>& records);

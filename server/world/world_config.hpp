@@ -35,7 +35,7 @@ struct WorldConfig {
   MaterialTable materials;  // in force; it grows when materials are added
   KeyPair server_keys;
   std::uint64_t features = kFeaturesKnown;  // optional parts of the protocol
-  std::string public_address;               // HOST or HOST:PORT for links; empty: not known
+  std::string link_address = "HOST";        // HOST or HOST:PORT in links for players
   // Limits of sessions.
   std::size_t sessions_max = 256;             // beyond it: server_full
   std::size_t sessions_per_key = 0;           // likewise; 0: no limit

@@ -112,7 +112,7 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   mine.reach_max = config.reach_max;
   mine.speed_max = config.speed_max;
   mine.operators = config.operators;
-  mine.public_address = config.public_address;
+  mine.link_address = config.link_address;
   mine.message_of_the_day = config.message_of_the_day;
   rights_changed(*state_, {});
 }
@@ -144,6 +144,10 @@ void WorldServer::received(SessionId session, Message&& message, const Clocks& n
   if (const auto* hello = std::get_if<Hello>(&message)) return on_hello(world, session, *hello);
   if (const auto* auth = std::get_if<ClientAuth>(&message))
     return on_client_auth(world, session, *auth, now);
+  if (const auto* request = std::get_if<KeyRequest>(&message))
+    return on_key_request(world, session, *request, now);
+  if (const auto* deposit = std::get_if<KeyDeposit>(&message))
+    return on_key_deposit(world, session, *deposit, now);
   on_open_message(world, session, message, now);
 }
 
@@ -244,8 +248,7 @@ InviteId WorldServer::new_invite_id() {
 std::string WorldServer::invite_link(InviteId invite) const {
   const WorldConfig& config = state_->config;
   const std::string token = invite_token(invite, config.world_id, config.server_keys);
-  const std::string address = config.public_address.empty() ? "HOST" : config.public_address;
-  return text_of(ServerLink{address, token});
+  return text_of(ServerLink{config.link_address, token});
 }
 
 std::size_t WorldServer::kick(const RestrictionSubject& who, const std::string& reason) {

@@ -129,8 +129,7 @@ class WorldServer {
   std::size_t say(const std::string& text, const PublicKey& by, const Clocks& now);
   /// Returns a random number for a new invite.
   InviteId new_invite_id();
-  /// Returns the link with which players accept an invite. It has the server's public address, or
-  /// HOST in its place.
+  /// Returns the link with which players accept an invite.
   std::string invite_link(InviteId invite) const;
   /// Closes the sessions of a key, or of a range of addresses. Returns their number.
   std::size_t kick(const RestrictionSubject& who, const std::string& reason);

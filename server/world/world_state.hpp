@@ -14,6 +14,7 @@
 #include "server/world/authority.hpp"
 #include "server/world/chat_state.hpp"
 #include "server/world/checkpointer.hpp"
+#include "server/world/key_deposits.hpp"
 #include "server/world/large_edit_pace.hpp"
 #include "server/world/load_queue.hpp"
 #include "server/world/load_retries.hpp"
@@ -31,6 +32,13 @@ namespace runstone {
 inline constexpr const char* kDiskIsFull = "the world's disk is full";
 /// A claim of a name costs its address so much, of names_per_address units a second: an hour's worth.
 inline constexpr std::uint64_t kClaimPrice = 3'600;
+/// A wrong password or device code costs its address so much of kGuessBudget, and so does a key that
+/// is left for another device: ten at once, then one a minute. People mistype less often, and whoever
+/// guesses gets nowhere. A setting would only serve to weaken it.
+inline constexpr std::uint64_t kGuessPrice = 60;
+inline constexpr Budget kGuessBudget{1, 10 * kGuessPrice};
+inline constexpr const char* kTooManyGuesses =
+    "too many wrong passwords or codes came from your network: wait a minute";
 inline constexpr const char* kMemoryIsFull = "the server's memory is full (memory_mib)";
 
 struct WorldState {
@@ -55,6 +63,8 @@ struct WorldState {
   BudgetLedger edit_ledger;
   BudgetLedger load_ledger;  // a unit is a chunk that is generated or read for a view
   AddressLedger claim_ledger;
+  AddressLedger guess_ledger{kGuessBudget}, deposit_ledger{kGuessBudget};
+  KeyDeposits key_deposits;
   RecentRefusals refusals;
   ChatState chat;
   LargeEditPace large_edits;

@@ -1,11 +1,13 @@
 // The target reads any bytes as the texts that players and operators give: links, invite tokens,
-// addresses, lists of keys, commands and lines of chat. What is understood is written as text that means the same,
+// device codes, addresses, lists of keys, commands and lines of chat. What is understood is written as
+// text that means the same,
 // and every message about a mistake is printable.
 #include <cstdint>
 #include <string_view>
 
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
+#include "protocol/codec/device_code.hpp"
 #include "protocol/codec/invite_token.hpp"
 #include "protocol/codec/server_link.hpp"
 #include "protocol/limits.hpp"
@@ -57,6 +59,13 @@ void check_operators(std::string_view text) {
   RUNSTONE_ASSERT(operators || is_printable_utf8(operators.error()));
 }
 
+void check_device_code(std::string_view text) {
+  const auto code = DeviceCode::parse(text);
+  if (!code) return;
+  const auto again = DeviceCode::parse(code->text());
+  RUNSTONE_ASSERT(again && again->text() == code->text());
+}
+
 void check_command(std::string_view text) {
   const auto command = parse_command(text, kNowUs);
   RUNSTONE_ASSERT(command || (!command.error().empty() && is_printable_utf8(command.error())));
@@ -82,6 +91,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   if (data[0] % 6 == 1) check_token(text);  // a ticket of the wire may have any bytes
   check_chat_line(text);                    // a terminal may have any bytes
+  if (data[0] % 6 == 1) check_device_code(text);
   // The wire, the terminal and `control` accept only such texts.
   if (!is_printable_utf8(text)) return 0;
   switch (data[0] % 6) {

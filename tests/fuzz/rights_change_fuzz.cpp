@@ -22,6 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   RUNSTONE_ASSERT(inverse.has_value() && validate(*inverse).has_value());
   state.apply(*inverse, {2, 0, 0});
   RUNSTONE_ASSERT(state.boxes().empty() && state.grants().empty() && state.restrictions().empty());
+  RUNSTONE_ASSERT(state.invites().empty() && !state.password().value);
   RUNSTONE_ASSERT(state.roles().size() == built_in_roles().size());
   return 0;
 }

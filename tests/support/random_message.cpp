@@ -491,8 +491,11 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return KeyRequest{any_slot(rng)};
     case kKindOf<SealedKey>:
       return SealedKey{any_sealed(rng)};
-    case kKindOf<KeyDeposit>:
-      return KeyDeposit{any_slot(rng), any_sealed(rng)};
+    case kKindOf<KeyDeposit>: {
+      KeyDeposit m{any_slot(rng), any_sealed(rng)};
+      draw(rng, m.signature);
+      return m;
+    }
     case kKindOf<KeyDeposited>:
       return KeyDeposited{rng.below(1000), any_text(rng, 0, kTextBytesMax)};
     default:

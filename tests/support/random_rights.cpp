@@ -45,6 +45,14 @@ Role any_role(SplitMix64& rng) {
           any_number(rng), static_cast<std::uint32_t>(any_number(rng)), any_number(rng)};
 }
 
+std::optional<JoinPassword> any_password(SplitMix64& rng, const std::string& role) {
+  if (rng.below(4) == 0) return std::nullopt;
+  JoinPassword password{role, {}, {}};
+  for (auto& byte : password.salt) byte = static_cast<std::uint8_t>(rng.next());
+  for (auto& byte : password.hash) byte = static_cast<std::uint8_t>(rng.next());
+  return password;
+}
+
 ProtectedBox any_protected_box(SplitMix64& rng) {
   ProtectedBox box;
   box.name = any_rights_name(rng);
@@ -93,9 +101,13 @@ VoxelBox random_box_in(SplitMix64& rng, const VoxelBox& world, std::int32_t side
 
 RightsChange random_rights_change(SplitMix64& rng) {
   const RestrictionKind kind = any_kind(rng);
-  switch (rng.below(11)) {
+  switch (rng.below(13)) {
     case 0:
       return DefineRole{any_role(rng)};
+    case 11:
+      return SetPassword{any_password(rng, any_rights_name(rng))};
+    case 12:
+      return AcceptPassword{any_key(rng)};
     case 8:
       return CreateInvite{{rng.next(), any_rights_name(rng), 1 + rng.below(kInviteUsesMax),
                            std::max<TimeUs>(1, static_cast<TimeUs>(any_number(rng) >> 1))}};
@@ -142,7 +154,12 @@ ProtectedBox random_close_box(SplitMix64& rng) {
 
 RightsChange random_close_change(SplitMix64& rng) {
   const RestrictionKind kind = any_kind(rng);
-  switch (rng.below(10)) {
+  switch (rng.below(13)) {
+    case 10:
+      return SetPassword{any_password(rng, random_close_role(rng))};
+    case 11:
+    case 12:
+      return AcceptPassword{close_key(rng)};
     case 0: {
       Role role = any_role(rng);
       role.name = random_close_role(rng);

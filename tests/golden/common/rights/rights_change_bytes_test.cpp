@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "common/rights/rights_change.hpp"
@@ -80,6 +81,17 @@ TEST_CASE("the bytes of invites are pinned", "[rights][golden]") {
       AcceptInvite{1, counting_key(0x10)},
       joined({{0x0a, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}, key_bytes(0x10)}));
   check_change_bytes(CancelInvite{1}, {0x0b, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00});
+}
+
+TEST_CASE("the bytes of passwords are pinned", "[rights][golden]") {
+  JoinPassword password{"mason", {}, {}};
+  std::copy_n(counting_key(0x50).begin(), kPasswordSaltBytes, password.salt.begin());
+  password.hash = counting_key(0x60);
+  const Bytes salt(password.salt.begin(), password.salt.end());
+  check_change_bytes(SetPassword{password},
+                     joined({{0x0c, 5, 'm', 'a', 's', 'o', 'n'}, salt, key_bytes(0x60)}));
+  check_change_bytes(SetPassword{}, {0x0c, 0});
+  check_change_bytes(AcceptPassword{counting_key(0x10)}, joined({{0x0d}, key_bytes(0x10)}));
 }
 
 TEST_CASE("the bytes of protected boxes are pinned", "[rights][golden]") {

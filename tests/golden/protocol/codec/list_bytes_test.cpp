@@ -30,9 +30,9 @@ TEST_CASE("the protocol page has no block of bytes that is not tested", "[protoc
   // Tested in this folder. A new block on the page needs a test and its name here.
   CHECK(page_example_names() ==
         std::vector<std::string>{"frame-header", "view-frame", "transcript", "signatures",
-                                 "chunk-keys", "cached-chunks", "chunks-not-modified",
-                                 "digest-check", "uniform-chunks", "chunks", "commit", "raw-chunk",
-                                 "packed-chunk", "coded-chunk"});
+                                 "password", "device-code", "chunk-keys", "cached-chunks",
+                                 "chunks-not-modified", "digest-check", "uniform-chunks", "chunks",
+                                 "commit", "raw-chunk", "packed-chunk", "coded-chunk"});
 }
 
 TEST_CASE("a list of chunks has the bytes of the protocol page", "[protocol][golden]") {

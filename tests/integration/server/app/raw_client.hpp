@@ -26,6 +26,7 @@
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/password_key.hpp"
 
 namespace runstone::test {
 
@@ -168,9 +169,20 @@ class RawClient {
     chunk_edge_ = welcome.chunk_edge;
     if (!verify(welcome.server_key, server_transcript(h, welcome, binding()), welcome.signature))
       return std::nullopt;
-    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome, signed_binding)),
-                    ticket});
-    return next_of<SessionAccepted>();
+    ClientAuth auth{sign(key_pair_of(seed_), client_transcript(h, welcome, signed_binding)),
+                    ticket};
+    if (!password.empty() && welcome.password_salt) {
+      const auto key = password_key(password, *welcome.password_salt);
+      RUNSTONE_ASSERT(key.has_value());
+      auth.password_key = *key;
+    }
+    send(auth);
+    std::vector<Message> seen;
+    auto accepted = next_of<SessionAccepted>(&seen);
+    for (const Message& message : seen) {
+      if (const auto* goodbye = std::get_if<Goodbye>(&message)) refusal = goodbye->text;
+    }
+    return accepted;
   }
 
   Welcome welcome;
@@ -178,6 +190,8 @@ class RawClient {
   bool cuts_chunks = true;     // tests get each chunk of a message as a snapshot of its own
   std::string name;            // of the player; empty: "player" and the number
   std::string ticket;          // an invite token; empty: none
+  std::string password;        // sent to a world that has one; empty: none
+  std::string refusal;         // text of the goodbye in place of SessionAccepted; empty: none
 
  private:
   static constexpr time_t kSendSeconds = 60;

@@ -16,9 +16,10 @@ struct Answer {
 };
 
 /// Sends a command through the control socket of a world's server.
-inline Answer control(const std::string& world, const std::vector<std::string>& words) {
+inline Answer control(const std::string& world, const std::vector<std::string>& words,
+                      const ReadPassword& read_password = read_new_password) {
   std::ostringstream out;
-  const auto done = control_server({world, words}, out);
+  const auto done = control_server({world, words}, out, read_password);
   INFO((done ? "" : done.error()));
   REQUIRE(done.has_value());
   return {*done, out.str()};

@@ -1,5 +1,6 @@
 #include "common/rights/rights_state.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "common/rights/change_rules.hpp"
@@ -28,12 +29,18 @@ class RightsModel {
     return built_in(name, {});
   }
   std::string granted(const PublicKey& key) const {
-    for (auto r = records_.rbegin(); r != records_.rend(); ++r) {
-      const auto* grant = std::get_if<GrantRole>(&r->change);
-      if (grant != nullptr && grant->key == key) return role(grant->role) ? grant->role : "";
-    }
-    return "";
+    const std::string name = granted_by(key, records_.size());
+    return role(name) ? name : "";
   }
+  /// Returns the password that the first `count` records say.
+  std::optional<JoinPassword> password_by(std::size_t count) const {
+    while (count-- > 0) {
+      const auto* change = std::get_if<SetPassword>(&records_[count].change);
+      if (change != nullptr) return change->password;
+    }
+    return std::nullopt;
+  }
+  std::optional<JoinPassword> password() const { return password_by(records_.size()); }
   std::string default_role() const {
     for (auto r = records_.rbegin(); r != records_.rend(); ++r) {
       if (const auto* change = std::get_if<SetDefaultRole>(&r->change)) return change->role;
@@ -66,6 +73,19 @@ class RightsModel {
   }
 
  private:
+  /// Returns the name that the first `count` records grant, whether there is such a role or not.
+  std::string granted_by(const PublicKey& key, std::size_t count) const {
+    while (count-- > 0) {
+      const auto* grant = std::get_if<GrantRole>(&records_[count].change);
+      if (grant != nullptr && grant->key == key) return grant->role;
+      const auto* accept = std::get_if<AcceptPassword>(&records_[count].change);
+      const auto password = password_by(count);
+      if (accept == nullptr || accept->key != key || !password) continue;
+      const std::string before = granted_by(key, count);
+      return before.empty() ? password->role : before;
+    }
+    return "";
+  }
   static std::optional<Decided<Role>> built_in(const std::string& name, const ChangeOrigin& by) {
     for (const Role& role : built_in_roles()) {
       if (role.name == name) return Decided<Role>{role, by};
@@ -179,6 +199,7 @@ void check_inverse(const RightsModel& model, const RightsModel& before) {
     if (is != nullptr) REQUIRE(is->change == was->change);
   }
   REQUIRE(after.default_role() == before.default_role());
+  REQUIRE(after.password() == before.password());
   const auto boxes_before = before.boxes(), boxes_after = after.boxes();
   REQUIRE(boxes_after.size() == boxes_before.size());
   for (const auto& [name, box] : boxes_before) REQUIRE(boxes_after.at(name).value == box.value);
@@ -199,6 +220,7 @@ TEST_CASE("a state says what its records say, read from the newest to the oldest
       const RightsModel before = model;
       state.apply(change, origin);
       model.apply(change, origin);
+      REQUIRE(state.password().value == model.password());
       check_players(state, model);
       check_addresses(state, model, AddressBlock{rng.below(3) * 0x0001'0001'0001'0001ULL});
       check_boxes(state, model, random_box_in(rng, kCloseWorld, 6));
@@ -223,7 +245,14 @@ TEST_CASE("only the newest record of a cell has an inverse", "[rights][property]
       bool decides = false;
       if (const auto* grant = std::get_if<GrantRole>(&record.change)) {
         const auto found = with.grants().find(grant->key);
-        if (grant->role.empty()) continue;
+        const auto accepts_later = [&](const RightsRecord& later) {
+          const auto* accept = std::get_if<AcceptPassword>(&later.change);
+          return accept != nullptr && accept->key == grant->key &&
+                 later.origin.seq > record.origin.seq;
+        };
+        // No server writes a password that is accepted by somebody who has a role.
+        const bool is_unreal = std::any_of(records.begin(), records.end(), accepts_later);
+        if (grant->role.empty() || is_unreal) continue;
         decides = found != with.grants().end() && found->second.by == record.origin;
       } else if (const auto* protect = std::get_if<Protect>(&record.change)) {
         const auto* box = with.find_box(protect->box.name);

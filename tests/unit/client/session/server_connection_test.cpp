@@ -384,3 +384,58 @@ TEST_CASE_METHOD(ConnectionFixture,
   greet();
   CHECK(receive(welcome()) == Dispatch::another_world);
 }
+
+TEST_CASE_METHOD(ConnectionFixture, "a password goes to an encrypted server that asks for one",
+                 "[session]") {
+  connection.set_password(std::make_shared<PasswordKeys>("correct horse"));
+  const ChannelBinding binding{4};
+  const auto auth_for = [&](const std::optional<PasswordSalt>& salt) {
+    connection.connected({5}, binding, now);
+    hello = take<Hello>().at(0);
+    Welcome welcome = this->welcome();
+    welcome.signature = sign(server, server_transcript(hello, welcome, binding));
+    welcome.password_salt = salt;
+    receive(welcome);
+    return take<ClientAuth>().at(0);
+  };
+  CHECK_FALSE(auth_for(std::nullopt).password_key.has_value());
+  const PasswordSalt first{1}, second{2};
+  const PasswordKey key = password_key("correct horse", first).value();
+  CHECK(auth_for(first).password_key == key);
+  CHECK(auth_for(first).password_key == key);
+  CHECK(auth_for(second).password_key == password_key("correct horse", second).value());
+}
+
+TEST_CASE_METHOD(ConnectionFixture, "a password is never sent without encryption", "[session]") {
+  connection.set_password(std::make_shared<PasswordKeys>("correct horse"));
+  greet();
+  Welcome forged = welcome();
+  forged.password_salt = PasswordSalt{1};
+  receive(forged);
+  CHECK(take<ClientAuth>().empty());
+  REQUIRE(connection.end().has_value());
+  CHECK(connection.end()->text == "a password is sent on encrypted connections only");
+  CHECK(connection.end()->final);
+}
+
+TEST_CASE_METHOD(ConnectionFixture, "a refused player is asked for the password of the world",
+                 "[session]") {
+  const auto refused_by = [&](GoodbyeReason reason, bool has_password) {
+    greet();
+    Welcome welcome = this->welcome();
+    if (has_password) welcome.password_salt = PasswordSalt{1};
+    receive(welcome);
+    receive(Goodbye{reason, "no"});
+    return connection.lacks_password();
+  };
+  CHECK_FALSE(refused_by(GoodbyeReason::not_admitted, false));
+  CHECK_FALSE(refused_by(GoodbyeReason::server_full, true));
+  CHECK(refused_by(GoodbyeReason::not_admitted, true));
+  greet();
+  receive(Goodbye{GoodbyeReason::not_admitted, "your address is banned"});  // before welcome
+  CHECK_FALSE(connection.lacks_password());
+  REQUIRE(refused_by(GoodbyeReason::not_admitted, true));
+  connection.set_password(std::make_shared<PasswordKeys>("correct horse"));
+  CHECK_FALSE(connection.lacks_password());
+  CHECK_FALSE(connection.end().has_value());
+}

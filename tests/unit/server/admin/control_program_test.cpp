@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "protocol/codec/password_key.hpp"
 #include "server/admin/command.hpp"
 
 using namespace runstone;
@@ -30,4 +31,40 @@ TEST_CASE("a name with blanks is one author however the shell is quoted", "[admi
     REQUIRE(filter.authors.size() == 1);
     CHECK(filter.authors[0].name == "the mole");
   }
+}
+
+TEST_CASE("control adds to `password set` what the world keeps, and not the password",
+          "[admin][control]") {
+  const auto type = [] { return Result<std::string, std::string>("correct horse"); };
+  const auto line = with_password("password set role visitor", type);
+  REQUIRE(line.has_value());
+  CHECK(line->find("correct") == std::string::npos);
+  const auto command = parse_command(*line, 0);
+  REQUIRE(command.has_value());
+  const auto& set = std::get<SetPasswordCommand>(std::get<RightsCommand>(*command));
+  CHECK(set.has_verifier);
+  CHECK(set.password.role == "visitor");
+  CHECK(is_key_of(set.password, password_key("correct horse", set.password.salt).value()));
+  CHECK(*with_password("password set role visitor", type) != *line);  // the salt is drawn anew
+}
+
+TEST_CASE("control reads no password for other commands and for mistakes", "[admin][control]") {
+  const auto type = []() -> Result<std::string, std::string> {
+    FAIL("nothing is to be read");
+    return std::string();
+  };
+  for (const char* line : {"status", "password", "password clear", "password set hunter2",
+                           "password set role", "say password set", ""})
+    CHECK(with_password(line, type).value() == line);
+  const auto done = "password set verifier " + std::string(96, 'a');
+  CHECK(with_password(done, type).value() == done);
+}
+
+TEST_CASE("a short password and a missing one are refused before anything is sent",
+          "[admin][control]") {
+  const auto short_one = [] { return Result<std::string, std::string>("1234567"); };
+  CHECK(with_password("password set", short_one).error() ==
+        "password set: the password has fewer than 8 characters: take some words");
+  const auto none = []() -> Result<std::string, std::string> { return failure("no line"); };
+  CHECK(with_password("password set", none).error() == "no line");
 }

@@ -32,6 +32,10 @@ TEST_CASE("each change of rights is one readable line", "[admin][rights]") {
   CHECK(rights_change_text(Protect{{"strip", columns(1, 2, 4, 5), 0, {}, {}, {}}}) ==
         "protected strip columns 1 2 to 3 4");
   CHECK(rights_change_text(Unprotect{"town"}) == "no longer protected: town");
+  CHECK(rights_change_text(SetPassword{{{"mason", {1}, {2}}}}) ==
+        "set a password for the role mason");
+  CHECK(rights_change_text(SetPassword{}) == "removed the password");
+  CHECK(rights_change_text(AcceptPassword{key}) == ana + " joined with the password");
 }
 
 }  // namespace runstone::rights_change_text_test

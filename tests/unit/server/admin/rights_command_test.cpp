@@ -126,6 +126,27 @@ TEST_CASE("commands about invites are parsed", "[admin][rights]") {
   CHECK(mistake("invites 3").find("nothing comes after invites") != std::string::npos);
 }
 
+TEST_CASE("commands about the password are parsed", "[admin][rights]") {
+  parsed<ShowPasswordCommand>("password");
+  parsed<ClearPasswordCommand>("password clear");
+  CHECK(parsed<SetPasswordCommand>("password set") ==
+        SetPasswordCommand{{"builder", {}, {}}, false});
+  JoinPassword password{"visitor", {1, 2}, {3, 4}};
+  password.hash.back() = 0xff;
+  CHECK(parsed<SetPasswordCommand>("password set role visitor verifier " +
+                                   verifier_text(password)) == SetPasswordCommand{password, true});
+  CHECK(mistake("password get") == "password: set or clear comes after it");
+  CHECK(mistake("password clear it") == "password clear \"it\": nothing comes after it");
+  // The word may be the password itself.
+  CHECK(mistake("password set hunter2").find("hunter2") == std::string::npos);
+  CHECK(mistake("password set verifier") ==
+        "password set verifier: 96 hexadecimal digits is missing");
+  for (const std::string& wrong :
+       {std::string(94, 'a'), std::string(98, 'a'), std::string(96, 'g'), std::string("ab")})
+    CHECK(mistake("password set verifier " + wrong) ==
+          "password set verifier: 96 hexadecimal digits");
+}
+
 TEST_CASE("an error in a command about roles names the wrong word", "[admin][rights]") {
   CHECK(mistake("roles all") == "roles \"all\": nothing comes after roles");
   CHECK(mistake("role") == "role: set, remove or default is missing");

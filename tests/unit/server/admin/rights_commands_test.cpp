@@ -95,6 +95,29 @@ TEST_CASE("the console makes roles, and players need the right", "[admin][rights
   CHECK(has(bench.done("help"), "reload "));
 }
 
+TEST_CASE("control sets a password that the console and players cannot type", "[admin][rights]") {
+  RightsBench bench;
+  CHECK(has(bench.console("password set").text, "runstone-server control"));
+  CHECK(bench.head() == 0);
+  const JoinPassword password{"visitor", {1}, {2}};
+  const std::string line = "password set role visitor verifier " + verifier_text(password);
+  bench.done("grant player1 administrator");
+  CHECK_FALSE(bench.player(1, line).is_ok);
+  CHECK(bench.done(line) ==
+        "players without a granted role join with the password and get the role visitor; others "
+        "still join as builder (role default nobody keeps them out)" +
+            bench.record(2));
+  CHECK(bench.bench.server.rights().password().value == password);
+  bench.done("role default nobody");
+  CHECK(bench.done(line) ==
+        "players without a granted role join with the password and get the role visitor" +
+            bench.record(4));
+  CHECK(has(bench.done("password"), "gets the role visitor; record 4, "));
+  CHECK(has(bench.player(1, "password clear").text, "the world has no password"));
+  CHECK_FALSE(bench.bench.server.rights().password().value.has_value());
+  CHECK(bench.console("password clear").text == "The world has no password.");
+}
+
 TEST_CASE("a ban ends sessions and is listed until it is lifted", "[admin][rights]") {
   RightsBench bench;
   const std::string text = bench.done("ban player1 for 1d reason \"broke the bridge\"");

@@ -37,8 +37,25 @@ TEST_CASE("the addresses of a range share a larger budget", "[limits]") {
   CHECK(ledger.take(v6(0x2001'0db8'0002'0000), 3, 0));  // the next /48
 }
 
+TEST_CASE("an address can be asked what it has, which takes nothing", "[limits]") {
+  constexpr auto kShares = static_cast<std::uint32_t>(AddressLedger::kBudgetsPerRange);
+  AddressLedger ledger({1, 3});
+  const AddressBlock one = address_block_v4(0x0a000001), other = address_block_v4(0x0a0000ff);
+  CHECK(ledger.has(one, 3, 0));
+  CHECK_FALSE(ledger.has(one, 4, 0));
+  CHECK(ledger.size() == 0);
+  CHECK(ledger.take(one, 3, 0));
+  CHECK_FALSE(ledger.has(one, 1, kSecond - 1));
+  CHECK(ledger.has(one, 1, kSecond));
+  for (std::uint32_t i = 1; i < kShares; ++i)
+    CHECK(ledger.take(address_block_v4(0x0a000001 + i), 3, 0));
+  CHECK_FALSE(ledger.has(other, 1, 0));  // its range has nothing left
+  CHECK(ledger.has(address_block_v4(0x0a0001ff), 3, 0));
+}
+
 TEST_CASE("without a limit nothing is refused or kept", "[limits]") {
   AddressLedger ledger({});
+  CHECK(ledger.has(address_block_v4(1), 1'000, 0));
   for (int i = 0; i < 10'000; ++i) REQUIRE(ledger.take(address_block_v4(1), 1, 0));
   CHECK(ledger.size() == 0);
 }

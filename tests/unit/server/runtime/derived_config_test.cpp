@@ -24,7 +24,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   config.sessions_per_address = 7;
   config.stop_s = 4;
   config.speed_max = 70;
-  const WorldConfig world = world_config_of(config, sample_meta());
+  const WorldConfig world = world_config_of(config, sample_meta(), 4747);
   CHECK(world.world_id == sample_meta().world_id);
   CHECK(world.chunk_edge == kSampleEdge);
   CHECK(world.server_keys.public_key == key_pair_of(sample_meta().server_key_seed).public_key);
@@ -48,12 +48,32 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   CHECK(world.speed_max == 70);
 }
 
+TEST_CASE("links have the public address, or that of a server for its machine alone", "[runtime]") {
+  ServerConfig config;
+  const auto link_address = [&config] {
+    return world_config_of(config, sample_meta(), 5000).link_address;
+  };
+  for (const char* local : {"127.0.0.1:0", "localhost", "127.0.0.2:5000"}) {
+    config.listen = local;
+    const std::string host(local);
+    CHECK(link_address() == host.substr(0, host.find(':')) + ":5000");
+  }
+  config.listen = "[::1]:5000";
+  CHECK(link_address() == "[::1]:5000");
+  for (const char* open : {"0.0.0.0:5000", ":5000", "[::]:5000", "192.0.2.1", "example.org:5000"}) {
+    config.listen = open;
+    CHECK(link_address() == "HOST:5000");
+  }
+  config.public_address = "example.org";
+  CHECK(link_address() == "example.org");
+}
+
 TEST_CASE("the configured encoding is the preferred one", "[server]") {
   ServerConfig config;
   for (const ChunkEncoding encoding :
        {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
     config.encoding = encoding;
-    CHECK(world_config_of(config, sample_meta()).preferred_encoding == encoding);
+    CHECK(world_config_of(config, sample_meta(), 4747).preferred_encoding == encoding);
   }
 }
 

@@ -43,7 +43,7 @@ TEST_CASE("a start reads the state of the store and replays its log", "[server]"
   CHECK((*store)->epoch() == 1);  // reading raises no epoch
 
   FakeEnvironment environment;
-  WorldServer world(world_config_of(ServerConfig{}, sample_meta()), *start, environment,
+  WorldServer world(world_config_of(ServerConfig{}, sample_meta(), 4747), *start, environment,
                     [](std::span<std::uint8_t> out) { std::ranges::fill(out, 9); });
   const auto replayed = replay_log(**store, *start, world);
   REQUIRE(replayed.has_value());
@@ -63,7 +63,7 @@ TEST_CASE("the replay begins above the checkpoint", "[server]") {
   REQUIRE(start.has_value());
   CHECK(start->checkpoint == 4);
   FakeEnvironment environment;
-  WorldServer world(world_config_of(ServerConfig{}, sample_meta()), *start, environment,
+  WorldServer world(world_config_of(ServerConfig{}, sample_meta(), 4747), *start, environment,
                     [](std::span<std::uint8_t> out) { std::ranges::fill(out, 9); });
   const auto replayed = replay_log(**store, *start, world);
   REQUIRE(replayed.has_value());

@@ -60,8 +60,9 @@ struct WorldBench {
     auth.ticket = ticket;
     server.received(session, auth, now());
   }
-  ClientAuth client_auth(std::uint8_t who, const Hello& h, const Welcome& w) const {
-    return {sign(key_pair_of(seed_of(who)), client_transcript(h, w, std::nullopt)), {}};
+  ClientAuth client_auth(std::uint8_t who, const Hello& h, const Welcome& w,
+                         const std::optional<ChannelBinding>& binding = std::nullopt) const {
+    return {sign(key_pair_of(seed_of(who)), client_transcript(h, w, binding)), {}};
   }
   SessionAccepted join(SessionId session, std::uint8_t who, ClientInstance instance = 1,
                        AddressBlock from = {}) {

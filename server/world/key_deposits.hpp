@@ -1,0 +1,72 @@
+// KeyDeposits: the sealed keys that players leave for another device (docs/protocol.md). They are in
+// memory only, for kDepositUs, and each can be taken once. Nobody can open them without the code.
+// Bounds: kDepositsMax in all, kDepositsPerAddress of one address, one of a key: a new one replaces
+// it. Thread: the world strand. Times are arguments (microseconds of one steady clock).
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/core/address_block.hpp"
+#include "common/core/public_key.hpp"
+#include "protocol/codec/device_code.hpp"
+
+namespace runstone {
+
+inline constexpr TimeUs kDepositUs = TimeUs{600} * 1'000'000;
+inline constexpr std::size_t kDepositsMax = 1'024;
+/// More than a school class behind one address needs at a time.
+inline constexpr std::size_t kDepositsPerAddress = 32;
+
+class KeyDeposits {
+ public:
+  /// Keeps a sealed key. Returns nullopt, or the reason why it is not kept. Cost: O(deposits).
+  std::optional<std::string> put(const PublicKey& owner, AddressBlock from, KeyDeposit deposit,
+                                 TimeUs now_us) {
+    std::erase_if(kept_,
+                  [&](const Kept& kept) { return kept.until_us <= now_us || kept.owner == owner; });
+    const auto of_address = std::count_if(kept_.begin(), kept_.end(),
+                                          [from](const Kept& kept) { return kept.from == from; });
+    if (kept_.size() >= kDepositsMax || static_cast<std::size_t>(of_address) >= kDepositsPerAddress)
+      return "the server keeps as many keys as it can: try again in some minutes";
+    if (find(deposit.slot) != kept_.end()) return "the code is in use: make another one";
+    kept_.push_back({owner, from, now_us + kDepositUs, deposit.slot, std::move(deposit.sealed)});
+    return std::nullopt;
+  }
+
+  /// Removes the key of a slot and returns it, or returns nullopt if there is none. All slots are
+  /// compared, each in full, so the time says nothing about those that are in use. Cost: O(deposits).
+  std::optional<Bytes> take(const KeySlot& slot, TimeUs now_us) {
+    const auto found = find(slot);
+    if (found == kept_.end()) return std::nullopt;
+    std::optional<Bytes> sealed;
+    if (now_us < found->until_us) sealed = std::move(found->sealed);
+    kept_.erase(found);
+    return sealed;
+  }
+
+  std::size_t size() const { return kept_.size(); }
+
+ private:
+  struct Kept {
+    PublicKey owner{};
+    AddressBlock from{};
+    TimeUs until_us = 0;
+    KeySlot slot{};
+    Bytes sealed;
+  };
+  std::vector<Kept>::iterator find(const KeySlot& slot) {
+    auto found = kept_.end();
+    for (auto at = kept_.begin(); at != kept_.end(); ++at) {
+      if (is_same_slot(at->slot, slot)) found = at;
+    }
+    return found;
+  }
+
+  std::vector<Kept> kept_;
+};
+
+}  // namespace runstone
