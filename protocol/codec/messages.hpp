@@ -81,14 +81,14 @@ struct Welcome {
   std::uint64_t edit_volume_max = 0;
   EditBudget edit_budget;  // of the player's key, for all of its sessions together
   std::uint8_t view_radius_max = 0;
-  std::uint64_t features = 0;  // in force for this session; a subset of Hello's
+  std::uint64_t features = 0;                 // in force for this session; a subset of Hello's
   std::optional<PasswordSalt> password_salt;  // nullopt: the world has no password
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 struct ClientAuth {
   Signature signature{};
   std::string ticket;  // an invite token (invite_token.hpp); empty: none
-  std::optional<PasswordKey> password_key;
+  std::optional<PasswordKey> password_key = std::nullopt;
   friend bool operator==(const ClientAuth&, const ClientAuth&) = default;
 };
 struct SessionAccepted {
