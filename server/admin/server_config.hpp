@@ -56,8 +56,9 @@ struct ServerConfig {
   ChunkEncoding encoding = ChunkEncoding::packed;  // sent to clients that can read it
   std::uint64_t idle_s = 60;                       // seconds without a message, 5..86400
   std::uint64_t messages_per_second = 10'000;      // per session, 0: no limit
-  /// KiB read from each session per second, 0: no limit. Reading pauses above the limit.
-  std::uint64_t read_kib_per_second = 1'024;
+  /// KiB read from each session per second, twice as many at once, 0: no limit. Reading pauses above
+  /// the limit. The sessions of an address together have `budgets_per_address` times as much.
+  std::uint64_t read_kib_per_second = 512;
   std::uint64_t control_queue_kib = 16'384;  // KiB per session, 64..1048576
   std::uint64_t edit_queue_kib = 4'096;      // KiB per session, 64..1048576
   std::uint64_t chunk_queue_kib = 4'096;     // KiB per session, 64..1048576

@@ -124,25 +124,20 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   asio::error_code gone;
   const asio::ip::address from = socket.remote_endpoint(gone).address();
   if (gone) return;
-  if (!connections_.take(address_block(from), 1, steady_now_us())) {
-    counters_.refused.fetch_add(1);
-    return;  // the destructor closes the socket
-  }
+  if (!connections_.take(address_block(from), 1, steady_now_us())) return refuse(socket);
   std::optional<std::vector<std::shared_ptr<NetSession>>> ended;
   {
     const std::lock_guard lock(mutex_);
     ended = make_room(from);
   }
-  if (!ended) {
-    counters_.refused.fetch_add(1);
-    return;  // the destructor closes the socket; there is no handshake to answer
-  }
+  if (!ended) return refuse(socket);
   counters_.refused.fetch_add(ended->size());
   for (const auto& session : *ended) session->abort();
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
   auto session = std::make_shared<NetSession>(id, io_, decoders_, make_stream(std::move(socket)),
-                                              limits_, chunk_edge_, budget_, events_, counters_);
+                                              limits_, chunk_edge_, budget_,
+                                              reads_of(address_block(from)), events_, counters_);
   {
     const std::lock_guard lock(mutex_);
     if (is_stopped_) return;
@@ -151,6 +146,26 @@ void Listener::admit(asio::ip::tcp::socket socket) {
     handshakes_from_[from].insert(id);
   }
   session->start();
+}
+
+void Listener::refuse(asio::ip::tcp::socket& socket) {
+  counters_.refused.fetch_add(1);
+  // A reset leaves nothing in the kernel. Otherwise each of these sockets would stay in TIME_WAIT.
+  asio::error_code ignored;
+  socket.set_option(asio::socket_base::linger(true, 0), ignored);
+  socket.close(ignored);
+}
+
+std::shared_ptr<ByteBudget> Listener::reads_of(AddressBlock from) {
+  if (reads_.size() > 2 * limits_.connections_max)
+    std::erase_if(reads_, [](const auto& entry) { return entry.second.expired(); });
+  std::weak_ptr<ByteBudget>& known = reads_[from];
+  std::shared_ptr<ByteBudget> budget = known.lock();
+  if (budget == nullptr) {
+    budget = std::make_shared<ByteBudget>(limits_.read_bytes_per_address);
+    known = budget;
+  }
+  return budget;
 }
 
 std::unique_ptr<ByteStream> Listener::make_stream(asio::ip::tcp::socket socket) {
@@ -166,6 +181,7 @@ std::unique_ptr<ByteStream> Listener::make_stream(asio::ip::tcp::socket socket) 
 
 std::optional<std::vector<std::shared_ptr<NetSession>>> Listener::make_room(
     const asio::ip::address& from) {
+  if (leaving_.size() >= kLeavingMax) return std::nullopt;
   std::vector<std::shared_ptr<NetSession>> ended;
   const auto end = [&](SessionId oldest) {
     ended.push_back(sessions_.at(oldest));
@@ -208,6 +224,18 @@ void Listener::forget(SessionId session) {
   end_handshake(session);
   leaving_.erase(session);
   sessions_.erase(session);
+}
+
+void Listener::close_stalled(TimeUs now_us, TimeUs us_max) {
+  std::vector<std::shared_ptr<NetSession>> stalled;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, session] : sessions_) {
+      if (session->write_us(now_us) >= us_max) stalled.push_back(session);
+    }
+  }
+  for (const auto& session : stalled)
+    session->close(GoodbyeReason::timed_out, "the client does not read");
 }
 
 std::size_t Listener::session_count() const {

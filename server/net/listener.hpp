@@ -51,14 +51,25 @@ class Listener : public std::enable_shared_from_this<Listener> {
   /// Removes a session that has reported on_disconnected().
   void forget(SessionId session);
   std::size_t session_count() const;
+  /// Closes the sessions that have been writing the same bytes for so long: their clients do not
+  /// read. Cost: O(sessions).
+  void close_stalled(TimeUs now_us, TimeUs us_max);
   /// Closes all sessions and adds no more.
   void close_all(GoodbyeReason reason, const std::string& text);
   const NetCounters& counters() const { return counters_; }
 
  private:
+  // A closed session keeps its memory while a thread still works for it. While there are so many,
+  // no connection is accepted.
+  static constexpr std::size_t kLeavingMax = 64;
+
   static asio::awaitable<void> accept_loop(std::shared_ptr<Listener> self);
   void admit(asio::ip::tcp::socket socket);
+  /// Closes a connection that was accepted just now.
+  void refuse(asio::ip::tcp::socket& socket);
   std::unique_ptr<ByteStream> make_stream(asio::ip::tcp::socket socket);
+  /// Returns the budget of reading that the sessions of this address share.
+  std::shared_ptr<ByteBudget> reads_of(AddressBlock from);
   /// Returns the sessions that must be closed so that one more from `from` fits, or nullopt if it
   /// cannot fit. Requires the mutex.
   std::optional<std::vector<std::shared_ptr<NetSession>>> make_room(const asio::ip::address& from);
@@ -74,7 +85,9 @@ class Listener : public std::enable_shared_from_this<Listener> {
   asio::strand<asio::any_io_executor> strand_;
   asio::ip::tcp::acceptor acceptor_;
   asio::steady_timer pause_;
-  AddressLedger connections_;  // used on the strand
+  // The next two are used on the strand. A budget of reading lives as long as a session that uses it.
+  AddressLedger connections_;
+  std::map<AddressBlock, std::weak_ptr<ByteBudget>> reads_;
   std::uint16_t port_ = 0;
   SessionId next_id_ = 1;
   mutable std::mutex mutex_;  // a leaf: guards the members below

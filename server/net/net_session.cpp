@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <asio/bind_executor.hpp>
 #include <asio/co_spawn.hpp>
 #include <asio/detached.hpp>
@@ -33,7 +34,7 @@ constexpr std::size_t kStarvedRoomBytes = 2 * 1024;
 constexpr std::size_t kSmallBytes = 2 * kReadBytes;
 constexpr TimeUs kRoomPauseUsMax = 50'000;
 // Part of the read budget that may be used at once, for the list of cached chunks or a large paste.
-constexpr TimeUs kReadBurstUs = 500'000;
+constexpr TimeUs kReadBurstUs = 2'000'000;
 
 asio::steady_timer::time_point time_point_of(TimeUs us) {
   return asio::steady_timer::time_point(std::chrono::microseconds(us));
@@ -43,7 +44,8 @@ asio::steady_timer::time_point time_point_of(TimeUs us) {
 
 NetSession::NetSession(SessionId id, asio::io_context& io, asio::any_io_executor decoders,
                        std::unique_ptr<ByteStream> stream, const NetLimits& limits,
-                       std::uint16_t chunk_edge, ByteBudget& budget, NetEvents& events,
+                       std::uint16_t chunk_edge, ByteBudget& budget,
+                       std::shared_ptr<ByteBudget> address_reads, NetEvents& events,
                        NetCounters& counters)
     : id_(id),
       limits_(limits),
@@ -62,6 +64,7 @@ NetSession::NetSession(SessionId id, asio::io_context& io, asio::any_io_executor
       read_turn_(strand_),
       linger_(strand_),
       read_budget_(limits.read_bytes_per_second),
+      address_reads_(std::move(address_reads)),
       reader_(Sender::client),
       messages_(limits.messages_per_second, limits.message_burst) {
   // The timer never expires. Cancelling it wakes the loop that waits on it.
@@ -224,8 +227,10 @@ asio::awaitable<void> NetSession::end_after_linger(std::shared_ptr<NetSession> s
 // client sends, and TCP makes the others wait.
 asio::awaitable<void> NetSession::wait_for_read_budget(std::size_t bytes_read) {
   const TimeUs now_us = steady_now_us();
+  const std::size_t bytes = bytes_read + charged_.exchange(0);
   const TimeUs slot_us =
-      read_budget_.book(bytes_read + charged_.exchange(0), now_us) - kReadBurstUs;
+      std::max(read_budget_.book(bytes, now_us), address_reads_->book(bytes, now_us)) -
+      kReadBurstUs;
   if (slot_us <= now_us) co_return;
   read_turn_.expires_at(time_point_of(slot_us));
   const auto [error] = co_await read_turn_.async_wait(kTuple);
@@ -386,7 +391,9 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
       buffers.push_back(asio::buffer(piece.header));
       buffers.push_back(asio::buffer(piece.body.data(), piece.body.size()));
     }
+    self->write_began_us_.store(steady_now_us());
     const IoResult wrote = co_await self->stream_->write(buffers, batch.chunk_bytes);
+    self->write_began_us_.store(0);
     if (wrote.error) break;
     self->counters_.bytes_out.fetch_add(wrote.bytes, std::memory_order_relaxed);
     if (batch.has_commits) {

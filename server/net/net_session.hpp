@@ -34,8 +34,10 @@ struct NetLimits {
   // Bytes a second, for each session and for all together. Terrain beyond waits. 0: no limit.
   std::uint64_t bytes_per_second = 0;
   std::uint64_t server_bytes_per_second = 0;
-  // Bytes a second from each session. Beyond it, reading pauses. 0: no limit.
+  // Bytes a second from each session, and from all sessions of an address. Beyond it, reading
+  // pauses. 0: no limit.
   std::uint64_t read_bytes_per_second = 0;
+  std::uint64_t read_bytes_per_address = 0;
   std::size_t notsent_bytes = 16 * 1024;  // TCP_NOTSENT_LOWAT
   std::size_t connections_max = 512;      // sockets, in any state
   // Connections a second of one address; 0: no limit.
@@ -70,14 +72,22 @@ struct EndCause {
 class NetSession : public std::enable_shared_from_this<NetSession> {
  public:
   /// `budget` (of the server), `limits`, `events` and `counters` must outlive the session, and the
-  /// threads of `decoders` those of `io`. `chunk_edge`: of the world.
+  /// threads of `decoders` those of `io`. `chunk_edge`: of the world. `address_reads`: the budget of
+  /// reading that the sessions of an address share.
   NetSession(SessionId id, asio::io_context& io, asio::any_io_executor decoders,
              std::unique_ptr<ByteStream> stream, const NetLimits& limits, std::uint16_t chunk_edge,
-             ByteBudget& budget, NetEvents& events, NetCounters& counters);
+             ByteBudget& budget, std::shared_ptr<ByteBudget> address_reads, NetEvents& events,
+             NetCounters& counters);
 
   SessionId id() const { return id_; }
   const std::string& peer() const { return peer_; }
   AddressBlock address() const { return address_; }
+  /// Returns for how long the write under way has waited for the client, or 0 if there is none.
+  /// Thread: any.
+  TimeUs write_us(TimeUs now_us) const {
+    const TimeUs began_us = write_began_us_.load();
+    return began_us == 0 ? 0 : now_us - began_us;
+  }
   /// Returns why close() was called first. Requires that it was called. Thread: any.
   EndCause end();
 
@@ -152,6 +162,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::atomic<std::size_t> unhandled_{0};  // bytes, see NetLimits
   std::atomic<std::size_t> charged_{0};    // bytes to be added to the next read
   std::atomic<bool> reader_paused_{false};
+  std::atomic<TimeUs> write_began_us_{0};  // 0: no write is under way
 
   std::mutex mutex_;  // a leaf: guards the next seven
   SendQueue queue_;
@@ -167,6 +178,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   // the read loop waits for it.
   asio::steady_timer write_wake_, read_wake_, read_turn_, linger_;
   ByteBudget read_budget_;
+  const std::shared_ptr<ByteBudget> address_reads_;
   FrameReader reader_;
   TokenBucket messages_;
   struct Decoded {

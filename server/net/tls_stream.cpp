@@ -2,6 +2,7 @@
 #include <asio/error.hpp>
 #include <asio/post.hpp>
 #include <asio/this_coro.hpp>
+#include <atomic>
 #include <utility>
 
 #include "common/os/thread_cpu_ns.hpp"
@@ -69,7 +70,7 @@ class TlsStream final : public ByteStream {
             const TlsContext& context, asio::any_io_executor handshakes, Bytes plain_answer)
       : tcp_(std::move(socket), notsent_bytes, log_form),
         source_(tcp_.socket().native_handle()),
-        channel_(TlsChannel::accept(context, source_)),
+        context_(context),
         handshakes_(std::move(handshakes)),
         plain_answer_(std::move(plain_answer)) {}
 
@@ -81,24 +82,37 @@ class TlsStream final : public ByteStream {
         failure_ = "it was closed or took too long";
         co_return StreamStart::failed;
       }
-      if (is_plain()) {
-        co_await answer_plain();
-        co_return StreamStart::not_encrypted;
+      if (!channel_) {
+        asio::error_code missing;
+        const std::uint8_t first = first_byte(missing);
+        if (missing == asio::error::would_block) continue;
+        if (missing) {
+          failure_ = "it was closed before its first byte";
+          co_return StreamStart::failed;
+        }
+        if (first != kHandshakeRecord) {
+          co_await answer_plain();
+          co_return StreamStart::not_encrypted;
+        }
+        // A connection that sends nothing costs no memory of TLS.
+        channel_.emplace(TlsChannel::accept(context_, source_));
       }
       source_.hold(kHandshakeBytes);
       co_await asio::post(asio::bind_executor(handshakes_, asio::use_awaitable));
-      const TlsChannel::Status status = channel_.handshake();
+      // Many may wait for a thread here. Those that were closed meanwhile cost no signature.
+      const TlsChannel::Status status =
+          is_closed_ ? TlsChannel::Status::failed : channel_->handshake();
       co_await asio::post(asio::bind_executor(strand, asio::use_awaitable));
       source_.release();
       co_await flush();
       if (status == TlsChannel::Status::done) {
         plain_answer_ = {};
-        binding_ = channel_.binding();
+        binding_ = channel_->binding();
         co_return StreamStart::open;
       }
-      const asio::error_code broken = source_broke();
+      const asio::error_code broken = is_closed_ ? asio::error::operation_aborted : source_broke();
       if (status != TlsChannel::Status::wants_input || broken) {
-        failure_ = broken ? broken.message() : channel_.error();
+        failure_ = broken ? broken.message() : channel_->error();
         co_return StreamStart::failed;
       }
     }
@@ -114,7 +128,7 @@ class TlsStream final : public ByteStream {
     source_.allow(2 * into.size() + kTlsRecordExtraBytes);
     for (;;) {
       const TlsChannel::Status status =
-          channel_.read({static_cast<std::uint8_t*>(into.data()), into.size()}, result.bytes);
+          channel_->read({static_cast<std::uint8_t*>(into.data()), into.size()}, result.bytes);
       result.received += source_.take_count();
       if (status == TlsChannel::Status::done) break;
       result.error = status == TlsChannel::Status::wants_input ? source_broke() : asio::error::eof;
@@ -130,7 +144,7 @@ class TlsStream final : public ByteStream {
                                   std::size_t terrain_bytes) override {
     IoResult result;
     const std::int64_t began_ns = thread_cpu_ns();
-    Bytes& records = channel_.output();
+    Bytes& records = channel_->output();
     if (records.empty()) records.swap(scratch.records);
     if (!encrypt(buffers, asio::buffer_size(buffers) - terrain_bytes)) {
       result.error = asio::error::connection_aborted;
@@ -160,13 +174,14 @@ class TlsStream final : public ByteStream {
     return room;
   }
   void shutdown_send() override {
-    channel_.end();
+    channel_->end();
     // What the kernel does not take at once is given up: the peer does not read.
     asio::error_code ignored;
-    tcp_.socket().write_some(asio::buffer(channel_.output()), ignored);
+    tcp_.socket().write_some(asio::buffer(channel_->output()), ignored);
     tcp_.shutdown_send();
   }
   void close() override {
+    is_closed_ = true;
     source_.disconnect();
     tcp_.close();
   }
@@ -174,17 +189,16 @@ class TlsStream final : public ByteStream {
   AddressBlock address() const override { return tcp_.address(); }
 
  private:
-  /// Returns true if the first byte of the connection is none of TLS. Leaves it where it is.
-  bool is_plain() {
-    if (std::exchange(is_first_byte_known_, true)) return false;
-    std::uint8_t first = kHandshakeRecord;
-    asio::error_code ignored;
-    tcp_.socket().receive(asio::buffer(&first, 1), asio::socket_base::message_peek, ignored);
-    return first != kHandshakeRecord;
+  /// Returns the first byte of the connection and leaves it where it is. At the end of the stream it
+  /// sets the error eof.
+  std::uint8_t first_byte(asio::error_code& error) {
+    std::uint8_t first = 0;
+    tcp_.socket().receive(asio::buffer(&first, 1), asio::socket_base::message_peek, error);
+    return first;
   }
   asio::awaitable<void> answer_plain() {
-    channel_.output() = std::exchange(plain_answer_, {});
-    co_await flush();
+    buffers_.assign(1, asio::buffer(plain_answer_));
+    co_await tcp_.write(buffers_, 0);
     tcp_.shutdown_send();
     Bytes buffer(1024);
     for (std::size_t got = 0; got < kPlainBytes;) {
@@ -200,7 +214,7 @@ class TlsStream final : public ByteStream {
   /// Terrain begins a record of its own, so that the peer can read an edit before the terrain
   /// behind it has arrived.
   bool encrypt(const std::vector<asio::const_buffer>& buffers, std::size_t before_terrain) {
-    RecordText record(channel_);
+    RecordText record(*channel_);
     std::size_t at = 0;
     for (const asio::const_buffer& buffer : buffers) {
       if (at == before_terrain && !record.end()) return false;
@@ -213,7 +227,7 @@ class TlsStream final : public ByteStream {
   /// Sends the output of the channel.
   asio::awaitable<IoResult> flush() {
     // While the socket takes the bytes, a read may add to the output.
-    sending_.swap(channel_.output());
+    sending_.swap(channel_->output());
     buffers_.assign(1, asio::buffer(sending_));
     const IoResult result = co_await tcp_.write(buffers_, 0);
     sending_ = {};
@@ -222,12 +236,13 @@ class TlsStream final : public ByteStream {
 
   TcpStream tcp_;
   SocketSource source_;
-  TlsChannel channel_;
+  const TlsContext context_;
+  std::optional<TlsChannel> channel_;  // from the first byte on
   const asio::any_io_executor handshakes_;
   Bytes plain_answer_;
   Bytes sending_;
   std::vector<asio::const_buffer> buffers_;  // of the write under way
-  bool is_first_byte_known_ = false;
+  std::atomic<bool> is_closed_{false};       // read by a thread of handshakes_
   std::optional<ChannelBinding> binding_;
   std::string failure_;
 };

@@ -9,7 +9,8 @@ namespace {
 
 std::string sessions_part(const WorldServer& world, const NetCounters& net) {
   const WorldCounters& w = world.counters();
-  return fmt::format("sessions={} opened={} closed={} malformed={}", world.session_count(),
+  return fmt::format("connections={} refused={} sessions={} opened={} closed={} malformed={}",
+                     net.connections.load(), net.refused.load(), world.session_count(),
                      w.sessions_opened, w.sessions_closed, net.malformed.load());
 }
 

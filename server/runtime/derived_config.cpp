@@ -81,6 +81,7 @@ NetLimits net_limits_of(const ServerConfig& config) {
   limits.bytes_per_second = config.session_kib_per_second * kKib;
   limits.server_bytes_per_second = config.server_kib_per_second * kKib;
   limits.read_bytes_per_second = config.read_kib_per_second * kKib;
+  limits.read_bytes_per_address = limits.read_bytes_per_second * config.budgets_per_address;
   limits.connections_max = config.sessions_max + kHandshakesMax;
   limits.connections_per_second = config.connections_per_second;
   limits.handshakes_per_address = config.handshakes_per_address;

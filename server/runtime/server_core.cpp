@@ -18,6 +18,7 @@ namespace {
 
 constexpr auto kTickInterval = std::chrono::milliseconds(50);
 constexpr auto kChatRetentionInterval = std::chrono::minutes(10);
+constexpr auto kStallInterval = std::chrono::seconds(1);
 constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for the last of them
 
 }  // namespace
@@ -41,6 +42,7 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       environment_(sessions_, *listener_, sender_, readers_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
+      stalls_(strand_, kStallInterval, [this] { close_stalled(); }),
       activity_(strand_, std::chrono::seconds(config.counters_s), [this] { write_activity(); }),
       chat_retention_(strand_, kChatRetentionInterval, [this] {
         chat_log_->forget_before(chat_kept_from_us(config_, world_->rights_time()));
@@ -118,6 +120,7 @@ void ServerCore::start() {
   listener_->start();
   ticks_.start();
   if (chat_log_) chat_retention_.start();
+  stalls_.start();
   if (config_.counters_s > 0) activity_.start();
 }
 
@@ -125,6 +128,11 @@ void ServerCore::tick() {
   const Clocks now = read_clocks();
   world_->tick(now);
   commands_->tick(now);
+}
+
+void ServerCore::close_stalled() {
+  const std::chrono::microseconds idle = std::chrono::seconds(running_.idle_s);
+  listener_->close_stalled(steady_now_us(), idle.count());
 }
 
 void ServerCore::after_task() {
@@ -191,6 +199,7 @@ void ServerCore::finish_stop_if_flushed() {
   const bool gives_up = log_->has_failed() || (log_->is_full() && world_->is_stop_overdue());
   if (!gives_up && !world_->is_flushed()) return;
   ticks_.stop();
+  stalls_.stop();
   activity_.stop();
   chat_retention_.stop();
   stopping_->set_value();

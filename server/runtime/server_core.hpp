@@ -104,6 +104,8 @@ class ServerCore final : public NetEvents {
  private:
   DurableLog::Events log_events();
   void tick();
+  /// Closes the sessions whose clients have read nothing for the idle time.
+  void close_stalled();
   /// Runs after every task of the world strand.
   void after_task();
   /// Posts a task that handles the next message, unless none waits or the task is posted already. It
@@ -135,7 +137,7 @@ class ServerCore final : public NetEvents {
   WorldReaders readers_;
   ServerEnvironment environment_;
   CommitScheduler commits_;
-  PeriodicTask ticks_, activity_, chat_retention_;
+  PeriodicTask ticks_, stalls_, activity_, chat_retention_;
   ActivitySample sampled_;  // at the last write_activity(). Used on the world strand
   // The answer of begin_stop(), set while it waits. Used on the world strand.
   std::shared_ptr<std::promise<void>> stopping_;

@@ -1,5 +1,5 @@
-// The target decodes any bytes as a message. Input: 1 byte (bits 0-4: kind, modulo their count;
-// bit 5: the edge of the world is known and 16; bit 6: of a kind that both sides send, the server is
+// The target decodes any bytes as a message. Input: 1 byte (bits 0-5: kind, modulo their count;
+// bit 6: the edge of the world is known and 16; bit 7: of a kind that both sides send, the server is
 // the sender), then the message. A message that decodes is encoded again and must decode to the same
 // message.
 #include <cstdint>
@@ -10,10 +10,11 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace runstone;
   if (size == 0) return 0;
-  const MessageKind kind = (data[0] & 31u) % kMessageKindCount;
-  const std::uint16_t edge = (data[0] & 32) == 0 ? 0 : 16;
+  const MessageKind kind = (data[0] & 63u) % kMessageKindCount;
+  static_assert(kMessageKindCount <= 64);
+  const std::uint16_t edge = (data[0] & 64) == 0 ? 0 : 16;
   const bool is_from_client = may_send(info_of(kind), Sender::client) &&
-                              ((data[0] & 64) == 0 || !may_send(info_of(kind), Sender::server));
+                              ((data[0] & 128) == 0 || !may_send(info_of(kind), Sender::server));
   const Sender sender = is_from_client ? Sender::client : Sender::server;
   const Bytes aligned(data + 1, data + size);
   const auto message = decode_message(sender, kind, aligned, edge);

@@ -1,7 +1,6 @@
 // The target reads any bytes as the texts that players and operators give: links, invite tokens,
 // device codes, addresses, lists of keys, commands and lines of chat. What is understood is written as
-// text that means the same,
-// and every message about a mistake is printable.
+// text that means the same, and every message about a mistake is printable.
 #include <cstdint>
 #include <string_view>
 

@@ -33,7 +33,7 @@ constexpr std::array<Attack, 22> kAttacks = {{
     {"handshakes", "TLS handshakes that end when the server has signed, one after another",
      shake_hands},
     {"garbage",
-     "random bytes, frames of 4 GiB, frames cut short, inverted bits, messages without end",
+     "random bytes, frames of 64 KiB, frames cut short, inverted bits, messages without end",
      send_garbage},
     {"chunk-requests", "64 chunks of a view a message, again and again", request_chunks},
     {"edits", "single voxels, 9,000 a second and as many as the socket takes", edit_too_often},
@@ -53,8 +53,8 @@ constexpr std::array<Attack, 22> kAttacks = {{
     {"commands", "command lines, likewise, half of them 1 KiB of nonsense", command_too_often},
 }};
 
-AttackOutcome play(const Attack& attack, const AttackPlan& plan, unsigned index,
-                   const std::atomic<bool>& is_stopped) {
+AttackOutcome play_thread(const std::function<void(AttackThread&)>& play, const AttackPlan& plan,
+                          unsigned index, const std::atomic<bool>& is_stopped) {
   if (plan.uses_idle_cores) {
     const sched_param none{};
     (void)::sched_setscheduler(0, SCHED_IDLE, &none);  // below every nice level
@@ -63,7 +63,7 @@ AttackOutcome play(const Attack& attack, const AttackPlan& plan, unsigned index,
     (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kLowest);
   }
   AttackThread thread(plan, index, is_stopped);
-  attack.play(thread);
+  play(thread);
   rusage used{};
   if (::getrusage(RUSAGE_THREAD, &used) == 0) {
     const auto seconds_of = [](const timeval& time) {
@@ -97,10 +97,10 @@ void AttackOutcome::merge(const AttackOutcome& other) {
   core_seconds += other.core_seconds;
 }
 
-RunningAttack::RunningAttack(const Attack& attack, const AttackPlan& plan)
-    : outcomes_(plan.clients) {
+RunningAttack::RunningAttack(std::function<void(AttackThread&)> play, const AttackPlan& plan)
+    : play_(std::move(play)), outcomes_(plan.clients) {
   for (unsigned i = 0; i < plan.clients; ++i) {
-    threads_.emplace_back([=, this] { outcomes_[i] = play(attack, plan, i, is_stopped_); });
+    threads_.emplace_back([=, this] { outcomes_[i] = play_thread(play_, plan, i, is_stopped_); });
   }
 }
 

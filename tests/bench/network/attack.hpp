@@ -3,6 +3,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -46,7 +47,7 @@ struct AttackOutcome {
 struct AttackPlan {
   std::uint16_t port = 0;  // of the server
   unsigned clients = 1;    // threads; each has one connection, or many if the attack needs many
-  unsigned addresses = 1;  // of which each thread has one
+  unsigned addresses = 1;  // of which each thread has one, unless it uses all of them
   double seconds = 0;
   std::uint64_t seed = 0;
   bool is_encrypted = true;  // the server speaks TLS
@@ -60,8 +61,8 @@ struct AttackPlan {
 /// attackers on the same machine use.
 class RunningAttack {
  public:
-  /// Starts the threads.
-  RunningAttack(const Attack& attack, const AttackPlan& plan);
+  /// Starts the threads. Each calls `play` once, with a priority below that of all other programs.
+  RunningAttack(std::function<void(AttackThread&)> play, const AttackPlan& plan);
   /// Ends the attack.
   ~RunningAttack();
   RunningAttack(const RunningAttack&) = delete;
@@ -74,6 +75,7 @@ class RunningAttack {
 
  private:
   std::atomic<bool> is_stopped_{false};
+  const std::function<void(AttackThread&)> play_;
   std::vector<AttackOutcome> outcomes_;  // by thread
   std::vector<std::thread> threads_;
 };

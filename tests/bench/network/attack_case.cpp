@@ -92,7 +92,7 @@ class AttackRun {
       if (!started) return Unexpected<std::string>{started.error()};
       echo = *std::move(started);
       written_before_kb_ = written_kb(server_);
-      attack.emplace(attack_, plan(seconds, options_.seed));
+      attack.emplace(attack_.play, plan(seconds, options_.seed));
       probe.emplace(server_.port, !options_.insecure);
     }
     double& phase_mb = out_.resident_mb[phase];
@@ -119,7 +119,7 @@ class AttackRun {
 
   /// Attacks again, and stops the server meanwhile.
   Done stop() {
-    RunningAttack attack(attack_,
+    RunningAttack attack(attack_.play,
                          plan(options_.attack_seconds + kSecondAttackMax, options_.seed + 1));
     for (double waited = 0; waited < options_.attack_seconds; waited += kLookSeconds) {
       look();

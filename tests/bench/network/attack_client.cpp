@@ -10,9 +10,9 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <utility>
 #include <variant>
 
-#include "protocol/codec/handshake.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "protocol/limits.hpp"
 
@@ -67,25 +67,31 @@ AttackClient::AttackClient(std::uint16_t port, std::uint32_t from, const TlsCont
   tls_.emplace(TlsChannel::connect(*context, source_, "127.0.0.1"));
 }
 
-bool AttackClient::open_session(std::uint64_t identity, ClientInstance instance, int wait_ms) {
-  const KeyPair keys = key_of(identity);
-  Hello hello;
-  hello.key = keys.public_key;
-  hello.instance = instance;
-  hello.name = "mallory";
-  hello.features = kFeatureCommands;
-  queue(hello);
-  bool is_proven = false;
+void AttackClient::queue_hello(std::uint64_t identity, ClientInstance instance,
+                               std::uint64_t features) {
+  keys_ = key_of(identity);
+  hello_.key = keys_.public_key;
+  hello_.instance = instance;
+  hello_.name = "mallory";
+  hello_.features = features;
+  queue(hello_);
+}
+
+void AttackClient::continue_handshake(bool answers) {
+  read();
+  if (!is_welcome_ || !answers || std::exchange(has_answered_, true)) return;
+  const auto binding = tls_ ? std::optional(tls_->binding()) : std::nullopt;
+  queue(ClientAuth{sign(keys_, client_transcript(hello_, welcome_, binding)), {}});
+}
+
+bool AttackClient::open_session(std::uint64_t identity, ClientInstance instance, int wait_ms,
+                                std::uint64_t features) {
+  queue_hello(identity, instance, features);
   const auto end = Clock::now() + std::chrono::milliseconds(wait_ms);
   while (is_open() && !has_session_ && Clock::now() < end) {
     flush();
     wait(1, true);
-    read();
-    if (!came_ || is_proven) continue;
-    is_proven = true;
-    welcome_ = *came_;
-    const auto binding = tls_ ? std::optional(tls_->binding()) : std::nullopt;
-    queue(ClientAuth{sign(keys, client_transcript(hello, welcome_, binding)), {}});
+    continue_handshake(true);
   }
   return is_open() && has_session_;
 }
@@ -114,11 +120,11 @@ void AttackClient::encrypt() {
   records.clear();
 }
 
-void AttackClient::flush() {
+void AttackClient::flush(std::size_t bytes_max) {
   if (is_open_) encrypt();
-  while (is_open_ && out_.size() > sent_) {
-    const ssize_t count =
-        ::send(socket_.get(), out_.data() + sent_, out_.size() - sent_, MSG_NOSIGNAL);
+  while (is_open_ && out_.size() > sent_ && bytes_max > 0) {
+    const std::size_t wanted = std::min(out_.size() - sent_, bytes_max);
+    const ssize_t count = ::send(socket_.get(), out_.data() + sent_, wanted, MSG_NOSIGNAL);
     if (count < 0) {
       if (would_block(errno) || errno == ENOTCONN) return;
       // The server's goodbye may still be in the socket.
@@ -127,8 +133,10 @@ void AttackClient::flush() {
       return;
     }
     sent_ += static_cast<std::size_t>(count);
+    bytes_max -= static_cast<std::size_t>(count);
     bytes_sent_ += static_cast<std::uint64_t>(count);
   }
+  if (out_.size() > sent_) return;
   out_.clear();
   sent_ = 0;
 }
@@ -198,7 +206,8 @@ Result<void> AttackClient::take(MessageKind kind, ByteView body) {
   if (!message) return Unexpected<Error>{message.error()};
   if (auto* welcome = std::get_if<Welcome>(&*message)) {
     chunk_edge_ = welcome->chunk_edge;
-    came_ = std::move(*welcome);
+    welcome_ = std::move(*welcome);
+    is_welcome_ = true;
   } else if (std::holds_alternative<SessionAccepted>(*message)) {
     has_session_ = true;
   } else if (auto* goodbye = std::get_if<Goodbye>(&*message)) {

@@ -12,6 +12,7 @@
 #include "common/tls/socket_source.hpp"
 #include "common/tls/tls_channel.hpp"
 #include "protocol/codec/frame.hpp"
+#include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
 #include "tests/bench/network/descriptor.hpp"
 
@@ -25,10 +26,19 @@ class AttackClient {
   AttackClient(std::uint16_t port, std::uint32_t from, const TlsContext* context,
                int receive_bytes = 0);
 
-  /// Performs the handshake with a key drawn from `identity`, as this instance. It offers commands.
-  /// It does not offer receive acknowledgements, so that the server does not pace what it sends.
-  /// Returns false if the server ended the connection, or after `wait_ms`.
-  bool open_session(std::uint64_t identity, ClientInstance instance, int wait_ms);
+  /// What attackers offer: not receive acknowledgements, so that the server does not pace what it
+  /// sends, and no names, so that all of them may have one name.
+  static constexpr std::uint64_t kFeatures = kFeaturesKnown & ~(kFeatureReceiveAck | kFeatureNames);
+
+  /// Queues a hello with a key drawn from `identity`, as this instance.
+  void queue_hello(std::uint64_t identity, ClientInstance instance,
+                   std::uint64_t features = kFeatures);
+  /// Reads what is there, and answers a welcome if `answers` is true. It does not flush.
+  void continue_handshake(bool answers);
+  /// Performs the handshake with a key drawn from `identity`, as this instance. Returns false if the
+  /// server ended the connection, or after `wait_ms`.
+  bool open_session(std::uint64_t identity, ClientInstance instance, int wait_ms,
+                    std::uint64_t features = kFeatures);
 
   /// Queues a message; flush() sends. Bytes are sent unchanged, outside of any frame.
   /// A view gets the number that follows the last one.
@@ -39,8 +49,8 @@ class AttackClient {
   void queue(const EncodedMessage& message) { frames_.append(message, text_); }
   void queue_bytes(ByteView bytes);
   std::size_t queued() const { return text_.size() + out_.size() - sent_; }
-  /// Sends as much as the socket takes now.
-  void flush();
+  /// Sends as much as the socket takes now, at most `bytes_max`.
+  void flush(std::size_t bytes_max = SIZE_MAX);
   /// Reads what is there now, at most `bytes_max`.
   void read(std::size_t bytes_max = 256 * 1024);
   /// Waits at most `wait_ms` until it can send queued bytes or, if `reads` is true, until there is
@@ -49,9 +59,14 @@ class AttackClient {
 
   void shutdown_send();
 
+  int socket() const { return socket_.get(); }
   /// Returns false after the server's goodbye, after it closed the connection, and after an error.
   bool is_open() const { return is_open_ && !goodbye_; }
-  /// Returns the session's Welcome; empty before the session is open.
+  /// Returns true if messages can be exchanged: the TLS handshake is complete.
+  bool is_encrypted() const { return !tls_ || is_encrypted_; }
+  bool is_welcome() const { return is_welcome_; }
+  bool has_session() const { return has_session_; }
+  /// Returns the session's Welcome; empty before it has come.
   const Welcome& welcome() const { return welcome_; }
   /// Returns what the server said or did: "flooding: more messages than the rate allows", "closed",
   /// "still connected".
@@ -80,7 +95,9 @@ class AttackClient {
   Bytes out_;
   std::size_t sent_ = 0;  // of out_
   std::uint16_t chunk_edge_ = 0;
-  std::optional<Welcome> came_;
+  Hello hello_;
+  KeyPair keys_;
+  bool is_welcome_ = false, has_answered_ = false;
   Welcome welcome_;
   std::optional<Goodbye> goodbye_;
   std::uint64_t bytes_sent_ = 0, bytes_received_ = 0;

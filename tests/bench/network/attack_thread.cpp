@@ -19,7 +19,8 @@ AttackThread::AttackThread(const AttackPlan& plan, unsigned index,
                            const std::atomic<bool>& is_stopped)
     : port_(plan.port),
       index_(index),
-      address_(kAttackers + index % plan.addresses),
+      addresses_(plan.addresses),
+      address_(address(index % plan.addresses)),
       is_stopped_(is_stopped),
       began_(Clock::now()),
       ends_(began_ + std::chrono::duration_cast<Clock::duration>(
@@ -39,14 +40,15 @@ void AttackThread::pause_ms(int ms) const {
 }
 
 std::unique_ptr<AttackClient> AttackThread::connect(std::uint32_t from, int receive_bytes) {
-  if (is_over() || outcome.connections >= kConnectionsMax) return nullptr;
+  if (!may_connect()) return nullptr;
   ++outcome.connections;
   return std::make_unique<AttackClient>(port_, from, tls_ ? &*tls_ : nullptr, receive_bytes);
 }
 
-std::unique_ptr<AttackClient> AttackThread::join(int receive_bytes) {
+std::unique_ptr<AttackClient> AttackThread::join(int receive_bytes, std::uint64_t features) {
   auto client = connect(address_, receive_bytes);
-  if (client == nullptr || client->open_session(random_.next(), 1, kJoinMsMax)) return client;
+  if (client == nullptr || client->open_session(random_.next(), 1, kJoinMsMax, features))
+    return client;
   end(*client);
   pause_ms(kAgainMs);
   return nullptr;
@@ -59,24 +61,28 @@ void AttackThread::end(AttackClient& client) {
 }
 
 void AttackThread::flood(const Step& begin, const Step& add, double per_second, bool reads) {
-  while (!is_over() && outcome.connections < kConnectionsMax) {
+  while (may_connect()) {
     const auto client = join(reads ? 0 : kSmallBuffer);
     if (client == nullptr) continue;
     begin(*client);
-    const double since = seconds();
-    double added = 0;
-    while (!is_over() && client->is_open()) {
-      const double due = per_second == kNoLimit ? added + 1'000 : (seconds() - since) * per_second;
-      for (; added < due && client->queued() < kQueuedMax; ++added) add(*client);
-      client->flush();
-      if (reads) client->read();
-      if (per_second != kNoLimit || client->queued() > 0) client->wait(1, false);
-    }
-    // Clients that never read also get the goodbye here.
-    client->read();
-    end(*client);
+    send_to(*client, add, per_second, reads);
     if (!is_over()) pause_ms(kAgainMs);
   }
+}
+
+void AttackThread::send_to(AttackClient& client, const Step& add, double per_second, bool reads) {
+  const double since = seconds();
+  double added = 0;
+  while (!is_over() && client.is_open()) {
+    const double due = per_second == kNoLimit ? added + 1'000 : (seconds() - since) * per_second;
+    for (; added < due && client.queued() < kQueuedMax; ++added) add(client);
+    client.flush();
+    if (reads) client.read();
+    if (per_second != kNoLimit || client.queued() > 0) client.wait(1, false);
+  }
+  // Clients that never read also get the goodbye here.
+  client.read();
+  end(client);
 }
 
 }  // namespace runstone::bench

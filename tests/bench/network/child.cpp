@@ -14,8 +14,10 @@
 #include <deque>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <sstream>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -146,6 +148,12 @@ std::uint64_t Child::written_bytes() const {
     if (name == "write_bytes:") return bytes;
   }
   return 0;
+}
+
+std::size_t Child::open_files() const {
+  std::error_code ignored;
+  const std::filesystem::directory_iterator files("/proc/" + std::to_string(pid_) + "/fd", ignored);
+  return static_cast<std::size_t>(std::distance(begin(files), end(files)));
 }
 
 std::string Child::explain(const std::string& what) const {

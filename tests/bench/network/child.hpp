@@ -35,6 +35,8 @@ class Child {
   std::uint64_t resident_bytes() const;
   /// Returns the bytes that the program has caused to be written to disks so far.
   std::uint64_t written_bytes() const;
+  /// Returns the number of files and sockets that the program has open.
+  std::size_t open_files() const;
   const std::string& log() const { return log_; }
   /// Returns "NAME did WHAT; the end of its output: ...".
   std::string explain(const std::string& what) const;

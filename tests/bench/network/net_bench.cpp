@@ -9,6 +9,7 @@
 #include "tests/bench/network/attack_case.hpp"
 #include "tests/bench/network/backup_case.hpp"
 #include "tests/bench/network/fleet_case.hpp"
+#include "tests/bench/network/hostile_case.hpp"
 #include "tests/bench/network/join_case.hpp"
 #include "tests/bench/network/latency_case.hpp"
 #include "tests/bench/network/memory_case.hpp"
@@ -22,14 +23,16 @@ struct Experiment {
   const char* name;
   Done (*measure)(Testbed&, NetFindings&);
 };
-constexpr std::array<Experiment, 8> kExperiments = {{{"latency", measure_latency},
-                                                     {"join", measure_joins},
-                                                     {"transfer", measure_transfers},
-                                                     {"crowd", measure_fleets},
-                                                     {"attack", measure_attacks},
-                                                     {"memory", measure_memory},
-                                                     {"siege", measure_siege},
-                                                     {"backup", measure_backup}}};
+constexpr std::array<Experiment, 10> kExperiments = {{{"latency", measure_latency},
+                                                      {"join", measure_joins},
+                                                      {"transfer", measure_transfers},
+                                                      {"crowd", measure_fleets},
+                                                      {"attack", measure_attacks},
+                                                      {"memory", measure_memory},
+                                                      {"siege", measure_siege},
+                                                      {"strangers", measure_strangers},
+                                                      {"floods", measure_floods},
+                                                      {"backup", measure_backup}}};
 
 /// Returns TCP's congestion control of this machine, which namespaces on it inherit.
 std::string congestion_control() {

@@ -4,6 +4,8 @@
 #include <set>
 
 #include "tests/bench/network/attack.hpp"
+#include "tests/bench/network/message_flood.hpp"
+#include "tests/bench/network/strangers.hpp"
 #include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
@@ -17,9 +19,18 @@ void apply_quick(const CLI::App& command, NetOptions& options) {
   if (command.count("--clients") == 0) options.clients = {1, 20};
   if (command.count("--crowd-seconds") == 0) options.fleet_seconds = 3;
   if (command.count("--attack-seconds") == 0) options.attack_seconds = 2;
+  if (command.count("--strangers") == 0) options.strangers = 60;
   if (command.count("--siege-seconds") == 0) options.siege_seconds = 30;
   if (command.count("--backup-mib") == 0) options.backup_mib = 8;
   if (command.count("--backup-rounds") == 0) options.backup_rounds = 1;
+}
+
+std::set<std::string> attack_names() {
+  std::set<std::string> out;
+  for (const Attack& attack : all_attacks()) out.emplace(attack.name);
+  for (const StrangerSort& sort : stranger_sorts()) out.emplace(sort.name);
+  for (const MessageKind kind : client_kinds()) out.emplace(info_of(kind).name);
+  return out;
 }
 
 void add_siege_options(CLI::App& command, NetOptions& options) {
@@ -56,10 +67,11 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   std::set<std::string> profiles;
   for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
   net->add_option("--experiments", options.experiments,
-                  "which; all but siege and backup by default")
+                  "which; all but siege, strangers, floods and backup by default")
       ->delimiter(',')
-      ->check(CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack",
-                                                  "memory", "siege", "backup"}));
+      ->check(
+          CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack",
+                                              "memory", "siege", "strangers", "floods", "backup"}));
   net->add_option("--profiles", options.profiles, "links; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(profiles));
@@ -89,11 +101,10 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--crowd-sites", options.fleet_sites, "places where a fleet builds")
       ->capture_default_str()
       ->check(CLI::Range(1, 10'000));
-  std::set<std::string> attacks;
-  for (const Attack& attack : all_attacks()) attacks.emplace(attack.name);
-  net->add_option("--attacks", options.attacks, "which; all by default")
+  net->add_option("--attacks", options.attacks,
+                  "which attacks, strangers or floods; all by default")
       ->delimiter(',')
-      ->check(CLI::IsMember(attacks));
+      ->check(CLI::IsMember(attack_names()));
   net->add_option("--attack-seconds", options.attack_seconds,
                   "of each attack, and before and after it")
       ->capture_default_str()
@@ -102,12 +113,16 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   net->add_option("--attacker-addresses", options.attacker_addresses,
-                  "addresses that they come from; a server limits edits by address too")
+                  "addresses that they come from, each of another /24; a server limits edits by "
+                  "address too")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   net->add_option("--attack-bots", options.attack_bots, "honest clients under attack")
       ->capture_default_str()
       ->check(CLI::Range(1, 200));
+  net->add_option("--strangers", options.strangers, "connections that never become players")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 15'000));
   add_backup_options(*net, options);
   add_siege_options(*net, options);
   net->add_option("--seed", options.seed,
@@ -118,7 +133,7 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_flag("--insecure", options.insecure, "connections without encryption, to compare with");
   net->add_flag("--quick", options.quick,
                 "100 edits, one join and transfer, fleets of 1 and 20 for 3 seconds, attacks of 2, "
-                "a siege of 30, unless said otherwise");
+                "60 strangers, a siege of 30, unless said otherwise");
   net->callback([net, &options] { apply_quick(*net, options); });
   return net;
 }

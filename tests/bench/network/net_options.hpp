@@ -14,7 +14,8 @@ class App;
 namespace runstone::bench {
 
 struct NetOptions {
-  // All experiments but "siege", which takes ten minutes, and "backup", which writes some GB.
+  // All experiments but "siege", "strangers" and "floods", which take ten minutes each, and "backup",
+  // which writes some GB.
   std::vector<std::string> experiments = {"latency", "join",   "transfer",
                                           "crowd",   "attack", "memory"};
   std::vector<std::string> profiles;  // of the links; empty: all
@@ -31,6 +32,7 @@ struct NetOptions {
   unsigned attackers = 24;           // threads with a hostile client each
   unsigned attacker_addresses = 1;   // that they come from
   unsigned attack_bots = 20;         // honest clients under attack
+  unsigned strangers = 5000;         // connections that never become players
   double siege_seconds = 600;        // of the windows of a siege together
   unsigned siege_bots = 100;         // honest clients in a siege
   std::string siege_charts;          // folder for the charts of a siege; empty: none

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/core/bytes.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "protocol/limits.hpp"
 #include "tests/bench/network/attack_thread.hpp"
 
@@ -33,9 +34,9 @@ Bytes garbage(SplitMix64& random, std::uint64_t sort) {
     case 0:
       for (int i = 0; i < 4096; ++i) writer.u64(random.next());
       break;
-    case 1:  // a frame of 4 GiB
+    case 1:  // a frame of 64 KiB
       writer.u32(UINT32_MAX);
-      writer.u64(0);
+      writer.u32(0);
       break;
     case 2:  // the end in the middle of a frame
       out.assign(hello.begin(), hello.end() - 1);
@@ -46,13 +47,14 @@ Bytes garbage(SplitMix64& random, std::uint64_t sort) {
           random.below(static_cast<std::uint32_t>(out.size() - kFrameHeaderBytes))] ^=
           static_cast<std::uint8_t>(1U << random.below(8));
       break;
-    default:  // one fragment after another of a message that never ends
-      for (std::uint32_t counter = 0; counter < 64; ++counter) {
-        writer.u32(kFragmentBytesMax);
-        writer.u32(1U << 8);
-        writer.u32(counter);
+    default: {  // one fragment after another of a message that never ends
+      FrameWriter frames;
+      for (int i = 0; i < 64; ++i) {
+        const FrameHeader header = frames.next(kKindOf<EditRequest>, kFragmentBytesMax, true);
+        out.insert(out.end(), header.begin(), header.end());
         out.resize(out.size() + kFragmentBytesMax);
       }
+    }
   }
   return out;
 }

@@ -94,7 +94,7 @@ class SiegeRun {
     window.from_s = seconds();
     const double written_before_kb = written_kb(server_);
     std::optional<RunningAttack> running;
-    if (attack != nullptr) running.emplace(*attack, plan(index));
+    if (attack != nullptr) running.emplace(attack->play, plan(index));
     while (seconds() < window.from_s + kSiegeWindowSeconds) {
       window.resident_mb = std::max(window.resident_mb, look());
       if (!pause_for(kLookSeconds)) return Unexpected<std::string>{"interrupted"};

@@ -109,9 +109,9 @@ Result<std::string, std::string> Testbed::imported_world() {
 }
 
 std::vector<std::string> without_player_limits(std::vector<std::string> flags) {
-  for (const char* word :
-       {"--builder-budget", "unlimited", "--sessions-per-key", "0", "--sessions-per-address", "0",
-        "--connections-per-second", "0", "--chunk-loads-per-second", "0"})
+  for (const char* word : {"--builder-budget", "unlimited", "--budgets-per-address", "0",
+                           "--sessions-per-key", "0", "--sessions-per-address", "0",
+                           "--connections-per-second", "0", "--chunk-loads-per-second", "0"})
     flags.emplace_back(word);
   return flags;
 }

@@ -161,6 +161,57 @@ TEST_CASE(
   CHECK(tables.find("view radius exceeds 64 chunks") != std::string::npos);
 }
 
+TEST_CASE("strangers are held or refused, and builders keep their connections", "[testbed]") {
+  std::string tables;
+  const json testbed = run_testbed({"--experiments", "strangers", "--attacks",
+                                    "silent-sockets,all-strangers", "--attack-seconds", "1"},
+                                   tables);
+  for (const std::string row :
+       {"quiet", "silent-sockets, 1 address(es)", "all-strangers, 1 address(es)",
+        "all-strangers, 250 address(es)", "all-strangers, 250 address(es), raised limits"}) {
+    CAPTURE(row);
+    for (const std::string phase : {"before", "during"}) {
+      CAPTURE(phase);
+      CHECK(figure(testbed, "strangers", row, phase + "_samples") > 0);
+      CHECK(figure(testbed, "strangers", row, phase + "_disconnects") == 0);
+      CHECK(figure(testbed, "strangers", row, phase + "_violations") == 0);
+      CHECK(figure(testbed, "strangers", row, phase + "_joins_open") > 0);
+    }
+    CHECK(figure(testbed, "strangers", row, "accepted") > 0);
+  }
+  CHECK(figure(testbed, "strangers", "quiet", "attacker_connections") == 0);
+  CHECK(figure(testbed, "strangers", "all-strangers, 250 address(es)", "attacker_connections") >=
+        60);
+  // A server with raised limits holds nearly all of the 60.
+  CHECK(figure(testbed, "strangers", "silent-sockets, 250 address(es), raised limits",
+               "sockets_during") > 40);
+  CHECK(testbed["bars"].size() == 3);
+  CHECK(tables.find("a byte a second of that message") != std::string::npos);
+}
+
+TEST_CASE("floods of messages are read, and builders keep their connections", "[testbed]") {
+  std::string tables;
+  const json testbed =
+      run_testbed({"--experiments", "floods", "--attacks", "Hello,ClientAuth,Ping,EditRequest",
+                   "--attack-seconds", "1", "--attackers", "2", "--attacker-addresses", "2"},
+                  tables);
+  for (const char* row : {"quiet", "Hello, 2 address(es)", "ClientAuth, 2 address(es)",
+                          "Ping, 2 address(es)", "EditRequest, 2 address(es)"}) {
+    CAPTURE(row);
+    for (const std::string phase : {"before", "during"}) {
+      CAPTURE(phase);
+      CHECK(figure(testbed, "floods", row, phase + "_samples") > 0);
+      CHECK(figure(testbed, "floods", row, phase + "_disconnects") == 0);
+      CHECK(figure(testbed, "floods", row, phase + "_violations") == 0);
+    }
+  }
+  CHECK(figure(testbed, "floods", "Hello, 2 address(es)", "told unexpected_message") > 0);
+  CHECK(figure(testbed, "floods", "ClientAuth, 2 address(es)", "told not_authenticated") > 0);
+  CHECK(figure(testbed, "floods", "Ping, 2 address(es)", "attacker_sent_mb") > 0);
+  CHECK(figure(testbed, "floods", "Ping, 2 address(es)", "told still connected") == 2);
+  CHECK(testbed["bars"].size() == 3);
+}
+
 TEST_CASE("a siege has quiet windows and windows under attack, and writes charts", "[testbed]") {
   const test::TempFolder folder;
   const std::string charts = folder / "charts";

@@ -18,6 +18,7 @@ class HonestBuilder {
   /// Connects to a server that has just started. Requires that the server lets the client in.
   void join(std::uint16_t port) {
     client_ = std::make_unique<RawClient>(port);
+    REQUIRE(client_->binding().has_value());  // TLS
     const auto accepted = client_->join(kKey, kInstance);
     REQUIRE(accepted.has_value());
     author_ = accepted->author;

@@ -19,6 +19,7 @@ inline ServerConfig quiet_config(const std::string& world) {
   config.log_level = LogLevel::error;
   config.builder_budget = {};
   config.chunk_loads_per_second = 0;
+  config.budgets_per_address = 0;
   config.sessions_per_key = config.sessions_per_address = config.names_per_address = 0;
   config.connections_per_second = 0;
   config.stop_s = 300;          // tests compare snapshots after a stop, also on a slow machine

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/os/steady_clock.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "tests/support/hostile_edits.hpp"
 
@@ -33,6 +34,7 @@ class FedStream final : public ByteStream {
   }
   asio::awaitable<IoResult> read_some(asio::mutable_buffer into) override {
     const std::size_t count = std::min(into.size(), bytes_.size() - at_);
+    if (is_closed_) co_return IoResult{asio::error::operation_aborted};
     if (count == 0) {
       const auto [error] = co_await closed_.async_wait(kTuple);
       (void)error;  // cancelled at the end
@@ -44,6 +46,11 @@ class FedStream final : public ByteStream {
   }
   asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers,
                                   std::size_t /*terrain_bytes*/) override {
+    if (reads_nothing) {
+      const auto [error] = co_await closed_.async_wait(kTuple);
+      (void)error;  // cancelled when the stream is closed
+      co_return IoResult{asio::error::operation_aborted};
+    }
     for (const asio::const_buffer& buffer : buffers) {
       const auto* bytes = static_cast<const std::uint8_t*>(buffer.data());
       written.insert(written.end(), bytes, bytes + buffer.size());
@@ -55,9 +62,13 @@ class FedStream final : public ByteStream {
     return room_now;
   }
   void shutdown_send() override {}
-  void close() override { closed_.cancel(); }
+  void close() override {
+    is_closed_ = true;
+    closed_.cancel();
+  }
   std::string peer() const override { return "test"; }
   std::size_t read() const { return at_; }
+  bool reads_nothing = false;             // a write waits until the stream is closed
   StreamStart start = StreamStart::open;  // otherwise open() waits until the stream is closed
   StreamRoom room_now;
   std::size_t asked = 0;
@@ -66,6 +77,7 @@ class FedStream final : public ByteStream {
  private:
   Bytes bytes_;
   std::size_t at_ = 0;
+  bool is_closed_ = false;
   asio::steady_timer closed_;
 };
 
@@ -104,9 +116,9 @@ struct Bench {
     fed->room_now = room;
     fed->start = start;
     stream = fed.get();
-    session =
-        std::make_shared<NetSession>(SessionId{1}, io, decoders.get_executor(), std::move(fed),
-                                     limits, std::uint16_t{32}, budget, world, counters);
+    session = std::make_shared<NetSession>(
+        SessionId{1}, io, decoders.get_executor(), std::move(fed), limits, std::uint16_t{32},
+        budget, std::make_shared<ByteBudget>(limits.read_bytes_per_address), world, counters);
     session->start();
     io.poll();
   }
@@ -214,7 +226,16 @@ TEST_CASE("a large message is decoded by the decoders, and small ones are not", 
 
 TEST_CASE("each message counts as read with more than its bytes", "[net]") {
   NetLimits limits;
-  limits.read_bytes_per_second = 1'000'000;  // half of it at once
+  limits.read_bytes_per_second = 250'000;  // twice as much at once
+  limits.unhandled_bytes_max = 1'000'000;
+  Bench bench(frames_of(Ping{1}, 2'000), {}, limits);
+  CHECK(bench.world.received >= 900);
+  CHECK(bench.world.received < 1'500);
+}
+
+TEST_CASE("an address has a budget of reading, too", "[net]") {
+  NetLimits limits;
+  limits.read_bytes_per_address = 250'000;  // twice as much at once
   limits.unhandled_bytes_max = 1'000'000;
   Bench bench(frames_of(Ping{1}, 2'000), {}, limits);
   CHECK(bench.world.received >= 900);
@@ -246,4 +267,16 @@ TEST_CASE("edits that never leave room do not starve terrain", "[net]") {
   CHECK(edits == 1'000'000);
   CHECK(chunks >= 20'000);  // 2 KiB for each 64 KiB
   CHECK(chunks <= 40'000);
+}
+
+TEST_CASE("a session says for how long its client has read nothing", "[net]") {
+  Bench bench;
+  constexpr TimeUs kLater = 60'000'000;
+  bench.edit(100);
+  CHECK(bench.session->write_us(steady_now_us() + kLater) == 0);  // the write has ended
+  bench.stream->reads_nothing = true;
+  bench.edit(100);
+  const TimeUs waited = bench.session->write_us(steady_now_us() + kLater);
+  CHECK(waited >= kLater);
+  CHECK(waited < 2 * kLater);
 }

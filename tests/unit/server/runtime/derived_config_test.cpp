@@ -86,6 +86,7 @@ TEST_CASE("settings reach the network in bytes, with room for handshakes", "[ser
   config.session_kib_per_second = 2;
   config.server_kib_per_second = 3;
   config.read_kib_per_second = 4;
+  config.budgets_per_address = 3;
   config.messages_per_second = 50;
   const NetLimits limits = net_limits_of(config);
   CHECK(limits.connections_max > config.sessions_max);
@@ -95,6 +96,7 @@ TEST_CASE("settings reach the network in bytes, with room for handshakes", "[ser
   CHECK(limits.bytes_per_second == 2U * 1024);
   CHECK(limits.server_bytes_per_second == 3U * 1024);
   CHECK(limits.read_bytes_per_second == 4U * 1024);
+  CHECK(limits.read_bytes_per_address == 12U * 1024);
   CHECK(limits.messages_per_second == 50);
   CHECK(limits.message_burst == 100);
 }
