@@ -20,12 +20,12 @@ namespace {
 constexpr std::uint64_t kNoMax = 1'000'000'000'000'000ULL;
 
 struct NumberField {
-  std::uint64_t ServerConfig::*member;
+  std::uint64_t ServerConfig::* member;
   std::uint64_t min, max;
 };
 /// A field that takes any text that is not empty.
 struct TextField {
-  std::string ServerConfig::*member;
+  std::string ServerConfig::* member;
 };
 /// A field whose text has a form of its own.
 struct FormField {
@@ -35,7 +35,7 @@ struct FormField {
 };
 /// A field that is true or false.
 struct SwitchField {
-  bool ServerConfig::*member;
+  bool ServerConfig::* member;
 };
 struct Field {
   std::string name, help;
@@ -89,7 +89,7 @@ FormField choice_field() {
 }
 
 /// A field that takes any text, also none.
-template <std::string ServerConfig::*Member>
+template <std::string ServerConfig::* Member>
 FormField optional_text_field() {
   return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
             config.*Member = text;
@@ -151,7 +151,7 @@ FormField reserved_names_field() {
 
 const std::vector<Field>& fields() {
   using C = ServerConfig;
-  const auto number = [](const char* name, std::uint64_t C::*member, std::uint64_t min,
+  const auto number = [](const char* name, std::uint64_t C::* member, std::uint64_t min,
                          std::uint64_t max, const std::string& what) {
     std::string range = what + ", " + std::to_string(min);
     range += max == kNoMax ? " or more" : ".." + std::to_string(max);

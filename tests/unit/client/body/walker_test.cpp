@@ -71,11 +71,17 @@ TEST_CASE("materials are solid, liquid or passable as their table says", "[body]
   MaterialTable table;
   REQUIRE(table.add({"stone", {1, 2, 3, 255}, Visibility::opaque, std::nullopt}).has_value());
   REQUIRE(table.add({"mark", {0, 0, 0, 0}, Visibility::empty, std::nullopt}).has_value());
-  REQUIRE(table.add({"water", {1, 2, 3, 90}, Visibility::transparent, std::nullopt,
-                     MaterialBody::liquid})
-              .has_value());
-  REQUIRE(table.add({"fern", {1, 2, 3, 90}, Visibility::transparent, std::nullopt,
-                     MaterialBody::passable})
+  REQUIRE(
+      table
+          .add(
+              {"water", {1, 2, 3, 90}, Visibility::transparent, std::nullopt, MaterialBody::liquid})
+          .has_value());
+  REQUIRE(table
+              .add({"fern",
+                    {1, 2, 3, 90},
+                    Visibility::transparent,
+                    std::nullopt,
+                    MaterialBody::passable})
               .has_value());
   REQUIRE(table.add({"glass", {1, 2, 3, 90}, Visibility::transparent, std::nullopt}).has_value());
   const BodyMaterials body = body_materials(table);

@@ -88,7 +88,7 @@ TEST_CASE("lines come back in their order after a restart, in a file for its own
   const auto found = bench.find({});
   REQUIRE(found.has_value());
   CHECK(*found == entries);
-  struct stat status {};
+  struct stat status{};
   for (const char* end : {"", "-wal", "-shm"}) {
     REQUIRE(::stat(bench.file(end).c_str(), &status) == 0);
     CHECK((status.st_mode & 0777) == 0600);
