@@ -18,7 +18,7 @@
 namespace runstone::test {
 namespace {
 
-constexpr TimeUs kNowUs = 2'000'000'000'000'000;  // later than any edit of the test
+constexpr TimeUs kCompactedUs = 2'000'000'000'000'000;  // later than any edit of the test
 const auto kLime = static_cast<Material>(default_material_table().size());
 
 void write_wool(const std::string& file, const std::string& name) {
@@ -103,7 +103,7 @@ TEST_CASE("added materials survive kill -9, export, import, compaction and backu
   CHECK(table_of(older) == table_of(world));
 
   std::ostringstream out;
-  REQUIRE(compact_world({world, 0, false}, kNowUs, out).has_value());
+  REQUIRE(compact_world({world, 0, false}, kCompactedUs, out).has_value());
   {
     auto store = *open_world(world, StoreAccess::read_only);
     CHECK(store->log_range()->first > 1);
@@ -116,8 +116,8 @@ TEST_CASE("added materials survive kill -9, export, import, compaction and backu
   CHECK(verified_digest(world) != digest);
 
   const std::string copy = folder / "backup", back = folder / "back";
-  REQUIRE(back_up({world, copy, false}, kNowUs, out, {}).has_value());
-  REQUIRE(restore({copy, back, false}, kNowUs, out).has_value());
+  REQUIRE(back_up({world, copy, false}, kCompactedUs, out, {}).has_value());
+  REQUIRE(restore({copy, back, false}, kCompactedUs, out).has_value());
   CHECK(table_of(back) == table_of(world));
   build_with_lime(back, 6);
 }
@@ -133,7 +133,7 @@ TEST_CASE("materials of a later record follow those that a compaction kept",
     CHECK(server->stop().is_clean);
     std::ostringstream out;
     if (std::string(name) != "plum")
-      REQUIRE(compact_world({world, 0, false}, kNowUs, out).has_value());
+      REQUIRE(compact_world({world, 0, false}, kCompactedUs, out).has_value());
   }
   const MaterialTable table = table_of(world);
   CHECK(table.find("lime") == kLime);
