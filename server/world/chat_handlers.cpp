@@ -84,7 +84,7 @@ void refuse_line(WorldState& world, SessionId session, const ChatRefusal& refusa
 }
 
 void add_line(WorldState& world, ChatLine line, const PublicKey& by) {
-  world.environment.log_chat({line, by});
+  if (!world.disk_is_full) world.environment.log_chat({line, by});  // the rest is for edits
   world.chat.waiting.push_back(std::move(line));
   if (world.chat.waiting.size() == kChatLinesMax) broadcast_chat(world);
 }

@@ -265,6 +265,19 @@ TEST_CASE("the host writes to everybody, without a limit, and the key is logged"
   CHECK(bench.environment.chat[0].key == player_key(9));
 }
 
+TEST_CASE("while the disk is full, lines are sent and not logged", "[world][chat]") {
+  ChatBench bench;
+  bench.enter(1, 1);
+  bench.server.set_disk_is_full(true, bench.now());
+  bench.write(1, "hello");
+  bench.tick();
+  CHECK(bench.texts(1) == Texts{"hello"});
+  CHECK(bench.environment.chat.empty());
+  bench.server.set_disk_is_full(false, bench.now());
+  bench.write(1, "again");
+  CHECK(bench.environment.chat.size() == 1);
+}
+
 TEST_CASE("a session whose queue is full misses the lines, and nobody else", "[world][chat]") {
   ChatBench bench;
   bench.enter(1, 1);
