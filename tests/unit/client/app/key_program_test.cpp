@@ -14,13 +14,13 @@ namespace runstone::test {
 namespace {
 
 constexpr SealCost kCheap{1, 8};
-using Verb = KeyRequest::Verb;
+using Verb = KeyCommand::Verb;
 
-/// Runs one request. Returns its output, or "ERROR: " and the error.
-std::string run(const KeyRequest& request, const std::string& input = "") {
+/// Runs one command. Returns its output, or "ERROR: " and the error.
+std::string run(const KeyCommand& command, const std::string& input = "") {
   std::istringstream in(input);
   std::ostringstream out;
-  const auto done = run_key_program(request, in, out, kCheap);
+  const auto done = run_key_program(command, in, out, kCheap);
   return done ? out.str() : "ERROR: " + done.error();
 }
 
@@ -89,16 +89,16 @@ TEST_CASE("an import overwrites nothing and says what is wrong", "[client][key]"
 TEST_CASE("the command line of key names a verb and a key", "[client][key]") {
   const char* shown[] = {"key", "show", "--key", "a.key"};
   const auto parsed = parse_key_request(4, shown);
-  REQUIRE(parsed.request);
-  CHECK(parsed.request->verb == Verb::show);
-  CHECK(parsed.request->key_file == "a.key");
+  REQUIRE(parsed.command);
+  CHECK(parsed.command->verb == Verb::show);
+  CHECK(parsed.command->key_file == "a.key");
   const char* imported[] = {"key", "import", "--key", "a.key", "--in", "f", "--passphrase-file",
                             "p"};
   const auto more = parse_key_request(8, imported);
-  REQUIRE(more.request);
-  CHECK(more.request->verb == Verb::import_key);
-  CHECK(more.request->file == "f");
-  CHECK(more.request->passphrase_file == "p");
+  REQUIRE(more.command);
+  CHECK(more.command->verb == Verb::import_key);
+  CHECK(more.command->file == "f");
+  CHECK(more.command->passphrase_file == "p");
   CHECK(parse_key_request(1, shown).exit_code == 2);
   CHECK(parse_key_request(2, shown).exit_code == 2);
 }
