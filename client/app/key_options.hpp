@@ -17,7 +17,7 @@ struct KeyCommand {
   // Of send and receive.
   HostPort server{"127.0.0.1", kDefaultPort};
   std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
-  std::string code;                                      // to receive; empty: it is asked for
+  std::string code = {};                                 // to receive; empty: it is asked for
 };
 
 /// The command, or the exit code of a program that has nothing more to do: 0 after help, 2 after an

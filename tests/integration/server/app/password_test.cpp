@@ -1,6 +1,11 @@
 // The password of a world: set by control, brought by clients, and held by the log alone. And the
 // invite for the first administrator.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -143,6 +148,24 @@ TEST_CASE("the first administrator of a new world joins by a link that works onc
     CHECK(server->stop().is_clean);
   }
   CHECK_FALSE(start_server(config, flat_creation())->is_new_world());
+}
+
+TEST_CASE("a descriptor goes to the journal if systemd says so of this very stream",
+          "[integration]") {
+  const TempFolder folder;
+  const int file = ::open((folder / "file").c_str(), O_CREAT | O_WRONLY, 0600);
+  struct stat about{};
+  REQUIRE(::fstat(file, &about) == 0);
+  ::unsetenv("JOURNAL_STREAM");
+  CHECK_FALSE(is_journal(file));
+  const std::string stream = std::to_string(about.st_dev) + ":" + std::to_string(about.st_ino);
+  ::setenv("JOURNAL_STREAM", stream.c_str(), 1);
+  CHECK(is_journal(file));
+  CHECK_FALSE(is_journal(-1));
+  ::setenv("JOURNAL_STREAM", (stream + "1").c_str(), 1);
+  CHECK_FALSE(is_journal(file));
+  ::unsetenv("JOURNAL_STREAM");
+  ::close(file);
 }
 
 }  // namespace runstone::test

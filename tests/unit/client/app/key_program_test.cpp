@@ -16,11 +16,11 @@ namespace {
 constexpr SealCost kCheap{1, 8};
 using Verb = KeyCommand::Verb;
 
-/// Runs one request. Returns its output, or "ERROR: " and the error.
-std::string run(const KeyCommand& request, const std::string& input = "") {
+/// Runs one command. Returns its output, or "ERROR: " and the error.
+std::string run(const KeyCommand& command, const std::string& input = "") {
   std::istringstream in(input);
   std::ostringstream out;
-  const auto done = run_key_program(request, in, out, kCheap);
+  const auto done = run_key_program(command, in, out, kCheap);
   return done ? out.str() : "ERROR: " + done.error();
 }
 
@@ -89,16 +89,31 @@ TEST_CASE("an import overwrites nothing and says what is wrong", "[client][key]"
 TEST_CASE("the command line of key names a verb and a key", "[client][key]") {
   const char* shown[] = {"key", "show", "--key", "a.key"};
   const auto parsed = parse_key_command(4, shown);
-  REQUIRE(parsed.request);
-  CHECK(parsed.request->verb == Verb::show);
-  CHECK(parsed.request->key_file == "a.key");
+  REQUIRE(parsed.command);
+  CHECK(parsed.command->verb == Verb::show);
+  CHECK(parsed.command->key_file == "a.key");
   const char* imported[] = {"key", "import", "--key", "a.key", "--in", "f", "--passphrase-file",
                             "p"};
   const auto more = parse_key_command(8, imported);
-  REQUIRE(more.request);
-  CHECK(more.request->verb == Verb::import_key);
-  CHECK(more.request->file == "f");
-  CHECK(more.request->passphrase_file == "p");
+  REQUIRE(more.command);
+  CHECK(more.command->verb == Verb::import_key);
+  CHECK(more.command->file == "f");
+  CHECK(more.command->passphrase_file == "p");
+  const char* sent[] = {"key", "send", "--key", "a.key", "--connect", "example.org:5000"};
+  const auto send = parse_key_command(6, sent);
+  REQUIRE(send.command);
+  CHECK(send.command->verb == Verb::send);
+  CHECK(send.command->server == HostPort{"example.org", 5000});
+  CHECK(send.command->tls.has_value());
+  CHECK(parse_key_command(4, sent).exit_code == 2);
+  const char* received[] = {"key",       "receive", "--key",      "a.key",
+                            "--connect", "[::1]",   "--insecure", "0000-0000"};
+  const auto receive = parse_key_command(8, received);
+  REQUIRE(receive.command);
+  CHECK(receive.command->verb == Verb::receive);
+  CHECK(receive.command->code == "0000-0000");
+  CHECK_FALSE(receive.command->tls.has_value());
+  CHECK(parse_key_command(6, received).command->code.empty());
   CHECK(parse_key_command(1, shown).exit_code == 2);
   CHECK(parse_key_command(2, shown).exit_code == 2);
 }

@@ -1,7 +1,10 @@
 #include "client/app/options.hpp"
 
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <vector>
+
+#include "tests/support/temp_folder.hpp"
 
 using namespace runstone;
 
@@ -54,6 +57,20 @@ TEST_CASE("a link gives the address and the invite", "[client_app]") {
   CHECK(options.server.port == 5000);
   CHECK(options.ticket == "token");
   CHECK(accepted({"--connect", "runstone://example.org"}).ticket.empty());
+}
+
+TEST_CASE("a password comes from a file, for an identity that is kept, and encrypted",
+          "[client_app]") {
+  const runstone::test::TempFolder folder;
+  const std::string file = folder / "password";
+  const char* const path = file.c_str();
+  CHECK(accepted({"--connect", "a"}).password.empty());
+  CHECK(refused({"--connect", "a", "--key", "k", "--password-file", path}) == 2);  // no such file
+  std::ofstream(file) << "blue cheese 42\nnot this\n";
+  CHECK(accepted({"--connect", "a", "--key", "k", "--password-file", path}).password ==
+        "blue cheese 42");
+  CHECK(refused({"--connect", "a", "--password-file", path}) == 2);
+  CHECK(refused({"--connect", "a", "--key", "k", "--insecure", "--password-file", path}) == 2);
 }
 
 TEST_CASE("the mode --draw requires no server and accepts none", "[client_app]") {
