@@ -1,5 +1,6 @@
 // Clients that send faster than the server reads, or do not read what it sends.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <set>
 #include <thread>
 #include <variant>
@@ -33,6 +34,31 @@ TEST_CASE("a client that sends faster than it is read has to wait and is not clo
   CHECK(answered > 0);
   CHECK(answered < kPings / 2);
   CHECK(greedy.is_open());
+}
+
+TEST_CASE("a client that sends and reads nothing is ended after the idle time", "[integration]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder / "world");
+  config.idle_s = 5;
+  const auto server = start_server(config, flat_creation());
+  RawClient silent(server->port());
+  REQUIRE(silent.join(1).has_value());
+  silent.send(View{1, {0, 0, 0}, 1, 0});
+  RawClient good(server->port());
+  REQUIRE(good.join(2).has_value());
+  // Their commits fill the sockets of the client that reads nothing.
+  constexpr ClientSequence kEdits = 10'000;
+  for (ClientSequence seq = 1; seq <= kEdits; ++seq)
+    good.send(voxel_edit(seq, {static_cast<std::int32_t>(seq % 16), 3, 3}, some_material(seq)));
+  REQUIRE(good.sees_durable(kEdits));
+  constexpr int kPingsMax = 1'000;
+  for (int i = 0; i < kPingsMax && silent.is_open(); ++i) {
+    silent.send(Ping{i});
+    good.send(Ping{i});
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  CHECK_FALSE(silent.is_open());
+  CHECK(good.next_of<Pong>().has_value());
 }
 
 TEST_CASE("a client that sends no receive acks still gets its view", "[integration]") {
