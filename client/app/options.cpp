@@ -165,7 +165,8 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   ClientOptions out;
   RawOptions raw;
   CLI::App app{"Runstone client: shows a world, and plays scripts.", "runstone-client"};
-  app.footer("runstone-client key --help: show, export, import, send and receive the key of a player");
+  app.footer(
+      "runstone-client key --help: show, export, import, send and receive the key of a player");
   // The last value wins, so that a user can append options to the fixed command line of a
   // container.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
