@@ -25,10 +25,11 @@ struct ChatLineFields {
 };
 
 struct KeyDepositFields {
-  std::size_t slot = kKeySlotBytes, sealed = 1;
+  std::size_t slot = kKeySlotBytes, sealed = 1, signature = kSignatureBytes;
   Offset<wire::KeyDeposit> operator()(FlatBufferBuilder& b) const {
     const Vector s = filled(b, slot);
-    return wire::CreateKeyDeposit(b, s, filled(b, sealed));
+    const Vector k = filled(b, sealed);
+    return wire::CreateKeyDeposit(b, s, k, filled(b, signature));
   }
 };
 
@@ -72,6 +73,7 @@ TEST_CASE("a key for another device is refused with a slot or a seal of the wron
       [](auto& k) { k.slot = kKeySlotBytes + 1; },
       [](auto& k) { k.sealed = 0; },
       [](auto& k) { k.sealed = kSealedKeyBytesMax + 1; },
+      [](auto& k) { k.signature = kSignatureBytes - 1; },
   });
   CHECK(passes<KeyDeposit>(KeyDepositFields{kKeySlotBytes, kSealedKeyBytesMax}));
 }

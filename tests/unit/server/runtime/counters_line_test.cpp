@@ -24,7 +24,7 @@ TEST_CASE("the line of counters shows each part of the server", "[server]") {
   log.keyframes = 3;
   const std::string line = counters_line(world, net, log, {11, 12});
   INFO(line);
-  CHECK(line.rfind("counters sessions=1 ", 0) == 0);
+  CHECK(line.rfind("counters connections=0 refused=0 sessions=1 ", 0) == 0);
   for (const char* field : {" seq=7 ", " durable=7 ", " checkpoint=5 ", " keyframes=3 ",
                             " snapshots_encoded=11 ", " commit_enqueue_us=12 ",
                             " commit_send_ms=9 ", " bytes_out=1234 ", " dense_expansions=0"}) {
