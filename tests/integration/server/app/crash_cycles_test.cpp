@@ -43,6 +43,7 @@ class KilledWorld {
   /// Starts a server. Returns its port, or 0 if the start failed.
   std::uint16_t start() {
     process_.emplace([this] { return attacked_config(folder()); });
+    if (process_->port() == 0) WARN(process_->failure());
     return process_->port();
   }
   void die() { process_->kill(); }

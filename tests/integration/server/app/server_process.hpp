@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <functional>
+#include <string>
 
 #include "tests/integration/server/app/server_bench.hpp"
 
@@ -42,6 +43,15 @@ class ServerProcess {
 
   /// Returns 0 if the server did not start.
   std::uint16_t port() const { return port_; }
+  /// Returns how a server that did not start ended. Call it at most once, and not after kill().
+  std::string failure() {
+    int status = 0;
+    if (::waitpid(child_, &status, WNOHANG) == 0) return "it runs, but did not listen in time";
+    ::close(parent_end_);
+    child_ = -1;
+    return WIFSIGNALED(status) ? "signal " + std::to_string(WTERMSIG(status))
+                               : "exit code " + std::to_string(WEXITSTATUS(status));
+  }
   /// Kills the process as `kill -9` does. It may be called again.
   void kill() {
     if (child_ <= 0) return;
@@ -55,7 +65,7 @@ class ServerProcess {
   }
 
  private:
-  static constexpr int kStartMs = 60'000;
+  static constexpr int kStartMs = 300'000;  // also beside many other programs
 
   /// Runs a server in the child until the parent ends or closes its end of the socket. Returns the
   /// child's exit code.
