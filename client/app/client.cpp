@@ -53,7 +53,7 @@ std::unique_ptr<DrawThread> make_draw_thread(const ClientOptions& options, Windo
   return std::make_unique<DrawThread>(make_screen, priority, std::move(wake));
 }
 
-/// Returns the terminal in which a person may type. A script plays alone.
+/// Returns the terminal in which a person may type, or nullopt if there is none or a script plays.
 std::optional<int> terminal_of(const Script* script) {
   if (script != nullptr || ::isatty(STDIN_FILENO) != 1) return std::nullopt;
   return STDIN_FILENO;

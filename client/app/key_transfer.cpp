@@ -88,7 +88,7 @@ Result<void, std::string> send_key(const KeyCommand& command, std::ostream& out)
 }
 
 Result<KeySeed, std::string> receive_key(const KeyCommand& command, std::ostream& out) {
-  // A code works once, so everything that can be checked before is checked before.
+  // A code works once. The checks that need no server come first, so that they do not use it up.
   if (std::filesystem::exists(command.key_file))
     return failure(command.key_file + ": exists, and a key file is never overwritten");
   const auto code = DeviceCode::parse(command.code);

@@ -12,8 +12,9 @@ class LineInput {
   /// terminal reads nothing and is not stopped.
   explicit LineInput(int descriptor);
 
-  /// Returns the lines that are complete, without line breaks. Bytes of a line beyond kCommandBytesMax
-  /// are left out. After the end of the input, or an error, there are no more lines.
+  /// Returns the lines that are complete, without line breaks. Bytes of a line beyond
+  /// kCommandBytesMax are left out. After the end of the input or an error it returns no more
+  /// lines.
   std::vector<std::string> take_lines();
 
  private:

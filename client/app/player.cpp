@@ -12,7 +12,7 @@ constexpr double kPitchMax = kPi / 2 - 0.01;  // looking straight up has no forw
 constexpr double kRadiansPerPixel = 0.0025;
 constexpr double kSpeed = 12, kSpeedFast = 60;  // voxels a second
 
-/// Returns the direction over the ground that the keys mean, of length 1 at most.
+/// Returns the direction over the ground of the keys that are pressed, of length 1 at most.
 WalkInput over_ground(const WindowInput& input, double yaw) {
   const double forward = (input.forward ? 1 : 0) - (input.back ? 1 : 0);
   const double right = (input.right ? 1 : 0) - (input.left ? 1 : 0);

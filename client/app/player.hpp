@@ -20,7 +20,7 @@ class Player {
   const WorldPos& eye() const { return eye_; }
   void move_to(const WorldPos& eye);
   bool is_walking() const { return is_walking_; }
-  /// Lets the player walk, with a body that falls and is stopped by voxels, or fly.
+  /// Makes the player walk, with a body that falls and that voxels stop, or fly.
   void set_walking(bool is_walking);
   /// Call it when a world opens. The player keeps the position if the world is the one of the last
   /// call, and otherwise moves to `spawn`.
@@ -41,7 +41,8 @@ class Player {
   void turn(const WindowInput& input, std::size_t material_count);
   /// Applies the keys of the last `seconds` to a player that flies. Requires !is_walking().
   void fly(const WindowInput& input, double seconds);
-  /// Does the same for one that walks. Requires is_walking(). Cost: Walker::advance().
+  /// Applies the keys of the last `seconds` to a player that walks. Requires is_walking(). Cost:
+  /// Walker::advance().
   void walk(const WindowInput& input, double seconds, const VoxelSpace& space,
             const BodyMaterials& materials);
 

@@ -1,6 +1,6 @@
 // TerminalChat: the chat of runstone-client in its terminal. Lines of players and of the server are
-// printed on standard output. Lines that the player types are sent; a line that begins with a slash is
-// a command for the server. One thread.
+// printed on standard output. Lines that the player types are sent; a line that begins with a slash
+// is a command for the server. One thread.
 #pragma once
 #include <cstddef>
 #include <deque>
@@ -12,15 +12,15 @@
 
 namespace runstone {
 
-/// Returns a line as it is printed: "<ana> hello", "[server] ...", "[today] ..." for the message of the
-/// day, or "[not sent] ..." with the reason why a line of this client was not passed on. Only a line of
-/// a player begins with "<", and it begins with the player's name. Characters that could not be seen
-/// are question marks.
+/// Returns a line as it is printed: "<ana> hello", "[server] ...", "[today] ..." for the message of
+/// the day, or "[not sent] ..." with the reason why a line of this client was not passed on. Only a
+/// line of a player begins with "<", and it begins with the player's name. Characters that
+/// with_unseen_replaced() replaces are question marks.
 std::string printed_line(const ChatLine& line);
 
 class TerminalChat {
  public:
-  /// Lines that scripts may still wait for. The oldest one is forgotten.
+  /// The number of printed lines that scripts may wait for. Beyond it the oldest one is dropped.
   static constexpr std::size_t kHeardMax = 256;
 
   /// `session` must outlive the object. `input`: the descriptor of the terminal in which the player
@@ -29,7 +29,7 @@ class TerminalChat {
 
   /// Sends what was typed, and prints what arrived.
   void step();
-  /// Returns true if a printed line contains the text, and forgets the lines up to it.
+  /// Returns true if a printed line contains the text, and then forgets the lines up to it.
   bool take_heard(const std::string& text);
 
  private:

@@ -32,11 +32,11 @@ class ThreadedSession {
   const ClientSession& session() const { return session_; }
 
   /// Starts the network thread, which connects until finish() and connects again after each loss.
-  /// Call once.
+  /// Call it once. receive() calls it again after it has asked for a password.
   void start(TimeUs now_us);
-  /// Handles what the network thread received, for kReceiveUsMax at most. If the server refused a
-  /// player without a password and the world has one, asks for it at the terminal, once, and connects
-  /// again.
+  /// Handles what the network thread received, for kReceiveUsMax at most. If the server
+  /// requires the world's password, asks for it at the terminal, once, and connects again. The call
+  /// then waits for the player.
   void receive();
   /// Returns true if receive() left events for the next call.
   bool has_events() const { return !events_.empty(); }
@@ -71,7 +71,8 @@ class ThreadedSession {
   void count_snapshots(const Chunks& chunks, const LinkReceived& event);
   void on_disconnected(const LinkDisconnected& event);
   void on_world_opened();
-  /// Returns true if there is somebody to ask, and a key file that keeps the role of the password.
+  /// Returns true if the session lacks the password, it was not asked for yet, standard input is a
+  /// terminal, and the player has a key file, whose key keeps the role of the password.
   bool can_ask_password() const;
   void ask_password();
   /// Gives the cache a batch of chunks. Returns false if there was none.

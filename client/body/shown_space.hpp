@@ -11,7 +11,7 @@ class ShownSpace final : public VoxelSpace {
   explicit ShownSpace(const Replica& replica)
       : VoxelSpace(replica.chunk_edge()), replica_(replica) {}
 
-  /// A chunk that is not shown is not known, within the world and beyond it.
+  /// Returns null for a chunk that is not shown, also beyond the world.
   const RunChunk* chunk(ChunkCoord at) const override {
     if (!is_read_ || at != at_) {
       shown_ = replica_.shown({0, at});

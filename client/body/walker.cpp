@@ -15,7 +15,7 @@ constexpr double kGroundGrip = 1e-8, kAirGrip = 0.05, kLiquidGrip = 1e-3;
 constexpr double kLagShare = 1e-5;   // of the eye's lag after a step up, likewise
 constexpr double kUnstickSpeed = 3;  // of a body that is inside a solid voxel
 constexpr double kSecondsMax = 0.25;
-constexpr double kEdgeStep = 1.0 / 64;  // how exactly a careful body stops at an edge
+constexpr double kEdgeStep = 1.0 / 64;  // the precision with which a careful body stops at an edge
 
 double towards(double now, double wish, double left_after_s) {
   return wish + (now - wish) * std::pow(left_after_s, kWalkStepS);
@@ -80,7 +80,8 @@ void Walker::move(const VoxelSpace& space, const MaterialSet& solid, const World
   Slide end = slide(space, solid, body_at(feet_), by);
   const double wanted = length_over_ground(by);
   if (may_step_up && length_over_ground(end.moved) < wanted - kTouchDepth) {
-    // Up, along, and down again. It counts only if it leads further.
+    // Tries the move from a higher place: up, along and down again. The result is used only if it
+    // leads further.
     const Slide up = slide(space, solid, body_at(feet_), {0, kStepUpMax, 0});
     const WorldPos lifted = sum(feet_, up.moved);
     const Slide along = slide(space, solid, body_at(lifted), {by.x, 0, by.z});

@@ -1,5 +1,5 @@
 // Walker: the body of a player that walks, jumps, steps up and swims among voxels. Time passes in
-// steps of kWalkStepS, so that the same input gives the same way at every frame rate.
+// steps of kWalkStepS, so that the same input gives the same path at every frame rate.
 // Pure: voxels, input and time are arguments. One thread.
 #pragma once
 #include "client/body/body_materials.hpp"
@@ -9,13 +9,13 @@
 
 namespace runstone {
 
-// The body, in voxels. Its position is the middle of its soles.
+// The body, in voxels. Its position is the middle of its bottom face.
 inline constexpr double kBodyWidth = 0.6, kBodyHeight = 1.8, kEyeHeight = 1.62;
 inline constexpr double kWalkStepS = 1.0 / 120;  // seconds
-/// A body on the ground walks onto what is at most this high.
+/// A body on the ground walks onto voxels that are at most this much higher.
 inline constexpr double kStepUpMax = 1.0;
 
-/// What the player wants.
+/// The input of the player.
 struct WalkInput {
   double x = 0, z = 0;  // direction over the ground, of length 1 at most; 1 is full speed
   bool up = false;      // jump, or rise in water
@@ -36,15 +36,15 @@ class Walker {
   bool is_in_liquid() const { return is_in_liquid_; }
   /// Puts the body somewhere, at rest.
   void place(const WorldPos& feet);
-  /// Lets `seconds` pass. Longer than a quarter of a second counts as that. A body rests where the
-  /// voxels are not known. One that is inside a solid voxel rises until it is free.
+  /// Lets `seconds` pass. More than a quarter of a second counts as a quarter. A body rests where
+  /// the voxels are not known. A body inside a solid voxel rises until it is free.
   /// Cost: some sweeps for each step of kWalkStepS.
   void advance(const VoxelSpace& space, const BodyMaterials& materials, const WalkInput& input,
                double seconds);
 
  private:
   void step(const VoxelSpace& space, const BodyMaterials& materials, const WalkInput& input);
-  /// Moves the body by the velocity, and up onto what is low enough.
+  /// Moves the body by `by`, and up a step if `may_step_up` and the step is low enough.
   void move(const VoxelSpace& space, const MaterialSet& solid, const WorldPos& by,
             bool may_step_up);
   /// Returns the part of the way over the ground after which the body still stands on something.

@@ -33,8 +33,8 @@ class MeshPipeline {
   bool draws() const { return draw_thread_ != nullptr; }
   std::string renderer_name() const { return draw_thread_ ? draw_thread_->screen_name() : "none"; }
 
-  /// Sets the world's materials. If they only have more rows than before, the chunks that have one of
-  /// these already are meshed again. If they differ otherwise, all chunks are.
+  /// Sets the world's materials. If they only have more rows than before, the chunks that have one
+  /// of these already are meshed again. If they differ otherwise, all chunks are.
   void set_materials(const MaterialTable& materials);
   const MaterialTable& materials() const { return materials_; }
   /// Call it when the replica's view covers other chunks.

@@ -60,8 +60,8 @@ class ScriptHost {
   virtual void travel(const HistoryRequest& request) = 0;
   /// Sends a line of chat. Returns an empty text, or why it cannot be sent.
   virtual std::string say(const std::string& text) = 0;
-  /// Returns true if a line of chat has arrived that contains the text, as it is printed. Forgets the
-  /// lines up to it.
+  /// Returns true if a line of chat has arrived that contains the text, as it is printed. Forgets
+  /// the lines up to it.
   virtual bool take_chat(const std::string& text) = 0;
   /// Sends a command to the server. Returns an empty text, or why it cannot be sent.
   virtual std::string command(const std::string& text) = 0;

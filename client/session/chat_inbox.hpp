@@ -1,5 +1,5 @@
-// ChatInbox: the lines of the chat that arrived and were not drained yet. The server sends the newest
-// lines anew to each connection. Those that an earlier connection brought are left out.
+// ChatInbox: the lines of the chat that arrived and were not drained yet. The server sends the
+// newest lines anew to each connection. Those that an earlier connection brought are left out.
 // Full: the oldest line is dropped. One thread.
 #pragma once
 #include <algorithm>
@@ -27,7 +27,7 @@ class ChatInbox {
     }
   }
   void disconnected() { is_new_connection_ = true; }
-  /// Another world was opened: its lines are others.
+  /// Forgets which lines arrived. Call it when another world opens, because its lines are others.
   void clear() { seen_.clear(); }
   /// Returns the lines in their order, and forgets them.
   std::vector<ChatLine> drain() {

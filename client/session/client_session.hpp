@@ -110,8 +110,9 @@ class ClientSession {
   /// Returns true if the newest command has completed and succeeded.
   bool command_ok() const { return is_command_ok_; }
 
-  /// Sends a line to everybody. Fails with one line of text unless open, if the server has no chat, or
-  /// as chat_text() does. The server answers with the line itself, or with one that says why not.
+  /// Sends a line to everybody. Fails with one line of text unless open, if the server has no chat,
+  /// or as chat_text() does. The server answers with the line itself, or with one that says why
+  /// not.
   Result<void, std::string> chat(std::string_view line);
   /// Returns the lines that arrived since the last call, ChatInbox::kLinesMax at most.
   std::vector<ChatLine> drain_chat() { return chat_.drain(); }

@@ -21,8 +21,8 @@ class KeyTransferSession {
   using Request = std::variant<KeyDeposit, KeyRequest>;
   using Answer = std::variant<KeyDeposited, SealedKey>;
 
-  /// `keys` prove a deposit; its signature is added here. A request needs any keys. `pinned` has the
-  /// server keys seen before.
+  /// `keys` sign a deposit. A request may use any keys. `pinned` has the server
+  /// keys seen before.
   KeyTransferSession(const KeyPair& keys, std::map<WorldId, PublicKey> pinned, Request request);
 
   /// The byte stream is up. `nonce` is fresh and random.

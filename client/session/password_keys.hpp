@@ -1,6 +1,6 @@
 // PasswordKeys: makes the keys of a password that the user gave. A key takes a quarter of a second,
-// so the last one is kept: reconnections, and the sessions of a fleet that share the object, pay
-// once. Thread: one.
+// so the last one is kept: reconnections, and the sessions of a fleet that share the object,
+// compute it once. Thread: one.
 #pragma once
 #include <optional>
 #include <string>

@@ -55,7 +55,7 @@ class ServerConnection {
     handled,           // by the connection, which may have ended; or it accepts no input any more
     another_world,     // the welcome of another world: what the session holds is of the last world
     session_accepted,  // the connection is open now; the message is SessionAccepted, unchanged
-    materials_added,   // the materials of welcome() are more now
+    materials_added,   // welcome() has more materials now
     for_session,       // the session decides whether the message is allowed in this state
   };
   /// Handles the messages of the handshake, pongs and new materials once open, and goodbyes. Leaves
@@ -80,7 +80,7 @@ class ServerConnection {
   /// Sends chunk requests of at most kChunkRequestKeysMax keys each. Requires strictly ascending
   /// keys.
   void request_chunks(const std::vector<ChunkKey>& keys);
-  /// Gives the password to send from the next connection on.
+  /// Sets the password, which is sent from the next connection on.
   void set_password(std::shared_ptr<PasswordKeys> password);
   /// Sets the requested view; its number is ignored. send_view() sends it.
   void set_view(const View& view) { config_.view = view; }
@@ -103,11 +103,11 @@ class ServerConnection {
   /// Returns true if there is a connection and it is not to be closed.
   bool accepts_input() const { return state_ != SessionState::offline && !wants_close_; }
   const std::optional<SessionEnd>& end() const { return end_; }
-  /// Returns true if the server admitted the player no further than the handshake, the world has a
-  /// password, and none was sent.
+  /// Returns true if the server ended the handshake with `not_admitted`, the world has a password,
+  /// and none was sent.
   bool lacks_password() const { return lacks_password_; }
-  /// Returns the welcome of the current or last connection, or nullopt before the first. Its material
-  /// table has the rows that came later, too.
+  /// Returns the welcome of the current or last connection, or nullopt before the first. Its
+  /// material table has the rows that came later, too.
   const std::optional<Welcome>& welcome() const { return welcome_; }
   AuthorId author() const { return author_; }
   std::uint64_t connect_count() const { return connect_count_; }

@@ -12,9 +12,9 @@ class MaterialSet {
  public:
   /// Makes the set of all materials but kEmpty.
   MaterialSet() = default;
-  /// `has[i]` says whether material i is in the set. `has_unknown` says it for materials behind the
-  /// end, and for the voxels of chunks that are not known. It is true for materials that stop a
-  /// body: nobody must fall out of a world that is still loading.
+  /// `has[i]` says whether material i is in the set. `has_unknown` says it for materials beyond
+  /// the end, and for the voxels of chunks that are not known. It is true for materials that stop a
+  /// body: a body must not fall out of a world that is still loading.
   MaterialSet(std::vector<bool> has, bool has_unknown)
       : has_(std::move(has)), has_unknown_(has_unknown) {}
 

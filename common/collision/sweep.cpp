@@ -72,7 +72,8 @@ struct AxisSweep {
   void find_next() {
     if (step_ == 0) return;
     const double border = step_ > 0 ? cells_.last + 1 - max_ : cells_.first - min_;
-    // A face that is behind a border by kTouchDepth or less, at the start or at the end, touches it.
+    // A face that is behind a border by kTouchDepth or less, at the start or at the end, touches
+    // it.
     if (std::abs(move_) - step_ * border <= kTouchDepth) {
       next_ = std::numeric_limits<double>::infinity();
     } else {

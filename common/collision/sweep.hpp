@@ -1,10 +1,9 @@
-// Sweep: moves a box through the voxels of a VoxelSpace until it meets a solid one. Nothing is
-// unpacked or built for it: each layer of voxels that the box enters is one box query over runs.
-// Faces that only touch do not collide, so a body can stand on the ground and slide along a wall. A
-// voxel that the box overlaps at the start does not stop it, so that a body that somebody has built
-// into a wall can leave.
-// Source: the walk from border to border is that of Amanatides and Woo 1987, "A Fast Voxel Traversal
-// Algorithm for Ray Tracing", with the leading faces of a box in place of a point.
+// Sweep: moves a box through the voxels of a VoxelSpace until it meets a solid one. It unpacks
+// nothing: each layer of voxels that the box enters is one box query over runs. Faces that only
+// touch do not collide, so a body can stand on the ground and slide along a wall. A voxel that the
+// box overlaps at the start does not stop it, so that a body that somebody has built into a wall
+// can leave. Source: the walk from border to border is that of Amanatides and Woo 1987, "A Fast
+// Voxel Traversal Algorithm for Ray Tracing", with the leading faces of a box in place of a point.
 #pragma once
 #include <array>
 #include <optional>
@@ -21,8 +20,8 @@ struct BodyBox {
   friend bool operator==(const BodyBox&, const BodyBox&) = default;
 };
 
-/// Boxes and voxels that overlap by less than this, in voxels, only touch. It covers the rounding of
-/// positions within the world, whose step is 2^-23 at most.
+/// Boxes and voxels that overlap by less than this, in voxels, only touch. It covers the rounding
+/// of positions within the world, whose step is 2^-23 at most.
 inline constexpr double kTouchDepth = 1e-6;
 /// The longest move of one sweep along each axis, voxels. It bounds the cost.
 inline constexpr double kSweepMax = 256;
@@ -34,8 +33,8 @@ struct SweepHit {
 };
 
 /// Returns the first solid voxel that the box meets on the way along `move` (voxels), or nullopt if
-/// the way is free. Requires finite numbers, |move| <= kSweepMax on each axis, and that the way lies
-/// within the world. Cost: one find_voxel() for each layer of voxels that the box enters.
+/// the way is free. Requires finite numbers, |move| <= kSweepMax on each axis, and that the way
+/// lies within the world. Cost: one find_voxel() for each layer of voxels that the box enters.
 std::optional<SweepHit> sweep(const VoxelSpace& space, const MaterialSet& solid, const BodyBox& box,
                               const WorldPos& move);
 
@@ -51,8 +50,8 @@ struct Slide {
   std::array<bool, kDirectionCount> is_stopped{};  // by Direction of the move: it met a solid voxel
 };
 
-/// Moves the box and, where it meets a solid voxel, goes on with the rest of the move along the other
-/// axes. Same requirements as sweep(). Cost: that of three sweeps.
+/// Moves the box and, where it meets a solid voxel, goes on with the rest of the move along the
+/// other axes. Requires what sweep() requires. Cost: that of three sweeps.
 Slide slide(const VoxelSpace& space, const MaterialSet& solid, const BodyBox& box,
             const WorldPos& move);
 

@@ -1,6 +1,6 @@
-// VoxelSpace: the chunks that a query of this room reads, wherever they are kept.
-// find_voxel() is the box query that all of them are made of. It reads runs: along each line of the
-// box it looks up one run and walks from there, so no voxel is unpacked.
+// VoxelSpace: the chunks that the queries of this folder read, wherever they are kept. find_voxel()
+// is the box query on which all other queries are built. It reads runs: along each line of the box
+// it looks up one run and walks from there, so no voxel is unpacked.
 #pragma once
 #include <cstdint>
 #include <optional>

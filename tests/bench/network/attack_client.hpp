@@ -35,8 +35,8 @@ class AttackClient {
                    std::uint64_t features = kFeatures);
   /// Reads what is there, and answers a welcome if `answers` is true. It does not flush.
   void continue_handshake(bool answers);
-  /// Performs the handshake with a key drawn from `identity`, as this instance. Returns false if the
-  /// server ended the connection, or after `wait_ms`.
+  /// Performs the handshake with a key drawn from `identity`, as this instance. Returns false if
+  /// the server ended the connection, or after `wait_ms`.
   bool open_session(std::uint64_t identity, ClientInstance instance, int wait_ms,
                     std::uint64_t features = kFeatures);
 

@@ -22,8 +22,8 @@ struct HostilePhase {
 struct HostileResult {
   std::string name;
   unsigned addresses = 1;  // of the attackers
-  // A quiet row has no attack. A row whose server has raised limits shows what each connection costs
-  // and does not count for the targets.
+  // A quiet row has no attack. A row whose server has raised limits shows what each connection
+  // costs and does not count for the targets.
   bool is_quiet = false, has_raised_limits = false;
   HostilePhase before, during;  // without the attack, and beside it
   double seconds = 0;           // of each phase

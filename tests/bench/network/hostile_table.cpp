@@ -13,7 +13,8 @@ namespace {
 // The targets.
 constexpr double kTimesQuietMax = 2, kGrownMbMax = 64;
 
-/// Returns the p99 of builders beside whom nobody attacks: the median of all such phases of the run.
+/// Returns the p99 of builders beside whom nobody attacks: the median of all such phases of the
+/// run.
 double quiet_p99_ms(std::span<const HostileResult> results) {
   std::vector<double> values;
   for (const HostileResult& result : results) values.push_back(result.before.seen.p99_ms);

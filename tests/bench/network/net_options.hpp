@@ -14,8 +14,8 @@ class App;
 namespace runstone::bench {
 
 struct NetOptions {
-  // All experiments but "siege", "strangers" and "floods", which take ten minutes each, and "backup",
-  // which writes some GB.
+  // All experiments but "siege", "strangers" and "floods", which take ten minutes each, and
+  // "backup", which writes some GB.
   std::vector<std::string> experiments = {"latency", "join",   "transfer",
                                           "crowd",   "attack", "memory"};
   std::vector<std::string> profiles;  // of the links; empty: all
