@@ -26,8 +26,11 @@ std::vector<std::string> LineInput::take_lines() {
   std::array<char, 4'096> bytes{};
   const ssize_t count = ::read(descriptor_, bytes.data(), bytes.size());
   if (count > 0) take({bytes.data(), static_cast<std::size_t>(count)}, lines);
-  // EIO: the terminal is closed, or this process is in its background.
-  if (count == 0 || (count < 0 && errno != EINTR && errno != EAGAIN)) descriptor_ = -1;
+  if (count > 0 || (count < 0 && (errno == EINTR || errno == EAGAIN))) return lines;
+  // EIO: the terminal is closed, or this process is in its background and may come back.
+  const bool is_in_background = count < 0 && errno == EIO && ::tcgetpgrp(descriptor_) > 0 &&
+                                ::tcgetpgrp(descriptor_) != ::getpgrp();
+  if (!is_in_background) descriptor_ = -1;
   return lines;
 }
 

@@ -95,7 +95,8 @@ bool ThreadedSession::can_ask_password() const {
 
 void ThreadedSession::ask_password() {
   is_password_asked_ = true;
-  net_->stop(0);  // it would connect again meanwhile
+  save_first_contact();  // a player compares the fingerprint before typing a password
+  net_->stop(0);         // it would connect again meanwhile
   const auto password = ask_passphrase("password of this world: ");
   if (!password || password->empty()) return;
   events_.clear();
@@ -157,14 +158,18 @@ void ThreadedSession::on_world_opened() {
   const Welcome& welcome = *session_.welcome();
   spdlog::info("world open author={} epoch={} head={} durable={} edge={}", session_.author(),
                welcome.epoch, welcome.head, welcome.durable, welcome.chunk_edge);
-  if (session_.pinned().size() != pins_saved_) {
-    spdlog::warn(
-        "first contact with the server of world {}: its fingerprint is {}; compare it with the one "
-        "that your host sees when the server starts",
-        to_hex(welcome.world_id), key_fingerprint(welcome.server_key));
-    if (!options_.key_file.empty()) save_pinned_servers(options_.key_file, session_.pinned());
-    pins_saved_ = session_.pinned().size();
-  }
+  save_first_contact();
+}
+
+void ThreadedSession::save_first_contact() {
+  if (session_.pinned().size() == pins_saved_) return;
+  const Welcome& welcome = *session_.welcome();
+  spdlog::warn(
+      "first contact with the server of world {}: its fingerprint is {}; compare it with the one "
+      "that your host sees when the server starts",
+      to_hex(welcome.world_id), key_fingerprint(welcome.server_key));
+  if (!options_.key_file.empty()) save_pinned_servers(options_.key_file, session_.pinned());
+  pins_saved_ = session_.pinned().size();
 }
 
 bool ThreadedSession::take_world_opened() { return std::exchange(world_opened_, false); }

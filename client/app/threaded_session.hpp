@@ -71,6 +71,8 @@ class ThreadedSession {
   void count_snapshots(const Chunks& chunks, const LinkReceived& event);
   void on_disconnected(const LinkDisconnected& event);
   void on_world_opened();
+  /// Logs the fingerprint of a server that is new to this player, and keeps its key.
+  void save_first_contact();
   /// Returns true if the session lacks the password, it was not asked for yet, standard input is a
   /// terminal, and the player has a key file, whose key keeps the role of the password.
   bool can_ask_password() const;

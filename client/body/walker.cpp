@@ -37,7 +37,7 @@ BodyBox body_at(const WorldPos& feet) {
           {feet.x + kHalf, feet.y + kBodyHeight, feet.z + kHalf}};
 }
 
-void Walker::place(const WorldPos& feet) { *this = Walker{}, feet_ = feet; }
+void Walker::place(WorldPos feet) { *this = Walker{}, feet_ = feet; }
 
 void Walker::advance(const VoxelSpace& space, const BodyMaterials& materials,
                      const WalkInput& input, double seconds) {
@@ -53,6 +53,7 @@ void Walker::step(const VoxelSpace& space, const BodyMaterials& materials, const
   }
   if (overlaps(space, materials.solid, body_at(feet_))) {
     velocity_ = {};
+    is_on_ground_ = false;
     feet_.y += kUnstickSpeed * kWalkStepS;
     return;
   }

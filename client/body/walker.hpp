@@ -35,7 +35,7 @@ class Walker {
   bool is_on_ground() const { return is_on_ground_; }
   bool is_in_liquid() const { return is_in_liquid_; }
   /// Puts the body somewhere, at rest.
-  void place(const WorldPos& feet);
+  void place(WorldPos feet);
   /// Lets `seconds` pass. More than a quarter of a second counts as a quarter. A body rests where
   /// the voxels are not known. A body inside a solid voxel rises until it is free.
   /// Cost: some sweeps for each step of kWalkStepS.

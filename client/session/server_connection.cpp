@@ -78,14 +78,15 @@ ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
   if (const auto fault = check_welcome(hello_, welcome, binding_, config_.pinned))
     return give_up(fault->reason, fault->text);
   ClientAuth auth{sign(config_.keys, client_transcript(hello_, welcome, binding_)), config_.ticket};
-  if (config_.password && welcome.password_salt) {
+  const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
+  // What is made of a password serves to join, so it is sent to the world for which it was typed only.
+  if (config_.password && welcome.password_salt && !is_another_world) {
     if (!binding_)
       return give_up(GoodbyeReason::closing, "a password is sent on encrypted connections only");
     const auto key = config_.password->key_for(*welcome.password_salt);
     if (!key) return give_up(GoodbyeReason::closing, key.error());
     auth.password_key = *key;
   }
-  const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
   if (is_another_world || (welcome_ && welcome_->epoch != welcome.epoch)) clock_.reset();
   outgoing_.push_back(std::move(auth));
   welcome_ = std::move(welcome);

@@ -201,6 +201,7 @@ struct BodyBuilder {
     lines.reserve(m.lines.size());
     for (const ChatLine& line : m.lines) {
       RUNSTONE_ASSERT(!line.text.empty() && line.text.size() <= kChatBytesMax);
+      RUNSTONE_ASSERT(line.kind == ChatLineKind::player || (line.name.empty() && line.author == 0));
       const auto name = line.name.empty() ? 0 : b.CreateString(line.name);
       const auto text = b.CreateString(line.text);
       lines.push_back(wire::CreateChatLine(b, static_cast<std::uint8_t>(line.kind), line.author,

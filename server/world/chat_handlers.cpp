@@ -15,7 +15,7 @@ namespace runstone {
 namespace {
 
 // Bytes that count as read, so that lines that gain nothing do not keep the world busy: with the
-// default `read_kib_per_second`, a session gets some 220 refusals a second.
+// default `read_kib_per_second`, a session gets some 110 refusals a second.
 constexpr std::size_t kRefusedLineBytes = 4'096;
 
 /// Why a line is not passed on.

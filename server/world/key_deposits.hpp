@@ -26,13 +26,17 @@ class KeyDeposits {
   /// Keeps a sealed key. Returns nullopt, or the reason why it is not kept. Cost: O(deposits).
   std::optional<std::string> put(const PublicKey& owner, AddressBlock from, KeyDeposit deposit,
                                  TimeUs now_us) {
-    std::erase_if(kept_,
-                  [&](const Kept& kept) { return kept.until_us <= now_us || kept.owner == owner; });
-    const auto of_address = std::count_if(kept_.begin(), kept_.end(),
-                                          [from](const Kept& kept) { return kept.from == from; });
-    if (kept_.size() >= kDepositsMax || static_cast<std::size_t>(of_address) >= kDepositsPerAddress)
+    std::erase_if(kept_, [now_us](const Kept& kept) { return kept.until_us <= now_us; });
+    const auto count_others = [&](auto is_counted) {
+      return static_cast<std::size_t>(
+          std::count_if(kept_.begin(), kept_.end(),
+                        [&](const Kept& kept) { return kept.owner != owner && is_counted(kept); }));
+    };
+    if (count_others([](const Kept&) { return true; }) >= kDepositsMax ||
+        count_others([from](const Kept& kept) { return kept.from == from; }) >= kDepositsPerAddress)
       return "the server keeps as many keys as it can: try again in some minutes";
     if (find(deposit.slot) != kept_.end()) return "the code is in use: make another one";
+    std::erase_if(kept_, [&owner](const Kept& kept) { return kept.owner == owner; });
     kept_.push_back({owner, from, now_us + kDepositUs, deposit.slot, std::move(deposit.sealed)});
     return std::nullopt;
   }

@@ -18,7 +18,7 @@ MaterialsAdded rows_from(const MaterialTable& table, std::size_t first) {
   MaterialsAdded message;
   message.first = static_cast<Material>(first);
   for (const MaterialInfo& info : rows)
-    message.rows.push_back({info.name, info.colour, info.visibility});
+    message.rows.push_back({info.name, info.colour, info.visibility, info.body});
   return message;
 }
 

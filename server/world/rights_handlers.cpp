@@ -209,7 +209,12 @@ std::optional<std::string> accept_password(WorldState& world, SessionId session,
   if (!password) return "the world has no password";
   if (!mine.binding) return "a password needs an encrypted connection";
   if (!world.guess_ledger.has(mine.address, kGuessPrice, now.steady_us)) return kTooManyGuesses;
-  if (is_key_of(*password, key)) return take_role(world, mine, AcceptPassword{mine.key}, now);
+  if (is_key_of(*password, key)) {
+    // Each new player is a record that stays, and the number of grants has a bound.
+    if (!world.join_ledger.take(mine.address, 1, now.steady_us))
+      return "too many players joined with the password from your network: wait a minute";
+    return take_role(world, mine, AcceptPassword{mine.key}, now);
+  }
   world.guess_ledger.take(mine.address, kGuessPrice, now.steady_us);
   return "the password is wrong";
 }

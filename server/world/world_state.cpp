@@ -46,7 +46,8 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
   for (const NameClaim& claim : start.name_claims) names.restore(claim);
   for (const ChatEntry& entry : start.chat) {
     chat.add(entry.line);
-    chat.recent.back().author = players.author_of(entry.key).value_or(0);
+    if (entry.line.kind == ChatLineKind::player)
+      chat.recent.back().author = players.author_of(entry.key).value_or(0);
   }
   for (const RightsRecord& record : start.rights) rights.apply(record.change, record.origin);
   std::array<std::uint8_t, sizeof change_instance> instance{};

@@ -37,6 +37,9 @@ inline constexpr std::uint64_t kClaimPrice = 3'600;
 /// guesses gets nowhere. A setting would only serve to weaken it.
 inline constexpr std::uint64_t kGuessPrice = 60;
 inline constexpr Budget kGuessBudget{1, 10 * kGuessPrice};
+/// A player who joins with the password for the first time costs the address one of these: a school
+/// class at once, then one a second. Otherwise new keys of one address could use up all grants.
+inline constexpr Budget kJoinBudget{1, 60};
 inline constexpr const char* kTooManyGuesses =
     "too many wrong passwords or codes came from your network: wait a minute";
 inline constexpr const char* kMemoryIsFull = "the server's memory is full (memory_mib)";
@@ -64,6 +67,7 @@ struct WorldState {
   BudgetLedger load_ledger;  // a unit is a chunk that is generated or read for a view
   AddressLedger claim_ledger;
   AddressLedger guess_ledger{kGuessBudget}, deposit_ledger{kGuessBudget};
+  AddressLedger join_ledger{kJoinBudget};
   KeyDeposits key_deposits;
   RecentRefusals refusals;
   ChatState chat;

@@ -243,13 +243,16 @@ TEST_CASE("after a restart the newest lines of the log are there", "[world][chat
     entry.key = player_key(static_cast<std::uint8_t>(i % 2 + 1));
     start.chat.push_back(entry);
   }
+  // A line of the host that a player with this right wrote.
+  start.chat.push_back({{ChatLineKind::server, 0, "", "from the host", 5}, player_key(1)});
   ChatBench bench(chat_config(), start);
   bench.enter(1, 3);
   const std::vector<ChatLine> got = bench.lines(1);
   REQUIRE(got.size() == kChatRecentMax);
-  CHECK(got.back().text == "line 54");
-  CHECK(got.back().author == 7);
-  CHECK(got[kChatRecentMax - 2].author == 0);  // the number is not known any more
+  CHECK(got.back() == ChatLine{ChatLineKind::server, 0, "", "from the host", 5});
+  CHECK(got[kChatRecentMax - 2].text == "line 54");
+  CHECK(got[kChatRecentMax - 2].author == 7);
+  CHECK(got[kChatRecentMax - 3].author == 0);  // the number is not known any more
 }
 
 TEST_CASE("the host writes to everybody, without a limit, and the key is logged", "[world][chat]") {

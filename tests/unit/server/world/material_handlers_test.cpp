@@ -10,8 +10,9 @@
 namespace runstone::test {
 namespace {
 
-const std::vector<MaterialRow> kLimeAndIce = {{"lime", {1, 2, 3, 255}, Visibility::opaque},
-                                              {"ice", {9, 9, 9, 90}, Visibility::transparent}};
+const std::vector<MaterialRow> kLimeAndIce = {
+    {"lime", {1, 2, 3, 255}, Visibility::opaque, MaterialBody::passable},
+    {"ice", {9, 9, 9, 90}, Visibility::transparent}};
 constexpr Material kLime = 5, kIce = 6;  // the bench has air and four others
 
 struct MaterialBench : WorldBench {
