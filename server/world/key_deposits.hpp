@@ -35,7 +35,8 @@ class KeyDeposits {
     if (count_others([](const Kept&) { return true; }) >= kDepositsMax ||
         count_others([from](const Kept& kept) { return kept.from == from; }) >= kDepositsPerAddress)
       return "the server keeps as many keys as it can: try again in some minutes";
-    if (find(deposit.slot) != kept_.end()) return "the code is in use: make another one";
+    const auto same = find(deposit.slot);
+    if (same != kept_.end() && same->owner != owner) return "the code is in use: make another one";
     std::erase_if(kept_, [&owner](const Kept& kept) { return kept.owner == owner; });
     kept_.push_back({owner, from, now_us + kDepositUs, deposit.slot, std::move(deposit.sealed)});
     return std::nullopt;
