@@ -14,7 +14,7 @@ struct KeyCommand {
   std::string key_file;
   std::string file;             // exported to, or imported from; empty: the terminal
   std::string passphrase_file;  // empty: the passphrase is asked for
-  // Of send and receive.
+  // The fields below are used by the verbs send and receive.
   HostPort server{"127.0.0.1", kDefaultPort};
   std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
   std::string code = {};                                 // to receive; empty: it is asked for

@@ -79,7 +79,8 @@ ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
     return give_up(fault->reason, fault->text);
   ClientAuth auth{sign(config_.keys, client_transcript(hello_, welcome, binding_)), config_.ticket};
   const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
-  // What is made of a password serves to join, so it is sent to the world for which it was typed only.
+  // Whoever receives the key of the password can join with it. So it is sent only to the world for
+  // which the player typed the password.
   if (config_.password && welcome.password_salt && !is_another_world) {
     if (!binding_)
       return give_up(GoodbyeReason::closing, "a password is sent on encrypted connections only");

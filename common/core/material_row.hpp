@@ -15,8 +15,8 @@ namespace runstone {
 /// sRGB and alpha. Alpha is below 255 only for materials that are not opaque.
 using MaterialColour = std::array<std::uint8_t, 4>;
 
-/// What a material is to the body of a player. Values are frozen: tables, records and messages hold
-/// them. A material that is empty lets every body pass and has the value `solid`.
+/// The effect of a material on the body of a player. Values are frozen: tables, records and messages
+/// hold them. A material that is empty lets every body pass, and its value is `solid`.
 enum class MaterialBody : std::uint8_t {
   solid = 0,     // stops it
   liquid = 1,    // it swims

@@ -37,7 +37,8 @@ ChangedCell cell_of_kind(const CancelInvite& c) {
 ChangedCell cell_of_kind(const SetPassword&) { return {CellKind::password, {}, {}, {}}; }
 ChangedCell cell_of_kind(const AcceptPassword& c) { return {CellKind::grant, {}, {}, c.key}; }
 
-/// What a player got on joining depends on all records about invites, passwords and grants.
+/// Returns true if the role that a player gets on joining may depend on the record: if it is about
+/// invites, passwords or grants.
 bool is_about_joining(const RightsChange& change) {
   return std::holds_alternative<GrantRole>(change) ||
          std::holds_alternative<CreateInvite>(change) ||

@@ -64,7 +64,8 @@ inline bool take_pose(const wire::Pose* from, Pose& to) {
   return true;
 }
 
-/// Reads name, colour, visibility and body of a MaterialRow or MaterialInfo. MaterialTable checks the rest.
+/// Reads name, colour, visibility and body of a MaterialRow or MaterialInfo. MaterialTable checks
+/// the rest.
 template <class Row>
 bool take_material(const wire::MaterialRow& row, Row& info) {
   if (!take_text(row.name(), 1, kMaterialNameBytesMax, info.name)) return false;

@@ -4,7 +4,7 @@
 //   - Full: a line that finds queued_lines_max lines waiting is not logged.
 //   - Failure: lines that cannot be written, on a full disk for example, are not logged. A file that is
 //     damaged is renamed to chat.sqlite.damaged, and a new one is begun. Nobody waits for the log, and
-//     the server never stops for it. A warning, once a minute at most, counts the lines that are missing.
+//     the server never stops for it. A warning, at most once a minute, counts the missing lines.
 // Threads: append(), forget_before(), search() from any thread; they never wait for the disk. The
 // thread of the log calls `on_warning` and the answers of searches.
 #pragma once

@@ -6,8 +6,8 @@
 namespace runstone {
 
 struct ChatEntry {
-  /// Of a player, or of the host. The log does not keep the author number, because the one of a player
-  /// who never edits may be another player's after a restart.
+  /// The line of a player or of the host. The log does not keep the author number: the number of a
+  /// player who never edits may be given to another player after a restart.
   ChatLine line;
   PublicKey key{};  // of the player who wrote it; zeros: the console wrote it
   friend bool operator==(const ChatEntry&, const ChatEntry&) = default;

@@ -16,7 +16,8 @@ namespace runstone {
 /// Lines that a player who joins gets. One more is the message of the day.
 inline constexpr std::size_t kChatRecentMax = 50;
 static_assert(kChatRecentMax + 1 <= kChatLinesMax);
-/// What all players together may write. Nobody can read more, and each line goes to everybody.
+/// The lines that all players together may write. The bound exists because each line is sent to
+/// every session.
 inline constexpr std::uint64_t kChatLinesPerSecond = 20, kChatLinesAtOnce = 60;
 /// A line costs so much, of chat_per_minute units a second.
 inline constexpr std::uint64_t kChatPrice = 60;

@@ -26,8 +26,8 @@ class AttackClient {
   AttackClient(std::uint16_t port, std::uint32_t from, const TlsContext* context,
                int receive_bytes = 0);
 
-  /// What attackers offer: not receive acknowledgements, so that the server does not pace what it
-  /// sends, and no names, so that all of them may have one name.
+  /// The features that attackers offer. Receive acknowledgements are left out, so that the server
+  /// does not pace its sending, and names are left out, so that all attackers may have one name.
   static constexpr std::uint64_t kFeatures = kFeaturesKnown & ~(kFeatureReceiveAck | kFeatureNames);
 
   /// Queues a hello with a key drawn from `identity`, as this instance.

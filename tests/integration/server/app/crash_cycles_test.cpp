@@ -1,6 +1,6 @@
-// A server dies again and again while a builder builds and hostile clients attack, all over TLS, by
-// kill -9 or by a power loss. Each time the next server starts, and every edit that was reported as durable is in
-// the log once.
+// A server dies again and again, by kill -9 or by a power loss, while a builder builds and hostile
+// clients attack. All connections use TLS. After each death the next server starts, and the log has
+// every edit that was reported as durable exactly once.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
