@@ -1,64 +1,69 @@
 #include "server/interest/session_interest.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "common/core/assert.hpp"
 
 namespace runstone {
 
-namespace {
-
-// Returns a comparison for heaps, which have their largest element on top.
-auto later(const ViewOrder& order) {
-  return [&order](const ChunkKey& a, const ChunkKey& b) { return order(b, a); };
-}
-
-}  // namespace
-
 SessionInterest::Moved SessionInterest::set_view(const View& view) {
   Moved moved;
   if (view_ == view) return moved;
+  moved.steps = queue_.size();
+  std::vector<ChunkCoord> chunks = wanted();
   if (view_ && view_->same_chunks(view)) {
-    std::erase_if(queue_, [&](const ChunkKey& key) { return !is_wanted(key); });
-    moved.steps = queue_.size();
-    set_order(view);
+    set_queue(view, chunks);
     return moved;
   }
-  std::vector<ChunkCoord> cells;
-  if (view_) append_difference(*view_, view, limit_, cells);
-  for (const ChunkCoord at : cells) {
+  std::vector<ChunkCoord> left;
+  if (view_) append_difference(*view_, view, limit_, left);
+  for (const ChunkCoord at : left) {
     const auto found = chunks_.find({0, at});
     if (found == chunks_.end()) continue;
     moved.left.push_back({found->first, found->second});
     --counter(found->second);
     chunks_.erase(found);
   }
-  moved.steps = cells.size() + queue_.size();
-  std::erase_if(queue_,
-                [&](const ChunkKey& key) { return !view.contains(key.at) || !is_wanted(key); });
-  cells.clear();
-  append_difference(view, view_, limit_, cells);
-  for (const ChunkCoord at : cells) queue_.push_back({0, at});
-  moved.steps += cells.size();
-  set_order(view);
+  std::erase_if(chunks, [&](ChunkCoord at) { return !view.contains(at); });
+  const std::size_t kept = chunks.size();
+  append_difference(view, view_, limit_, chunks);
+  moved.steps += left.size() + chunks.size() - kept;
+  set_queue(view, chunks);
   return moved;
 }
 
-void SessionInterest::set_order(const View& view) {
+std::vector<ChunkCoord> SessionInterest::wanted() const {
+  std::vector<ChunkCoord> chunks;
+  chunks.reserve(queue_.size());
+  for (const ViewOrder::Place place : queue_) {
+    const ChunkCoord at = order_->chunk_at(place);
+    if (is_wanted(at)) chunks.push_back(at);
+  }
+  return chunks;
+}
+
+void SessionInterest::set_queue(const View& view, const std::vector<ChunkCoord>& chunks) {
   view_ = view;
   order_.emplace(view);
-  std::make_heap(queue_.begin(), queue_.end(), later(*order_));
+  queue_.clear();
+  queue_.reserve(chunks.size());
+  for (const ChunkCoord at : chunks) queue_.push_back(order_->place_of(at));
+  std::make_heap(queue_.begin(), queue_.end(), std::greater<>());
 }
 
 void SessionInterest::pop_nearest() {
-  std::pop_heap(queue_.begin(), queue_.end(), later(*order_));
+  std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
   queue_.pop_back();
 }
 
 std::optional<ChunkKey> SessionInterest::nearest_wanted() {
-  while (!queue_.empty() && !is_wanted(queue_.front())) pop_nearest();
-  if (queue_.empty()) return std::nullopt;
-  return queue_.front();
+  while (!queue_.empty()) {
+    const ChunkCoord at = order_->chunk_at(queue_.front());
+    if (is_wanted(at)) return ChunkKey{0, at};
+    pop_nearest();
+  }
+  return std::nullopt;
 }
 
 std::optional<ChunkInterest> SessionInterest::state(const ChunkKey& key) const {
@@ -79,12 +84,12 @@ void SessionInterest::set_state(const ChunkKey& key, ChunkInterest state) {
     chunks_.insert_or_assign(key, state);
     // A chunk was first in the queue when it was sent. Removing it keeps a chunk that is wanted
     // again and again in the queue once.
-    if (!queue_.empty() && queue_.front() == key) pop_nearest();
+    if (!queue_.empty() && order_->chunk_at(queue_.front()) == key.at) pop_nearest();
     return;
   }
   chunks_.erase(key);
-  queue_.push_back(key);
-  std::push_heap(queue_.begin(), queue_.end(), later(*order_));
+  queue_.push_back(order_->place_of(key.at));
+  std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
 }
 
 std::optional<ChunkKey> SessionInterest::next_for_digest_check() {

@@ -71,20 +71,23 @@ class SessionInterest {
 
  private:
   std::size_t& counter(ChunkInterest state) { return counts_[static_cast<std::size_t>(state)]; }
-  /// Requires a key of the queue.
-  bool is_wanted(const ChunkKey& key) const { return !chunks_.contains(key); }
+  /// Returns the chunks of the queue that are wanted, each once for each time that it is there.
+  std::vector<ChunkCoord> wanted() const;
+  /// Requires a chunk of the view.
+  bool is_wanted(ChunkCoord at) const { return !chunks_.contains({0, at}); }
   void pop_nearest();
-  void set_order(const View& view);
+  /// Makes the queue of these chunks in the order of the view.
+  void set_queue(const View& view, const std::vector<ChunkCoord>& chunks);
 
   CoordLimit limit_;
   std::optional<View> view_;
   std::map<ChunkKey, ChunkInterest> chunks_;  // without the wanted ones
   std::array<std::size_t, 6> counts_{};
   std::optional<ViewOrder> order_;  // of view_
-  // A heap of chunks of the view, the first in order on top. It contains every wanted chunk. Some
-  // entries are not wanted any more, or are there twice: nearest_wanted() drops those it meets,
-  // set_view() all of them.
-  std::vector<ChunkKey> queue_;
+  // A heap of places in order_, the lowest on top. It contains every wanted chunk. Some entries are
+  // not wanted any more, or are there twice: nearest_wanted() drops those it meets, set_view() all
+  // of them.
+  std::vector<ViewOrder::Place> queue_;
   std::optional<ChunkKey> digest_checked_;
 };
 

@@ -22,13 +22,6 @@ bool has_column(const View& view, std::int64_t x, std::int64_t z) {
 
 }  // namespace
 
-std::int64_t distance2(const View& view, ChunkCoord at) {
-  const std::int64_t dx = std::int64_t{at.x} - view.centre.x;
-  const std::int64_t dy = std::int64_t{at.y} - view.centre.y;
-  const std::int64_t dz = std::int64_t{at.z} - view.centre.z;
-  return dx * dx + dy * dy + dz * dz;
-}
-
 void append_difference(const View& view, const std::optional<View>& other, CoordLimit limit,
                        std::vector<ChunkCoord>& out) {
   const auto append = [&](std::int64_t x, std::int64_t z, Heights range) {

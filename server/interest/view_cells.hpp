@@ -12,9 +12,6 @@
 
 namespace runstone {
 
-/// Returns the squared distance from the view's centre, in chunks.
-std::int64_t distance2(const View& view, ChunkCoord at);
-
 /// Appends the chunks of `view` that are not in `other`, column by column; all of them if there is
 /// no `other`.
 void append_difference(const View& view, const std::optional<View>& other, CoordLimit limit,

@@ -1,6 +1,6 @@
 // ViewOrder: the order in which the chunks of a view are sent: first the chunks around the viewer,
 // then the chunks in the cone of sight, then the rest. Within each group the nearest chunk comes
-// first; ties are ordered by key. It is pure.
+// first; ties are ordered by coordinates. It is pure.
 #pragma once
 #include <cstdint>
 
@@ -12,18 +12,25 @@ namespace runstone {
 class ViewOrder {
  public:
   explicit ViewOrder(const View& view);
-  /// Returns true if `a` comes before `b`. This is a strict weak order of chunk keys.
-  bool operator()(const ChunkKey& a, const ChunkKey& b) const;
+
+  /// The place of a chunk in the order: lower places come first. It names the chunk, too, so a
+  /// queue of chunks needs nothing else, and comparing two chunks costs one comparison of integers.
+  using Place = std::uint64_t;
+  /// Requires a chunk of the view.
+  Place place_of(ChunkCoord at) const;
+  /// Returns the chunk whose place this is.
+  ChunkCoord chunk_at(Place place) const;
 
   /// The squared distance, in chunks, up to which chunks surround the viewer. A viewer who turns
   /// sees them at once.
   static constexpr std::int64_t kNear2 = 4;
 
  private:
-  enum class Ring { near, seen, rest };
-  Ring ring(ChunkCoord at, std::int64_t distance2) const;
+  enum class Ring : std::uint8_t { near, seen, rest };
+  Ring ring(std::int64_t dx, std::int64_t dy, std::int64_t dz, std::int64_t distance2) const;
 
-  View view_;
+  ChunkCoord centre_;
+  bool has_cone_ = false;
   double x_ = 0, y_ = 0, z_ = 0;  // the direction of sight, of length 1
   double cosine_ = -1;            // of View::cone, the angle between the cone's axis and its side
 };

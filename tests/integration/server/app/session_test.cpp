@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "common/runs/dense.hpp"
-#include "server/interest/view_cells.hpp"
 #include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
+#include "tests/support/view_distance.hpp"
 
 namespace runstone::test {
 namespace {

@@ -5,9 +5,12 @@
 #include <set>
 
 #include "common/core/hash.hpp"
+#include "tests/support/view_distance.hpp"
 
 namespace runstone {
 namespace {
+
+using test::distance2;
 
 constexpr CoordLimit kLimit{1000};
 
@@ -62,6 +65,22 @@ TEST_CASE("a view at the border of the world ends there and does not overflow", 
   CHECK(chunks_in({1, {INT32_MAX, INT32_MIN, INT32_MAX}, 64, 64}, limit) == 0);
   append_difference({1, {limit.limit - 1, 0, 0}, 1, 0}, std::nullopt, limit, cells);
   CHECK(cells.size() == 4);  // the fifth would lie outside
+}
+
+TEST_CASE("a place names its chunk, also at the largest radius and at the ends of coordinates",
+          "[interest]") {
+  constexpr std::int32_t kRadius = 255;
+  for (const std::int32_t centre : {0, INT32_MAX - kRadius, -INT32_MAX + kRadius}) {
+    View view{1, {centre, -centre, centre}, kRadius, kRadius};
+    view.cone = 8'192;
+    const ViewOrder order(view);
+    for (const std::int32_t x : {-kRadius, -1, 0, kRadius}) {
+      for (const std::int32_t y : {-kRadius, 0, 1, kRadius}) {
+        const ChunkCoord at{centre + x, -centre + y, centre - x};
+        CHECK(order.chunk_at(order.place_of(at)) == at);
+      }
+    }
+  }
 }
 
 TEST_CASE("wanted chunks come nearest first, with ties by key", "[interest]") {

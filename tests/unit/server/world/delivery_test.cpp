@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "server/interest/view_cells.hpp"
+#include "tests/support/view_distance.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone {
