@@ -1,4 +1,4 @@
-// First invite: the link with which the first administrator of a new world joins.
+// First invite: the link with which the first administrator of a world joins.
 #pragma once
 #include <string>
 

@@ -50,6 +50,7 @@ struct Server::Parts {
   std::vector<std::thread> io_threads;
   std::unique_ptr<ControlSocket> control;  // null if the folder's path is too long
   std::unique_ptr<ServerCore> core;
+  bool is_unclaimed = false;
   bool is_running = false;
 };
 
@@ -90,6 +91,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   if (const auto recovered = parts->core->recover(); !recovered) {
     return Unexpected<std::string>{recovered.error()};
   }
+  parts->is_unclaimed = parts->core->is_unclaimed();
   parts->work.emplace(parts->io.get_executor());
   parts->core->start();
   auto control = ControlSocket::listen(
@@ -128,7 +130,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
 }
 
 std::uint16_t Server::port() const { return parts_->core->port(); }
-bool Server::is_new_world() const { return parts_->world.is_new; }
+bool Server::is_unclaimed() const { return parts_->is_unclaimed; }
 void Server::command(const std::string& line, CommandReply reply) {
   parts_->core->command(line, std::move(reply));
 }

@@ -31,8 +31,9 @@ class Server {
   ~Server();
 
   std::uint16_t port() const;
-  /// Returns true if start() made the world.
-  bool is_new_world() const;
+  /// Returns true if at the start nobody had a granted role and there was no invite: the world is
+  /// new, imported, or was only ever governed from the console.
+  bool is_unclaimed() const;
   void log_counters();
   /// Carries out a command as an operator. Replies come from another thread; the last one has
   /// is_done. A server that stops may leave out replies.

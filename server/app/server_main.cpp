@@ -186,7 +186,7 @@ int run(const ServerOptions& options) {
   auto server = Server::start(*config, options.creation, end, actions, options.accept_losses);
   if (!server) return cannot_start(server.error());
   running = *std::move(server);
-  if (running->is_new_world() && config->operators.empty()) welcome_administrator(*running);
+  if (running->is_unclaimed() && config->operators.empty()) welcome_administrator(*running);
   std::shared_ptr<Console> console;
   if (options.console || ::isatty(STDIN_FILENO) == 1) {
     const auto run_line = [&running](const std::string& line, CommandReply reply) {

@@ -126,13 +126,13 @@ TEST_CASE("clients set no password, and control refuses short ones", "[integrati
   CHECK(mentions(control(config.world, {"password", "set", "hunter2xyz"}).text, "control asks"));
 }
 
-TEST_CASE("the first administrator of a new world joins by a link that works once",
+TEST_CASE("the first administrator of a world joins by a link that works once",
           "[integration][rights]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
   {
     auto server = start_server(config, flat_creation());
-    REQUIRE(server->is_new_world());
+    REQUIRE(server->is_unclaimed());
     const std::string text = make_first_invite(*server);
     const std::string port = std::to_string(server->port());
     const std::size_t link = text.find("'runstone://127.0.0.1:" + port + "/#");
@@ -147,7 +147,23 @@ TEST_CASE("the first administrator of a new world joins by a link that works onc
     CHECK(command(bea, "why player2 administer").text.starts_with("no: "));
     CHECK(server->stop().is_clean);
   }
-  CHECK_FALSE(start_server(config, flat_creation())->is_new_world());
+  CHECK_FALSE(start_server(config, flat_creation())->is_unclaimed());
+}
+
+TEST_CASE("a world stays unclaimed until somebody gets a role or an invite",
+          "[integration][rights]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  start_server(config, flat_creation())->stop();
+  {
+    auto server = start_server(config, flat_creation());
+    CHECK(server->is_unclaimed());
+    RawClient ana(server->port());
+    REQUIRE(ana.join(1).has_value());
+    REQUIRE(control(config.world, {"grant", "player1", "builder"}).is_ok);
+    server->stop();
+  }
+  CHECK_FALSE(start_server(config, flat_creation())->is_unclaimed());
 }
 
 TEST_CASE("a descriptor goes to the journal if systemd says so of this very stream",
