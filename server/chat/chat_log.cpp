@@ -10,10 +10,21 @@ namespace runstone {
 namespace {
 
 std::string chat_file(const std::string& folder) { return folder + "/chat.sqlite"; }
+std::string damaged_file(const std::string& file) { return file + ".damaged"; }
 
 void remove_files(const std::string& file) {
   std::error_code ignored;
   for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(file + end, ignored);
+}
+
+/// Removes the file if nothing was written to it since `utc_us`.
+void remove_if_older(const std::string& file, TimeUs utc_us) {
+  std::error_code missing, ignored;
+  const auto written = std::filesystem::last_write_time(file, missing);
+  if (missing) return;
+  const auto since = std::chrono::file_clock::to_sys(written).time_since_epoch();
+  if (std::chrono::floor<std::chrono::microseconds>(since).count() < utc_us)
+    std::filesystem::remove(file, ignored);
 }
 
 }  // namespace
@@ -102,6 +113,7 @@ void ChatLog::carry_out(Work& work) {
   if (work.forget_before_us) {
     static_cast<void>(with_database(
         [&](ChatDatabase& database) { return database.forget_before(*work.forget_before_us); }));
+    remove_if_older(damaged_file(file_), *work.forget_before_us);
   }
   if (!work.lines.empty()) {
     const bool is_written =
@@ -159,9 +171,9 @@ bool ChatLog::with_database(const std::function<sql::Result<void>(ChatDatabase&)
 void ChatLog::set_aside(const sql::Error& why) {
   database_.reset();
   on_warning_("the log of the chat is damaged (" + file_ + ": " + why.what + "): renamed to " +
-              file_ + ".damaged, and a new one is begun");
+              damaged_file(file_) + ", and a new one is begun");
   std::error_code ignored;
-  std::filesystem::rename(file_, file_ + ".damaged", ignored);
+  std::filesystem::rename(file_, damaged_file(file_), ignored);
   remove_files(file_);
 }
 
@@ -182,7 +194,7 @@ void ChatLog::warn_of_missing(bool is_last) {
 void remove_chat_log(const std::string& folder) {
   remove_files(chat_file(folder));
   std::error_code ignored;
-  std::filesystem::remove(chat_file(folder) + ".damaged", ignored);
+  std::filesystem::remove(damaged_file(chat_file(folder)), ignored);
 }
 
 }  // namespace runstone

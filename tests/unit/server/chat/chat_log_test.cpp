@@ -10,6 +10,7 @@
 
 #include "common/core/hex.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
+#include "server/runtime/read_clocks.hpp"
 #include "tests/support/full_disk_vfs.hpp"
 #include "tests/support/temp_folder.hpp"
 #include "tests/support/text_contains.hpp"
@@ -192,6 +193,20 @@ TEST_CASE("a damaged file is set aside, and the lines go to a new one", "[chat]"
   bench.log.reset();
   remove_chat_log(bench.folder.path());
   CHECK(std::filesystem::is_empty(bench.folder.path()));
+}
+
+TEST_CASE("a file that was set aside is removed when its lines would have been", "[chat]") {
+  LogBench bench;
+  bench.log.reset();
+  std::ofstream(bench.file(), std::ios::binary | std::ios::trunc) << std::string(8'192, 'x');
+  bench.open();
+  REQUIRE(std::filesystem::exists(bench.file(".damaged")));
+  const TimeUs now_us = read_clocks().utc_us;
+  constexpr TimeUs kHourUs = 3'600'000'000;
+  bench.open(now_us - kHourUs);
+  CHECK(std::filesystem::exists(bench.file(".damaged")));
+  bench.open(now_us + kHourUs);
+  CHECK_FALSE(std::filesystem::exists(bench.file(".damaged")));
 }
 
 TEST_CASE("rows that no line can be are left out", "[chat]") {
