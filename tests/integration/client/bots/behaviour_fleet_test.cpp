@@ -1,10 +1,9 @@
 // Fleets of bots against a real server on loopback.
 #include "client/fleet/behaviour_fleet.hpp"
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <thread>
 
 #include "tests/integration/server/app/server_bench.hpp"
 
@@ -111,9 +110,13 @@ TEST_CASE("a signal ends the edits of a fleet early, and submitted edits are sti
   BotOptions options = options_for(*flat.server, BotRole::build, 2);
   options.edits.reset();
   static volatile std::sig_atomic_t stop = 0;
-  std::signal(SIGALRM, [](int) { stop = 1; });
-  ::ualarm(700'000, 0);
+  std::signal(SIGUSR1, [](int) { stop = 1; });
+  std::thread signaller([&] {
+    reaches(flat.folder.path(), 30);
+    ::raise(SIGUSR1);
+  });
   const FleetReport report = BehaviourFleet(options).run(stop);
+  signaller.join();
   CHECK(report.failure.empty());
   CHECK(report.counts.submitted > 20);
   CHECK(report.counts.durable == report.counts.submitted);

@@ -132,7 +132,7 @@ TEST_CASE("a play that finds no server, or loses it, ends with that reason", "[b
   auto server = start_server(quiet_config(live.path()), flat_creation());
   const std::uint16_t port = server->port();
   std::thread stopper([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    reaches(live.path(), 1);
     server->stop();
   });
   const PlayReport lost = play(port, *log, 0.01, 2);

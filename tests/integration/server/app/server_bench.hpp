@@ -1,11 +1,14 @@
 // ServerBench: a server on a free loopback port with its own world folder, for integration tests.
 #pragma once
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "server/app/server.hpp"
 #include "server/runtime/logging.hpp"
+#include "server/store/store.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace runstone::test {
@@ -42,6 +45,20 @@ inline std::unique_ptr<Server> start_server(const ServerConfig& config,
   INFO((server ? std::string() : server.error()));
   REQUIRE(server.has_value());
   return *std::move(server);
+}
+
+/// Waits until the log of a running world has this many records on disk, for at most a minute.
+/// Returns false if it has fewer.
+inline bool reaches(const std::string& world, Sequence records) {
+  for (int i = 0; i < 6'000; ++i) {
+    const auto store = open_world(world, StoreAccess::read_only);
+    if (store) {
+      const auto last = (*store)->last_sequence();
+      if (last && *last >= records) return true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
 }
 
 }  // namespace runstone::test
