@@ -187,7 +187,10 @@ void NetSession::handled(std::size_t message_bytes) {
 void NetSession::abort() {
   // After this call nothing is queued any more.
   close(GoodbyeReason::server_full, "no room for one more handshake");
-  const auto end = [self = shared_from_this()] { self->stream_->close(); };
+  const auto end = [self = shared_from_this()] {
+    self->read_turn_.cancel();
+    self->stream_->close();
+  };
   asio::post(strand_, end);
 }
 
