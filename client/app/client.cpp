@@ -30,7 +30,9 @@ constexpr TimeUs kRestUs = 10'000;
 constexpr TimeUs kRestUsWindow = 2'000;
 /// A view whose chunks have been here for this long is taken as meshed.
 constexpr TimeUs kMeshedUs = 2'000'000;
-constexpr TimeUs kTitleUs = 500'000;
+constexpr TimeUs kTitleUs = 50'000;
+constexpr TimeUs kFrameRateUs = 500'000;
+constexpr TimeUs kNoticeUs = 4'000'000;
 constexpr TimeUs kPlayerLogUs = 1'000'000;
 /// The log is divided into this many steps of `[` and `]`.
 constexpr Sequence kScrubSteps = 100;
@@ -167,16 +169,33 @@ void Client::poll_window(TimeUs now_us) {
   if (input.close || input.escape) end_requested_ = true;
   if (runner_) return;  // the script moves the player
   move_player(input, std::min(seconds, 0.1));
-  for (int i = 0; i < input.remove_clicks; ++i) tool_.remove(now_us);
-  for (int i = 0; i < input.place_clicks; ++i) tool_.place(now_us);
+  edit_with(input, now_us);
   if (input.scrub != 0) scrub(input.scrub);
   if (input.undo) static_cast<void>(session_.command("undo"));
   if (input.redo) static_cast<void>(session_.command("redo"));
   if (input.ground % 2 != 0) shows_ground_ = !shows_ground_;
   if (input.live) static_cast<void>(session_.request_history({}));
-  if (input.screenshot)
-    static_cast<void>(actions_.screenshot(fmt::format("runstone-{}.png", now_us)));
+  if (input.screenshot) take_picture(now_us);
   pipeline_.moved();
+}
+
+void Client::edit_with(const WindowInput& input, TimeUs now_us) {
+  const auto note = [&](const Result<void, std::string>& done) {
+    if (!done) tell(done.error(), now_us);
+  };
+  int acts = remove_button_.acts(input.remove_clicks, input.remove_held, now_us);
+  while (acts-- > 0) note(tool_.remove(now_us));
+  acts = place_button_.acts(input.place_clicks, input.place_held, now_us);
+  while (acts-- > 0) note(tool_.place(now_us));
+  if (input.pick_clicks == 0) return;
+  if (const auto hit = tool_.pick()) player_.hold(hit->material);
+}
+
+void Client::take_picture(TimeUs now_us) {
+  const TimeUs utc_us = actions_.utc_now_us();
+  const std::string file = fmt::format("runstone-{:%Y-%m-%d-%H%M%S}-{:03}.png",
+                                       fmt::gmtime(utc_us / 1'000'000), utc_us / 1'000 % 1'000);
+  if (actions_.screenshot(file)) tell("picture: " + actions_.screenshot_path(file), now_us);
 }
 
 void Client::move_player(const WindowInput& input, double seconds) {
@@ -258,6 +277,8 @@ void Client::drain_changes() {
   }
   for (const RejectedEdit& reject : changes.rejects) {
     spdlog::info("edit={} rejected: {} {}", reject.seq, to_string(reject.reason), reject.detail);
+    tell(fmt::format("the server refused an edit: {} {}", to_string(reject.reason), reject.detail),
+         steady_now_us());
   }
 }
 
@@ -311,20 +332,38 @@ void Client::draw(TimeUs now_us) {
   update_title(now_us);
 }
 
+void Client::tell(std::string text, TimeUs now_us) {
+  notice_ = std::move(text);
+  notice_until_us_ = now_us + kNoticeUs;
+}
+
 void Client::update_title(TimeUs now_us) {
   if (!window_ || now_us - titled_us_ < kTitleUs) return;
+  titled_us_ = now_us;
+  if (now_us - counted_us_ >= kFrameRateUs) {
+    const std::uint64_t frames = pipeline_.frames_presented();
+    frame_rate_ = static_cast<double>(frames - counted_frames_) * 1e6 /
+                  static_cast<double>(now_us - counted_us_);
+    counted_us_ = now_us;
+    counted_frames_ = frames;
+  }
   const WorldPos at = player_.eye();
   const Material held = player_.held();
   const MaterialTable& materials = pipeline_.materials();
-  const std::uint64_t frames = pipeline_.frames_presented();
-  window_->set_title(fmt::format(
-      "Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}{}{}",
-      static_cast<double>(frames - titled_frames_) * 1e6 / static_cast<double>(now_us - titled_us_),
-      materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z,
-      moment_text(session_.replica().past()), memory_text(budget_),
-      network_.is_connected() ? "" : "  (connecting)"));
-  titled_us_ = now_us;
-  titled_frames_ = frames;
+  std::string title =
+      fmt::format("Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}{}", frame_rate_,
+                  materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z,
+                  moment_text(session_.replica().past()), memory_text(budget_));
+  if (!network_.is_connected()) {
+    title += "  (connecting)";
+  } else if (now_us < notice_until_us_) {
+    title += "  (" + notice_ + ")";
+  } else if (!window_->mouse_captured()) {
+    title += "  (click to play)";
+  }
+  if (title == title_) return;
+  title_ = std::move(title);
+  window_->set_title(title_);
 }
 
 std::optional<int> Client::exit_code(TimeUs now_us) {

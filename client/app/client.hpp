@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "client/app/edit_tool.hpp"
+#include "client/app/held_button.hpp"
 #include "client/app/options.hpp"
 #include "client/app/player.hpp"
 #include "client/app/player_log.hpp"
@@ -49,6 +50,8 @@ class Client {
   /// Shows the materials that were added since the world was opened.
   void take_new_materials();
   void poll_window(TimeUs now_us);
+  void edit_with(const WindowInput& input, TimeUs now_us);
+  void take_picture(TimeUs now_us);
   void move_player(const WindowInput& input, double seconds);
   /// Moves the view by `steps` in time. The step after the newest edit is the live world.
   void scrub(int steps);
@@ -68,6 +71,8 @@ class Client {
   void add_ground(std::vector<Marker>& markers) const;
   double draw_distance() const;  // voxels
   void update_title(TimeUs now_us);
+  /// Shows a short text to the player for some seconds.
+  void tell(std::string text, TimeUs now_us);
   /// Returns the exit code if the program is to end now.
   std::optional<int> exit_code(TimeUs now_us);
   void rest(TimeUs now_us);
@@ -86,6 +91,7 @@ class Client {
   Player player_;
   BodyMaterials body_materials_;  // of the world
   EditTool tool_;
+  HeldButton remove_button_, place_button_;
   MemoryBudget budget_;
   ViewFollower view_;
   TerminalChat chat_;
@@ -93,10 +99,15 @@ class Client {
   std::optional<ScriptRunner> runner_;
 
   TimeUs started_us_ = 0;
-  TimeUs polled_us_ = 0;             // when the window was last polled
-  TimeUs titled_us_ = 0;             // when the title was last set
-  std::uint64_t titled_frames_ = 0;  // frames presented by then
-  std::string logged_refusal_;       // of the newest request to see the past
+  TimeUs polled_us_ = 0;              // when the window was last polled
+  TimeUs titled_us_ = 0;              // when the title was last made
+  std::string title_;                 // of the window
+  TimeUs counted_us_ = 0;             // when frames were last counted
+  std::uint64_t counted_frames_ = 0;  // frames presented by then
+  double frame_rate_ = 0;             // frames a second, before that
+  std::string notice_;                // shown to the player
+  TimeUs notice_until_us_ = 0;
+  std::string logged_refusal_;  // of the newest request to see the past
   PlayerLog player_log_;
   TimeUs players_logged_us_ = 0;   // when the player log was last updated
   bool logged_read_only_ = false;  // the state of the server that was logged last

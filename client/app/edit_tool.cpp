@@ -5,20 +5,28 @@
 #include <utility>
 
 namespace runstone {
+namespace {
+
+constexpr const char* kNothingInReach = "nothing is in reach";
+
+}  // namespace
 
 std::optional<RayHit> EditTool::pick() const {
   return runstone::pick(session_.replica(), player_.eye(), player_.direction(), kReach);
 }
 
-void EditTool::remove(TimeUs now_us) {
-  if (const auto hit = pick())
-    static_cast<void>(submit({SetVoxel{hit->voxel}, {}, kEmpty}, now_us, now_us));
+Result<void, std::string> EditTool::remove(TimeUs now_us) {
+  const auto hit = pick();
+  if (!hit) return failure(kNothingInReach);
+  return submit({SetVoxel{hit->voxel}, {}, kEmpty}, now_us, now_us);
 }
 
-void EditTool::place(TimeUs now_us) {
+Result<void, std::string> EditTool::place(TimeUs now_us) {
   const auto hit = pick();
-  const auto at = hit ? place_against(*hit) : std::nullopt;
-  if (at) static_cast<void>(submit({SetVoxel{*at}, {}, player_.held()}, now_us, now_us));
+  if (!hit) return failure(kNothingInReach);
+  const auto at = place_against(*hit);
+  if (!at || player_.is_in(*at)) return failure("you stand there: step back first");
+  return submit({SetVoxel{*at}, {}, player_.held()}, now_us, now_us);
 }
 
 Result<void, std::string> EditTool::submit(const EditDescriptor& edit, TimeUs due_us,

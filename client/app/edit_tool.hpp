@@ -22,10 +22,11 @@ class EditTool {
 
   /// Returns the voxel that the player looks at, or nullopt if there is none within kReach.
   std::optional<RayHit> pick() const;
-  /// Removes the voxel that the player looks at.
-  void remove(TimeUs now_us);
-  /// Places the player's material against the voxel that the player looks at.
-  void place(TimeUs now_us);
+  /// Removes the voxel that the player looks at. Fails with words for the player.
+  Result<void, std::string> remove(TimeUs now_us);
+  /// Places the player's material against the voxel that the player looks at, but never where the
+  /// player is. Fails with words for the player.
+  Result<void, std::string> place(TimeUs now_us);
   /// Submits an edit that was due at `due_us`. Fails with the reason, which is also logged, if the
   /// client does not accept it. If the client had no room for it, the edit counts as infinitely
   /// late. Any other refusal, such as that of an edit while the view shows the past, counts in

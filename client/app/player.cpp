@@ -43,6 +43,15 @@ void Player::set_walking(bool is_walking) {
   walker_.place_eye(eye_);
 }
 
+bool Player::is_in(VoxelPos voxel) const {
+  const BodyBox body = is_walking_ ? body_at(walker_.feet()) : BodyBox{eye_, eye_};
+  const auto overlaps = [](double min, double max, std::int32_t at) {
+    return min < at + 1.0 - kTouchDepth && max > at + kTouchDepth;
+  };
+  return overlaps(body.min.x, body.max.x, voxel.x) && overlaps(body.min.y, body.max.y, voxel.y) &&
+         overlaps(body.min.z, body.max.z, voxel.z);
+}
+
 void Player::look(double yaw, double pitch) {
   yaw_ = std::remainder(yaw, 2 * kPi);
   pitch_ = std::clamp(pitch, -kPitchMax, kPitchMax);

@@ -37,6 +37,9 @@ class Player {
 
   /// Returns the material that a click places.
   Material held() const { return held_; }
+  void hold(Material material) { held_ = material; }
+  /// Returns true if the player's body is in this voxel. A player that flies has an eye only.
+  bool is_in(VoxelPos voxel) const;
   /// Applies mouse, wheel and number keys. Materials 1 to material_count - 1 can be selected.
   void turn(const WindowInput& input, std::size_t material_count);
   /// Applies the keys of the last `seconds` to a player that flies. Requires !is_walking().

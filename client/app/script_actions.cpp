@@ -87,9 +87,12 @@ TimeUs ScriptActions::utc_now_us() const {
 
 bool ScriptActions::screenshot(const std::string& file) {
   if (!pipeline_.draws()) return false;
-  pipeline_.request_screenshot((std::filesystem::path(screenshot_folder_) / file).string(),
-                               steady_now_us());
+  pipeline_.request_screenshot(screenshot_path(file), steady_now_us());
   return true;
+}
+
+std::string ScriptActions::screenshot_path(const std::string& file) const {
+  return (std::filesystem::path(screenshot_folder_) / file).string();
 }
 
 std::optional<bool> ScriptActions::screenshot_written() const {

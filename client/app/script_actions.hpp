@@ -57,6 +57,8 @@ class ScriptActions final : public ScriptHost {
   bool show_answer() override;
   TimeUs utc_now_us() const override;
   bool screenshot(const std::string& file) override;
+  /// Returns where the screenshot of this name goes.
+  std::string screenshot_path(const std::string& file) const;
   std::optional<bool> screenshot_written() const override;
   bool digests(const std::string& file) override {
     return write_digests(file, session_).has_value();

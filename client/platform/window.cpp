@@ -22,6 +22,9 @@ struct Window::State {
     glfwSetInputMode(window, GLFW_CURSOR, on ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
   }
   bool held(int key) const { return glfwGetKey(window, key) == GLFW_PRESS; }
+  bool button_held(int button) const {
+    return captured && glfwGetMouseButton(window, button) == GLFW_PRESS;
+  }
 };
 
 namespace {
@@ -30,6 +33,15 @@ std::string glfw_error_text() {
   const char* text = nullptr;
   glfwGetError(&text);
   return text != nullptr ? text : "unknown GLFW error";
+}
+
+/// Returns true if the key has this letter, one of a to z, in the user's keyboard layout. GLFW's key
+/// codes name places of an American keyboard; a German one has Y and Z the other way round. In a
+/// layout without such letters the place decides.
+bool is_letter(char letter, int key, int code) {
+  const char* const name = glfwGetKeyName(key, code);
+  const bool is_latin = name != nullptr && name[0] >= 'a' && name[0] <= 'z';
+  return is_latin ? name[0] == letter : key == GLFW_KEY_A + (letter - 'a');
 }
 
 class WindowContext final : public GlContext {
@@ -76,6 +88,7 @@ Window::Window(int width, int height, const std::string& title)
     if (!state.captured) return state.capture(true);
     if (button == GLFW_MOUSE_BUTTON_LEFT) ++state.pending.remove_clicks;
     if (button == GLFW_MOUSE_BUTTON_RIGHT) ++state.pending.place_clicks;
+    if (button == GLFW_MOUSE_BUTTON_MIDDLE) ++state.pending.pick_clicks;
   });
   glfwSetCursorPosCallback(state_->window, [](GLFWwindow* w, double x, double y) {
     State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
@@ -92,15 +105,17 @@ Window::Window(int width, int height, const std::string& title)
                                                                         : dy < 0 ? -1
                                                                                  : 0;
   });
-  glfwSetKeyCallback(state_->window, [](GLFWwindow* w, int key, int, int action, int mods) {
+  glfwSetKeyCallback(state_->window, [](GLFWwindow* w, int key, int code, int action, int mods) {
     State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
     if (action != GLFW_PRESS) return;
     if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) state.pending.digit = key - GLFW_KEY_0;
     if (key == GLFW_KEY_F2) state.pending.screenshot = true;
     if (key == GLFW_KEY_LEFT_BRACKET) --state.pending.scrub;
     if (key == GLFW_KEY_RIGHT_BRACKET) ++state.pending.scrub;
-    if (key == GLFW_KEY_Z && (mods & GLFW_MOD_CONTROL) != 0) state.pending.undo = true;
-    if (key == GLFW_KEY_Y && (mods & GLFW_MOD_CONTROL) != 0) state.pending.redo = true;
+    if ((mods & GLFW_MOD_CONTROL) != 0) {
+      if (is_letter('z', key, code)) state.pending.undo = true;
+      if (is_letter('y', key, code)) state.pending.redo = true;
+    }
     if (key == GLFW_KEY_HOME) state.pending.live = true;
     if (key == GLFW_KEY_G) ++state.pending.ground;
     if (key == GLFW_KEY_F) ++state.pending.walking;
@@ -126,6 +141,8 @@ WindowInput Window::poll() {
   input.up = state_->held(GLFW_KEY_SPACE);
   input.down = state_->held(GLFW_KEY_LEFT_SHIFT);
   input.fast = state_->held(GLFW_KEY_LEFT_CONTROL);
+  input.remove_held = state_->button_held(GLFW_MOUSE_BUTTON_LEFT);
+  input.place_held = state_->button_held(GLFW_MOUSE_BUTTON_RIGHT);
   input.close = glfwWindowShouldClose(state_->window) == GLFW_TRUE;
   return input;
 }

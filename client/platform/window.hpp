@@ -16,12 +16,14 @@ struct WindowInput {
   double look_dx = 0, look_dy = 0;  // pixels the mouse moved while captured, y downward
   int remove_clicks = 0;            // left button presses
   int place_clicks = 0;             // right button presses
-  int digit = -1;                   // number key pressed, 0 to 9, or -1
-  int scroll = 0;                   // wheel steps, up positive
+  int pick_clicks = 0;              // middle button presses
+  bool remove_held = false, place_held = false;  // left and right button held down
+  int digit = -1;                                // number key pressed, 0 to 9, or -1
+  int scroll = 0;                                // wheel steps, up positive
   bool escape = false;              // pressed while the mouse was free; the first press frees it
   bool screenshot = false;          // F2 pressed
   int scrub = 0;                    // presses of ] (later) minus presses of [ (earlier)
-  bool undo = false, redo = false;  // Ctrl+Z, Ctrl+Y pressed
+  bool undo = false, redo = false;  // Ctrl+Z, Ctrl+Y pressed, by the letters on the keys
   bool live = false;                // Home pressed
   int ground = 0;                   // presses of G
   int walking = 0;                  // presses of F

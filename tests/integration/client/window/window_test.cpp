@@ -192,6 +192,12 @@ TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work",
   CHECK(png.substr(16, 8) ==
         std::string("\0\0\1\100\0\0\0\360", 8));  // width and height, big-endian
 
+  // A button that is held digs again and again.
+  REQUIRE(display.hand({"mousedown", "1"}));
+  CHECK(next_edit(watcher).material == kEmpty);
+  CHECK(next_edit(watcher).material == kEmpty);
+  REQUIRE(display.hand({"mouseup", "1"}));
+
   REQUIRE(display.hand({"key", "Escape"}));  // frees the mouse
   REQUIRE(display.hand({"key", "Escape"}));
   const auto code = client.wait(kLong);

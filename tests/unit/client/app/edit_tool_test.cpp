@@ -101,8 +101,8 @@ TEST_CASE_METHOD(Fixture, "an edit that finds no room is infinitely late", "[cli
 }
 
 TEST_CASE_METHOD(Fixture, "a click at nothing makes no edit", "[client_app]") {
-  tool.remove(kNow);
-  tool.place(kNow);
+  CHECK(tool.remove(kNow).error() == "nothing is in reach");
+  CHECK(tool.place(kNow).error() == "nothing is in reach");
   CHECK(tool.refused() == 0);
   CHECK(session.replica().local_edits().all().empty());
 }

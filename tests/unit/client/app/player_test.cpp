@@ -119,3 +119,18 @@ TEST_CASE(
   player.enter(first, {10, 20, 30});
   CHECK(player.eye() == WorldPos{10, 20, 30});
 }
+
+TEST_CASE("a player that flies is in the voxel of the eye, and one that walks in those of the body",
+          "[client_app]") {
+  Player player;
+  player.move_to({0.5, 2.0 + kEyeHeight, 0.5});
+  CHECK(player.is_in({0, 3, 0}));
+  CHECK_FALSE(player.is_in({0, 2, 0}));
+  player.set_walking(true);
+  CHECK(player.is_in({0, 2, 0}));
+  CHECK(player.is_in({0, 3, 0}));
+  CHECK_FALSE(player.is_in({0, 1, 0}));  // the ground
+  CHECK_FALSE(player.is_in({1, 2, 0}));
+  player.move_to({0.9, 2.0 + kEyeHeight, 0.5});
+  CHECK(player.is_in({1, 2, 0}));  // half of the body
+}

@@ -1,0 +1,28 @@
+// HeldButton: a mouse button that acts when it is pressed, and again and again while it is held.
+#pragma once
+#include "common/core/ids.hpp"
+
+namespace runstone {
+
+class HeldButton {
+ public:
+  static constexpr TimeUs kDelayUs = 400'000;   // from the press to the first repetition
+  static constexpr TimeUs kRepeatUs = 150'000;  // between two repetitions
+
+  /// Returns how often the button acts now: once for each press since the last call, or once if a
+  /// repetition is due. After a late call no repetition is made up for.
+  int acts(int presses, bool is_held, TimeUs now_us) {
+    if (presses > 0) {
+      next_us_ = now_us + kDelayUs;
+      return presses;
+    }
+    if (!is_held || now_us < next_us_) return 0;
+    next_us_ = now_us + kRepeatUs;
+    return 1;
+  }
+
+ private:
+  TimeUs next_us_ = 0;
+};
+
+}  // namespace runstone
