@@ -3,7 +3,6 @@
 #include <sodium.h>
 
 #include <chrono>
-#include <filesystem>
 #include <ostream>
 #include <utility>
 
@@ -89,8 +88,7 @@ Result<void, std::string> send_key(const KeyCommand& command, std::ostream& out)
 
 Result<KeySeed, std::string> receive_key(const KeyCommand& command, std::ostream& out) {
   // A code works once. The checks that need no server come first, so that they do not use it up.
-  if (std::filesystem::exists(command.key_file))
-    return failure(command.key_file + ": exists, and a key file is never overwritten");
+  require_new_key_file(command.key_file);
   const auto code = DeviceCode::parse(command.code);
   if (!code) return failure("this is no code: a code is 16 letters and digits, without U");
   const auto pinned = load_pinned_servers(command.key_file);

@@ -18,7 +18,8 @@ inline constexpr std::int64_t kKeyTransferMs = 20'000;
 Result<void, std::string> send_key(const KeyCommand& command, std::ostream& out);
 
 /// Fetches the key of the code and writes the key file. Fails, and may throw, with one line for the
-/// user. An existing file stays, and then the code stays valid.
+/// user. If the file exists or its folder cannot be written, nothing is fetched and the code stays
+/// valid.
 Result<KeySeed, std::string> receive_key(const KeyCommand& command, std::ostream& out);
 
 }  // namespace runstone

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -38,6 +39,14 @@ void write_new_secret_file(const std::string& file, const std::string& text) {
   if (is_written && is_closed) return;
   ::unlink(file.c_str());
   throw_error(file, "cannot be written");
+}
+
+void require_new_key_file(const std::string& file) {
+  if (std::filesystem::exists(file))
+    throw_error(file, "exists, and a key file is never overwritten");
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw_error(file, "cannot be written: " + folder.string() + ": " + std::strerror(errno));
 }
 
 void save_new_key(const std::string& file, const KeySeed& seed) {

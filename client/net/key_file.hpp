@@ -17,6 +17,8 @@ namespace runstone {
 KeyPair load_or_create_key(const std::string& file);
 /// Reads the seed of a key. Throws if the file is missing, or if other users may read it.
 KeySeed load_key_seed(const std::string& file);
+/// Throws if save_new_key() would fail: the file exists, or its folder does not or may not be written.
+void require_new_key_file(const std::string& file);
 /// Writes a key file. Throws if the file exists.
 void save_new_key(const std::string& file, const KeySeed& seed);
 /// Writes a file that only its owner may read. It is on disk on return. Throws if the file exists.

@@ -74,8 +74,11 @@ TEST_CASE("a key moves to another device by a code that works once", "[integrati
   CHECK(tells(sent, "Within 10 minutes"));
   const std::string code = code_in(sent);
 
-  // An existing file is found before the code is used up.
+  // A file that cannot be written is found before the code is used up.
   CHECK(tells(run_client_alone("key receive" + there + ana + " " + code), "exists"));
+  const std::string nowhere = " --key " + (folder / "missing/key");
+  CHECK(tells(run_client_alone("key receive" + there + nowhere + " " + code),
+              "missing: No such file or directory"));
   const ShellRun forged = run_client_alone("key receive" + there + phone + " 0000-0000-0000-0000");
   CHECK(forged.exit_code == 2);
   CHECK(tells(forged, "no key is here for this code"));
