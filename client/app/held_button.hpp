@@ -10,18 +10,22 @@ class HeldButton {
   static constexpr TimeUs kRepeatUs = 150'000;  // between two repetitions
 
   /// Returns how often the button acts now: once for each press since the last call, or once if a
-  /// repetition is due. After a late call no repetition is made up for.
+  /// repetition is due. After a late call no repetition is made up for. A press that does not count,
+  /// such as the one that captures the mouse, begins no repetition.
   int acts(int presses, bool is_held, TimeUs now_us) {
     if (presses > 0) {
+      is_repeating_ = true;
       next_us_ = now_us + kDelayUs;
       return presses;
     }
-    if (!is_held || now_us < next_us_) return 0;
+    is_repeating_ = is_repeating_ && is_held;
+    if (!is_repeating_ || now_us < next_us_) return 0;
     next_us_ = now_us + kRepeatUs;
     return 1;
   }
 
  private:
+  bool is_repeating_ = false;  // held since a press that counted
   TimeUs next_us_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace runstone {
 KeyPair load_or_create_key(const std::string& file);
 /// Reads the seed of a key. Throws if the file is missing, or if other users may read it.
 KeySeed load_key_seed(const std::string& file);
-/// Throws if save_new_key() would fail: the file exists, or its folder does not or may not be written.
+/// Throws if the file exists, or if its folder is missing or not writable.
 void require_new_key_file(const std::string& file);
 /// Writes a key file. Throws if the file exists.
 void save_new_key(const std::string& file, const KeySeed& seed);

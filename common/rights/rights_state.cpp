@@ -53,6 +53,7 @@ void RightsState::apply_kind(const GrantRole& change, const ChangeOrigin& origin
     grants_.erase(change.key);
   } else {
     grants_[change.key] = {change.role, origin};
+    has_ever_granted_ = true;
   }
 }
 
@@ -101,6 +102,7 @@ void RightsState::apply_kind(const Unprotect& change, const ChangeOrigin&) {
 }
 
 void RightsState::apply_kind(const CreateInvite& change, const ChangeOrigin& origin) {
+  has_ever_granted_ = true;
   std::erase_if(invites_, [&](const auto& entry) {
     const OpenInvite& old = entry.second.value;
     return old.invite.until_us <= origin.time_us || old.accepted >= old.invite.uses;

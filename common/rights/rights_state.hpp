@@ -90,6 +90,9 @@ class RightsState {
   /// Cost: O(grants log n).
   std::vector<PublicKey> administrators(TimeUs now_us) const;
 
+  /// Returns true if a role was ever granted or an invite ever made, even if it was taken back.
+  bool has_ever_granted() const { return has_ever_granted_; }
+
   // Invites.
   /// Returns the invites that were neither cancelled nor removed: an invite that has ended is removed
   /// when a later one is made.
@@ -176,6 +179,7 @@ class RightsState {
   std::map<std::string, Decided<Role>> roles_;
   Decided<std::string> default_role_;
   std::map<PublicKey, Decided<std::string>> grants_;
+  bool has_ever_granted_ = false;
   std::map<InviteId, Decided<OpenInvite>> invites_;
   Decided<std::optional<JoinPassword>> password_;
 

@@ -82,7 +82,8 @@ bool CommandHandler::run_action(const Command& command, const CommandReply& repl
 
 void CommandHandler::run(const CommandCaller& caller, const std::string& line, const Clocks& now,
                          CommandReply reply) {
-  const auto command = parse_command(line, now.utc_us);
+  // Restrictions end by the clock of the log, which may be ahead of the system's.
+  const auto command = parse_command(line, std::max(now.utc_us, world_.rights_time()));
   if (!command) return refuse(reply, command.error());
   if (auto why = why_not(caller, world_.rights(), rule_of(*command), world_.rights_time()))
     return refuse(reply, *std::move(why));

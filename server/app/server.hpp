@@ -31,8 +31,8 @@ class Server {
   ~Server();
 
   std::uint16_t port() const;
-  /// Returns true if at the start nobody had a granted role and there was no invite: the world is
-  /// new, imported, or was only ever governed from the console.
+  /// Returns true if before this start no role was ever granted and no invite ever made, as in a new
+  /// or an imported world.
   bool is_unclaimed() const;
   void log_counters();
   /// Carries out a command as an operator. Replies come from another thread; the last one has

@@ -6,7 +6,14 @@
 namespace runstone {
 namespace {
 
-bool was_before(const auto& a, const auto& b) { return a.second.last_us < b.second.last_us; }
+/// Returns true if row `a` is given up before row `b`: refused joins go first, because everybody
+/// can make as many keys as they like and be refused with each.
+bool goes_before(const auto& a, const auto& b) {
+  const auto order = [](const RefusalRow& row) {
+    return std::pair(!row.what.starts_with("join: "), row.last_us);
+  };
+  return order(a.second) < order(b.second);
+}
 
 }  // namespace
 
@@ -23,10 +30,10 @@ void RecentRefusals::add(const PublicKey& key, const std::string& what, TimeUs n
       std::find_if(first, rows_.end(), [&](const auto& r) { return r.first.first != key; });
   if (static_cast<std::size_t>(std::distance(first, last)) >= kRefusalRowsOfKeyMax) {
     rows_.erase(std::min_element(first, last,
-                                 [](const auto& a, const auto& b) { return was_before(a, b); }));
+                                 [](const auto& a, const auto& b) { return goes_before(a, b); }));
   } else if (rows_.size() >= kRefusalRowsMax) {
     rows_.erase(std::min_element(rows_.begin(), rows_.end(),
-                                 [](const auto& a, const auto& b) { return was_before(a, b); }));
+                                 [](const auto& a, const auto& b) { return goes_before(a, b); }));
   }
   rows_.emplace(place, RefusalRow{key, what, 1, now_us, now_us});
 }

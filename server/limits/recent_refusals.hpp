@@ -1,5 +1,6 @@
 // RecentRefusals: what players were refused lately, for moderators. Equal refusals of a player are
-// one row with a count. A player has few rows, so that nobody hides what others did.
+// one row with a count. A player has few rows, and refused joins ("join: ...") go first, so that nobody
+// hides what others did.
 // Memory: at most kRefusalRowsMax rows. Thread: one. Times are arguments.
 #pragma once
 #include <cstddef>
@@ -27,8 +28,9 @@ struct RefusalRow {
 
 class RecentRefusals {
  public:
-  /// Counts a refusal. If there is no room for another row, the one that was refused longest ago
-  /// goes: of the player, or of all. Cost: O(log rows); for a row too many, O(rows).
+  /// Counts a refusal. If there is no room for another row, one row of the player or of all goes: of
+  /// the refused joins, or else of the others, the one that was refused longest ago. Cost: O(log
+  /// rows); for a row too many, O(rows).
   void add(const PublicKey& key, const std::string& what, TimeUs now_us);
   /// Returns all rows, the newest last.
   std::vector<RefusalRow> rows() const;

@@ -122,9 +122,9 @@ asio::awaitable<void> Listener::accept_loop(std::shared_ptr<Listener> self) {
 
 void Listener::admit(asio::ip::tcp::socket socket) {
   asio::error_code gone;
-  const asio::ip::address from = socket.remote_endpoint(gone).address();
+  const AddressBlock from = address_block(socket.remote_endpoint(gone).address());
   if (gone) return;
-  if (!connections_.take(address_block(from), 1, steady_now_us())) return refuse(socket);
+  if (!connections_.take(from, 1, steady_now_us())) return refuse(socket);
   std::optional<std::vector<std::shared_ptr<NetSession>>> ended;
   {
     const std::lock_guard lock(mutex_);
@@ -135,9 +135,9 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   for (const auto& session : *ended) session->abort();
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
-  auto session = std::make_shared<NetSession>(id, io_, decoders_, make_stream(std::move(socket)),
-                                              limits_, chunk_edge_, budget_,
-                                              reads_of(address_block(from)), events_, counters_);
+  auto session =
+      std::make_shared<NetSession>(id, io_, decoders_, make_stream(std::move(socket)), limits_,
+                                   chunk_edge_, budget_, reads_of(from), events_, counters_);
   {
     const std::lock_guard lock(mutex_);
     if (is_stopped_) return;
@@ -179,8 +179,7 @@ std::unique_ptr<ByteStream> Listener::make_stream(asio::ip::tcp::socket socket) 
                          decoders_, goodbye_to_plain_client());
 }
 
-std::optional<std::vector<std::shared_ptr<NetSession>>> Listener::make_room(
-    const asio::ip::address& from) {
+std::optional<std::vector<std::shared_ptr<NetSession>>> Listener::make_room(AddressBlock from) {
   if (leaving_.size() >= kLeavingMax) return std::nullopt;
   std::vector<std::shared_ptr<NetSession>> ended;
   const auto end = [&](SessionId oldest) {

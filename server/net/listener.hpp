@@ -72,7 +72,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   std::shared_ptr<ByteBudget> reads_of(AddressBlock from);
   /// Returns the sessions that must be closed so that one more from `from` fits, or nullopt if it
   /// cannot fit. Requires the mutex.
-  std::optional<std::vector<std::shared_ptr<NetSession>>> make_room(const asio::ip::address& from);
+  std::optional<std::vector<std::shared_ptr<NetSession>>> make_room(AddressBlock from);
   void end_handshake(SessionId session);
 
   asio::io_context& io_;
@@ -95,9 +95,9 @@ class Listener : public std::enable_shared_from_this<Listener> {
   std::optional<TlsContext> tls_;
   std::map<SessionId, std::shared_ptr<NetSession>> sessions_;
   // Sessions in the handshake that are not being closed, oldest first.
-  std::map<SessionId, asio::ip::address> handshakes_;
+  std::map<SessionId, AddressBlock> handshakes_;
   // The same by address. No set is empty.
-  std::map<asio::ip::address, std::set<SessionId>> handshakes_from_;
+  std::map<AddressBlock, std::set<SessionId>> handshakes_from_;
   // Sessions that are being closed and are still in `sessions_`.
   std::set<SessionId> leaving_;
 };

@@ -187,10 +187,7 @@ void NetSession::handled(std::size_t message_bytes) {
 void NetSession::abort() {
   // After this call nothing is queued any more.
   close(GoodbyeReason::server_full, "no room for one more handshake");
-  const auto end = [self = shared_from_this()] {
-    self->read_turn_.cancel();
-    self->stream_->close();
-  };
+  const auto end = [self = shared_from_this()] { self->close_stream(); };
   asio::post(strand_, end);
 }
 
@@ -222,8 +219,13 @@ asio::awaitable<void> NetSession::end_after_linger(std::shared_ptr<NetSession> s
   self->read_wake_.cancel();  // a paused reader continues until the end of the stream
   const auto [error] = co_await self->linger_.async_wait(kTuple);
   (void)error;  // cancelled when both loops have ended; closing twice is harmless
-  self->stream_->close();
-  self->read_turn_.cancel();
+  self->close_stream();
+}
+
+void NetSession::close_stream() {
+  reads_no_more_ = true;
+  stream_->close();
+  read_turn_.cancel();
 }
 
 // Handling a message costs more than sending it. So each session is read no faster than a regular
@@ -234,7 +236,7 @@ asio::awaitable<void> NetSession::wait_for_read_budget(std::size_t bytes_read) {
   const TimeUs slot_us =
       std::max(read_budget_.book(bytes, now_us), address_reads_->book(bytes, now_us)) -
       kReadBurstUs;
-  if (slot_us <= now_us) co_return;
+  if (slot_us <= now_us || reads_no_more_) co_return;
   read_turn_.expires_at(time_point_of(slot_us));
   const auto [error] = co_await read_turn_.async_wait(kTuple);
   (void)error;  // cancelled when the stream is closed; the next read fails then

@@ -129,6 +129,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   static asio::awaitable<void> read_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> write_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> end_after_linger(std::shared_ptr<NetSession> self);
+  /// Ends both loops. Call it on the strand.
+  void close_stream();
   /// Decodes what was read, and reports the messages.
   static asio::awaitable<Result<void>> feed(std::shared_ptr<NetSession> self, ByteView read);
   /// Decodes a message and appends it to decoded_. Thread: the strand or, while the read loop waits
@@ -189,6 +191,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   GoodbyeReason broken_rule_ = GoodbyeReason::malformed_frame;  // of the error that feed() returns
   int loops_ = 0;
   bool linger_started_ = false;
+  bool reads_no_more_ = false;  // the stream was closed; on the strand
 };
 
 }  // namespace runstone

@@ -40,6 +40,8 @@ StoreResult<TimelapseWorld> TimelapseWorld::open(WorldReader& reader, const Gene
 
 StoreResult<void> TimelapseWorld::find_edits(Sequence to) {
   const auto take = [this](const EditRecord& record) {
+    // Protected ground is no edited place; it may reach through the whole world.
+    if (!has_voxels(record.edit)) return true;
     edited_ = joined(edited_, bounding_box(record.edit));
     for (const ChunkCoord& at : touched_chunks(record.edit, edge_)) edited_chunks_.insert({0, at});
     return true;

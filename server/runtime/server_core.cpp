@@ -2,6 +2,7 @@
 
 #include <sodium.h>
 
+#include <algorithm>
 #include <chrono>
 #include <span>
 
@@ -45,7 +46,9 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       stalls_(strand_, kStallInterval, [this] { close_stalled(); }),
       activity_(strand_, std::chrono::seconds(config.counters_s), [this] { write_activity(); }),
       chat_retention_(strand_, kChatRetentionInterval, [this] {
-        chat_log_->forget_before(chat_kept_from_us(config_, world_->rights_time()));
+        const TimeUs log_us = world_->rights_time();  // may be ahead of the system's clock
+        chat_log_->forget_before(
+            chat_kept_from_us(config_, std::min(log_us, read_clocks().utc_us)));
       }) {}
 
 ServerCore::~ServerCore() = default;

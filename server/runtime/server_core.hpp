@@ -82,11 +82,9 @@ class ServerCore final : public NetEvents {
   std::vector<std::pair<ChunkKey, ChunkPtr>> edited_chunks() const {
     return world_->edited_chunks();
   }
-  /// Returns true if nobody has a granted role and there is no invite. Requires recover(), and that
+  /// Returns true if no role was ever granted and no invite ever made. Requires recover(), and that
   /// no thread runs the strand yet.
-  bool is_unclaimed() const {
-    return world_->rights().grants().empty() && world_->rights().invites().empty();
-  }
+  bool is_unclaimed() const { return !world_->rights().has_ever_granted(); }
   /// Writes one line of all counters at info. Thread: any.
   void log_counters();
   /// Carries out a command of the console or the control socket. The replies come on the world

@@ -113,6 +113,12 @@ std::size_t say(WorldState& world, const std::string& text, const PublicKey& by,
                     [](const auto& entry) { return has_chat(entry.second); }));
 }
 
+void tell(WorldState& world, SessionId session, const std::string& text, const Clocks& now) {
+  if (!has_chat(*world.find(session))) return;
+  const ChatLine line{ChatLineKind::server, 0, "", text, time_of_line(world, now)};
+  send_or_skip(world, session, encode_message(ChatLines{{line}}));
+}
+
 void send_recent_chat(WorldState& world, SessionId session, const Clocks& now) {
   if (!has_chat(*world.find(session))) return;
   ChatLines recent{{world.chat.recent.begin(), world.chat.recent.end()}};

@@ -21,6 +21,10 @@ void on_chat(WorldState& world, SessionId session, const ChatRequest& request, c
 /// Returns the number of sessions that get the line. Requires a text that chat_text() returned.
 std::size_t say(WorldState& world, const std::string& text, const PublicKey& by, const Clocks& now);
 
+/// Sends one session a line of the host, which nobody else gets and no log keeps. It is skipped if
+/// the session reads no chat or has no room. Requires a text that chat_text() returned.
+void tell(WorldState& world, SessionId session, const std::string& text, const Clocks& now);
+
 /// Sends a session that has opened the newest lines, and then the message of the day.
 void send_recent_chat(WorldState& world, SessionId session, const Clocks& now);
 

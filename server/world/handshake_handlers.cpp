@@ -116,7 +116,10 @@ bool close_if_not_admitted(WorldState& world, SessionId session, const ClientAut
   if (world.find(session) == nullptr) return true;  // the new role closed it
   auto why = join_refusal(world, key, address);
   if (!why) {
-    if (no_role) world.refusals.add(key, "role: " + *no_role, now.utc_us);
+    if (no_role) {
+      world.refusals.add(key, "role: " + *no_role, now.utc_us);
+      world.find(session)->no_role = *no_role;
+    }
     return false;
   }
   if (no_role) *why += " (" + *no_role + ")";
@@ -172,6 +175,9 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   start_ground(world, session);
   send_all_poses_to(world, session);
   send_recent_chat(world, session, now);
+  // A player who is let in without the invite must not believe that it has worked.
+  const std::string no_role = std::exchange(world.find(session)->no_role, {});
+  if (!no_role.empty()) tell(world, session, "you were given no role: " + no_role, now);
 }
 
 }  // namespace

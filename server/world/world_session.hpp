@@ -65,7 +65,8 @@ struct WorldSession {
   std::string name;
   Bytes auth_transcript;          // the bytes that the client must sign; empty in other stages
   bool is_authenticated = false;  // the session opens when the claim of its name is on disk
-  AuthorId author = 0;            // valid when open
+  std::string no_role;  // why the player's invite or password gave no role, until it is told
+  AuthorId author = 0;  // valid when open
   Pose pose;
   bool pose_changed = false;     // since poses were sent last
   FollowedPosition position;     // the reach of edits is measured from there

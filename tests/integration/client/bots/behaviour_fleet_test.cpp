@@ -1,6 +1,8 @@
 // Fleets of bots against a real server on loopback.
 #include "client/fleet/behaviour_fleet.hpp"
 
+#include <pthread.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <thread>
@@ -111,9 +113,9 @@ TEST_CASE("a signal ends the edits of a fleet early, and submitted edits are sti
   options.edits.reset();
   static volatile std::sig_atomic_t stop = 0;
   std::signal(SIGUSR1, [](int) { stop = 1; });
-  std::thread signaller([&] {
+  std::thread signaller([&, fleet = ::pthread_self()] {
     reaches(flat.folder.path(), 30);
-    ::raise(SIGUSR1);
+    ::pthread_kill(fleet, SIGUSR1);  // the handler runs on the thread that reads the counter
   });
   const FleetReport report = BehaviourFleet(options).run(stop);
   signaller.join();

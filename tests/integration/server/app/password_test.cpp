@@ -140,17 +140,20 @@ TEST_CASE("the first administrator of a world joins by a link that works once",
     const std::size_t token = text.find('#', link) + 1;
     RawClient ana(server->port()), bea(server->port());
     ana.ticket = bea.ticket = text.substr(token, text.find('\'', token) - token);
-    ana.features = bea.features = kFeatureCommands;
+    ana.features = bea.features = kFeatureCommands | kFeatureChat;
     REQUIRE(ana.join(1).has_value());
     CHECK(command(ana, "why player1 administer").text.starts_with("yes: "));
-    REQUIRE(bea.join(2).has_value());  // the world is open, so the used link does not matter
+    REQUIRE(bea.join(2).has_value());  // the world is open, but the link gives nothing any more
+    const auto told = bea.next_of<ChatLines>();
+    REQUIRE(told.has_value());
+    CHECK(mentions(told->lines.at(0).text, "you were given no role: the invite"));
     CHECK(command(bea, "why player2 administer").text.starts_with("no: "));
     CHECK(server->stop().is_clean);
   }
   CHECK_FALSE(start_server(config, flat_creation())->is_unclaimed());
 }
 
-TEST_CASE("a world stays unclaimed until somebody gets a role or an invite",
+TEST_CASE("a world is unclaimed until somebody got a role, even if it was taken back",
           "[integration][rights]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
@@ -161,6 +164,7 @@ TEST_CASE("a world stays unclaimed until somebody gets a role or an invite",
     RawClient ana(server->port());
     REQUIRE(ana.join(1).has_value());
     REQUIRE(control(config.world, {"grant", "player1", "builder"}).is_ok);
+    REQUIRE(control(config.world, {"revoke", "player1"}).is_ok);
     server->stop();
   }
   CHECK_FALSE(start_server(config, flat_creation())->is_unclaimed());

@@ -1,7 +1,10 @@
 #include "client/app/edit_tool.hpp"
 
 #include <catch2/catch.hpp>
+#include <numbers>
 
+#include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
 #include "tests/support/test_keys.hpp"
 
 using namespace runstone;
@@ -105,4 +108,20 @@ TEST_CASE_METHOD(Fixture, "a click at nothing makes no edit", "[client_app]") {
   CHECK(tool.place(kNow).error() == "nothing is in reach");
   CHECK(tool.refused() == 0);
   CHECK(session.replica().local_edits().all().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "a voxel is placed on the ground in sight, but not where the player is",
+                 "[client_app]") {
+  runstone::test::AuthorityModel world(16);  // solid below 0
+  for (const std::int32_t y : {-1, 0})
+    receive(runstone::test::chunks_of(world.snapshot({0, y, 0})));
+  player.look(0, -std::numbers::pi / 2);
+  for (const double inside : {0.5, -0.5}) {
+    player.move_to({0.5, inside, 0.5});
+    CHECK(tool.place(kNow).error() == "you stand there: step back first");
+  }
+  CHECK(session.replica().local_edits().all().empty());
+  player.move_to({0.5, 1.5, 0.5});
+  REQUIRE(tool.place(kNow).has_value());
+  REQUIRE(session.replica().local_edits().all().size() == 1);
 }

@@ -22,7 +22,8 @@ struct RightsBench : RollbackBench {
 
   CommandAnswer give(const CommandCaller& caller, const std::string& line) {
     answers.clear();
-    handler.run(caller, line, bench.now(), reply());
+    const Clocks now = bench.now();
+    handler.run(caller, line, {now.steady_us, now.utc_us - set_back_us}, reply());
     for (int i = 0; i < 3; ++i) {
       run_all();
       handler.tick();
@@ -52,6 +53,7 @@ struct RightsBench : RollbackBench {
   Sequence head() { return bench.server.head(); }
   static std::string record(Sequence seq) { return " (record " + std::to_string(seq) + ")"; }
 
+  TimeUs set_back_us = 0;  // of the system's clock, after the world was started
   PublicKey operator_key{};
   CommandHandler handler;
 };
@@ -116,6 +118,14 @@ TEST_CASE("control sets a password that the console and players cannot type", "[
   CHECK(has(bench.player(1, "password clear").text, "the world has no password"));
   CHECK_FALSE(bench.bench.server.rights().password().value.has_value());
   CHECK(bench.console("password clear").text == "The world has no password.");
+}
+
+TEST_CASE("a ban holds after the system's clock was set back", "[admin][rights]") {
+  RightsBench bench;
+  bench.set_back_us = 86'400'000'000;
+  bench.done("ban player1 for 1h");
+  CHECK(bench.bench.server.session_count() == 1);
+  CHECK(has(bench.done("bans"), RightsBench::text_of(1)));
 }
 
 TEST_CASE("a ban ends sessions and is listed until it is lifted", "[admin][rights]") {

@@ -42,4 +42,14 @@ TEST_CASE("of too many players the one refused longest ago is forgotten", "[limi
   CHECK(rows.front().key == numbered(1));
 }
 
+TEST_CASE("refused joins of many keys do not push out what players did", "[limits]") {
+  RecentRefusals refusals;
+  refusals.add(numbered(1), "edit: the ground is protected: spawn", 1);
+  for (std::size_t i = 2; i < 3 * kRefusalRowsMax; ++i)
+    refusals.add(numbered(i), "join: your role is nobody", static_cast<TimeUs>(i));
+  const auto rows = refusals.rows();
+  CHECK(rows.size() == kRefusalRowsMax);
+  CHECK(rows.front().key == numbered(1));
+}
+
 }  // namespace runstone::test

@@ -125,6 +125,21 @@ TEST_CASE("the stage holds all edits and the ground around them", "[server]") {
   CHECK(held.chunks.contains({0, {x, y, 0}}));
 }
 
+TEST_CASE("protected ground does not widen the stage", "[server]") {
+  Grown grown(7);
+  EditRecord record = grown.records.back();
+  ++record.version.seq;
+  ++record.op.seq;
+  ProtectedBox box;
+  box.name = "spawn";
+  box.box = {{-16, -kWorldLimit, -16}, {16, kWorldLimit, 16}};
+  record.edit = rights_edit(Protect{box});
+  REQUIRE(grown.store->append_history({}, std::vector{record}).has_value());
+  const TimelapseWorld before = grown.open(0, kEdits), after = grown.open(0, kEdits + 1);
+  CHECK(after.edited() == before.edited());
+  CHECK(after.stage() == before.stage());
+}
+
 TEST_CASE("the stage has the ground around the camera", "[server]") {
   Grown grown(3);
   const std::vector<ChunkCoord> eyes = {{100, 7, 100}};
