@@ -146,7 +146,7 @@ TEST_CASE("the first administrator of a world joins by a link that works once",
     REQUIRE(bea.join(2).has_value());  // the world is open, but the link gives nothing any more
     const auto told = bea.next_of<ChatLines>();
     REQUIRE(told.has_value());
-    CHECK(mentions(told->lines.at(0).text, "you were given no role: the invite"));
+    CHECK(mentions(told->lines.at(0).text, "you were given no role: The invite was used"));
     CHECK(command(bea, "why player2 administer").text.starts_with("no: "));
     CHECK(server->stop().is_clean);
   }
