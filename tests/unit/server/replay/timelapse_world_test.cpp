@@ -130,6 +130,8 @@ TEST_CASE("protected ground does not widen the stage", "[server]") {
   EditRecord record = grown.records.back();
   ++record.version.seq;
   ++record.op.seq;
+  record.cause = Cause::rights;
+  record.subject = 0;
   ProtectedBox box;
   box.name = "spawn";
   box.box = {{-16, -kWorldLimit, -16}, {16, kWorldLimit, 16}};
