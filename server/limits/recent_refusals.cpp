@@ -10,7 +10,7 @@ namespace {
 /// can make as many keys as they like and be refused with each.
 bool goes_before(const auto& a, const auto& b) {
   const auto order = [](const RefusalRow& row) {
-    return std::pair(!row.what.starts_with("join: "), row.last_us);
+    return std::pair(!row.what.starts_with(kRefusedJoin), row.last_us);
   };
   return order(a.second) < order(b.second);
 }

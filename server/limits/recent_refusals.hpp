@@ -1,6 +1,6 @@
 // RecentRefusals: what players were refused lately, for moderators. Equal refusals of a player are
-// one row with a count. A player has few rows, and refused joins ("join: ...") go first, so that nobody
-// hides what others did.
+// one row with a count. A player has few rows, and refused joins are given up first, so that nobody hides
+// what others did.
 // Memory: at most kRefusalRowsMax rows. Thread: one. Times are arguments.
 #pragma once
 #include <cstddef>
@@ -16,6 +16,8 @@
 namespace runstone {
 
 inline constexpr std::size_t kRefusalRowsMax = 512;
+/// What a refused join begins with, as text of a row.
+inline constexpr const char* kRefusedJoin = "join: ";
 inline constexpr std::size_t kRefusalRowsOfKeyMax = 16;
 
 struct RefusalRow {

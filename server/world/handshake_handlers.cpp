@@ -123,7 +123,7 @@ bool close_if_not_admitted(WorldState& world, SessionId session, const ClientAut
     return false;
   }
   if (no_role) *why += " (" + *no_role + ")";
-  world.refusals.add(key, "join: " + *why, now.utc_us);
+  world.refusals.add(key, kRefusedJoin + *why, now.utc_us);
   close_session(world, session, GoodbyeReason::not_admitted, *why);
   return true;
 }
