@@ -32,13 +32,22 @@ class TokenBucket {
     if (per_second_ == 0) return 0;
     add_tokens(now_us);
     if (count > full_ / kPart) return kNever;
-    const std::uint64_t needed = count * kPart;
+    const std::uint64_t needed = count * kPart + owed_;
     if (needed <= parts_) return 0;
     return static_cast<TimeUs>((needed - parts_ + per_second_ - 1) / per_second_);
   }
   bool is_full(TimeUs now_us) {
     add_tokens(now_us);
     return parts_ == full_;
+  }
+  /// Takes `count` tokens for something that was already done. What is missing is owed, at most as
+  /// much as the bucket holds: the next tokens pay for it.
+  void charge(std::uint64_t count, TimeUs now_us) {
+    add_tokens(now_us);
+    const std::uint64_t price = std::min(count, kBurstMax) * kPart;
+    const std::uint64_t paid = std::min(price, parts_);
+    parts_ -= paid;
+    owed_ = std::min(full_, owed_ + (price - paid));
   }
   /// Takes all tokens.
   void drain(TimeUs now_us) {
@@ -60,15 +69,18 @@ class TokenBucket {
     // rounded.
     const auto idle_us = static_cast<std::uint64_t>(now_us - last_us_);
     last_us_ = now_us;
-    const std::uint64_t missing = full_ - parts_;
+    const std::uint64_t missing = full_ - parts_ + owed_;
     // The product cannot overflow: it is below `missing`.
-    parts_ = idle_us > missing / std::max<std::uint64_t>(1, per_second_)
-                 ? full_
-                 : parts_ + idle_us * per_second_;
+    const bool is_filled = idle_us > missing / std::max<std::uint64_t>(1, per_second_);
+    const std::uint64_t added = is_filled ? missing : idle_us * per_second_;
+    const std::uint64_t paid = std::min(owed_, added);
+    owed_ -= paid;
+    parts_ += added - paid;
   }
 
   static constexpr std::uint64_t kPart = 1'000'000;
   std::uint64_t per_second_, full_, parts_;
+  std::uint64_t owed_ = 0;  // not 0 only if parts_ is 0
   TimeUs last_us_ = 0;
   bool started_ = false;
 };

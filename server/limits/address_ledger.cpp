@@ -11,16 +11,28 @@ constexpr std::size_t kForgetSteps = 1'024;  // budgets more than were kept last
 
 bool AddressLedger::take(AddressBlock from, std::uint64_t price, TimeUs now_us) {
   if (!of_address_.is_limited()) return true;
+  const Budgets budgets = budgets_of(from, now_us);
+  if (budgets.address.wait_us(price, now_us) > 0) return false;
+  return budgets.range.take(price, now_us) && budgets.address.take(price, now_us);
+}
+
+void AddressLedger::charge(AddressBlock from, std::uint64_t price, TimeUs now_us) {
+  if (!of_address_.is_limited()) return;
+  const Budgets budgets = budgets_of(from, now_us);
+  budgets.address.charge(price, now_us);
+  budgets.range.charge(price, now_us);
+}
+
+AddressLedger::Budgets AddressLedger::budgets_of(AddressBlock from, TimeUs now_us) {
   if (size() > 2 * size_kept_ + kForgetSteps) forget_full(now_us);
   TokenBucket& address =
       addresses_.try_emplace(from, of_address_.per_second, of_address_.burst).first->second;
-  if (address.wait_us(price, now_us) > 0) return false;
   TokenBucket& range =
       ranges_
           .try_emplace(address_range_of(from), of_address_.per_second * kBudgetsPerRange,
                        of_address_.burst * kBudgetsPerRange)
           .first->second;
-  return range.take(price, now_us) && address.take(price, now_us);
+  return {address, range};
 }
 
 bool AddressLedger::has(AddressBlock from, std::uint64_t price, TimeUs now_us) const {

@@ -26,6 +26,10 @@ class AddressLedger {
   /// Cost: O(log addresses), amortised.
   bool take(AddressBlock from, std::uint64_t price, TimeUs now_us);
 
+  /// Takes the price of something that was already done from both budgets. What is missing is owed, up
+  /// to a whole budget. Cost: O(log addresses), amortised.
+  void charge(AddressBlock from, std::uint64_t price, TimeUs now_us);
+
   /// Returns true if take() would take the price. Cost: O(log addresses).
   bool has(AddressBlock from, std::uint64_t price, TimeUs now_us) const;
 
@@ -33,6 +37,11 @@ class AddressLedger {
   std::size_t size() const { return addresses_.size() + ranges_.size(); }
 
  private:
+  struct Budgets {
+    TokenBucket &address, &range;
+  };
+  /// Returns the budgets of the address, which are full ones if none are kept.
+  Budgets budgets_of(AddressBlock from, TimeUs now_us);
   void forget_full(TimeUs now_us);
 
   const Budget of_address_;

@@ -210,6 +210,8 @@ void Listener::end_handshake(SessionId session) {
 void Listener::opened(SessionId session) {
   const std::lock_guard lock(mutex_);
   end_handshake(session);
+  const auto found = sessions_.find(session);
+  if (found != sessions_.end()) found->second->authenticated();
 }
 
 std::shared_ptr<NetSession> Listener::find(SessionId session) const {
@@ -219,10 +221,21 @@ std::shared_ptr<NetSession> Listener::find(SessionId session) const {
 }
 
 void Listener::forget(SessionId session) {
-  const std::lock_guard lock(mutex_);
-  end_handshake(session);
-  leaving_.erase(session);
-  sessions_.erase(session);
+  std::shared_ptr<NetSession> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    end_handshake(session);
+    leaving_.erase(session);
+    const auto found = sessions_.find(session);
+    if (found == sessions_.end()) return;
+    ended = std::move(found->second);
+    sessions_.erase(found);
+  }
+  if (!is_broken_rule(ended->end().reason)) return;
+  const auto charge = [self = shared_from_this(), from = ended->address()] {
+    self->connections_.charge(from, self->limits_.connections_per_second, steady_now_us());
+  };
+  asio::post(strand_, charge);
 }
 
 void Listener::close_stalled(TimeUs now_us, TimeUs us_max) {

@@ -48,7 +48,9 @@ class Listener : public std::enable_shared_from_this<Listener> {
   /// Reports that the session has authenticated. Its connection is not replaced by a new one any
   /// more.
   void opened(SessionId session);
-  /// Removes a session that has reported on_disconnected().
+  /// Removes a session that has reported on_disconnected() or on_refused(). If its client broke a
+  /// rule, its address pays as for connections_per_second connections more. So an address whose
+  /// clients break rules gets about one connection a second.
   void forget(SessionId session);
   std::size_t session_count() const;
   /// Closes the sessions that have been writing the same bytes for so long: their clients do not

@@ -28,6 +28,13 @@ constexpr std::size_t kMessageBytes = 64;
 // Counted as read for each message of the world strand, in addition to its bytes: decoding a byte of
 // a large paste takes 13 ns, and a message takes at least 7 us.
 constexpr std::size_t kMessageReadBytes = 512;
+// The same for a ReceiveAck, which the world strand never sees. On a fast link a regular client
+// sends a thousand of them a second (kReceiveAckUsMin).
+constexpr std::size_t kAckReadBytes = 256;
+// Of a client that has broken a rule, has said goodbye or was refused before it authenticated, at most
+// so many further bytes are read and dropped. Then the connection is closed: decrypting what a flood
+// still sends would cost more than the flood did.
+constexpr std::size_t kDroppedBytesMax = 64 * 1024;
 // Room for a chunk fragment that must be sent although the socket has none.
 constexpr std::size_t kStarvedRoomBytes = 2 * 1024;
 // Messages of more bytes are decoded on the decoders. The largest paste takes half a millisecond.
@@ -177,6 +184,12 @@ EndCause NetSession::end() {
   return end_;
 }
 
+bool NetSession::drops_input() {
+  if (has_said_goodbye_) return true;
+  const std::lock_guard lock(mutex_);
+  return closing_ && (!is_authenticated_ || is_broken_rule(end_.reason));
+}
+
 void NetSession::handled(std::size_t message_bytes) {
   unhandled_.fetch_sub(message_bytes + kMessageBytes);
   if (!reader_paused_.load() || must_pause()) return;
@@ -272,12 +285,14 @@ Result<void> NetSession::handle_decoded(const Result<void>& fed) {
   Result<void> result = fed;
   for (Decoded& decoded : decoded_) {
     if (const auto* ack = std::get_if<ReceiveAck>(&decoded.message)) {
+      charge_reading(kAckReadBytes);
       if (const auto taken = on_receive_ack(*ack); !taken) {
         result = taken;
         break;
       }
       continue;
     }
+    has_said_goodbye_ = has_said_goodbye_ || std::holds_alternative<Goodbye>(decoded.message);
     charge_reading(kMessageReadBytes);
     unhandled_.fetch_add(decoded.bytes + kMessageBytes);
     events_.on_message(id_, std::move(decoded.message), decoded.bytes);
@@ -299,6 +314,7 @@ Result<void> NetSession::on_receive_ack(const ReceiveAck& ack) {
       return taken;
     }
     queue_.set_chunk_backlog(gate_.backlog_bytes());
+    if (!queue_.has_chunk()) return {};
   }
   wake_writer();
   return {};
@@ -313,6 +329,7 @@ void NetSession::refuse(const Error& error) {
 asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
   Bytes buffer(kReadBytes);
   bool refused = false;
+  std::size_t dropped_bytes = 0;
   for (;;) {
     const asio::mutable_buffer into = asio::buffer(buffer);
     const IoResult got = co_await self->stream_->read_some(into);
@@ -321,7 +338,11 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
     co_await self->wait_for_read_budget(got.received);
     // While closing, input is read and dropped. Unread input would make the kernel reset the
     // connection, and the goodbye would be lost.
-    if (refused) continue;
+    if (refused || self->drops_input()) {
+      dropped_bytes += got.received;
+      if (dropped_bytes > kDroppedBytesMax) break;
+      continue;
+    }
     self->broken_rule_ = GoodbyeReason::malformed_frame;
     const ByteView read(buffer.data(), got.bytes);
     const Result<void> fed = co_await feed(self, read);

@@ -69,6 +69,13 @@ struct EndCause {
   std::string text;
 };
 
+/// Returns true if a client whose session ended for this reason has broken a rule of the protocol.
+constexpr bool is_broken_rule(GoodbyeReason reason) {
+  return reason == GoodbyeReason::malformed_frame || reason == GoodbyeReason::malformed_message ||
+         reason == GoodbyeReason::unexpected_message ||
+         reason == GoodbyeReason::not_authenticated || reason == GoodbyeReason::flooding;
+}
+
 class NetSession : public std::enable_shared_from_this<NetSession> {
  public:
   /// `budget` (of the server), `limits`, `events` and `counters` must outlive the session, and the
@@ -113,6 +120,9 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// the connection, at the latest after the linger time. If the stream is not open yet, it is
   /// closed at once. Further calls do nothing.
   void close(GoodbyeReason reason, const std::string& text);
+  /// Reports that the client has authenticated. What it sends while it is being closed is read until
+  /// the linger time ends, so that it certainly gets the goodbye. Thread: any.
+  void authenticated() { is_authenticated_ = true; }
   /// Reports that a message of NetEvents::on_message() was handled.
   void handled(std::size_t message_bytes);
   /// Counts further bytes as read, for a message that cost more than its size says. Reading pauses
@@ -140,6 +150,9 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   Result<void> handle_decoded(const Result<void>& fed);
   Result<void> on_receive_ack(const ReceiveAck& ack);
   void refuse(const Error& error);
+  /// Returns true if input is to be dropped and only a little of it read: the session is being closed
+  /// because the client broke a rule or did not authenticate, or the client has said goodbye.
+  bool drops_input();
   asio::awaitable<void> wait_for_read_budget(std::size_t bytes_read);
   bool must_pause() const { return unhandled_.load() >= limits_.unhandled_bytes_max; }
   bool has_chunk();
@@ -164,6 +177,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::atomic<std::size_t> unhandled_{0};  // bytes, see NetLimits
   std::atomic<std::size_t> charged_{0};    // bytes to be added to the next read
   std::atomic<bool> reader_paused_{false};
+  std::atomic<bool> is_authenticated_{false};
   std::atomic<TimeUs> write_began_us_{0};  // 0: no write is under way
 
   std::mutex mutex_;  // a leaf: guards the next seven
@@ -191,7 +205,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   GoodbyeReason broken_rule_ = GoodbyeReason::malformed_frame;  // of the error that feed() returns
   int loops_ = 0;
   bool linger_started_ = false;
-  bool reads_no_more_ = false;  // the stream was closed; on the strand
+  bool has_said_goodbye_ = false;  // the client
+  bool reads_no_more_ = false;     // the stream was closed; on the strand
 };
 
 }  // namespace runstone

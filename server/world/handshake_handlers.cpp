@@ -236,7 +236,7 @@ void on_key_request(WorldState& world, SessionId session, const KeyRequest& requ
   if (close_if_authenticated(world, session)) return;
   const AddressBlock address = world.find(session)->address;
   if (!world.guess_ledger.has(address, kGuessPrice, now.steady_us))
-    return close_session(world, session, GoodbyeReason::not_admitted, kTooManyGuesses);
+    return close_session(world, session, GoodbyeReason::flooding, kTooManyGuesses);
   auto sealed = world.key_deposits.take(request.slot, now.steady_us);
   if (!sealed) {
     world.guess_ledger.take(address, kGuessPrice, now.steady_us);

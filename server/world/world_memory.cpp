@@ -16,11 +16,16 @@ constexpr std::size_t kShareOfFree = 2;  // alpha of the dynamic thresholds
 
 std::string mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20); }
 
+/// Returns the mean memory of a chunk.
+std::size_t mean_chunk_bytes(const WorldState& world) {
+  const WorldChunks& chunks = world.authority.chunks();
+  return chunks.resident_bytes() / std::max<std::size_t>(1, chunks.resident_count());
+}
+
 /// Returns the sessions that may load no chunk because their address sees more than its share.
 /// Cost: O(sessions).
 std::set<SessionId> sessions_over_share(const WorldState& world, const WorldMemory& use) {
-  const WorldChunks& chunks = world.authority.chunks();
-  const std::size_t mean = use.voxels / std::max<std::size_t>(1, chunks.resident_count());
+  const std::size_t mean = mean_chunk_bytes(world);
   const std::size_t voxels = std::min(use.voxels, mean * world.interest.used_count());
   const std::size_t in_use = voxels + use.stacked + use.queued;
   const std::size_t bound = world.config.memory.view_bytes_max;
@@ -58,8 +63,12 @@ bool is_memory_full(const WorldState& world) {
 void keep_memory_bounds(WorldState& world) {
   const WorldMemory use = world_memory_of(world);
   const std::size_t edits = use.stacked + use.queued;
-  const std::size_t idle_max = world.config.memory.idle_bytes_max;
-  world.authority.chunks().evict(idle_max - std::min(idle_max, edits), kEvictionStepsPerTick,
+  const MemoryLimits& limits = world.config.memory;
+  const std::size_t seen = mean_chunk_bytes(world) * world.interest.used_count();
+  const std::size_t voxels_max =
+      std::min(limits.idle_bytes_max - std::min(limits.idle_bytes_max, edits),
+               seen + limits.unused_bytes_max);
+  world.authority.chunks().evict(voxels_max, kEvictionStepsPerTick,
                                  [&](const ChunkKey& key) { return world.interest.is_used(key); });
   world.loads_wait = sessions_over_share(world, world_memory_of(world));
   const bool is_short = views_wait_for_memory(world);

@@ -1,6 +1,7 @@
 // WorldMemory: the memory that the data of a world take, and what the server refuses when it runs
 // out. The three bounds follow each other, so that each kind of use leaves room for the next one:
-//   1. Over idle_bytes_max, chunks that nobody uses leave memory.
+//   1. Over idle_bytes_max, chunks that nobody uses leave memory. They do so, too, when they take more
+//      than about unused_bytes_max: somebody who looks at one place after another fills no memory.
 //   2. Over view_bytes_max, no chunk is loaded for a session: its view stays incomplete until other
 //      chunks leave. Chunks that the next checkpoint needs are still loaded, because a saved chunk
 //      can leave memory and its stack becomes empty.
@@ -27,10 +28,11 @@ struct MemoryLimits {
   std::size_t edit_bytes_max = 512ULL << 20;
   /// Edits that wait for their chunks over this begin a round of snapshots, which loads the chunks.
   std::size_t stack_bytes_max = 64ULL << 20;
+  std::size_t unused_bytes_max = 16ULL << 20;
 };
 /// Returns the bounds of a world whose data may take this many bytes.
 constexpr MemoryLimits memory_limits_of(std::size_t bytes) {
-  return {bytes / 16 * 14, bytes / 16 * 15, bytes, bytes / 8};
+  return {bytes / 16 * 14, bytes / 16 * 15, bytes, bytes / 8, bytes / 32};
 }
 
 struct WorldMemory {

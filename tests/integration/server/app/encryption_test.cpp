@@ -11,6 +11,7 @@
 #include <fstream>
 #include <future>
 
+#include "common/os/steady_clock.hpp"
 #include "common/tls/openssl_ptr.hpp"
 #include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
@@ -244,6 +245,34 @@ TEST_CASE("an address that connects too often is refused before its handshake",
   for (int i = 0; i < 1'000 && !was_refused; ++i)
     was_refused = !RawClient(server->port(), kOther).is_open();
   CHECK(was_refused);
+  RawClient honest(server->port());
+  CHECK(honest.join(1).has_value());
+}
+
+TEST_CASE("an address whose clients break rules may connect less often", "[integration][tls]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder / "world");
+  config.connections_per_second = 1;  // ten at once
+  const auto server = start_server(config, flat_creation());
+  constexpr std::uint32_t kOther = INADDR_LOOPBACK + 1;
+  // Each connection pays for itself, and once more for the rule, so five use up what ten may cost.
+  // Meanwhile the budget refills by a connection a second.
+  const TimeUs began_us = steady_now_us();
+  bool was_refused = false;
+  int accepted = 0;
+  while (!was_refused && accepted < 1'000) {
+    RawClient client(server->port(), kOther);
+    was_refused = !client.is_open();
+    if (was_refused) break;
+    ++accepted;
+    client.send(ClientAuth{});  // before hello
+    const auto goodbye = client.goodbye();
+    REQUIRE(goodbye);
+    REQUIRE(goodbye->reason == GoodbyeReason::unexpected_message);
+  }
+  const auto seconds = static_cast<int>((steady_now_us() - began_us) / 1'000'000);
+  CHECK(was_refused);
+  CHECK(accepted <= 6 + seconds / 2);
   RawClient honest(server->port());
   CHECK(honest.join(1).has_value());
 }

@@ -65,5 +65,19 @@ TEST_CASE("a slow bucket fills over many hours", "[core]") {
   CHECK(bucket.take(100'000, std::numeric_limits<TimeUs>::max()));
 }
 
+TEST_CASE("a token bucket owes what it cannot pay, at most what it holds", "[core]") {
+  constexpr TimeUs kSecond = 1'000'000;
+  TokenBucket bucket(10, 20);
+  bucket.charge(25, 0);
+  CHECK_FALSE(bucket.take(1, kSecond / 2));  // the first five tokens pay the rest
+  CHECK(bucket.take(1, kSecond / 2 + kSecond / 10));
+  CHECK(bucket.wait_us(3, kSecond / 2 + kSecond / 10) == 3 * kSecond / 10);
+  bucket.charge(1'000, kSecond);
+  CHECK(bucket.wait_us(1, kSecond) == 2 * kSecond + kSecond / 10);
+  CHECK_FALSE(bucket.is_full(4 * kSecond));
+  CHECK(bucket.is_full(5 * kSecond));
+  CHECK(bucket.take(20, 5 * kSecond));
+}
+
 }  // namespace
 }  // namespace runstone

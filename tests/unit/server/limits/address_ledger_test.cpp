@@ -53,10 +53,29 @@ TEST_CASE("an address can be asked what it has, which takes nothing", "[limits]"
   CHECK(ledger.has(address_block_v4(0x0a0001ff), 3, 0));
 }
 
+TEST_CASE("an address owes what it cannot pay, at most a whole budget", "[limits]") {
+  constexpr std::uint64_t kShares = AddressLedger::kBudgetsPerRange;
+  AddressLedger ledger({2, 20});
+  const AddressBlock one = address_block_v4(0x0a000001), other = address_block_v4(0x0a0000ff);
+  ledger.charge(one, 15, 0);
+  CHECK(ledger.has(one, 5, 0));
+  CHECK_FALSE(ledger.has(one, 6, 0));
+  ledger.charge(one, 15, 0);
+  CHECK_FALSE(ledger.has(one, 1, 5 * kSecond));  // ten were owed
+  CHECK(ledger.has(one, 2, 6 * kSecond));
+  ledger.charge(one, 1'000'000, 6 * kSecond);
+  CHECK_FALSE(ledger.has(one, 1, 16 * kSecond));
+  CHECK(ledger.has(one, 1, 17 * kSecond));
+  CHECK_FALSE(ledger.has(other, 1, 7 * kSecond));  // the range owes, too
+  CHECK(ledger.has(address_block_v4(0x0a000101), 20, 0));
+  static_assert(kShares * 20 < 1'000'000);
+}
+
 TEST_CASE("without a limit nothing is refused or kept", "[limits]") {
   AddressLedger ledger({});
   CHECK(ledger.has(address_block_v4(1), 1'000, 0));
   for (int i = 0; i < 10'000; ++i) REQUIRE(ledger.take(address_block_v4(1), 1, 0));
+  ledger.charge(address_block_v4(1), 1, 0);
   CHECK(ledger.size() == 0);
 }
 

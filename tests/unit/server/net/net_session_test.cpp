@@ -33,13 +33,12 @@ class FedStream final : public ByteStream {
     co_return start;
   }
   asio::awaitable<IoResult> read_some(asio::mutable_buffer into) override {
-    const std::size_t count = std::min(into.size(), bytes_.size() - at_);
-    if (is_closed_) co_return IoResult{asio::error::operation_aborted};
-    if (count == 0) {
+    while (!is_closed_ && at_ == bytes_.size()) {
       const auto [error] = co_await closed_.async_wait(kTuple);
-      (void)error;  // cancelled at the end
-      co_return IoResult{asio::error::operation_aborted};
+      (void)error;  // cancelled at the end, or by feed()
     }
+    if (is_closed_) co_return IoResult{asio::error::operation_aborted};
+    const std::size_t count = std::min(into.size(), bytes_.size() - at_);
     std::memcpy(into.data(), bytes_.data() + at_, count);
     at_ += count;
     co_return IoResult{{}, count, count};
@@ -60,6 +59,11 @@ class FedStream final : public ByteStream {
   StreamRoom room() override {
     ++asked;
     return room_now;
+  }
+  /// Sends more bytes.
+  void feed(const Bytes& bytes) {
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    closed_.cancel();
   }
   void shutdown_send() override {}
   void close() override {
@@ -231,6 +235,32 @@ TEST_CASE("each message counts as read with more than its bytes", "[net]") {
   Bench bench(frames_of(Ping{1}, 2'000), {}, limits);
   CHECK(bench.world.received >= 900);
   CHECK(bench.world.received < 1'500);
+}
+
+TEST_CASE("after a broken rule or a goodbye little more is read", "[net]") {
+  const bool is_goodbye = GENERATE(true, false);
+  CAPTURE(is_goodbye);
+  Bench bench(is_goodbye ? frames_of(Goodbye{GoodbyeReason::closing, "bye"}, 1) : Bytes());
+  if (!is_goodbye) bench.session->close(GoodbyeReason::unexpected_message, "");
+  const std::size_t before = bench.stream->read();
+  bench.stream->feed(frames_of(Ping{1}, 20'000));
+  bench.io.poll();
+  CHECK(bench.stream->read() - before >= 64 * 1024);
+  CHECK(bench.stream->read() - before <= 72 * 1024);
+  CHECK(bench.world.received == (is_goodbye ? 1 : 0));
+}
+
+TEST_CASE("acknowledgements of terrain count as read with more than their bytes", "[net]") {
+  NetLimits limits;
+  limits.read_bytes_per_second = 250'000;  // twice as much at once
+  limits.messages_per_second = 0;
+  Bench bench({}, {}, limits);
+  bench.session->set_features(kFeatureReceiveAck);
+  bench.fill_chunk(50'000);
+  bench.stream->feed(frames_of(ReceiveAck{1}, 10'000));
+  bench.io.poll();
+  CHECK(bench.counters.messages_in >= 1'500);
+  CHECK(bench.counters.messages_in < 2'200);
 }
 
 TEST_CASE("an address has a budget of reading, too", "[net]") {

@@ -26,7 +26,7 @@ EditShape row_paste(VoxelPos at) {
 
 WorldConfig with_memory(std::size_t views, std::size_t edits) {
   WorldConfig c = config();
-  c.memory = {kNoBound, views, edits, kNoBound};
+  c.memory = {kNoBound, views, edits, kNoBound, kNoBound};
   return c;
 }
 
@@ -209,7 +209,7 @@ TEST_CASE("an address that sees much leaves memory for others", "[world]") {
 
 TEST_CASE("edits that wait make chunks without users leave memory", "[world]") {
   WorldConfig c = config();
-  c.memory = {20'000, kNoBound, kNoBound, kNoBound};
+  c.memory = {20'000, kNoBound, kNoBound, kNoBound, kNoBound};
   WorldBench bench(c);
   bench.join(1, 1);
   bench.view(1, kSmall);
@@ -220,6 +220,26 @@ TEST_CASE("edits that wait make chunks without users leave memory", "[world]") {
   bench.environment.log_bytes = 20'000;
   bench.tick();
   CHECK(bench.server.resident_chunks() == resident - 5);
+}
+
+TEST_CASE("chunks that nobody sees any more take little memory, those in sight stay", "[world]") {
+  WorldConfig c = with_memory(kNoBound, kNoBound);
+  c.memory.unused_bytes_max = 0;
+  WorldBench bench(c);
+  bench.join(1, 1);
+  bench.view(1, kSmall);
+  const std::size_t seen = bench.server.resident_chunks();
+  REQUIRE(seen == 5);
+  for (std::int32_t x = 1; x <= 20; ++x) {
+    bench.send_view(1, {static_cast<std::uint32_t>(1 + x), {100 * x, 0, 0}, 1, 0});
+    for (int i = 0; i < 5; ++i) {
+      bench.tick();
+      bench.answer_loads();
+    }
+    CHECK(bench.server.resident_chunks() <= 2 * seen);
+  }
+  bench.tick();
+  CHECK(bench.server.resident_chunks() == seen);
 }
 
 TEST_CASE("many edits that wait for their chunks begin a round of snapshots", "[world]") {
