@@ -40,8 +40,8 @@ class TokenBucket {
     add_tokens(now_us);
     return parts_ == full_;
   }
-  /// Takes `count` tokens for something that was already done. What is missing is owed, at most as
-  /// much as the bucket holds: the next tokens pay for it.
+  /// Takes `count` tokens for something that was already done. Missing tokens are owed, at most as
+  /// many as the bucket holds: the next tokens pay for them.
   void charge(std::uint64_t count, TimeUs now_us) {
     add_tokens(now_us);
     const std::uint64_t price = std::min(count, kBurstMax) * kPart;

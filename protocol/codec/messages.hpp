@@ -372,7 +372,7 @@ enum class GoodbyeReason : std::uint16_t {
   already_connected = 7,  // the same key and instance connected again
   server_full = 8,
   timed_out = 9,
-  flooding = 10,  // more messages or claims than the limits allow
+  flooding = 10,  // more messages, claims or requests for keys than the limits allow
   internal = 11,
   name_refused = 12,  // the player may not have this name; text says why
   not_admitted = 13,  // a ban, a kick, or a role that may not join; text says which

@@ -26,8 +26,9 @@ class AddressLedger {
   /// Cost: O(log addresses), amortised.
   bool take(AddressBlock from, std::uint64_t price, TimeUs now_us);
 
-  /// Takes the price of something that was already done from both budgets. What is missing is owed, up
-  /// to a whole budget. Cost: O(log addresses), amortised.
+  /// Takes the price of something that was already done from the budget of the address. The missing
+  /// part is owed, at most as much as the budget holds. The range does not pay: one address must not
+  /// keep its neighbours out. Cost: O(log addresses), amortised.
   void charge(AddressBlock from, std::uint64_t price, TimeUs now_us);
 
   /// Returns true if take() would take the price. Cost: O(log addresses).

@@ -49,8 +49,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
   /// more.
   void opened(SessionId session);
   /// Removes a session that has reported on_disconnected() or on_refused(). If its client broke a
-  /// rule, its address pays as for connections_per_second connections more. So an address whose
-  /// clients break rules gets about one connection a second.
+  /// rule, its address is charged for connections_per_second further connections. So an address
+  /// whose clients break rules gets about one connection a second.
   void forget(SessionId session);
   std::size_t session_count() const;
   /// Closes the sessions that have been writing the same bytes for so long: their clients do not

@@ -32,8 +32,9 @@ constexpr std::size_t kMessageReadBytes = 512;
 // sends a thousand of them a second (kReceiveAckUsMin).
 constexpr std::size_t kAckReadBytes = 256;
 // Of a client that has broken a rule, has said goodbye or was refused before it authenticated, at most
-// so many further bytes are read and dropped. Then the connection is closed: decrypting what a flood
-// still sends would cost more than the flood did.
+// so many further bytes are read and dropped: decrypting what a flood still sends would cost more than
+// the flood did. The connection stays open for the linger time, so that the client can read the
+// goodbye.
 constexpr std::size_t kDroppedBytesMax = 64 * 1024;
 // Room for a chunk fragment that must be sent although the socket has none.
 constexpr std::size_t kStarvedRoomBytes = 2 * 1024;
@@ -255,6 +256,13 @@ asio::awaitable<void> NetSession::wait_for_read_budget(std::size_t bytes_read) {
   (void)error;  // cancelled when the stream is closed; the next read fails then
 }
 
+asio::awaitable<void> NetSession::wait_for_close(std::shared_ptr<NetSession> self) {
+  if (self->reads_no_more_) co_return;
+  self->read_turn_.expires_at(asio::steady_timer::time_point::max());
+  const auto [error] = co_await self->read_turn_.async_wait(kTuple);
+  (void)error;  // cancelled by close_stream()
+}
+
 asio::awaitable<Result<void>> NetSession::feed(std::shared_ptr<NetSession> self, ByteView read) {
   const FrameReader::OnMessage on_message = [raw = self.get()](MessageKind kind, ByteView body) {
     return raw->decode(kind, body);
@@ -340,8 +348,9 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
     // connection, and the goodbye would be lost.
     if (refused || self->drops_input()) {
       dropped_bytes += got.received;
-      if (dropped_bytes > kDroppedBytesMax) break;
-      continue;
+      if (dropped_bytes <= kDroppedBytesMax) continue;
+      co_await wait_for_close(self);
+      break;
     }
     self->broken_rule_ = GoodbyeReason::malformed_frame;
     const ByteView read(buffer.data(), got.bytes);
@@ -359,7 +368,8 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
     self->reader_paused_.store(false);
   }
   // The client has closed the connection, so nobody reads what is queued.
-  self->close(GoodbyeReason::closing, "end of stream");
+  self->close(GoodbyeReason::closing,
+              self->has_said_goodbye_ ? "the client said goodbye" : "end of stream");
   self->loop_ended();
 }
 

@@ -95,7 +95,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
     const TimeUs began_us = write_began_us_.load();
     return began_us == 0 ? 0 : now_us - began_us;
   }
-  /// Returns why close() was called first. Requires that it was called. Thread: any.
+  /// Returns why close() was called first, or the default if it was not called. Thread: any.
   EndCause end();
 
   /// Opens the stream, reports on_connected() and starts both loops. Call it once.
@@ -120,8 +120,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// the connection, at the latest after the linger time. If the stream is not open yet, it is
   /// closed at once. Further calls do nothing.
   void close(GoodbyeReason reason, const std::string& text);
-  /// Reports that the client has authenticated. What it sends while it is being closed is read until
-  /// the linger time ends, so that it certainly gets the goodbye. Thread: any.
+  /// Reports that the client has authenticated. What it sends while it is being closed is then read
+  /// until the linger time ends, so that the goodbye is not lost. Thread: any.
   void authenticated() { is_authenticated_ = true; }
   /// Reports that a message of NetEvents::on_message() was handled.
   void handled(std::size_t message_bytes);
@@ -154,6 +154,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// because the client broke a rule or did not authenticate, or the client has said goodbye.
   bool drops_input();
   asio::awaitable<void> wait_for_read_budget(std::size_t bytes_read);
+  /// Waits until close_stream() was called.
+  static asio::awaitable<void> wait_for_close(std::shared_ptr<NetSession> self);
   bool must_pause() const { return unhandled_.load() >= limits_.unhandled_bytes_max; }
   bool has_chunk();
   void wake_writer();

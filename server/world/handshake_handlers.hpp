@@ -14,8 +14,9 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello);
 /// client, and the older connection is usually dead without a sign of it.
 void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth,
                     const Clocks& now);
-/// Sends the sealed key of a slot and removes it, or closes the session: not_admitted. Whoever has
-/// the code may take the key, so nothing is asked of the player. The session ends in any case.
+/// Sends the sealed key of a slot and removes it, or closes the session: not_admitted, or flooding
+/// after too many requests for empty slots. Whoever has the code may take the key, so the player needs
+/// no rights. The session ends in any case.
 void on_key_request(WorldState& world, SessionId session, const KeyRequest& request,
                     const Clocks& now);
 /// Keeps a sealed key of a player who may join, or answers why not. The session ends in any case, and

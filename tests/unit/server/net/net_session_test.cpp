@@ -250,6 +250,27 @@ TEST_CASE("after a broken rule or a goodbye little more is read", "[net]") {
   CHECK(bench.world.received == (is_goodbye ? 1 : 0));
 }
 
+TEST_CASE("how much is read of a session that is being closed", "[net]") {
+  struct Case {
+    bool is_authenticated;
+    GoodbyeReason reason;
+    bool reads_on;
+  };
+  const auto [is_authenticated, reason, reads_on] = GENERATE(
+      Case{true, GoodbyeReason::closing, true}, Case{true, GoodbyeReason::not_admitted, true},
+      Case{true, GoodbyeReason::flooding, false}, Case{false, GoodbyeReason::not_admitted, false});
+  CAPTURE(is_authenticated, reason);
+  Bench bench;
+  if (is_authenticated) bench.session->authenticated();
+  bench.session->close(reason, "");
+  const std::size_t before = bench.stream->read();
+  bench.stream->feed(frames_of(Ping{1}, 20'000));
+  bench.io.poll();
+  const std::size_t read = bench.stream->read() - before;
+  CHECK(read >= 64 * 1024);
+  CHECK((read > 72 * 1024) == reads_on);
+}
+
 TEST_CASE("acknowledgements of terrain count as read with more than their bytes", "[net]") {
   NetLimits limits;
   limits.read_bytes_per_second = 250'000;  // twice as much at once
