@@ -28,6 +28,7 @@
 #include "server/admin/console.hpp"
 #include "server/app/backup_child.hpp"
 #include "server/app/first_invite.hpp"
+#include "server/app/input_end.hpp"
 #include "server/app/new_world.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
@@ -187,8 +188,14 @@ int run(const ServerOptions& options) {
   if (!server) return cannot_start(server.error());
   running = *std::move(server);
   if (running->is_unclaimed() && config->operators.empty()) welcome_administrator(*running);
+  std::unique_ptr<InputEnd> input;
+  if (options.stop_with_input) {
+    auto watched = InputEnd::watch(main_loop, end);
+    if (!watched) return cannot_start(watched.error());
+    input = *std::move(watched);
+  }
   std::shared_ptr<Console> console;
-  if (options.console || ::isatty(STDIN_FILENO) == 1) {
+  if (options.console || (!input && ::isatty(STDIN_FILENO) == 1)) {
     const auto run_line = [&running](const std::string& line, CommandReply reply) {
       running->command(line, std::move(reply));
     };

@@ -24,8 +24,11 @@ void add_flags(CLI::App& app, ServerOptions& out) {
   app.add_option("--digests", out.digests_file,
                  "write the digests of all edited chunks here on stop")
       ->check(output_refusal);
-  app.add_flag("--console", out.console,
-               "read commands from standard input even if it is no terminal");
+  CLI::Option* const console = app.add_flag(
+      "--console", out.console, "read commands from standard input even if it is no terminal");
+  app.add_flag("--stop-with-input", out.stop_with_input,
+               "stop when standard input ends; for programs that start a server for themselves")
+      ->excludes(console);
   app.add_flag("--create", out.create, "make a new world if the folder --world holds none");
   app.add_flag("--accept-losses", out.accept_losses,
                "start a world that has lost edits, players or watermarks, and log what is lost");

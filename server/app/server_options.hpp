@@ -23,7 +23,8 @@ struct ServerOptions {
   std::optional<CompactRequest> compact;  // the compact subcommand
   std::optional<BackupRequest> backup;    // the backup subcommand
   std::optional<RestoreRequest> restore;  // the restore subcommand
-  bool console = false;  // read commands from standard input even if it is no terminal
+  bool console = false;          // read commands from standard input even if it is no terminal
+  bool stop_with_input = false;  // stop when standard input ends
   std::optional<ControlRequest> control;  // the control subcommand
 };
 

@@ -113,3 +113,10 @@ TEST_CASE("backup and restore name both folders", "[server_options]") {
   CHECK(parse({"backup", "--world", "a"}).exit_code == 2);
   CHECK(parse({"restore", "--world", "a"}).exit_code == 2);
 }
+
+TEST_CASE("standard input is a console or ends the server, not both", "[server_options]") {
+  REQUIRE(parse({"--stop-with-input"}).options);
+  CHECK(parse({"--stop-with-input"}).options->stop_with_input);
+  CHECK_FALSE(parse({"--console"}).options->stop_with_input);
+  CHECK(parse({"--stop-with-input", "--console"}).exit_code == 2);
+}
