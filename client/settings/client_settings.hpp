@@ -1,0 +1,51 @@
+// ClientSettings: the choices of a player that are kept between runs, and their text form in TOML.
+// Pure.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace runstone {
+
+enum class QualityChoice : std::uint8_t {
+  automatic,  // the client measures its frames and picks the level
+  low,
+  medium,
+  high,
+};
+inline constexpr std::size_t kQualityChoiceCount = 4;
+/// Returns "automatic", "lowest", ...
+const char* name_of(QualityChoice quality);
+
+struct ClientSettings {
+  std::string name = "builder";  // shown to others; as the option --name
+  std::string key_file;          // of the identity; empty: default_key_file()
+  QualityChoice quality = QualityChoice::automatic;
+  double field_of_view = 69;        // degrees, vertical, 30 to 110
+  std::uint8_t view_radius = 6;     // chunks, horizontal, 1 to kViewRadiusMax
+  std::uint64_t memory_mib = 1024;  // of chunks, edits and meshes, 64 to 65,536
+  double sensitivity = 1;           // of the mouse, 0.1 to 10
+  bool invert_y = false;            // mouse up looks down
+  double interface_scale = 1;       // of windows and text, 0.5 to 4
+  bool walks = false;               // players begin on their feet; false: they fly
+  /// The keys that differ from the defaults, by the name of their action. A value has the names of
+  /// keys with blanks between them, such as "W up", or is empty. Who uses them checks the names.
+  std::map<std::string, std::string> keys;
+  friend bool operator==(const ClientSettings&, const ClientSettings&) = default;
+};
+
+/// The settings of a text, and one line for each key that was not used and why. A key that is not
+/// known, has the wrong type or is out of range does not prevent the use of the others.
+struct ReadSettings {
+  ClientSettings settings;
+  std::vector<std::string> warnings;
+  bool is_broken = false;  // the text is not TOML; the settings are the defaults
+};
+/// Reads the text. `file` is the name in the warnings, which have the form "FILE:LINE: KEY: WHAT".
+ReadSettings read_settings(std::string_view toml, const std::string& file);
+/// Returns the text of all settings with comments. read_settings() reads it back to equal settings.
+std::string to_toml(const ClientSettings& settings);
+
+}  // namespace runstone

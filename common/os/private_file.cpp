@@ -1,0 +1,88 @@
+#include "common/os/private_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+namespace runstone {
+namespace {
+
+using Written = Result<void, std::string>;
+
+bool write_all(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+/// Puts the name of a renamed file on disk. A file system that cannot is no error.
+void sync_folder(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  static_cast<void>(::fsync(descriptor));
+  ::close(descriptor);
+}
+
+}  // namespace
+
+bool make_private_folder(const std::string& folder) {
+  if (folder.empty() || ::access(folder.c_str(), F_OK) == 0) return true;
+  return make_private_folder(std::filesystem::path(folder).parent_path().string()) &&
+         (::mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST);
+}
+
+Written write_private_file(const std::string& file, std::string_view bytes) {
+  const auto fail = [&file](int error) {
+    return Written(failure(file + ": cannot be written: " + std::strerror(error)));
+  };
+  const std::string folder = std::filesystem::absolute(file).parent_path().string();
+  if (!make_private_folder(folder)) return fail(errno);
+  const std::string fresh = file + ".new";
+  ::unlink(fresh.c_str());  // of a crash; it may have another mode
+  const int descriptor = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (descriptor < 0) return fail(errno);
+  errno = 0;
+  const bool is_written = write_all(descriptor, bytes) && ::fsync(descriptor) == 0;
+  const int error = errno;
+  const bool is_closed = ::close(descriptor) == 0;
+  if (!is_written || !is_closed || ::rename(fresh.c_str(), file.c_str()) != 0) {
+    const int why = is_written ? errno : error;
+    ::unlink(fresh.c_str());
+    return fail(why);
+  }
+  sync_folder(folder);
+  return {};
+}
+
+Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) return failure(file + ": is a folder");
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return failure(file + ": cannot be read: " + std::strerror(errno));
+  std::string bytes(bytes_max + 1, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  if (in.bad()) return failure(file + ": cannot be read");
+  if (bytes.size() > bytes_max)
+    return failure(file + ": is larger than " + std::to_string(bytes_max) + " bytes");
+  return bytes;
+}
+
+std::string set_aside(const std::string& file) {
+  const std::string broken = file + ".broken";
+  return ::rename(file.c_str(), broken.c_str()) == 0 ? broken : std::string();
+}
+
+}  // namespace runstone
