@@ -1,0 +1,103 @@
+#include "client/input/action.hpp"
+
+#include <array>
+
+namespace runstone {
+namespace {
+
+using enum ActionGroup;
+
+constexpr std::array<ActionInfo, kActionCount> kTable = {{
+    {Action::move_forward, "move_forward", "move forward", moving, "W", true},
+    {Action::move_left, "move_left", "move to the left", moving, "A", true},
+    {Action::move_back, "move_back", "move back", moving, "S", true},
+    {Action::move_right, "move_right", "move to the right", moving, "D", true},
+    {Action::move_up, "move_up", "fly up, jump, swim up", moving, "space", true},
+    {Action::move_down, "move_down", "fly down, or walk and stay on the edge", moving, "shift",
+     true},
+    {Action::move_fast, "move_fast", "fly faster, run", moving, "control", true},
+    {Action::show_players, "show_players", "show who is here, while held", others, "tab", true},
+    {Action::resize, "resize", "let the wheel change the size of the tool, while held", building,
+     "alt", true},
+    {Action::walk_or_fly, "walk_or_fly", "walk, or fly again", moving, "F"},
+    {Action::hold_slot_1, "hold_slot_1", "take the material of slot 1", building, "1"},
+    {Action::hold_slot_2, "hold_slot_2", "take the material of slot 2", building, "2"},
+    {Action::hold_slot_3, "hold_slot_3", "take the material of slot 3", building, "3"},
+    {Action::hold_slot_4, "hold_slot_4", "take the material of slot 4", building, "4"},
+    {Action::hold_slot_5, "hold_slot_5", "take the material of slot 5", building, "5"},
+    {Action::hold_slot_6, "hold_slot_6", "take the material of slot 6", building, "6"},
+    {Action::hold_slot_7, "hold_slot_7", "take the material of slot 7", building, "7"},
+    {Action::hold_slot_8, "hold_slot_8", "take the material of slot 8", building, "8"},
+    {Action::hold_slot_9, "hold_slot_9", "take the material of slot 9", building, "9"},
+    {Action::palette, "palette", "choose a material for the slot from all of them", building, "E"},
+    {Action::undo, "undo", "undo your newest edit", building, "ctrl+Z"},
+    {Action::redo, "redo", "redo it", building, "ctrl+Y ctrl+shift+Z"},
+    {Action::next_tool, "next_tool", "choose the next tool", building, "Q"},
+    {Action::previous_tool, "previous_tool", "choose the tool before", building, "shift+Q"},
+    {Action::larger, "larger", "make the tool larger", building, "equal"},
+    {Action::smaller, "smaller", "make the tool smaller", building, "minus"},
+    {Action::select, "select", "choose the tool that selects", building, "B"},
+    {Action::copy, "copy", "copy the selection", building, "ctrl+C"},
+    {Action::cut, "cut", "copy the selection and clear it", building, "ctrl+X"},
+    {Action::paste, "paste", "choose the tool that pastes", building, "ctrl+V"},
+    {Action::clear_selection, "clear_selection", "clear the selection", building, "delete"},
+    {Action::rotate, "rotate", "turn the clipboard by a quarter", building, "R"},
+    {Action::mirror, "mirror", "mirror the clipboard along x", building, "M"},
+    {Action::symmetry, "symmetry", "choose the next symmetry, about the voxel in sight", building,
+     "Y"},
+    {Action::preview, "preview", "show or hide what the next click does", building, "P"},
+    {Action::chat, "chat", "write to all players", others, "T enter"},
+    {Action::command, "command", "write a command for the server", others, "slash"},
+    {Action::timeline, "timeline", "show or hide the timeline", time, "H"},
+    {Action::earlier, "earlier", "go back by a hundredth of the log", time, "["},
+    {Action::later, "later", "go forth by a hundredth of the log", time, "]"},
+    {Action::live, "live", "return to the live world", time, "home"},
+    {Action::help, "help", "show or hide this help", window, "F1"},
+    {Action::screenshot, "screenshot", "write a picture to a file", window, "F2"},
+    {Action::statistics, "statistics", "show or hide the measurements", window, "F3"},
+    {Action::interface, "interface", "hide or show everything but the world", window, "F4"},
+    {Action::ground, "ground", "show or hide the outlines of protected ground", window, "G"},
+    {Action::release, "release", "close a window; otherwise open the menu", window, "escape"},
+}};
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < kTable.size(); ++i) {
+    if (kTable[i].action != static_cast<Action>(i)) return false;
+  }
+  return true;
+}
+static_assert(is_in_order());
+
+constexpr std::array<MouseInfo, 5> kMouse = {{
+    {"click", "captures the mouse"},
+    {"left button", "remove with the tool; held down, again and again by the voxel tool"},
+    {"right button", "place with the tool; held down, again and again by the voxel tool"},
+    {"middle button", "take the material of the voxel in sight"},
+    {"wheel", "choose the slot"},
+}};
+
+}  // namespace
+
+std::span<const ActionInfo> action_table() { return kTable; }
+
+const ActionInfo& info_of(Action action) { return kTable[static_cast<std::size_t>(action)]; }
+
+std::string_view title_of(ActionGroup group) {
+  switch (group) {
+    case moving:
+      return "Moving";
+    case building:
+      return "Building";
+    case others:
+      return "With others";
+    case ActionGroup::time:
+      return "Time";
+    case window:
+      return "Window";
+  }
+  return "";
+}
+
+std::span<const MouseInfo> mouse_table() { return kMouse; }
+
+}  // namespace runstone

@@ -1,0 +1,142 @@
+#include "client/input/input_router.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace runstone {
+namespace {
+
+bool is_function_key(Key key) { return key >= Key::f1 && key <= Key::f12; }
+
+/// Returns true for a press of a button if the cursor has moved over the interface in this turn.
+/// Then only the next turn knows over which window the cursor is.
+bool is_press_after_move(const InputEvent& event, const RoutedInput& out) {
+  const auto* const button = std::get_if<ButtonEvent>(&event);
+  return button != nullptr && button->is_pressed &&
+         std::ranges::any_of(out.for_ui, [](const InputEvent& routed) {
+           return std::holds_alternative<CursorEvent>(routed);
+         });
+}
+
+bool may_end_text(const KeyEvent& event) {
+  return event.is_pressed && (event.key == Key::enter || event.key == Key::keypad_enter);
+}
+
+}  // namespace
+
+void InputRouter::push(const std::vector<InputEvent>& events) {
+  events_.insert(events_.end(), events.begin(), events.end());
+}
+
+RoutedInput InputRouter::route(const UiFocus& focus) {
+  RoutedInput out;
+  while (!events_.empty() && out.player.actions.empty()) {
+    if (is_press_after_move(events_.front(), out)) break;
+    const InputEvent event = events_.front();
+    events_.pop_front();
+    if (const auto* key = std::get_if<KeyEvent>(&event)) {
+      if (takes_key(*key, focus, out)) {
+        // The character of this key belongs to no text.
+        while (!events_.empty() && std::holds_alternative<CharacterEvent>(events_.front()))
+          events_.pop_front();
+      } else if (!is_captured_ || !key->is_pressed) {
+        // The interface sees every release, also of a key that closed its window.
+        out.for_ui.push_back(event);
+        if (focus.types && may_end_text(*key)) break;
+      }
+    } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
+      take_button(*button, focus, out);
+    } else if (const auto* cursor = std::get_if<CursorEvent>(&event)) {
+      take_cursor(*cursor, out);
+    } else if (const auto* wheel = std::get_if<WheelEvent>(&event)) {
+      take_wheel(*wheel, out);
+    } else if (std::holds_alternative<FocusEvent>(event)) {
+      release_all();
+    } else if (!is_captured_) {
+      out.for_ui.push_back(event);
+    }
+  }
+  add_held(out.player);
+  return out;
+}
+
+bool InputRouter::takes_key(const KeyEvent& event, const UiFocus& focus, RoutedInput& out) {
+  const auto held = keys_.held(event.place);
+  if (!event.is_pressed) {
+    if (held) held_[static_cast<std::size_t>(*held)] = false;
+    return false;
+  }
+  const auto action = keys_.pressed(event);
+  const bool is_release = action == Action::release;
+  if (focus.types && !is_function_key(event.key) && !is_release) return false;
+  if (held) held_[static_cast<std::size_t>(*held)] = true;
+  if (!action || event.is_repeat) return held.has_value();
+  if (is_release && is_captured_) {
+    is_captured_ = false;
+    remove_held_ = place_held_ = false;
+    return true;
+  }
+  out.player.actions.push_back(*action);
+  return true;
+}
+
+void InputRouter::take_button(const ButtonEvent& event, const UiFocus& focus, RoutedInput& out) {
+  if (!is_captured_ || !event.is_pressed) out.for_ui.emplace_back(event);
+  bool* const held = event.button == MouseButton::left    ? &remove_held_
+                     : event.button == MouseButton::right ? &place_held_
+                                                          : nullptr;
+  if (!event.is_pressed) {
+    if (held != nullptr) *held = false;
+    return;
+  }
+  if (!is_captured_) {
+    is_captured_ = !focus.has_window && !focus.over_window && !is_window_open_;
+    return;
+  }
+  if (held != nullptr) *held = true;
+  if (event.button == MouseButton::left) ++out.player.remove_clicks;
+  if (event.button == MouseButton::right) ++out.player.place_clicks;
+  if (event.button == MouseButton::middle) ++out.player.pick_clicks;
+}
+
+void InputRouter::take_cursor(const CursorEvent& event, RoutedInput& out) const {
+  if (!is_captured_) return out.for_ui.push_back(event);
+  out.player.look_dx += event.dx;
+  out.player.look_dy += event.dy;
+}
+
+void InputRouter::take_wheel(const WheelEvent& event, RoutedInput& out) const {
+  if (!is_captured_) return out.for_ui.push_back(event);
+  out.player.scroll += event.steps > 0 ? 1 : event.steps < 0 ? -1 : 0;
+}
+
+void InputRouter::release_all() {
+  held_.fill(false);
+  remove_held_ = place_held_ = false;
+}
+
+void InputRouter::set_window_open(bool is_open) {
+  if (std::exchange(is_window_open_, is_open) == is_open) return;
+  release_all();
+  if (is_open) {
+    captures_again_ = std::exchange(is_captured_, false);
+  } else {
+    is_captured_ = is_captured_ || captures_again_;
+  }
+}
+
+void InputRouter::add_held(WindowInput& input) const {
+  input.forward = is_held(Action::move_forward);
+  input.back = is_held(Action::move_back);
+  input.left = is_held(Action::move_left);
+  input.right = is_held(Action::move_right);
+  input.up = is_held(Action::move_up);
+  input.down = is_held(Action::move_down);
+  input.fast = is_held(Action::move_fast);
+  input.shows_players = is_held(Action::show_players);
+  input.resizes = is_held(Action::resize);
+  input.remove_held = remove_held_;
+  input.place_held = place_held_;
+}
+
+}  // namespace runstone

@@ -1,0 +1,68 @@
+// InputRouter: decides who gets each event of keyboard and mouse.
+//   - While the mouse is captured, the player gets it, and the user interface gets nothing.
+//   - While the mouse is free, the user interface gets it. A click beside its windows captures the
+//     mouse, unless a window waits for an answer.
+//   - While a text is typed, the user interface gets the keys. Only function keys and escape act.
+// One thread.
+#pragma once
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "client/input/input_event.hpp"
+#include "client/input/key_map.hpp"
+#include "client/input/window_input.hpp"
+
+namespace runstone {
+
+/// What the user interface wants of the next events.
+struct UiFocus {
+  bool types = false;        // a text field has the keyboard
+  bool has_window = false;   // a window is open that needs the mouse, such as the palette
+  bool over_window = false;  // the cursor is over some window
+};
+
+struct RoutedInput {
+  WindowInput player;
+  std::vector<InputEvent> for_ui;
+};
+
+class InputRouter {
+ public:
+  void set_keys(const KeyMap& keys) { keys_ = keys; }
+  const KeyMap& keys() const { return keys_; }
+
+  /// Queues events. They are routed in order.
+  void push(const std::vector<InputEvent>& events);
+  /// Routes queued events up to the first one after which `focus` may be another one: a key that
+  /// triggers an action or ends a text, or a movement before a click. Call it every turn.
+  RoutedInput route(const UiFocus& focus);
+
+  /// Returns true if events wait for the next route().
+  bool has_events() const { return !events_.empty(); }
+  bool is_captured() const { return is_captured_; }
+  /// Captures the mouse, as a click beside all windows does.
+  void capture() { is_captured_ = true; }
+  /// Frees the mouse while a window needs it. Afterwards the mouse is captured again if it was
+  /// captured before.
+  void set_window_open(bool is_open);
+
+ private:
+  bool takes_key(const KeyEvent& event, const UiFocus& focus, RoutedInput& out);
+  void take_button(const ButtonEvent& event, const UiFocus& focus, RoutedInput& out);
+  void take_cursor(const CursorEvent& event, RoutedInput& out) const;
+  void take_wheel(const WheelEvent& event, RoutedInput& out) const;
+  void release_all();
+  void add_held(WindowInput& input) const;
+  bool is_held(Action action) const { return held_[static_cast<std::size_t>(action)]; }
+
+  KeyMap keys_;
+  std::deque<InputEvent> events_;
+  std::array<bool, kActionCount> held_{};
+  bool remove_held_ = false, place_held_ = false;
+  bool is_captured_ = false;
+  bool is_window_open_ = false;
+  bool captures_again_ = false;  // when the window closes
+};
+
+}  // namespace runstone
