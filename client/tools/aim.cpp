@@ -1,0 +1,46 @@
+#include "client/tools/aim.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace runstone {
+
+VoxelPos voxel_on_ray(const Aim& aim, double distance) {
+  const auto along = [distance](double from, double slope) {
+    return static_cast<std::int32_t>(std::floor(from + slope * distance));
+  };
+  return {along(aim.eye.x, aim.look.x), along(aim.eye.y, aim.look.y), along(aim.eye.z, aim.look.z)};
+}
+
+double distance_to(const Aim& aim, VoxelPos voxel) {
+  const double dx = voxel.x + 0.5 - aim.eye.x, dy = voxel.y + 0.5 - aim.eye.y,
+               dz = voxel.z + 0.5 - aim.eye.z;
+  return std::sqrt(dx * dx + dy * dy + dz * dz);
+}
+
+VoxelBox box_between(VoxelPos a, VoxelPos b) {
+  return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+          {std::max(a.x, b.x) + 1, std::max(a.y, b.y) + 1, std::max(a.z, b.z) + 1}};
+}
+
+VoxelPos moved(VoxelPos voxel, Direction direction, std::int32_t steps) {
+  const std::int32_t step = is_positive(direction) ? steps : -steps;
+  switch (axis_of(direction)) {
+    case Axis::x:
+      voxel.x += step;
+      break;
+    case Axis::y:
+      voxel.y += step;
+      break;
+    case Axis::z:
+      voxel.z += step;
+      break;
+  }
+  return voxel;
+}
+
+VoxelBox moved(const VoxelBox& box, Direction direction, std::int32_t steps) {
+  return {moved(box.min, direction, steps), moved(box.max, direction, steps)};
+}
+
+}  // namespace runstone

@@ -1,0 +1,43 @@
+// Aim: the place at which a player points, and the material in the hand.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "client/replica/ray_pick.hpp"
+#include "common/core/coords.hpp"
+#include "common/core/ids.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+struct Aim {
+  WorldPos eye;
+  LookDirection look;
+  std::optional<RayHit> hit;  // nullopt if nothing is in reach
+  Material held = kEmpty;
+};
+
+/// A voxel and a face of it at which a script aims, instead of the player's look.
+struct FixedAim {
+  VoxelPos voxel;
+  Direction face = Direction::pos_y;
+};
+
+/// The two mouse buttons. `clear` removes voxels, and `place` sets the held material.
+enum class ToolButton : std::uint8_t { clear, place };
+
+/// Returns the voxel on the ray at a distance from the eye. Requires a distance below 4096 and an
+/// eye inside the world.
+VoxelPos voxel_on_ray(const Aim& aim, double distance);
+
+/// Returns the distance from the eye to the centre of a voxel.
+double distance_to(const Aim& aim, VoxelPos voxel);
+
+/// Returns the box with these corners, both included.
+VoxelBox box_between(VoxelPos a, VoxelPos b);
+
+/// Returns the voxel `steps` steps away in a direction.
+VoxelPos moved(VoxelPos voxel, Direction direction, std::int32_t steps);
+VoxelBox moved(const VoxelBox& box, Direction direction, std::int32_t steps);
+
+}  // namespace runstone

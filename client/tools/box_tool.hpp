@@ -1,0 +1,14 @@
+// BoxTool: fills or clears the box between two corners.
+#pragma once
+#include "client/tools/tool.hpp"
+
+namespace runstone {
+
+class BoxTool final : public Tool {
+ public:
+  BoxTool() : Tool("box", {mask_parameter()}) {}
+  std::size_t points_before() const override { return 1; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+}  // namespace runstone

@@ -1,0 +1,14 @@
+// PasteTool: puts the clipboard against the place that the player looks at. Its lowest layer stands
+// there, with the place in the middle.
+#pragma once
+#include "client/tools/tool.hpp"
+
+namespace runstone {
+
+class PasteTool final : public Tool {
+ public:
+  PasteTool() : Tool("paste", {mask_parameter()}) {}
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+}  // namespace runstone

@@ -1,0 +1,15 @@
+// SphereTool: fills or clears a sphere. Its radius is the parameter; with radius 0 the first click
+// chooses the centre, and the second one a voxel of the surface.
+#pragma once
+#include "client/tools/tool.hpp"
+
+namespace runstone {
+
+class SphereTool final : public Tool {
+ public:
+  SphereTool() : Tool("sphere", {{"radius", "voxels", 0, 64, 4, {}}, mask_parameter()}) {}
+  std::size_t points_before() const override { return value("radius") == 0 ? 1 : 0; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+}  // namespace runstone

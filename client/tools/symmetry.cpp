@@ -1,0 +1,74 @@
+#include "client/tools/symmetry.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "client/tools/merge_edits.hpp"
+
+namespace runstone {
+namespace {
+
+std::int32_t& along(VoxelPos& at, Axis axis) {
+  return axis == Axis::x ? at.x : axis == Axis::y ? at.y : at.z;
+}
+
+struct Mirror {
+  Axis axis;
+  std::int32_t centre2;
+
+  void turn(VoxelPos& at) const { along(at, axis) = centre2 - along(at, axis); }
+  void operator()(SetVoxel& s) const { turn(s.at); }
+  void operator()(FillBox& s) const {
+    std::int32_t& low = along(s.box.min, axis);
+    std::int32_t& end = along(s.box.max, axis);
+    low = std::exchange(end, centre2 - low + 1);
+    low = centre2 - low + 1;
+  }
+  void operator()(FillSphere& s) const { turn(s.centre); }
+  void operator()(FillStroke& s) const {
+    for (VoxelPos& point : s.points) turn(point);
+  }
+  void operator()(Paste& s) const {
+    const auto sides = s.orientation.rotated(s.clipboard->extent()).sides();
+    std::int32_t& low = along(s.at, axis);
+    low = centre2 - (low + sides[static_cast<std::size_t>(axis)] - 1);
+    s.orientation = s.orientation.mirrored(axis);
+  }
+  void operator()(RightsEdit&) const {}
+  void operator()(MaterialsEdit&) const {}
+};
+
+void append_new(std::vector<EditDescriptor>& to, EditDescriptor edit) {
+  if (std::find(to.begin(), to.end(), edit) == to.end()) to.push_back(std::move(edit));
+}
+
+}  // namespace
+
+EditDescriptor mirrored(const EditDescriptor& edit, Axis axis, std::int32_t centre2) {
+  EditDescriptor out = edit;
+  std::visit(Mirror{axis, centre2}, out.shape);
+  return out;
+}
+
+std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits,
+                                        const Symmetry& symmetry) {
+  if (symmetry.kind == SymmetryKind::none) return edits;
+  const auto in_x = [&](const EditDescriptor& e) {
+    return mirrored(e, Axis::x, symmetry.centre2_x);
+  };
+  const auto in_z = [&](const EditDescriptor& e) {
+    return mirrored(e, Axis::z, symmetry.centre2_z);
+  };
+  std::vector<EditDescriptor> out;
+  for (const EditDescriptor& edit : edits) {
+    append_new(out, edit);
+    const SymmetryKind kind = symmetry.kind;
+    if (kind == SymmetryKind::x || kind == SymmetryKind::both) append_new(out, in_x(edit));
+    if (kind == SymmetryKind::z || kind == SymmetryKind::both) append_new(out, in_z(edit));
+    if (kind == SymmetryKind::point || kind == SymmetryKind::both)
+      append_new(out, in_x(in_z(edit)));
+  }
+  return merge_edits(std::move(out));
+}
+
+}  // namespace runstone

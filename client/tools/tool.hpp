@@ -1,0 +1,87 @@
+// Tool: turns places that the player chooses into edits. A tool has parameters and no other state;
+// ToolBox keeps the places chosen so far. Pure: no clock, socket, window or OpenGL. One thread.
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client/replica/replica.hpp"
+#include "client/tools/aim.hpp"
+#include "client/tools/tool_parameter.hpp"
+#include "common/core/result.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+
+namespace runstone {
+
+/// The content of a paste and how it lies.
+struct ToolClipboard {
+  std::shared_ptr<const Clipboard> content;  // null: nothing was copied
+  Orientation orientation;
+};
+
+/// The facts from which a tool makes its edits.
+struct ToolInput {
+  const Replica& replica;  // open
+  const Aim& aim;
+  ToolButton button = ToolButton::place;
+  std::span<const VoxelPos> points;  // chosen before
+  VoxelPos target;                   // the voxel that this click chooses
+  const std::optional<VoxelBox>& selection;
+  const ToolClipboard& clipboard;
+};
+
+class Tool {
+ public:
+  Tool(std::string_view name, std::vector<ToolParameter> parameters)
+      : name_(name), parameters_(std::move(parameters)) {}
+  virtual ~Tool() = default;
+  Tool(const Tool&) = delete;
+  Tool& operator=(const Tool&) = delete;
+
+  std::string_view name() const { return name_; }
+  std::span<const ToolParameter> parameters() const { return parameters_; }
+  /// Sets a parameter by its name. Fails with words for the player if there is no such parameter or
+  /// the value is out of its range.
+  Result<void, std::string> set(std::string_view parameter, std::int32_t value);
+
+  /// Returns the number of places that are chosen before a click completes an action.
+  virtual std::size_t points_before() const { return 0; }
+  /// Returns true if the places are collected while the button is held, and its release completes
+  /// the action.
+  virtual bool is_drawn() const { return false; }
+  /// Returns true if both buttons choose the voxel that the player looks at. Otherwise
+  /// ToolButton::place chooses the empty place in front of it.
+  virtual bool chooses_solid() const { return false; }
+  /// Returns true if the chosen places become the selection, and no edit is made.
+  virtual bool selects() const { return false; }
+  /// Returns the edits of the click that completes an action, in the order in which they are made.
+  /// Fails with words for the player. The edits are valid, but the world's limits are not checked.
+  virtual Result<std::vector<EditDescriptor>, std::string> plan(const ToolInput& input) const = 0;
+
+ protected:
+  /// Returns the value of a parameter. Requires a parameter of this tool.
+  std::int32_t value(std::string_view parameter) const;
+  /// Returns the mask that the parameter of mask_parameter() chooses.
+  Mask mask() const;
+  static ToolParameter mask_parameter();
+  /// Returns the material that a button sets: the held one, or none.
+  static Material material_of(const ToolInput& input) {
+    return input.button == ToolButton::place ? input.aim.held : kEmpty;
+  }
+
+ private:
+  const std::string_view name_;
+  std::vector<ToolParameter> parameters_;
+};
+
+using ToolEdits = Result<std::vector<EditDescriptor>, std::string>;
+
+/// Returns one of each tool, in the order in which a window lists them. The first one is the voxel
+/// tool.
+std::vector<std::unique_ptr<Tool>> make_tools();
+
+}  // namespace runstone

@@ -1,0 +1,127 @@
+// ToolBox: the tools of a player and the state that they share: the chosen tool, the places chosen so
+// far, the selection, the clipboard, the symmetry and the preview. It answers clicks with edits,
+// which the caller submits in the given order. Pure: no clock, socket, window or OpenGL. One thread.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client/tools/edit_preview.hpp"
+#include "client/tools/symmetry.hpp"
+#include "client/tools/tool.hpp"
+#include "common/materials/material_table.hpp"
+
+namespace runstone {
+
+class ToolBox {
+ public:
+  ToolBox() : tools_(make_tools()) {}
+
+  std::span<const std::unique_ptr<Tool>> tools() const { return tools_; }
+  const Tool& tool() const { return *tools_[chosen_]; }
+  /// Chooses a tool by its name, and forgets the places chosen so far. Fails with words for the
+  /// player if there is none of that name.
+  Result<void, std::string> choose(std::string_view name);
+  /// Sets a parameter of the chosen tool. Fails as Tool::set() does.
+  Result<void, std::string> set_parameter(std::string_view name, std::int32_t value);
+  /// Changes the first parameter of the chosen tool by so many steps, within its range.
+  void change_size(std::int32_t steps);
+
+  /// Takes the press of a button. Returns the edits to submit, which are none while places are
+  /// being chosen. The other button than that of the first place forgets the places. Fails with
+  /// words for the player. Requires an open replica.
+  ToolEdits press(const Replica& replica, const Aim& aim, ToolButton button);
+  /// Takes the aim while the button is held. Only tools that are drawn use it.
+  void drag(const Aim& aim);
+  /// Takes the release of the button, which completes an action of a tool that is drawn.
+  ToolEdits release(const Replica& replica, const Aim& aim);
+  /// Forgets the places chosen so far. Returns false if there were none.
+  bool cancel();
+  std::span<const VoxelPos> points() const { return points_; }
+
+  const std::optional<VoxelBox>& selection() const { return selection_; }
+  /// Selects a box; nullopt selects nothing. An empty box counts as nothing.
+  void select(std::optional<VoxelBox> box);
+  /// Moves the side of the selection that faces `side` by `steps` voxels outward. A negative number
+  /// shrinks the selection, but never below one voxel. Fails if nothing is selected.
+  Result<void, std::string> grow(Direction side, std::int32_t steps);
+  /// Moves the selected box, not its voxels.
+  Result<void, std::string> shift(Direction direction, std::int32_t steps);
+
+  /// Copies the selected voxels. With `is_solid`, a paste leaves the voxels alone where the copy is
+  /// empty. Fails with words for the player, as do the functions below.
+  Result<void, std::string> copy(const Replica& replica, bool is_solid);
+  /// Copies the selected voxels and returns the edit that clears them.
+  ToolEdits cut(const Replica& replica, bool is_solid);
+  /// Returns the edit that fills the selection, or clears it with kEmpty.
+  ToolEdits fill(Material material) const;
+  /// Returns the edit that replaces a material in the selection.
+  ToolEdits replace(Material from, Material to) const;
+  /// Returns the edits that repeat the selected voxels `times` times in a direction.
+  ToolEdits stack(const Replica& replica, Direction direction, std::int32_t times) const;
+  /// Returns the edits that move the selected voxels, and moves the selection. Solid voxels move and
+  /// leave empty ones behind.
+  ToolEdits move(const Replica& replica, Direction direction, std::int32_t steps);
+
+  const ToolClipboard& clipboard() const { return clipboard_; }
+  /// Turns the clipboard by quarter turns about the vertical axis.
+  void rotate(int quarters);
+  /// Mirrors the clipboard along an axis of the world.
+  void mirror(Axis axis);
+
+  const Symmetry& symmetry() const { return symmetry_; }
+  /// The symmetry counts for the edits of tools, not for those of the selection.
+  void set_symmetry(const Symmetry& symmetry);
+
+  /// Takes the materials of the world. The clipboard of another world gets the ids that its
+  /// materials have here, by name. Materials that the world lacks become untouched cells; the
+  /// returned text names them, and is empty if there are none.
+  std::string set_materials(const MaterialTable& materials);
+
+  void show_preview(bool is_shown);
+  bool is_preview_shown() const { return is_preview_shown_; }
+  /// Makes the preview of the click that would come next: at most `chunks_max` chunks in this call.
+  /// Returns true if the ghosts changed. Requires an open replica. Cost: that of the chosen tool's
+  /// plan, if the aim, the tool or the chunks changed, and EditPreview::step().
+  bool step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max);
+  const EditPreview& preview() const { return preview_; }
+  /// Returns why the click that would come next would be refused, or an empty text.
+  const std::string& preview_refusal() const { return preview_refusal_; }
+
+ private:
+  /// Returns the voxel that a click chooses. Fails with words for the player.
+  Result<VoxelPos, std::string> target_of(const Aim& aim, ToolButton button) const;
+  ToolEdits plan(const Replica& replica, const Aim& aim, ToolButton button, VoxelPos target) const;
+  Result<VoxelBox, std::string> selected() const;
+
+  /// The facts on which the present preview depends, besides the chunks.
+  struct Previewed {
+    std::optional<VoxelPos> voxel;
+    std::optional<Direction> face;
+    VoxelPos target;
+    Material seen = kEmpty, held = kEmpty;
+    std::uint64_t revision = 0;
+    friend bool operator==(const Previewed&, const Previewed&) = default;
+  };
+
+  std::vector<std::unique_ptr<Tool>> tools_;
+  std::size_t chosen_ = 0;
+  std::vector<VoxelPos> points_;
+  ToolButton button_ = ToolButton::place;  // of the first point
+  std::optional<VoxelBox> selection_;
+  ToolClipboard clipboard_;
+  std::vector<std::string> clipboard_names_;  // by palette entry of the clipboard
+  Symmetry symmetry_;
+  MaterialTable materials_;
+  EditPreview preview_;
+  std::string preview_refusal_;
+  std::optional<Previewed> previewed_;
+  std::uint64_t revision_ = 0;  // rises when the state behind the preview changes
+  bool is_preview_shown_ = true;
+};
+
+}  // namespace runstone

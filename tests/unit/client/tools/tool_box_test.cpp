@@ -1,0 +1,254 @@
+#include "client/tools/tool_box.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/unit/client/tools/tool_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr VoxelPos kGround{3, -1, 3};
+
+struct FlatBench : ToolBench {
+  FlatBench() { show_flat(); }
+  /// Presses a button at the top of the ground, or at another voxel, and submits the edits.
+  std::size_t press(VoxelPos voxel, ToolButton button = ToolButton::place, Material held = 2) {
+    const auto edits = box.press(replica, aim_at(voxel, Direction::pos_y, held), button);
+    REQUIRE(edits);
+    submit(*edits);
+    return edits->size();
+  }
+  std::string refusal(VoxelPos voxel, ToolButton button) {
+    const auto edits = box.press(replica, aim_at(voxel, Direction::pos_y), button);
+    return edits ? "" : edits.error();
+  }
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(FlatBench, "the voxel tool places against a face and removes the voxel itself",
+                 "[tools]") {
+  press(kGround);
+  CHECK(at({3, 0, 3}) == 2);
+  press({3, 0, 3}, ToolButton::clear);
+  CHECK(at({3, 0, 3}) == kEmpty);
+  CHECK(at(kGround) == 1);
+}
+
+TEST_CASE_METHOD(FlatBench, "a box has two corners, and the other button forgets the first one",
+                 "[tools]") {
+  REQUIRE(box.choose("box"));
+  CHECK(press(kGround) == 0);
+  CHECK(box.points().size() == 1);
+  CHECK(press({5, -1, 5}, ToolButton::clear) == 0);
+  CHECK(box.points().empty());
+  press(kGround);
+  CHECK(press({5, -1, 6}) == 1);
+  for (VoxelPos p{3, 0, 3}; p.x <= 5; ++p.x) {
+    for (p.z = 3; p.z <= 6; ++p.z) CHECK(at(p) == 2);
+  }
+  CHECK(at({6, 0, 3}) == kEmpty);
+  press({3, -2, 3}, ToolButton::clear);
+  press({3, -1, 3}, ToolButton::clear);
+  CHECK(at({3, -2, 3}) == kEmpty);
+}
+
+TEST_CASE_METHOD(FlatBench, "the second corner may lie in the air, as far away as the first one",
+                 "[tools]") {
+  REQUIRE(box.choose("box"));
+  Aim aim = aim_at(kGround, Direction::pos_y);  // the eye is 4.5 voxels above the place (3, 0, 3)
+  REQUIRE(box.press(replica, aim, ToolButton::place));
+  aim.hit.reset();
+  aim.look = {1, 0, 0};
+  const auto edits = box.press(replica, aim, ToolButton::place);
+  REQUIRE(edits);
+  CHECK(edits->front() ==
+        EditDescriptor{FillBox{box_between({3, 0, 3}, voxel_on_ray(aim, 4))}, {}, 2});
+  CHECK(box.press(replica, aim, ToolButton::place).error() == "nothing is in reach");
+}
+
+TEST_CASE_METHOD(FlatBench, "a sphere has a typed radius, or a dragged one if that is 0",
+                 "[tools]") {
+  REQUIRE(box.choose("sphere"));
+  const auto typed = box.press(replica, aim_at(kGround, Direction::pos_y), ToolButton::clear);
+  REQUIRE(typed);
+  CHECK(typed->front() == EditDescriptor{FillSphere{kGround, 4}, {}, kEmpty});
+  REQUIRE(box.set_parameter("radius", 0));
+  CHECK(press(kGround) == 0);
+  const auto dragged = box.press(replica, aim_at({6, -1, 7}, Direction::pos_y), ToolButton::place);
+  REQUIRE(dragged);
+  CHECK(dragged->front() == EditDescriptor{FillSphere{{3, 0, 3}, 5}, {}, 2});
+}
+
+TEST_CASE_METHOD(FlatBench, "a stroke is one edit along the places of the held button", "[tools]") {
+  REQUIRE(box.choose("stroke"));
+  CHECK(press(kGround) == 0);
+  box.drag(aim_at({5, -1, 3}, Direction::pos_y));
+  box.drag(aim_at({5, -1, 3}, Direction::pos_y));  // the same place counts once
+  const auto edits = box.release(replica, aim_at({5, -1, 8}, Direction::pos_y));
+  REQUIRE(edits);
+  REQUIRE(edits->size() == 1);
+  CHECK(edits->front() == EditDescriptor{FillStroke{{{3, 0, 3}, {5, 0, 3}, {5, 0, 8}}, 2}, {}, 2});
+  CHECK(box.release(replica, aim_at(kGround, Direction::pos_y))->empty());
+}
+
+TEST_CASE_METHOD(FlatBench, "fill changes the connected surface of one material, up to its bound",
+                 "[tools]") {
+  submit({{FillBox{{{0, -1, 0}, {8, 0, 8}}}, {}, 3}});  // a square of another material
+  submit({{FillBox{{{4, 0, 0}, {8, 1, 8}}}, {}, 3}});   // its half is one voxel higher
+  REQUIRE(box.choose("fill"));
+  CHECK(press({1, -1, 1}) == 1);
+  CHECK(at({0, -1, 7}) == 2);
+  CHECK(at({7, 0, 7}) == 2);   // the surface follows the step
+  CHECK(at({7, -1, 7}) == 3);  // below it
+  CHECK(at({8, -1, 8}) == 1);  // another material
+  REQUIRE(box.set_parameter("voxels", 5));
+  press({12, -1, 12});
+  CHECK(at({12, -1, 12}) == 2);
+  CHECK(at({13, -1, 12}) == 2);
+  CHECK(at({14, -1, 12}) == 1);
+}
+
+TEST_CASE_METHOD(FlatBench, "replace changes one material in a sphere, a cube or the selection",
+                 "[tools]") {
+  submit({{FillBox{{{0, -3, 0}, {8, 0, 8}}}, {}, 3}});
+  REQUIRE(box.choose("replace"));
+  REQUIRE(box.set_parameter("where", 1));
+  REQUIRE(box.set_parameter("radius", 2));
+  press({7, -1, 7});
+  CHECK(at({5, -3, 5}) == 2);
+  CHECK(at({8, -1, 8}) == 1);
+  CHECK(at({7, 0, 7}) == kEmpty);
+  REQUIRE(box.set_parameter("where", 2));
+  CHECK(refusal({0, -1, 0}, ToolButton::place) == "nothing is selected");
+  box.select(VoxelBox{{0, -1, 0}, {1, 0, 8}});
+  press({0, -1, 0}, ToolButton::clear);
+  CHECK(at({0, -1, 7}) == kEmpty);
+  CHECK(at({1, -1, 7}) == 3);
+  CHECK(refusal({5, -3, 5}, ToolButton::place) == "you hold the material that you look at");
+}
+
+TEST_CASE_METHOD(FlatBench, "paint changes the surface in a sphere and keeps air", "[tools]") {
+  REQUIRE(box.choose("paint"));
+  press(kGround);
+  CHECK(at(kGround) == 2);
+  CHECK(at({6, -1, 3}) == 2);
+  CHECK(at({3, -2, 3}) == 1);  // it has no face
+  CHECK(at({3, 0, 3}) == kEmpty);
+  CHECK(refusal(kGround, ToolButton::place) == "there is nothing to change here");
+  CHECK(refusal(kGround, ToolButton::clear) == "paint with the right button");
+}
+
+TEST_CASE_METHOD(FlatBench, "extrude pushes a flat face out and in by its depth", "[tools]") {
+  submit({{FillBox{{{0, 0, 0}, {3, 1, 2}}}, {}, 3}});
+  REQUIRE(box.choose("extrude"));
+  REQUIRE(box.set_parameter("depth", 4));
+  press({1, 0, 1});
+  CHECK(at({2, 4, 1}) == 3);
+  CHECK(at({2, 5, 1}) == kEmpty);
+  CHECK(at({3, 1, 1}) == kEmpty);
+  press({1, 4, 1}, ToolButton::clear);
+  CHECK(at({0, 1, 0}) == kEmpty);
+  CHECK(at({0, 0, 0}) == 3);
+  REQUIRE(box.set_parameter("depth", 64));
+  REQUIRE(box.set_parameter("voxels", 16384));
+  CHECK(refusal({20, -1, 20}, ToolButton::place) == "the change has more than 65,536 voxels");
+}
+
+TEST_CASE_METHOD(FlatBench, "a selection is copied, cut, pasted, turned, stacked and moved",
+                 "[tools]") {
+  submit({{SetVoxel{{0, 0, 0}}, {}, 2}, {SetVoxel{{2, 0, 0}}, {}, 3}});
+  CHECK(box.copy(replica, true).error() == "nothing is selected");
+  REQUIRE(box.choose("select"));
+  press({0, 0, 0});
+  press({2, 0, 0});
+  REQUIRE(box.selection() == VoxelBox{{0, 0, 0}, {3, 1, 1}});
+  const auto cut = box.cut(replica, true);
+  REQUIRE(cut);
+  submit(*cut);
+  CHECK(at({0, 0, 0}) == kEmpty);
+
+  REQUIRE(box.choose("paste"));
+  press({10, -1, 10});
+  CHECK(at({9, 0, 10}) == 2);
+  CHECK(at({11, 0, 10}) == 3);
+  box.rotate(1);  // +x turns to -z
+  press({10, -1, 5});
+  CHECK(at({10, 0, 6}) == 2);
+  CHECK(at({10, 0, 4}) == 3);
+  box.mirror(Axis::z);
+  press({-10, -1, 5});
+  CHECK(at({-10, 0, 4}) == 2);
+
+  box.select(VoxelBox{{9, 0, 10}, {12, 1, 11}});
+  const auto stack = box.stack(replica, Direction::pos_y, 3);
+  REQUIRE(stack);
+  CHECK(stack->size() == 1);  // one record
+  submit(*stack);
+  CHECK(at({9, 3, 10}) == 2);
+  const auto moved_voxels = box.move(replica, Direction::pos_z, 2);
+  REQUIRE(moved_voxels);
+  CHECK(moved_voxels->size() == 1);
+  submit(*moved_voxels);
+  CHECK(at({9, 0, 10}) == kEmpty);
+  CHECK(at({9, 0, 12}) == 2);
+  CHECK(box.selection() == VoxelBox{{9, 0, 12}, {12, 1, 13}});
+  const auto filled = box.fill(1);
+  REQUIRE(filled);
+  submit(*filled);
+  CHECK(at({10, 0, 12}) == 1);
+  CHECK(box.stack(replica, Direction::pos_y, 65).error() == "a stack has 1 to 64 copies");
+}
+
+TEST_CASE_METHOD(FlatBench, "a selection grows, shrinks to one voxel at least, and shifts",
+                 "[tools]") {
+  CHECK(box.grow(Direction::pos_x, 1).error() == "nothing is selected");
+  box.select(VoxelBox{{0, 0, 0}, {3, 1, 1}});
+  REQUIRE(box.grow(Direction::pos_x, 2));
+  REQUIRE(box.grow(Direction::neg_y, 1));
+  CHECK(box.selection() == VoxelBox{{0, -1, 0}, {5, 1, 1}});
+  REQUIRE(box.grow(Direction::neg_x, -50));
+  CHECK(box.selection() == VoxelBox{{4, -1, 0}, {5, 1, 1}});
+  REQUIRE(box.shift(Direction::neg_z, 3));
+  CHECK(box.selection() == VoxelBox{{4, -1, -3}, {5, 1, -2}});
+  box.select(VoxelBox{});
+  CHECK_FALSE(box.selection());
+}
+
+TEST_CASE_METHOD(FlatBench, "the clipboard keeps its materials by name from world to world",
+                 "[tools]") {
+  const auto table = [](std::vector<std::string> names) {
+    MaterialTable out;
+    for (std::string& name : names) {
+      MaterialInfo info;
+      info.name = std::move(name);
+      REQUIRE(out.add(std::move(info)));
+    }
+    return out;
+  };
+  CHECK(box.set_materials(table({"stone", "sand", "ice"})).empty());
+  submit({{SetVoxel{{0, 0, 0}}, {}, 2}, {SetVoxel{{2, 0, 0}}, {}, 3}});
+  box.select(VoxelBox{{0, 0, 0}, {3, 1, 1}});
+  REQUIRE(box.copy(replica, true));
+  CHECK(box.set_materials(table({"clay", "stone", "sand", "ice"})).empty());
+  CHECK(box.clipboard().content->palette() == std::vector<Material>{3, 4});
+  CHECK(box.set_materials(table({"sand"})) ==
+        "the clipboard lost materials that this world lacks: ice");
+  CHECK(box.clipboard().content->palette() == std::vector<Material>{1});
+  CHECK(box.clipboard().content->touched() == 1);
+  static_cast<void>(box.set_materials(table({"clay"})));
+  CHECK(box.clipboard().content == nullptr);
+}
+
+TEST_CASE_METHOD(FlatBench, "parameters have ranges, and steps stay inside them", "[tools]") {
+  CHECK(box.choose("saw").error() == "there is no tool saw");
+  REQUIRE(box.choose("stroke"));
+  CHECK(box.set_parameter("radius", 0).error() == "radius must be from 1 to 32");
+  CHECK(box.set_parameter("colour", 0).error() == "the tool stroke has no parameter colour");
+  box.change_size(-9);
+  CHECK(box.tool().parameters()[0].value == 1);
+  box.change_size(3);
+  CHECK(box.tool().parameters()[0].value == 4);
+}
+
+}  // namespace runstone::test
