@@ -5,25 +5,33 @@
 namespace runstone {
 
 void FrameTarget::bind(int width, int height) {
-  if (width != width_ || height != height_) {
-    framebuffer_ = GlFramebuffer::make();
-    colour_ = GlRenderbuffer::make();
-    depth_ = GlRenderbuffer::make();
-    glBindRenderbuffer(GL_RENDERBUFFER, colour_.get());
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
-    glBindRenderbuffer(GL_RENDERBUFFER, depth_.get());
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_.get());
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.get());
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      throw std::runtime_error("the driver cannot make an off-screen target of this size");
-    }
-    width_ = width;
-    height_ = height;
-  }
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+  if (width != width_ || height != height_) resize(width, height);
+  bind_all();
   glViewport(0, 0, width, height);
+}
+
+void FrameTarget::resize(int width, int height) {
+  framebuffer_ = GlFramebuffer::make();
+  colour_framebuffer_ = GlFramebuffer::make();
+  colour_ = GlRenderbuffer::make();
+  depth_ = GlTexture::make();
+  glBindRenderbuffer(GL_RENDERBUFFER, colour_.get());
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+  glBindTexture(GL_TEXTURE_2D, depth_.get());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, width, height, 0, GL_DEPTH_COMPONENT,
+               GL_FLOAT, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  for (const GLuint framebuffer : {colour_framebuffer_.get(), framebuffer_.get()}) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_.get());
+    if (framebuffer == framebuffer_.get())
+      glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.get(), 0);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+      throw std::runtime_error("the driver cannot make an off-screen target of this size");
+  }
+  width_ = width;
+  height_ = height;
 }
 
 }  // namespace runstone

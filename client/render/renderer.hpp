@@ -6,12 +6,14 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <span>
 
+#include "client/render/frame_contents.hpp"
 #include "client/render/image.hpp"
+#include "client/render/overlay_frame.hpp"
 #include "common/core/coords.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/mesh/chunk_mesh.hpp"
+#include "common/runs/run_chunk.hpp"
 
 namespace runstone {
 
@@ -27,15 +29,8 @@ struct Camera {
 struct RenderStats {
   std::uint32_t chunks_drawn = 0, chunks_culled = 0;
   std::uint64_t quads_drawn = 0;
-  std::uint64_t gpu_bytes = 0;
-};
-
-/// A box in world voxels: the outline of the picked voxel, or the body of another player.
-struct Marker {
-  double x = 0, y = 0, z = 0;  // smallest corner
-  double size_x = 1, size_y = 1, size_z = 1;
-  std::uint8_t r = 255, g = 255, b = 255;
-  bool filled = false;  // false: edges only
+  std::uint64_t quad_bytes = 0;  // on the GPU, of all chunks
+  std::uint64_t gpu_bytes = 0;   // those, the opacity bits and the shadow maps
 };
 
 /// A function that returns a GL function by name. eglGetProcAddress, OSMesaGetProcAddress and
@@ -51,18 +46,22 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   void set_materials(const MaterialTable& materials);
-  /// Replaces the chunk's quads on the GPU. An empty mesh removes the chunk. `edge` is in voxels.
-  void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh);
+  /// Replaces the chunk's quads on the GPU. `edge` is in voxels. `voxels` are the runs that were
+  /// meshed: they darken the corners of this chunk's faces and of those beside it. They may be
+  /// null; then the chunk counts as empty there.
+  void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
+              const RunChunk* voxels = nullptr);
   void remove(const ChunkKey& key);
 
   /// Draws into the renderer's off-screen target of width x height pixels.
-  RenderStats draw(const Camera& camera, int width, int height,
-                   std::span<const Marker> markers = {});
+  RenderStats draw(const Camera& camera, int width, int height, const FrameContents& contents = {});
+  /// Draws the user interface over the last frame. Requires a draw() before.
+  void draw_overlay(const OverlayFrame& overlay);
   /// Waits for a fence after the commands that draw() queued. Off screen this is the moment at
   /// which a frame is presented. Throws std::runtime_error if the fence does not come within 30 s
   /// or the GPU has no memory left.
   void finish();
-  /// Returns the last frame. Requires a draw() before.
+  /// Returns the last frame, with what was drawn over it. Requires a draw() before.
   Image read_image();
   /// Copies the last frame to the window's default framebuffer.
   void present(int window_width, int window_height);

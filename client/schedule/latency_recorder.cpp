@@ -184,6 +184,9 @@ void LatencyRecorder::finish(const OpenEdit& edit) {
     if (edit.submitted_us) report.since_submit[s].add(edit.at[s] - *edit.submitted_us);
     before = edit.at[s];
   }
+  if (!edit.submitted_us) return;
+  recent_.push_back({edit.path, *edit.submitted_us, edit.at, edit.reached});
+  if (recent_.size() > kRecentMax) recent_.pop_front();
 }
 
 void LatencyRecorder::remember(const EditKey& key) {

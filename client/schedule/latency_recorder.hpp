@@ -58,6 +58,14 @@ struct PathReport {
   std::uint64_t unknown_submit = 0;
 };
 
+/// The way of one edit of which the submit time is known. Times are those of steady_now_us().
+struct RecentEdit {
+  EditPath path = EditPath::remote;
+  TimeUs submitted_us = 0;
+  std::array<TimeUs, kLatencyStageCount> at{};
+  std::array<bool, kLatencyStageCount> reached{};
+};
+
 struct LatencyReport {
   std::array<PathReport, kEditPathCount> paths;
   // Local edits:
@@ -92,6 +100,10 @@ class LatencyRecorder {
 
   /// Returns the number of edits that have not reached the last stage.
   std::size_t open_edits() const { return open_.size(); }
+  /// Returns the last kRecentMax edits that passed the last stage, or that have none; the newest one
+  /// is the last.
+  const std::deque<RecentEdit>& recent() const { return recent_; }
+  static constexpr std::size_t kRecentMax = 64;
   /// Returns everything recorded so far. Edits that are still open count as infinite.
   LatencyReport report() const;
 
@@ -120,6 +132,7 @@ class LatencyRecorder {
 
   LatencyStage last_;
   LatencyReport done_;
+  std::deque<RecentEdit> recent_;
   std::map<ClientSequence, TimeUs> local_;  // submit times, until durable or rejected
   std::set<ClientSequence> unconfirmed_;    // local edits that are predicted and not confirmed
   std::map<EditKey, OpenEdit> open_;

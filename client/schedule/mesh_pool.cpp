@@ -92,6 +92,7 @@ MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
   result.number = job.number;
   result.serial = job.serial;
   result.edge = job.chunk->extent.x;
+  result.chunk = job.chunk;
   MeshNeighbours neighbours{};
   for (std::size_t i = 0; i < neighbours.size(); ++i) neighbours[i] = job.neighbours[i].get();
   const std::int64_t start = clock_();

@@ -24,6 +24,7 @@ struct MeshResult {
   ChunkKey key;
   std::uint64_t number = 0, serial = 0;  // of the job
   std::int32_t edge = 0;                 // voxels
+  ShownPtr chunk;                        // the runs that were meshed
   MeshPtr mesh;                          // chunks without quads share one mesh
   bool layers_only = false;              // the other layers are those of the previous mesh
   std::int64_t mesh_ns = 0;              // duration

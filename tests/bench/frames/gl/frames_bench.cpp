@@ -208,7 +208,7 @@ class FramesBench {
       renderer_->draw(at, options_.width, options_.height);
       renderer_->finish();
     };
-    out.row.upload_bytes = renderer_->draw(camera(0), options_.width, options_.height).gpu_bytes;
+    out.row.upload_bytes = renderer_->draw(camera(0), options_.width, options_.height).quad_bytes;
     return out;
   }
 

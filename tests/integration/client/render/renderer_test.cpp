@@ -1,15 +1,20 @@
 // The cases draw off screen. If there is no OpenGL context, they say so with WARN and pass.
 #include "client/render/renderer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <string>
 
 #include "client/platform/egl_context.hpp"
 #include "client/platform/osmesa_context.hpp"
+#include "common/core/hash.hpp"
 #include "common/mesh/quad.hpp"
+#include "common/mesh/rdm/rdm_mesher.hpp"
+#include "common/mesh/visibility.hpp"
 
 namespace runstone {
 namespace {
@@ -25,7 +30,47 @@ MaterialTable red_and_glass() {
   return table;
 }
 
-void add(QuadLayers& layers, const QuadFields& quad) { layers.quads.push_back(pack(quad)); }
+/// Adds a quad at its place in the order of a mesh.
+void add(QuadLayers& layers, const QuadFields& quad) {
+  const std::array<std::uint8_t, 3> at = {quad.x, quad.y, quad.z};
+  const std::size_t layer = static_cast<std::size_t>(quad.direction) * kSideMax +
+                            at[static_cast<std::size_t>(axis_of(quad.direction))];
+  layers.quads.insert(layers.quads.begin() + layers.first[layer + 1], pack(quad));
+  for (std::size_t i = layer + 1; i < layers.first.size(); ++i) ++layers.first[i];
+}
+
+/// Returns the same faces, each as a quad of its own.
+ChunkMesh cut_into_faces(const ChunkMesh& mesh) {
+  ChunkMesh out;
+  for (const Quad& quad : mesh.opaque.quads) {
+    QuadFields face = unpack(quad);
+    const Axis axis = axis_of(face.direction);
+    const std::array<std::uint8_t*, 3> at = {&face.x, &face.y, &face.z};
+    std::uint8_t& u = *at[static_cast<std::size_t>(u_axis_of(axis))];
+    std::uint8_t& v = *at[static_cast<std::size_t>(v_axis_of(axis))];
+    const int u0 = u, v0 = v, width = face.width, height = face.height;
+    face.width = face.height = 1;
+    for (int i = 0; i < width * height; ++i) {
+      u = static_cast<std::uint8_t>(u0 + i % width);
+      v = static_cast<std::uint8_t>(v0 + i / width);
+      add(out.opaque, face);
+    }
+  }
+  return out;
+}
+
+/// Returns the number of pixels that differ by more than rounding.
+std::size_t different_pixels(const Image& a, const Image& b) {
+  REQUIRE(a.rgb.size() == b.rgb.size());
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); i += 3) {
+    int most = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      most = std::max(most, std::abs(int{a.rgb[i + c]} - int{b.rgb[i + c]}));
+    out += most > 3 ? 1 : 0;
+  }
+  return out;
+}
 
 /// Returns a mesh with the six faces of the box [4, 4 + w) x [4, 5) x [4, 4 + h). A face of w x h
 /// is one quad.
@@ -138,8 +183,10 @@ TEST_CASE("every direction faces outward: a cube looks closed from all six sides
     const Image image = draw_with(*context, camera, cube);
     CHECK(reddish(pixel(image, 0.5, 0.5)));
     // The oracle is broken on purpose: without this face the centre shows through.
-    ChunkMesh lacking = cube;
-    lacking.opaque.quads.erase(lacking.opaque.quads.begin() + d);
+    ChunkMesh lacking;
+    for (int other = 0; other < kDirectionCount; ++other) {
+      if (other != d) add(lacking.opaque, {8, 8, 8, 1, 1, static_cast<Direction>(other), kRed});
+    }
     CHECK_FALSE(reddish(pixel(draw_with(*context, camera, lacking), 0.5, 0.5)));
   }
 }
@@ -182,6 +229,165 @@ TEST_CASE("the sky fills a frame without chunks", "[render]") {
   camera.pitch = 0.3;
   renderer.draw(camera, 64, 48);
   CHECK(is_sky(pixel(renderer.read_image(), 0.5, 0.5)));
+}
+
+TEST_CASE("an overlay is drawn over the frame, in its place, clipped and blended, on every path",
+          "[render]") {
+  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_osmesa_context);
+  const auto context = context_or_warn(make);
+  if (!context) return;
+  Renderer renderer(context->loader());
+  Camera camera;
+  camera.pitch = 0.3;
+  renderer.draw(camera, 160, 120);
+  const Image without = renderer.read_image();
+  OverlayFrame overlay;
+  overlay.width = 160;
+  overlay.height = 120;
+  overlay.atlas =
+      std::make_shared<const OverlayAtlas>(OverlayAtlas{2, 1, std::vector<std::uint8_t>{255, 0}});
+  // A green square in the upper left quarter, whose lower half is clipped, and one beside it whose
+  // glyph has no coverage.
+  const auto square = [&overlay](float left, float u, std::array<float, 4> clip) {
+    const auto vertex = static_cast<std::uint32_t>(overlay.vertices.size());
+    const auto index = static_cast<std::uint32_t>(overlay.indices.size());
+    constexpr std::uint32_t kGreen = 0xFF00FF00;
+    for (const auto& [x, y] :
+         {std::pair{left, 0.F}, {left + 80, 0.F}, {left + 80, 60.F}, {left, 60.F}})
+      overlay.vertices.push_back({x, y, u, 0.5F, kGreen});
+    overlay.indices.insert(overlay.indices.end(), {0, 1, 2, 0, 2, 3});
+    overlay.commands.push_back({clip, index, 6, vertex});
+  };
+  square(0, 0.25F, {0, 0, 160, 30});
+  square(80, 0.75F, {0, 0, 160, 120});
+  renderer.draw_overlay(overlay);
+  renderer.finish();
+  const Image with = renderer.read_image();
+  const std::array<int, 3> green{0, 255, 0};
+  CHECK(pixel(with, 0.02, 0.02) == green);
+  CHECK(pixel(with, 0.48, 0.23) == green);
+  CHECK(pixel(with, 0.25, 0.27) == pixel(without, 0.25, 0.27));
+  CHECK(pixel(with, 0.75, 0.25) == pixel(without, 0.75, 0.25));
+  // What is drawn next is not changed by it.
+  renderer.draw(camera, 160, 120);
+  CHECK(renderer.read_image().rgb == without.rgb);
+}
+
+TEST_CASE("corners are dark next to opaque voxels, however the faces are cut into quads",
+          "[render]") {
+  const auto context = context_or_warn(&make_egl_surfaceless_context);
+  if (!context) return;
+  // A floor with scattered blocks, across two chunks.
+  const VisibilityTable visibility(visibilities(red_and_glass()));
+  SplitMix64 rng(9);
+  std::array<RunChunk, 2> chunks = {uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::xzy),
+                                    uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::yzx)};
+  for (RunChunk& chunk : chunks) {
+    for (int x = 0; x < kEdge; ++x) {
+      for (int z = 0; z < kEdge; ++z) {
+        const int height = rng.below(4) == 0 ? 3 : 2;
+        for (int y = 0; y < height; ++y) {
+          const LocalPos at{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                            static_cast<std::uint8_t>(z)};
+          fill(chunk, index_of(at, chunk.extent, chunk.order), 1, kRed);
+        }
+      }
+    }
+  }
+  const auto picture = [&](bool cut, bool with_voxels) {
+    Renderer renderer(context->loader());
+    renderer.set_materials(red_and_glass());
+    RdmScratch scratch;
+    for (int i = 0; i < 2; ++i) {
+      ChunkMesh mesh;
+      MeshNeighbours beside{};
+      beside[static_cast<std::size_t>(i == 0 ? Direction::pos_x : Direction::neg_x)] =
+          &chunks[static_cast<std::size_t>(1 - i)];
+      const RunChunk& chunk = chunks[static_cast<std::size_t>(i)];
+      mesh_rdm(chunk, beside, visibility, scratch, mesh);
+      if (cut) mesh = cut_into_faces(mesh);
+      renderer.upload({0, {i, 0, 0}}, kEdge, mesh, with_voxels ? &chunk : nullptr);
+    }
+    Camera camera;
+    camera.x = 31.5, camera.y = 9, camera.z = 4.5;
+    camera.pitch = -0.7;
+    FrameContents contents;
+    contents.look.time_of_day = 0.5;
+    renderer.draw(camera, 320, 240, contents);
+    renderer.finish();
+    return renderer.read_image();
+  };
+  const Image merged = picture(false, true);
+  // Some pixels at the outlines of blocks are rounded differently.
+  CHECK(different_pixels(merged, picture(true, true)) <= 16);
+  CHECK(different_pixels(merged, picture(false, false)) > 2000);
+}
+
+TEST_CASE("both headless paths draw the same picture", "[render]") {
+  const auto egl = context_or_warn(&make_egl_surfaceless_context);
+  if (!egl) return;
+  ChunkMesh mesh = slab();
+  add(mesh.transparent, {4, 8, 4, 8, 8, Direction::pos_y, kGlass});
+  const Image by_egl = draw_with(*egl, above(), mesh);
+  const auto osmesa = context_or_warn(&make_osmesa_context);
+  if (!osmesa) return;
+  CHECK(different_pixels(by_egl, draw_with(*osmesa, above(), mesh)) <= 5);
+}
+
+TEST_CASE("a wall throws a shadow away from the sun, and an edit takes it away", "[render]") {
+  const auto context = context_or_warn(&make_egl_surfaceless_context);
+  if (!context) return;
+  Renderer renderer(context->loader());
+  renderer.set_materials(red_and_glass());
+  ChunkMesh floor;
+  add(floor.opaque, {0, 0, 0, 32, 32, Direction::pos_y, kRed});
+  ChunkMesh wall = floor;
+  // The morning sun stands at +x; the wall at x = 16 faces it and is 8 high.
+  add(wall.opaque, {16, 1, 0, 8, 32, Direction::pos_x, kRed});
+  Camera camera;
+  camera.x = 16, camera.y = 40, camera.z = 16;
+  camera.pitch = -M_PI / 2;
+  FrameContents contents;
+  contents.look.time_of_day = 0.375;
+  const auto brightness = [&](const ChunkMesh& mesh, Quality quality) {
+    renderer.upload({0, {0, 0, 0}}, kEdge, mesh);
+    contents.look.quality = quality;
+    renderer.draw(camera, 160, 120, contents);
+    return renderer.read_image();
+  };
+  const Image open = brightness(floor, Quality::high);
+  const Image shaded = brightness(wall, Quality::high);
+  const Image unshaded = brightness(wall, Quality::low);
+  const std::size_t in_shadow = different_pixels(open, shaded);
+  CHECK(in_shadow > 800);
+  CHECK(in_shadow < 9000);
+  CHECK(different_pixels(unshaded, brightness(floor, Quality::low)) < 400);
+  CHECK(different_pixels(open, brightness(floor, Quality::high)) == 0);
+}
+
+TEST_CASE("a ghost shows removed voxels in red and placed ones in their colour", "[render]") {
+  const auto context = context_or_warn(&make_egl_surfaceless_context);
+  if (!context) return;
+  Renderer renderer(context->loader());
+  renderer.set_materials(red_and_glass());
+  ChunkMesh placed;
+  add(placed.transparent, {4, 4, 4, 8, 8, Direction::pos_y, kGlass});
+  ChunkMesh removed;
+  add(removed.opaque, {4, 4, 4, 8, 8, Direction::pos_y, kGlass});
+  const auto centre = [&](GhostChunk ghost) {
+    FrameContents contents;
+    if (ghost.edge != 0) contents.ghosts.push_back(std::move(ghost));
+    renderer.draw(above(), 160, 120, contents);
+    return pixel(renderer.read_image(), 0.5, 0.5);
+  };
+  const ChunkKey key{0, {0, 0, 0}};
+  const auto none = centre({});
+  const auto blue = centre({key, kEdge, std::make_shared<const ChunkMesh>(placed), nullptr});
+  const auto red = centre({key, kEdge, nullptr, std::make_shared<const ChunkMesh>(removed)});
+  CHECK(blue[2] > blue[0] + 40);
+  CHECK(red[0] > red[2] + 20);
+  CHECK(none[0] < none[2] + 20);
+  CHECK(centre({}) == none);
 }
 
 TEST_CASE("halving averages four pixels", "[render]") {

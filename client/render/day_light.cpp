@@ -1,0 +1,54 @@
+#include "client/render/day_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace runstone {
+namespace {
+
+float ramp(float from, float to, float at) {
+  const float t = std::clamp((at - from) / (to - from), 0.0F, 1.0F);
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
+DayLight day_light(double time_of_day, double far) {
+  const double turn = time_of_day - std::floor(time_of_day);
+  const double angle = (turn - 0.25) * 2 * std::numbers::pi;
+  const auto height = static_cast<float>(std::sin(angle));  // of the sun: -1 .. 1
+  const float day = ramp(-0.10F, 0.30F, height);
+  const float dusk = ramp(-0.22F, 0.02F, height) * (1 - ramp(0.10F, 0.45F, height));
+
+  DayLight out;
+  const bool is_moon = height < -0.06F;
+  // The path of sun and moon leans towards +z, so that no shadow at noon is hidden below its wall.
+  const float side = is_moon ? -1.0F : 1.0F;
+  const glm::vec3 path{side * static_cast<float>(std::cos(angle)), std::max(side * height, 0.09F),
+                       0.42F};
+  out.sun_direction = glm::normalize(path);
+  // Both lights are dark where one takes over from the other.
+  const float strength = is_moon ? ramp(0.06F, 0.30F, -height) : ramp(-0.06F, 0.14F, height);
+  const glm::vec3 sun = glm::mix(glm::vec3{1.30F, 0.52F, 0.20F}, glm::vec3{1.55F, 1.42F, 1.20F},
+                                 ramp(0.0F, 0.45F, height));
+  out.sun_colour = strength * (is_moon ? glm::vec3{0.10F, 0.14F, 0.24F} : sun);
+
+  out.zenith = glm::mix(glm::vec3{0.006F, 0.010F, 0.030F}, glm::vec3{0.10F, 0.25F, 0.60F}, day);
+  out.horizon = glm::mix(glm::vec3{0.022F, 0.032F, 0.060F}, glm::vec3{0.55F, 0.70F, 0.88F}, day);
+  out.horizon = glm::mix(out.horizon, glm::vec3{0.85F, 0.42F, 0.20F}, 0.75F * dusk);
+  out.zenith = glm::mix(out.zenith, glm::vec3{0.16F, 0.17F, 0.36F}, 0.5F * dusk);
+  out.nadir = 0.6F * out.horizon;
+  out.glow = strength * (is_moon ? glm::vec3{0.15F, 0.18F, 0.25F} : glm::vec3{1.0F, 0.70F, 0.38F});
+  out.ambient_up =
+      glm::mix(glm::vec3{0.050F, 0.062F, 0.100F}, glm::vec3{0.36F, 0.44F, 0.56F}, day) +
+      dusk * glm::vec3{0.10F, 0.07F, 0.07F};
+  out.ambient_down = 0.45F * out.ambient_up + 0.06F * out.horizon;
+  // The eye adapts, so that a builder still sees the ground at night.
+  out.exposure = glm::mix(2.6F, 0.95F, day) - 0.7F * dusk * (1 - day);
+  out.fog_end = static_cast<float>(far) * 0.98F;
+  out.fog_start = static_cast<float>(far) * 0.55F;
+  return out;
+}
+
+}  // namespace runstone

@@ -1,0 +1,19 @@
+// FrameContents: everything that a frame shows besides the chunks.
+#pragma once
+#include <vector>
+
+#include "client/render/body.hpp"
+#include "client/render/frame_look.hpp"
+#include "client/render/ghost.hpp"
+#include "client/render/marker.hpp"
+
+namespace runstone {
+
+struct FrameContents {
+  FrameLook look;
+  std::vector<Marker> markers;
+  std::vector<Body> bodies;
+  std::vector<GhostChunk> ghosts;
+};
+
+}  // namespace runstone

@@ -1,0 +1,26 @@
+// FrameLook: the light, the weather and the effort with which a frame is drawn.
+#pragma once
+#include <cstdint>
+
+namespace runstone {
+
+enum class Quality : std::uint8_t {
+  low,     // no ambient occlusion, no shadows
+  medium,  // ambient occlusion, and shadows in half the resolution with hard edges
+  high,    // ambient occlusion, and shadows with soft edges
+};
+
+struct FrameLook {
+  /// The time of day as a share of it: 0 is midnight, 0.25 sunrise, 0.5 noon, 0.75 sunset. Values
+  /// outside 0 .. 1 wrap around.
+  double time_of_day = 0.4;
+  /// Seconds by which moving surfaces advance: water and the pulse of ghosts. Pictures with equal
+  /// values are equal.
+  double seconds = 0;
+  Quality quality = Quality::high;
+  /// True: a frame shows the shadows of exactly the present world. False: far shadows may be some
+  /// frames old, so that no frame takes long. Pictures in files are exact.
+  bool exact = true;
+};
+
+}  // namespace runstone

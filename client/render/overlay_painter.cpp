@@ -1,0 +1,118 @@
+#include "client/render/overlay_painter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace runstone {
+namespace {
+
+constexpr const char* kVertexShader =
+    "#version 330 core\n"
+    "layout(location = 0) in vec2 position;\n"
+    "layout(location = 1) in vec2 place;\n"
+    "layout(location = 2) in vec4 colour;\n"
+    "uniform vec2 size;\n"
+    "out vec2 glyph;\n"
+    "out vec4 tint;\n"
+    "void main() {\n"
+    "  glyph = place;\n"
+    "  tint = colour;\n"
+    "  vec2 unit = position / size * 2.0 - 1.0;\n"
+    "  gl_Position = vec4(unit.x, -unit.y, 0.0, 1.0);\n"
+    "}\n";
+
+constexpr const char* kFragmentShader =
+    "#version 330 core\n"
+    "in vec2 glyph;\n"
+    "in vec4 tint;\n"
+    "uniform sampler2D glyphs;\n"
+    "out vec4 fragment;\n"
+    "void main() { fragment = vec4(tint.rgb, tint.a * texture(glyphs, glyph).r); }\n";
+
+const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+
+/// Sets the scissor rectangle of a command. Returns false if it has no pixels.
+bool clip_to(const OverlayCommand& command, double scale_x, double scale_y, int width, int height) {
+  const auto pixel = [](float at, double scale, int most) {
+    return std::clamp(static_cast<int>(std::lround(at * scale)), 0, most);
+  };
+  const int left = pixel(command.clip[0], scale_x, width);
+  const int top = pixel(command.clip[1], scale_y, height);
+  const int right = pixel(command.clip[2], scale_x, width);
+  const int bottom = pixel(command.clip[3], scale_y, height);
+  if (left >= right || top >= bottom) return false;
+  glScissor(left, height - bottom, right - left, bottom - top);
+  return true;
+}
+
+}  // namespace
+
+OverlayPainter::OverlayPainter()
+    : program_(link_program("overlay", kVertexShader, kFragmentShader)),
+      array_(GlVertexArray::make()),
+      vertices_(GlBuffer::make()),
+      indices_(GlBuffer::make()),
+      glyphs_(GlTexture::make()) {
+  glBindVertexArray(array_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, vertices_.get());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.get());
+  constexpr GLsizei kStride = sizeof(OverlayVertex);
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(OverlayVertex, x)));
+  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(OverlayVertex, u)));
+  glEnableVertexAttribArray(2);
+  glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride,
+                        offset(offsetof(OverlayVertex, colour)));
+  glBindVertexArray(0);
+}
+
+void OverlayPainter::upload_atlas(const std::shared_ptr<const OverlayAtlas>& atlas) {
+  glBindTexture(GL_TEXTURE_2D, glyphs_.get());
+  if (atlas == atlas_) return;
+  atlas_ = atlas;
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, atlas->width, atlas->height, 0, GL_RED, GL_UNSIGNED_BYTE,
+               atlas->coverage.data());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
+void OverlayPainter::draw(const OverlayFrame& frame, int width, int height) {
+  if (frame.commands.empty() || frame.width <= 0 || frame.height <= 0) return;
+  glActiveTexture(GL_TEXTURE0);
+  upload_atlas(frame.atlas);
+  glUseProgram(program_.get());
+  glUniform2f(glGetUniformLocation(program_.get(), "size"), static_cast<float>(frame.width),
+              static_cast<float>(frame.height));
+  glUniform1i(glGetUniformLocation(program_.get(), "glyphs"), 0);
+  glBindVertexArray(array_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, vertices_.get());
+  glBufferData(GL_ARRAY_BUFFER,
+               static_cast<GLsizeiptr>(frame.vertices.size() * sizeof(OverlayVertex)),
+               frame.vertices.data(), GL_STREAM_DRAW);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+               static_cast<GLsizeiptr>(frame.indices.size() * sizeof(std::uint16_t)),
+               frame.indices.data(), GL_STREAM_DRAW);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glEnable(GL_SCISSOR_TEST);
+  const double scale_x = static_cast<double>(width) / frame.width;
+  const double scale_y = static_cast<double>(height) / frame.height;
+  for (const OverlayCommand& command : frame.commands) {
+    if (!clip_to(command, scale_x, scale_y, width, height)) continue;
+    glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.index_count),
+                             GL_UNSIGNED_SHORT, offset(command.first_index * sizeof(std::uint16_t)),
+                             static_cast<GLint>(command.first_vertex));
+  }
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+  glBindVertexArray(0);
+}
+
+}  // namespace runstone

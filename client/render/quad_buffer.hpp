@@ -1,0 +1,39 @@
+// QuadBuffer: the quads of all chunks in one buffer on the GPU, and the calls that draw spans of it.
+// A vertex shader reads the quads as a buffer texture (quad_glsl.hpp). So spans of any chunks are
+// drawn by one call, and OpenGL 3.3, which has no base instance, suffices. Thread: the GL thread.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "client/render/gl_handle.hpp"
+#include "client/render/quad_spans.hpp"
+#include "client/render/texel_store.hpp"
+#include "common/mesh/quad.hpp"
+
+namespace runstone {
+
+class QuadBuffer {
+ public:
+  QuadBuffer();
+  /// Copies quads to the GPU and returns the place of the first one. Requires at least one quad.
+  std::uint32_t add(std::span<const Quad> quads);
+  void remove(QuadSpan span) {
+    if (span.count != 0) store_.remove(span.first, span.count);
+  }
+  /// Binds quads and indices, and sets the uniform `quads`. Requires that the program is in use.
+  void bind(const GlProgram& program, GLint unit) const;
+  /// Draws the spans in their order with one call. Requires bind() before.
+  void draw(std::span<const QuadSpan> spans);
+  std::uint64_t used_bytes() const { return store_.used_bytes(); }
+
+ private:
+  TexelStore store_;
+  GlVertexArray array_;
+  GlBuffer indices_;
+  std::vector<GLsizei> counts_;  // arguments of the call, kept for their capacity
+  std::vector<GLint> bases_;
+  std::vector<const void*> offsets_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,343 @@
+#include "client/render/terrain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "client/render/frustum.hpp"
+#include "client/render/terrain_glsl.hpp"
+
+namespace runstone {
+namespace {
+
+/// The radius of the inner shadow map, in edges of a chunk. It holds the chunk of the eye as a whole,
+/// and those beside it in most places.
+constexpr double kShadowEdges = 1.75;
+
+/// Coordinates fixed to the world are taken modulo this number of voxels, so that a float holds
+/// them precisely. It is a multiple of OpacityMap::kTableSide chunks of any edge.
+constexpr std::int32_t kPattern = 8192;
+
+// Texture units.
+constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kOpacityUnit = 3, kShadowUnit = 5, kDepthUnit = 6;
+
+constexpr const char* kDepthVertexShader =
+    "#version 330 core\n" RUNSTONE_QUAD_GLSL
+    "uniform mat4 clip;\n"
+    "uniform vec3 origin;\n"
+    "void main() { gl_Position = clip * vec4(origin + quad_corner().at, 1.0); }\n";
+constexpr const char* kDepthFragmentShader = "#version 330 core\nvoid main() {}\n";
+
+constexpr const char* kGhostFragmentShader =
+    "#version 330 core\n"
+    "in vec3 voxel;\n"
+    "flat in vec3 normal;\n"
+    "flat in vec4 colour;\n"
+    "uniform vec4 tint;\n"  // colour, and its share
+    "uniform float opaque;\n"
+    "out vec4 fragment;\n"
+    "void main() {\n"
+    "  vec3 face = abs(normal);\n"
+    "  vec2 st = face.x > 0.5 ? voxel.zy : face.y > 0.5 ? voxel.xz : voxel.xy;\n"
+    "  vec2 edge = abs(fract(st) - 0.5);\n"
+    "  float rim = step(0.46, max(edge.x, edge.y));\n"
+    "  vec3 c = sqrt(mix(colour.rgb, tint.rgb, tint.a)) * (0.80 + 0.20 * normal.y);\n"
+    "  fragment = vec4(c + 0.25 * rim, opaque);\n"
+    "}\n";
+
+std::string variant(Quality quality, const char* shader) {
+  std::string out = "#version 330 core\n";
+  if (quality != Quality::low) {
+    out += "#define RUNSTONE_OCCLUSION\n#define RUNSTONE_SHADOWS\n#define RUNSTONE_DEPTH\n";
+  }
+  if (quality == Quality::high) out += "#define RUNSTONE_SOFT_SHADOWS\n";
+  return out + shader;
+}
+
+glm::dvec3 origin_in_world(const ChunkKey& key, std::int32_t edge) {
+  const VoxelPos o = origin_of(key.at, edge);
+  return {o.x, o.y, o.z};
+}
+
+glm::vec3 pattern_of(const ChunkKey& key, std::int32_t edge) {
+  const VoxelPos o = origin_of(key.at, edge);
+  const auto wrap = [](std::int32_t v) { return static_cast<float>(v & (kPattern - 1)); };
+  return {wrap(o.x), wrap(o.y), wrap(o.z)};
+}
+
+}  // namespace
+
+Terrain::Terrain()
+    : depth_program_(link_program("depth", kDepthVertexShader, kDepthFragmentShader)),
+      ghost_program_(
+          link_program("ghost", (std::string("#version 330 core\n") + kTerrainVertexShader).c_str(),
+                       kGhostFragmentShader)) {
+  set_materials(MaterialTable{});
+}
+
+void Terrain::set_materials(const MaterialTable& materials) {
+  materials_.set(materials);
+  opaque_ = opaque_materials(materials);
+}
+
+Terrain::Chunk Terrain::add_quads(std::int32_t edge, const ChunkMesh& mesh) {
+  // Both passes lie in one span, so that a chunk has one range of the buffer.
+  const auto opaque_count = static_cast<std::uint32_t>(mesh.opaque.quads.size());
+  std::vector<Quad> quads = mesh.opaque.quads;
+  quads.insert(quads.end(), mesh.transparent.quads.begin(), mesh.transparent.quads.end());
+  const std::uint32_t first = quads_.add(quads);
+  return {edge,
+          {first, static_cast<std::uint32_t>(quads.size())},
+          QuadSpans(mesh.opaque, edge, first),
+          QuadSpans(mesh.transparent, edge, first + opaque_count)};
+}
+
+void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
+                     const RunChunk* voxels) {
+  if (const auto before = chunks_.find(key); before != chunks_.end()) {
+    quads_.remove(before->second.quads);
+    chunks_.erase(before);
+  }
+  if (!mesh.empty()) chunks_.emplace(key, add_quads(edge, mesh));
+  if (key.lod == 0) {
+    if (voxels != nullptr) {
+      opacity_.set(key.at, edge, opacity_bits(*voxels, opaque_));
+    } else {
+      opacity_.remove(key.at);
+    }
+  }
+  edge_ = std::max(edge_, edge);
+  const glm::dvec3 min = origin_in_world(key, edge);
+  shadows_.changed(min, min + static_cast<double>(edge));
+}
+
+void Terrain::remove(const ChunkKey& key) {
+  if (key.lod == 0) opacity_.remove(key.at);
+  const auto found = chunks_.find(key);
+  if (found == chunks_.end()) return;
+  const glm::dvec3 min = origin_in_world(key, found->second.edge);
+  shadows_.changed(min, min + static_cast<double>(found->second.edge));
+  quads_.remove(found->second.quads);
+  chunks_.erase(found);
+}
+
+const GlProgram& Terrain::program(Quality quality, bool transparent) {
+  GlProgram& out = programs_[static_cast<std::size_t>(quality)][transparent ? 1 : 0];
+  if (!out) {
+    const char* fragment = transparent ? kTransparentFragmentShader : kTerrainFragmentShader;
+    out = link_program(transparent ? "transparent" : "terrain",
+                       variant(quality, kTerrainVertexShader).c_str(),
+                       variant(quality, fragment).c_str());
+  }
+  return out;
+}
+
+void Terrain::draw_shadows(const FrameView& view) {
+  if (view.look.quality == Quality::low) return;
+  shadows_.update(
+      view.eye, view.light, kShadowEdges * edge_, view.far, view.look.quality, view.look.exact,
+      [this](const glm::mat4& clip, const glm::dvec3& middle) { draw_depth(clip, middle); });
+}
+
+void Terrain::draw_depth(const glm::mat4& clip, const glm::dvec3& middle) {
+  glUseProgram(depth_program_.get());
+  quads_.bind(depth_program_, kQuadUnit);
+  glUniformMatrix4fv(glGetUniformLocation(depth_program_.get(), "clip"), 1, GL_FALSE,
+                     glm::value_ptr(clip));
+  const GLint origin = glGetUniformLocation(depth_program_.get(), "origin");
+  glEnable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5F, 2.0F);
+  const Frustum frustum(clip);
+  const glm::vec3 to_sun = glm::normalize(glm::vec3(-clip[0][2], -clip[1][2], -clip[2][2]));
+  std::array<double, 3> sun{};
+  for (int i = 0; i < 3; ++i)
+    sun[static_cast<std::size_t>(i)] = 1e9 * static_cast<double>(to_sun[i]);
+  for (const auto& [key, chunk] : chunks_) {
+    const glm::vec3 at(origin_in_world(key, chunk.edge) - middle);
+    if (!frustum.may_see(at, at + static_cast<float>(chunk.edge))) continue;
+    spans_.clear();
+    chunk.opaque.append_facing(sun, spans_);
+    if (spans_.empty()) continue;
+    glUniform3fv(origin, 1, glm::value_ptr(at));
+    quads_.draw(spans_);
+  }
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
+  visible_.clear();
+  has_transparent_ = false;
+  const Frustum frustum(view.clip);
+  for (const auto& [key, chunk] : chunks_) {
+    const glm::dvec3 origin = origin_in_world(key, chunk.edge) - view.eye;
+    const glm::vec3 at(origin);
+    const auto edge = static_cast<float>(chunk.edge);
+    if (!frustum.may_see(at, at + edge)) {
+      ++stats.chunks_culled;
+      continue;
+    }
+    const glm::vec3 centre = at + 0.5F * edge;
+    has_transparent_ = has_transparent_ || chunk.transparent.all().count != 0;
+    visible_.push_back({&chunk,
+                        at,
+                        pattern_of(key, chunk.edge),
+                        {-origin.x, -origin.y, -origin.z},
+                        glm::dot(centre, centre)});
+  }
+  std::sort(visible_.begin(), visible_.end(),
+            [](const Visible& a, const Visible& b) { return a.distance2 < b.distance2; });
+}
+
+void Terrain::use(const GlProgram& program, const FrameView& view) {
+  glUseProgram(program.get());
+  set_light(program, view.light);
+  glUniformMatrix4fv(glGetUniformLocation(program.get(), "clip"), 1, GL_FALSE,
+                     glm::value_ptr(view.clip));
+  materials_.bind(program, kMaterialUnit);
+  quads_.bind(program, kQuadUnit);
+  if (view.look.quality == Quality::low) return;
+  opacity_.bind(program, kOpacityUnit);
+  shadows_.bind(program, kShadowUnit);
+}
+
+void Terrain::place_in_shadow(const GlProgram& program, const FrameView& view, const Visible& chunk,
+                              int& cascade) const {
+  if (view.look.quality == Quality::low) return;
+  const double half = 0.5 * chunk.chunk->edge;
+  const glm::dvec3 middle = view.eye + glm::dvec3(chunk.origin) + half;
+  const int of_chunk = shadows_.cascade_of(middle, half * std::sqrt(3.0));
+  if (of_chunk == cascade) return;
+  cascade = of_chunk;
+  shadows_.use(program, cascade, view.eye);
+}
+
+void Terrain::place(const GlProgram& program, const Visible& chunk) {
+  glUniform3fv(glGetUniformLocation(program.get(), "origin"), 1, glm::value_ptr(chunk.origin));
+  glUniform3fv(glGetUniformLocation(program.get(), "pattern"), 1, glm::value_ptr(chunk.pattern));
+}
+
+TerrainStats Terrain::draw_opaque(const FrameView& view) {
+  TerrainStats stats;
+  find_visible(view, stats);
+  const GlProgram& opaque = program(view.look.quality, false);
+  use(opaque, view);
+  glUniform1f(glGetUniformLocation(opaque.get(), "seam"), 0.0002F);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CULL_FACE);
+  int cascade = -1;  // none yet
+  // Chunks are drawn from near to far, so that hidden pixels fail the depth test early.
+  for (const Visible& chunk : visible_) {
+    spans_.clear();
+    chunk.chunk->opaque.append_facing(chunk.eye, spans_);
+    if (spans_.empty()) continue;
+    place(opaque, chunk);
+    place_in_shadow(opaque, view, chunk, cascade);
+    quads_.draw(spans_);
+    for (const QuadSpan& span : spans_) stats.quads_drawn += span.count;
+  }
+  glDisable(GL_CULL_FACE);
+  for (const Visible& chunk : visible_) stats.quads_drawn += chunk.chunk->transparent.all().count;
+  stats.chunks_drawn = static_cast<std::uint32_t>(visible_.size());
+  return stats;
+}
+
+void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
+  if (!has_transparent_) return;
+  const GlProgram& transparent = program(view.look.quality, true);
+  use(transparent, view);
+  const auto set = [&](const char* name, double value) {
+    glUniform1f(glGetUniformLocation(transparent.get(), name), static_cast<float>(value));
+  };
+  set("seconds", view.look.seconds);
+  set("seam", 0);  // quads that overlap would be blended twice
+  glUniform2f(glGetUniformLocation(transparent.get(), "depth_range"), static_cast<float>(view.near),
+              static_cast<float>(view.far));
+  glActiveTexture(GL_TEXTURE0 + kDepthUnit);
+  glBindTexture(GL_TEXTURE_2D, scene_depth);
+  glUniform1i(glGetUniformLocation(transparent.get(), "scene_depth"), kDepthUnit);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  int cascade = -1;  // none yet
+  // Water is also seen from below, so both sides are drawn.
+  for (auto chunk = visible_.rbegin(); chunk != visible_.rend(); ++chunk) {
+    spans_.clear();
+    chunk->chunk->transparent.append_back_to_front(chunk->eye, spans_);
+    if (spans_.empty()) continue;
+    place(transparent, *chunk);
+    place_in_shadow(transparent, view, *chunk, cascade);
+    quads_.draw(spans_);
+  }
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+QuadSpan Terrain::ghost_quads(const std::shared_ptr<const ChunkMesh>& mesh) {
+  const auto [found, is_new] = ghosts_.try_emplace(mesh.get());
+  GhostQuads& ghost = found->second;
+  ghost.is_used = true;
+  if (is_new) {
+    ghost.mesh = mesh;
+    std::vector<Quad> quads = mesh->opaque.quads;
+    quads.insert(quads.end(), mesh->transparent.quads.begin(), mesh->transparent.quads.end());
+    ghost.quads = {quads_.add(quads), static_cast<std::uint32_t>(quads.size())};
+  }
+  return ghost.quads;
+}
+
+void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> ghosts) {
+  for (auto& [mesh, ghost] : ghosts_) ghost.is_used = false;
+  // Quads are copied first, because a copy may replace the buffer that is bound.
+  for (const GhostChunk& ghost : ghosts) {
+    if (ghost.placed && !ghost.placed->empty()) ghost_quads(ghost.placed);
+    if (ghost.removed && !ghost.removed->empty()) ghost_quads(ghost.removed);
+  }
+  std::erase_if(ghosts_, [this](const auto& entry) {
+    if (!entry.second.is_used) quads_.remove(entry.second.quads);
+    return !entry.second.is_used;
+  });
+  if (ghosts_.empty()) return;
+  glUseProgram(ghost_program_.get());
+  glUniformMatrix4fv(glGetUniformLocation(ghost_program_.get(), "clip"), 1, GL_FALSE,
+                     glm::value_ptr(view.clip));
+  glUniform1f(glGetUniformLocation(ghost_program_.get(), "seam"), 0);
+  materials_.bind(ghost_program_, kMaterialUnit);
+  quads_.bind(ghost_program_, kQuadUnit);
+  const auto pulse = static_cast<float>(0.08 * std::sin(view.look.seconds * 4));
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glEnable(GL_CULL_FACE);
+  glDepthMask(GL_FALSE);
+  // A ghost of removed voxels has the faces of the world, and must lie in front of them.
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(-1.0F, -2.0F);
+  const auto draw = [&](const GhostChunk& ghost, const std::shared_ptr<const ChunkMesh>& mesh,
+                        const glm::vec4& tint, float opaque) {
+    if (!mesh || mesh->empty()) return;
+    const glm::vec3 at(origin_in_world(ghost.key, ghost.edge) - view.eye);
+    place(ghost_program_, {nullptr, at, pattern_of(ghost.key, ghost.edge), {}, 0});
+    glUniform4fv(glGetUniformLocation(ghost_program_.get(), "tint"), 1, glm::value_ptr(tint));
+    glUniform1f(glGetUniformLocation(ghost_program_.get(), "opaque"), opaque);
+    const std::array<QuadSpan, 1> span = {ghosts_.at(mesh.get()).quads};
+    quads_.draw(span);
+  };
+  for (const GhostChunk& ghost : ghosts) {
+    draw(ghost, ghost.removed, {0.80F, 0.02F, 0.02F, 0.85F}, 0.42F + pulse);
+    draw(ghost, ghost.placed, {1, 1, 1, 0.08F}, 0.62F + pulse);
+  }
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+}
+
+std::uint64_t Terrain::gpu_bytes() const {
+  return quads_.used_bytes() + opacity_.used_bytes() + shadows_.byte_size();
+}
+
+}  // namespace runstone

@@ -1,0 +1,161 @@
+// The shaders of terrain, in GLSL 3.30. Their variants are chosen by definitions before the text:
+// RUNSTONE_OCCLUSION darkens corners, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH reads
+// the depth behind water.
+#pragma once
+#include "client/render/light_glsl.hpp"
+#include "client/render/opacity_map.hpp"
+#include "client/render/quad_glsl.hpp"
+#include "client/render/shadow_maps.hpp"
+
+namespace runstone {
+
+inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL
+    "uniform mat4 clip;\n"     // clip space from eye-relative space
+    "uniform vec3 origin;\n"   // chunk origin minus eye
+    "uniform vec3 pattern;\n"  // chunk origin modulo 8192: coordinates fixed to the world
+    "uniform sampler2D palette, looks;\n"
+    "uniform float seam;\n"  // growth of a quad per unit of distance
+    "out vec3 relative;\n"
+    "out vec3 voxel;\n"
+    "flat out vec3 normal;\n"
+    "flat out vec4 colour;\n"
+    "flat out vec4 look;\n"
+    "#ifdef RUNSTONE_SHADOWS\n"
+    "out vec3 in_shadow;\n"
+    "#endif\n"
+    "void main() {\n"
+    "  QuadCorner c = quad_corner();\n"
+    "  relative = origin + c.at;\n"
+    // Merged quads meet in T-junctions. Each quad grows by a fraction of a pixel, which closes
+    // pinholes there.
+    "  relative += c.outward * (length(relative) * seam);\n"
+    "  voxel = pattern + c.at - c.normal * 0.5;\n"
+    "  normal = c.normal;\n"
+    "  ivec2 row = ivec2(c.material & 255u, c.material >> 8);\n"
+    "  colour = texelFetch(palette, row, 0);\n"
+    "  look = texelFetch(looks, row, 0);\n"
+    "#ifdef RUNSTONE_SHADOWS\n"
+    "  in_shadow = to_shadow(relative, normal);\n"
+    "#endif\n"
+    "  gl_Position = clip * vec4(relative, 1.0);\n"
+    "}\n";
+
+inline constexpr const char* kTerrainFragmentShader =
+    "in vec3 relative;\n"
+    "in vec3 voxel;\n"
+    "flat in vec3 normal;\n"
+    "flat in vec4 colour;\n"
+    "flat in vec4 look;\n"  // variation, grain, emission, pattern
+    "#ifdef RUNSTONE_SHADOWS\n"
+    "in vec3 in_shadow;\n"
+    "#endif\n"
+    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_OCCLUSION_GLSL RUNSTONE_SHADOW_GLSL
+    "float hash(ivec3 p) {\n"
+    "  uint h = uint(p.x) * 73856093u ^ uint(p.y) * 19349663u ^ uint(p.z) * 83492791u;\n"
+    "  h = (h ^ (h >> 13)) * 1274126177u;\n"
+    "  return float((h >> 16) & 255u) / 255.0 - 0.5;\n"
+    "}\n"
+    // Planks and bricks have dark joints. Each row of bricks is shifted by half a brick.
+    "float joint(vec2 st) {\n"
+    "  float bricks = step(1.5, look.a * 4.0);\n"
+    "  float row = st.y * 4.0;\n"
+    "  float along = st.x * 2.0 + 0.5 * bricks * floor(mod(row, 2.0));\n"
+    "  float between_rows = step(abs(fract(row) - 0.5), 0.42);\n"
+    "  float between_bricks = mix(1.0, step(abs(fract(along) - 0.5), 0.46), bricks);\n"
+    "  return 1.0 - between_rows * between_bricks;\n"
+    "}\n"
+    "void main() {\n"
+    // Each voxel has a slightly different tint, so that merged faces still look like voxels. The
+    // detail fades out with distance before it would flicker.
+    "  vec3 face = abs(normal);\n"
+    "  vec2 st = face.x > 0.5 ? voxel.zy : face.y > 0.5 ? voxel.xz : voxel.xy;\n"
+    "  float pixel = max(fwidth(st.x), fwidth(st.y));\n"
+    "  float detail = clamp(1.5 - 3.0 * pixel, 0.0, 1.0);\n"
+    "  float fine = clamp(1.5 - 24.0 * pixel, 0.0, 1.0);\n"
+    "  vec2 edge = abs(fract(st) - 0.5);\n"
+    "  float rim = smoothstep(0.5 - 0.06, 0.5, max(edge.x, edge.y));\n"
+    "  float tint = 1.0 + detail * (look.r * hash(ivec3(floor(voxel))) - 0.07 * rim);\n"
+    "  tint += fine * look.g * hash(ivec3(floor(voxel * 8.0)));\n"
+    "  tint *= 1.0 - 0.35 * fine * step(0.1, look.a) * step(look.a, 0.9) * joint(st);\n"
+    "  float sun = max(dot(normal, sun_direction), 0.0);\n"
+    "  float open = 1.0;\n"
+    "#ifdef RUNSTONE_OCCLUSION\n"
+    "  open = 1.0 - 0.8 * detail * occlusion(voxel + normal, normal);\n"
+    "#endif\n"
+    "#ifdef RUNSTONE_SHADOWS\n"
+    "  sun *= sunlit(in_shadow);\n"
+    "#endif\n"
+    "  vec3 light = sun_colour * (sun * (0.5 + 0.5 * open)) + sky_light(normal) * open;\n"
+    "  vec3 lit = colour.rgb * tint * (light + look.b * 3.0);\n"
+    "  fragment = vec4(display(in_fog(lit, relative)), 1.0);\n"
+    "}\n";
+
+// Water and glass. The surface of a liquid moves and reflects the sky at flat angles; the path of
+// the sight through the liquid absorbs light.
+inline constexpr const char* kTransparentFragmentShader =
+    "in vec3 relative;\n"
+    "in vec3 voxel;\n"
+    "flat in vec3 normal;\n"
+    "flat in vec4 colour;\n"
+    "flat in vec4 look;\n"
+    "uniform float seconds;\n"
+    "uniform sampler2D scene_depth;\n"
+    "uniform vec2 depth_range;\n"  // near, far
+    "#ifdef RUNSTONE_SHADOWS\n"
+    "in vec3 in_shadow;\n"
+    "#endif\n"
+    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_SHADOW_GLSL
+    "float distance_of(float depth) {\n"
+    "  float z = 2.0 * depth - 1.0;\n"
+    "  return 2.0 * depth_range.x * depth_range.y /\n"
+    "         (depth_range.y + depth_range.x - z * (depth_range.y - depth_range.x));\n"
+    "}\n"
+    "void main() {\n"
+    "#ifdef RUNSTONE_DEPTH\n"
+    "  float scene = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).x;\n"
+    "  if (gl_FragCoord.z >= scene) discard;\n"
+    "#endif\n"
+    "  float far = length(relative);\n"
+    "  vec3 sight = relative / far;\n"
+    "  vec3 n = dot(normal, sight) > 0.0 ? -normal : normal;\n"
+    "  float liquid = step(0.9, look.a);\n"
+    "  vec3 wave = n;\n"
+    "  vec2 p = voxel.xz;\n"
+    "  float calm = 1.0 / (1.0 + 0.02 * far);\n"
+    "  wave.x += liquid * calm * (0.05 * sin(p.x * 1.7 + p.y * 0.6 + seconds * 1.3) +\n"
+    "                             0.03 * sin(p.x * 3.1 - p.y * 2.3 - seconds * 1.9));\n"
+    "  wave.z += liquid * calm * (0.05 * cos(p.y * 1.9 - p.x * 0.5 + seconds * 1.1) +\n"
+    "                             0.03 * cos(p.x * 2.7 + p.y * 2.9 + seconds * 2.1));\n"
+    "  wave = normalize(wave);\n"
+    "  float facing = clamp(-dot(sight, wave), 0.0, 1.0);\n"
+    "  float f = 1.0 - facing;\n"
+    "  float fresnel = 0.03 + 0.75 * f * f * f * f;\n"
+    "  float sun = max(dot(n, sun_direction), 0.0);\n"
+    "#ifdef RUNSTONE_SHADOWS\n"
+    "  float lit_by_sun = sunlit(in_shadow);\n"
+    "#else\n"
+    "  float lit_by_sun = 1.0;\n"
+    "#endif\n"
+    "  vec3 body = colour.rgb * (sun_colour * (sun * lit_by_sun) + sky_light(n));\n"
+    "  vec3 mirrored = reflect(sight, wave);\n"
+    "  mirrored.y = abs(mirrored.y);\n"
+    "  vec3 reflection = sky(mirrored);\n"
+    "  float s = max(dot(mirrored, sun_direction), 0.0);\n"
+    "  float s8 = s * s; s8 *= s8; s8 *= s8; float s64 = s8 * s8; s64 *= s64; s64 *= s64;\n"
+    "  reflection += sun_colour * (s64 * s64 * 2.0 * lit_by_sun);\n"
+    "  float deep = colour.a;\n"
+    "#ifdef RUNSTONE_DEPTH\n"
+    // Both distances are along the view axis.
+    "  float here = distance_of(gl_FragCoord.z);\n"
+    "  float path = max(distance_of(scene) - here, 0.0) * far / here;\n"
+    "  float absorbed = 1.0 - exp(-0.16 * path);\n"
+    "  deep = mix(deep, mix(0.35, 0.96, absorbed), liquid);\n"
+    "  body = mix(body, body * mix(1.25, 0.55, absorbed), liquid);\n"
+    "#endif\n"
+    "  vec3 c = mix(body, reflection, fresnel * mix(0.5, 1.0, liquid));\n"
+    "  float fog = smoothstep(fog_range.x, fog_range.y, far);\n"
+    "  fragment = vec4(display(mix(c + colour.rgb * look.b * 3.0, sky(sight), fog)),\n"
+    "                  max(mix(deep, 1.0, fresnel), fog));\n"
+    "}\n";
+
+}  // namespace runstone

@@ -1,0 +1,44 @@
+#include "client/render/range_allocator.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "common/core/hash.hpp"
+
+using namespace runstone;
+
+TEST_CASE("ranges never overlap, and freed ranges join", "[render]") {
+  RangeAllocator ranges;
+  ranges.grow(1000);
+  struct Range {
+    std::uint32_t first, count;
+  };
+  std::vector<Range> taken;
+  std::vector<bool> used(1000);
+  SplitMix64 rng(11);
+  for (int step = 0; step < 5000; ++step) {
+    if (!taken.empty() && rng.below(2) == 0) {
+      const auto at = taken.begin() + rng.below(static_cast<std::uint32_t>(taken.size()));
+      std::fill_n(used.begin() + at->first, at->count, false);
+      ranges.give_back(at->first, at->count);
+      taken.erase(at);
+      continue;
+    }
+    const std::uint32_t count = 1 + rng.below(60);
+    const auto first = ranges.take(count);
+    if (!first) continue;
+    REQUIRE(*first + count <= 1000);
+    for (std::uint32_t i = *first; i < *first + count; ++i) {
+      REQUIRE_FALSE(used[i]);
+      used[i] = true;
+    }
+    taken.push_back({*first, count});
+  }
+  for (const Range& range : taken) ranges.give_back(range.first, range.count);
+  CHECK(ranges.used() == 0);
+  CHECK(ranges.take(1000) == 0U);
+  CHECK_FALSE(ranges.take(1).has_value());
+  ranges.grow(1001);
+  CHECK(ranges.take(1) == 1000U);
+}
