@@ -1,0 +1,104 @@
+#include "client/ui/hud.hpp"
+
+#include "client/input/key_rows.hpp"
+#include "client/ui/heads_up.hpp"
+#include "client/ui/help_window.hpp"
+#include "client/ui/player_list.hpp"
+#include "client/ui/statistics_window.hpp"
+
+namespace runstone {
+
+Hud::Hud(const KeyMap& keys, double scale) : keys_(keys), context_(scale) {}
+
+bool Hud::act(Action action) {
+  switch (action) {
+    case Action::chat:
+    case Action::command:
+      palette_.close();
+      chat_.open(action == Action::command ? "/" : "");
+      return true;
+    case Action::palette:
+      if (palette_.is_open()) {
+        palette_.close();
+      } else {
+        palette_.open();
+      }
+      return true;
+    case Action::help:
+      shows_help_ = !shows_help_;
+      return true;
+    case Action::statistics:
+      shows_statistics_ = !shows_statistics_;
+      return true;
+    case Action::timeline:
+      timeline_.toggle();
+      return true;
+    case Action::release:
+      return close_top();
+    default:
+      return false;
+  }
+}
+
+bool Hud::close_top() {
+  if (chat_.is_open()) return chat_.close(), true;
+  if (palette_.is_open()) return palette_.close(), true;
+  return std::exchange(shows_help_, false) || timeline_.close();
+}
+
+bool Hud::takes_focus() const { return chat_.takes_focus() || palette_.takes_focus(); }
+
+UiFocus Hud::focus() const {
+  UiFocus out;
+  out.has_window = chat_.is_open() || palette_.is_open();
+  // ImGui still names a text field whose window was closed after the last frame.
+  out.types = out.has_window && (context_.types() || takes_focus());
+  out.over_window = context_.over_window();
+  return out;
+}
+
+void Hud::notify(std::string text, NoticeKind kind) {
+  notices_.add(std::move(text), kind);
+  has_news_ = true;
+}
+
+void Hud::hear(ShownLine line) {
+  chat_.hear(std::move(line));
+  has_news_ = true;
+}
+
+std::shared_ptr<const OverlayFrame> Hud::make_frame(const HudState& state, std::array<int, 2> size,
+                                                    double seconds) {
+  has_news_ = false;
+  notices_.advance(seconds);
+  chat_.advance(seconds);
+  name_seconds_ += seconds;
+  const Material held = state.slots[state.slot];
+  if (std::exchange(held_, held) != held) name_seconds_ = 0;
+  const auto make = [&] { build(state); };
+  for (int i = 0; i < UiContext::kFocusFrames && takes_focus(); ++i)
+    context_.make_hidden_frame(size, make);
+  return context_.make_frame(size, seconds, make);
+}
+
+bool Hud::is_moving() const {
+  const double name_left = kSlotNameSeconds - name_seconds_;
+  const bool name_fades = name_left > 0 && (name_left < kSlotNameFadeSeconds || name_seconds_ == 0);
+  return has_news_ || name_fades || notices_.is_fading() || chat_.is_fading();
+}
+
+void Hud::build(const HudState& state) {
+  const double top = build_heads_up(state, name_seconds_, context_.scale());
+  const double scale = context_.scale();
+  notices_.build(top, scale);
+  if (auto line = chat_.build(top, scale)) actions_.emplace_back(SendLine{*std::move(line)});
+  if (state.shows_players) build_player_list(state, scale);
+  if (shows_statistics_) build_statistics(state.statistics, scale, shows_statistics_);
+  if (const auto moment = timeline_.build(state.timeline, scale)) actions_.emplace_back(*moment);
+  if (shows_help_) build_help(key_rows(keys_), shows_help_);
+  const Material held = state.slots[state.slot];
+  if (const auto chosen = palette_.build(*state.materials, held, scale))
+    actions_.emplace_back(HoldMaterial{*chosen});
+}
+
+}  // namespace runstone

@@ -1,0 +1,64 @@
+#include "client/ui/timeline_window.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/ui/ui_draw.hpp"
+
+namespace runstone {
+
+std::optional<ShowMoment> TimelineWindow::build(const TimelineState& state, double scale) {
+  if (!is_open_) return std::nullopt;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float width = std::min(static_cast<float>(760 * scale), size.x * 0.92F);
+  ImGui::SetNextWindowPos({size.x / 2, static_cast<float>(36 * scale)}, ImGuiCond_Appearing,
+                          {0.5F, 0});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::Begin("Timeline", &is_open_,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  std::optional<ShowMoment> out;
+  const auto newest = static_cast<double>(state.newest);
+  double at = dragged_.value_or(state.is_past ? static_cast<double>(state.shown) : newest);
+  const auto move_to = [&](double seq) {
+    const auto whole = static_cast<Sequence>(std::llround(std::clamp(seq, 0.0, newest)));
+    out = ShowMoment{whole, whole == state.newest};
+  };
+  constexpr double kFirst = 0;
+  const std::string label = at >= newest ? "live" : fmt::format("after edit {:.0f}", at);
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::SliderScalar("##moment", ImGuiDataType_Double, &at, &kFirst, &newest, label.c_str()))
+    dragged_ = at;
+  // A moment is requested when the one before is here, and the last one when the slider is let go.
+  if (dragged_ && !state.is_loading) {
+    const auto wanted = static_cast<Sequence>(std::llround(*dragged_));
+    const Sequence shown = state.is_past ? state.shown : state.newest;
+    if (wanted != shown && wanted != requested_) {
+      move_to(*dragged_);
+      requested_ = wanted;
+    }
+    if (!ImGui::IsItemActive()) {
+      dragged_.reset();
+      requested_.reset();
+    }
+  }
+  const double step = std::max(1.0, std::round(newest / 100));
+  const double from = state.is_past ? static_cast<double>(state.shown) : newest;
+  if (ImGui::Button("-1 %")) move_to(from - step);
+  ImGui::SameLine();
+  if (ImGui::Button("-1")) move_to(from - 1);
+  ImGui::SameLine();
+  if (ImGui::Button("+1")) move_to(from + 1);
+  ImGui::SameLine();
+  if (ImGui::Button("+1 %")) move_to(from + step);
+  ImGui::SameLine();
+  if (ImGui::Button("live")) move_to(newest);
+  ImGui::SameLine();
+  ImGui::TextDisabled("%s%s", state.moment.c_str(), state.is_loading ? "  loading ..." : "");
+  ImGui::End();
+  return out;
+}
+
+}  // namespace runstone

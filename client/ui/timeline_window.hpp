@@ -1,0 +1,27 @@
+// TimelineWindow: a slider over the log of the world. Moving it shows the world as it was. One
+// thread.
+#pragma once
+#include <optional>
+#include <utility>
+
+#include "client/ui/hud_state.hpp"
+#include "client/ui/ui_action.hpp"
+
+namespace runstone {
+
+class TimelineWindow {
+ public:
+  void toggle() { is_open_ = !is_open_; }
+  bool close() { return std::exchange(is_open_, false); }
+  bool is_open() const { return is_open_; }
+  /// Makes the window with ImGui. Returns the moment if the user moved to another one. While the
+  /// slider is dragged, moments are returned only as fast as they are loaded.
+  std::optional<ShowMoment> build(const TimelineState& state, double scale);
+
+ private:
+  bool is_open_ = false;
+  std::optional<double> dragged_;      // the edit at the slider, until its moment is requested
+  std::optional<Sequence> requested_;  // the last one that was requested while dragging
+};
+
+}  // namespace runstone

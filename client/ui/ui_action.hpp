@@ -1,0 +1,26 @@
+// UiAction: what the user did in a window of the interface. The client carries it out.
+#pragma once
+#include <string>
+#include <variant>
+
+#include "common/core/ids.hpp"
+
+namespace runstone {
+
+/// A line was typed. One that begins with a slash is a command for the server.
+struct SendLine {
+  std::string text;
+};
+/// A material was chosen for the chosen slot.
+struct HoldMaterial {
+  Material material = 0;
+};
+/// The user moved to this moment of the log. The live world if `is_live`.
+struct ShowMoment {
+  Sequence seq = 0;
+  bool is_live = false;
+};
+
+using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment>;
+
+}  // namespace runstone
