@@ -1,9 +1,10 @@
-// Client: the main thread of runstone-client. It owns the session, the window, the mesh pipeline
-// and the script, and passes between them the results of the network thread, the mesh workers and
+// Client: the main thread of runstone-client while it plays on a server. It owns the session, the
+// mesh pipeline and the script, and passes between them the results of the network thread, the mesh workers and
 // the draw thread. Its loop never waits for a peer or for a frame. Each turn handles what has
 // arrived. The next turn begins when more arrives (WakeUp), when a frame or the next poll of the
 // window is due, or when the script is due.
 #pragma once
+#include <array>
 #include <csignal>
 #include <cstdint>
 #include <memory>
@@ -11,7 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "client/app/benchmark.hpp"
+#include "client/app/client_display.hpp"
+#include "client/app/client_end.hpp"
+#include "client/app/client_hud.hpp"
 #include "client/app/edit_tool.hpp"
+#include "client/app/game_menu.hpp"
 #include "client/app/held_button.hpp"
 #include "client/app/options.hpp"
 #include "client/app/player.hpp"
@@ -22,8 +28,7 @@
 #include "client/app/view_follower.hpp"
 #include "client/body/shown_space.hpp"
 #include "client/display/mesh_pipeline.hpp"
-#include "client/net/wake_up.hpp"
-#include "client/platform/window.hpp"
+#include "client/input/input_router.hpp"
 #include "client/report/report.hpp"
 #include "client/schedule/memory_budget.hpp"
 #include "client/script/script_runner.hpp"
@@ -32,26 +37,32 @@ namespace runstone {
 
 class Client {
  public:
-  /// `script` may be null and must outlive the client. Throws std::runtime_error if OpenGL is
-  /// missing or the key file cannot be read.
-  Client(ClientOptions options, const Script* script);
+  /// `script` may be null. It, `display` and `menu` must outlive the client. Throws std::runtime_error if
+  /// the key file cannot be read.
+  /// `menu` may be null: then escape ends the play.
+  Client(ClientOptions options, const Script* script, ClientDisplay& display,
+         GameMenu* menu = nullptr);
   ~Client();
 
   /// Runs until the script, the user, the server, `stop` (set by a signal) or a failing driver ends
-  /// the client. Then it sends a goodbye and writes the files of the options. Returns the exit
-  /// code.
-  int run(const volatile std::sig_atomic_t& stop);
+  /// the client. Then it sends a goodbye and writes the files of the options.
+  ClientEnd run(const volatile std::sig_atomic_t& stop);
 
  private:
-  /// Runs turns until the program ends; returns the exit code. Throws std::runtime_error if drawing
-  /// fails.
-  int run_turns(const volatile std::sig_atomic_t& stop);
+  /// Runs turns until the play ends. Throws std::runtime_error if drawing fails.
+  ClientEnd run_turns(const volatile std::sig_atomic_t& stop);
   void on_world_opened();
   /// Shows the materials that were added since the world was opened.
   void take_new_materials();
-  void poll_window(TimeUs now_us);
+  void set_tool_materials(const MaterialTable& materials);
+  /// Takes the events of the window.
+  void poll_window();
+  /// Gives the events of the window, or of the script, to the player and to the interface.
+  void handle_input(TimeUs now_us);
+  /// Carries out an action of a key.
+  void act(Action action, TimeUs now_us);
   void edit_with(const WindowInput& input, TimeUs now_us);
-  void take_picture(TimeUs now_us);
+  void take_picture();
   void move_player(const WindowInput& input, double seconds);
   /// Moves the view by `steps` in time. The step after the newest edit is the live world.
   void scrub(int steps);
@@ -66,15 +77,39 @@ class Client {
   void log_players(TimeUs now_us);
   void drain_changes();
   void draw(TimeUs now_us);
+  FrameContents contents() const;
   std::vector<Marker> markers() const;
   /// Adds the outlines of protected boxes if they are shown.
   void add_ground(std::vector<Marker>& markers) const;
+  /// Adds the outlines of the selection and of the places that a tool has so far.
+  void add_selection(std::vector<Marker>& markers) const;
   double draw_distance() const;  // voxels
-  void update_title(TimeUs now_us);
-  /// Shows a short text to the player for some seconds.
-  void tell(std::string text, TimeUs now_us);
-  /// Returns the exit code if the program is to end now.
-  std::optional<int> exit_code(TimeUs now_us);
+  /// Returns the size of a frame, in pixels.
+  std::array<int, 2> frame_size() const;
+  HudScene hud_scene() const;
+  /// Returns true if the next frame differs from the last one: the player or another one moved, or
+  /// the display fades something.
+  bool is_scene_moving(TimeUs now_us);
+  /// Lets a window draw often while something moves, and seldom otherwise.
+  void wake_display(TimeUs now_us);
+  /// Draws with the quality of the settings if the player changed them in this world.
+  void use_quality();
+  /// Returns the settings in force.
+  const ClientSettings& settings() const;
+  Camera camera() const;
+  /// Returns how the play ends if it is to end now.
+  std::optional<ClientEnd> end_of_play(TimeUs now_us);
+  /// Gives the input to the menu if it is open. Returns true if it was.
+  bool feed_menu(const WindowEvents& events);
+  /// Carries out what the user chose in the menu, and closes the connecting screen when there is
+  /// ground to see.
+  void step_menu(TimeUs now_us);
+  ConnectingState connecting_state(TimeUs now_us) const;
+  PauseState pause_state() const;
+  /// Returns in words that the server is gone and what waits for it, or an empty text.
+  std::string lost_text(TimeUs now_us) const;
+  /// Returns the words for a failure, with the number of edits that no server confirmed.
+  FailureWords failure_words() const;
   void rest(TimeUs now_us);
   /// Sends a goodbye, writes the files of the options and prints the table. Returns `code`, or
   /// kExitFailed if `code` is kExitOk and a file cannot be written.
@@ -83,36 +118,42 @@ class Client {
   bool drift_found() const { return session_.replica().counters().drifted != 0; }
 
   const ClientOptions options_;
-  WakeUp wake_;
+  ClientDisplay& display_;
+  WakeUp& wake_;  // of display_
   ThreadedSession network_;
-  ClientSession& session_;          // of network_
-  std::unique_ptr<Window> window_;  // null off screen
+  ClientSession& session_;  // of network_
+  Window* const window_;    // of display_; null off screen
+  GameMenu* const menu_;    // may be null
   MeshPipeline pipeline_;
   Player player_;
   BodyMaterials body_materials_;  // of the world
   EditTool tool_;
+  InputRouter input_;
   HeldButton remove_button_, place_button_;
   MemoryBudget budget_;
   ViewFollower view_;
   TerminalChat chat_;
+  ClientHud hud_;
   ScriptActions actions_;
   std::optional<ScriptRunner> runner_;
+  std::optional<Benchmark> benchmark_;
 
   TimeUs started_us_ = 0;
-  TimeUs polled_us_ = 0;              // when the window was last polled
-  TimeUs titled_us_ = 0;              // when the title was last made
-  std::string title_;                 // of the window
-  TimeUs counted_us_ = 0;             // when frames were last counted
-  std::uint64_t counted_frames_ = 0;  // frames presented by then
-  double frame_rate_ = 0;             // frames a second, before that
-  std::string notice_;                // shown to the player
-  TimeUs notice_until_us_ = 0;
-  std::string logged_refusal_;  // of the newest request to see the past
+  TimeUs polled_us_ = 0;                    // when the window was last polled
+  Pose drawn_pose_;                         // of the player, when the last frame was considered
+  std::vector<std::optional<Pose>> poses_;  // of the others then
+  TimeUs posed_us_ = 0;                     // when it last changed
+  TimeUs drawn_us_ = 0;                     // when the last frame was ordered
+  bool shows_players_ = false;              // the key for the list of players is held
+  std::optional<WorldId> world_;            // whose materials the hotbar has
+  std::string logged_refusal_;              // of the newest request to see the past
   PlayerLog player_log_;
   TimeUs players_logged_us_ = 0;   // when the player log was last updated
   bool logged_read_only_ = false;  // the state of the server that was logged last
   bool shows_ground_ = false;
-  bool end_requested_ = false;  // by the user or a signal
+  bool end_requested_ = false;       // by the user or a signal
+  bool is_left_ = false;             // the user goes back to the title screen
+  std::optional<TimeUs> opened_us_;  // when the first world of this client opened
 };
 
 }  // namespace runstone

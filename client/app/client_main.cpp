@@ -10,16 +10,23 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "client/app/client.hpp"
+#include "client/app/client_display.hpp"
 #include "client/app/key_program.hpp"
+#include "client/app/local_start.hpp"
 #include "client/app/material_list.hpp"
+#include "client/app/player_defaults.hpp"
+#include "client/app/shell.hpp"
 #include "client/display/draw_program.hpp"
 #include "client/report/exit_code.hpp"
+#include "client/settings/settings_file.hpp"
 #include "common/os/stop_signals.hpp"
 
 namespace {
@@ -31,6 +38,32 @@ std::atomic<bool> client_runs{false};
 /// other threads still use.
 void end_after_lost_display() {
   if (client_runs) std::_Exit(runstone::kExitNoStart);
+}
+
+/// Ends the process as end_after_lost_display() does while it lives.
+class LostDisplay {
+ public:
+  /// exit() calls the newest handler first. This one is registered after the driver has loaded,
+  /// because the driver's handler may hang.
+  LostDisplay() {
+    client_runs = true;
+    std::atexit(end_after_lost_display);
+  }
+  ~LostDisplay() { client_runs = false; }
+  LostDisplay(const LostDisplay&) = delete;
+  LostDisplay& operator=(const LostDisplay&) = delete;
+};
+
+int run_in_window(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop) {
+  using namespace runstone;
+  const std::string file = default_settings_file();
+  LoadedSettings loaded = load_settings(file);
+  for (const std::string& warning : loaded.warnings) spdlog::warn("{}", warning);
+  apply_settings(loaded.settings, options);
+  ClientDisplay display(options);
+  const LostDisplay lost_display;
+  Shell shell(std::move(options), std::move(loaded), file, display);
+  return shell.run(stop);
 }
 
 int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop) {
@@ -50,14 +83,18 @@ int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop)
   // A write to the connection of a lost display must fail, so that Xlib notices the loss. The
   // signal would end the process.
   std::signal(SIGPIPE, SIG_IGN);
-  Client client(std::move(options), script ? &*script : nullptr);
-  client_runs = true;
-  // exit() calls the newest handler first. This one is registered after the driver has loaded,
-  // because the driver's handler may hang.
-  std::atexit(end_after_lost_display);
-  const int code = client.run(stop);
-  client_runs = false;
-  return code;
+  if (options.has_window() && !script) return run_in_window(std::move(options), stop);
+  if (!options.local_world.empty()) use_kept_key({}, options);
+  std::unique_ptr<LocalServer> local;
+  if (!options.local_world.empty()) {
+    auto started = start_local_world(options, stop);
+    if (!started) throw std::runtime_error(started.error());
+    local = *std::move(started);
+  }
+  ClientDisplay display(options);
+  Client client(std::move(options), script ? &*script : nullptr, display);
+  const LostDisplay lost_display;
+  return client.run(stop).exit_code;
 }
 
 int key_program(int argc, const char* const* argv) {

@@ -3,11 +3,30 @@
 #include <spdlog/spdlog.h>
 
 #include <utility>
+#include <variant>
 
 namespace runstone {
 namespace {
 
-constexpr const char* kNothingInReach = "nothing is in reach";
+/// The chunks that a preview compares and meshes in one turn. A paste of 64 voxels a side touches 27
+/// chunks of edge 32 at most, and takes two steps for each of them.
+constexpr std::size_t kPreviewChunks = 64;
+
+const char* name_of(SymmetryKind kind) {
+  switch (kind) {
+    case SymmetryKind::none:
+      break;
+    case SymmetryKind::x:
+      return "mirrored along x";
+    case SymmetryKind::z:
+      return "mirrored along z";
+    case SymmetryKind::both:
+      return "mirrored along x and z";
+    case SymmetryKind::point:
+      return "turned by a half turn";
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -15,18 +34,73 @@ std::optional<RayHit> EditTool::pick() const {
   return runstone::pick(session_.replica(), player_.eye(), player_.direction(), kReach);
 }
 
-Result<void, std::string> EditTool::remove(TimeUs now_us) {
-  const auto hit = pick();
-  if (!hit) return failure(kNothingInReach);
-  return submit({SetVoxel{hit->voxel}, {}, kEmpty}, now_us, now_us);
+Aim EditTool::aim() const {
+  Aim out{player_.eye(), player_.direction(), std::nullopt, player_.held()};
+  if (!fixed_aim_) {
+    out.hit = pick();
+  } else if (const auto material = session_.replica().shown_at(fixed_aim_->voxel)) {
+    out.hit = RayHit{fixed_aim_->voxel, *material, fixed_aim_->face, 0};
+  }
+  return out;
 }
 
-Result<void, std::string> EditTool::place(TimeUs now_us) {
-  const auto hit = pick();
-  if (!hit) return failure(kNothingInReach);
-  const auto at = place_against(*hit);
-  if (!at || player_.is_in(*at)) return failure("you stand there: step back first");
-  return submit({SetVoxel{*at}, {}, player_.held()}, now_us, now_us);
+Result<void, std::string> EditTool::press(ToolButton button, TimeUs now_us) {
+  if (!session_.replica().opened()) return failure("no world is open");
+  const auto edits = box_.press(session_.replica(), aim(), button);
+  if (edits && edits->size() == 1 && edits->front().material != kEmpty) {
+    const auto* const voxel = std::get_if<SetVoxel>(&edits->front().shape);
+    if (voxel != nullptr && player_.is_in(voxel->at))
+      return failure("you stand there: step back first");
+  }
+  return submit(edits, now_us);
+}
+
+void EditTool::drag() {
+  if (session_.replica().opened()) box_.drag(aim());
+}
+
+Result<void, std::string> EditTool::release(TimeUs now_us) {
+  if (!session_.replica().opened()) return {};
+  return submit(box_.release(session_.replica(), aim()), now_us);
+}
+
+Result<void, std::string> EditTool::submit(const ToolEdits& edits, TimeUs now_us) {
+  if (!edits) return failure(edits.error());
+  for (const EditDescriptor& edit : *edits) {
+    if (auto done = submit(edit, now_us, now_us); !done) return done;
+  }
+  return {};
+}
+
+bool EditTool::has_preview() const {
+  const bool is_plain = repeats() && box_.symmetry().kind == SymmetryKind::none;
+  return !is_plain && session_.replica().opened() && !session_.replica().past();
+}
+
+bool EditTool::step_preview() {
+  if (!has_preview()) return false;
+  return box_.step_preview(session_.replica(), aim(), kPreviewChunks);
+}
+
+std::span<const GhostChunk> EditTool::ghosts() const {
+  return has_preview() ? std::span<const GhostChunk>(box_.preview().ghosts())
+                       : std::span<const GhostChunk>();
+}
+
+std::string EditTool::text() const {
+  const Tool& tool = box_.tool();
+  if (repeats() && box_.symmetry().kind == SymmetryKind::none) return {};
+  std::string out = "tool: " + std::string(tool.name());
+  for (const ToolParameter& p : tool.parameters()) {
+    out += ", " + p.name + ' ';
+    out += p.choices.empty() ? std::to_string(p.value)
+                             : p.choices[static_cast<std::size_t>(p.value - p.low)];
+  }
+  if (box_.symmetry().kind != SymmetryKind::none)
+    out += std::string(", ") + name_of(box_.symmetry().kind);
+  if (!box_.points().empty()) out += ", places chosen: " + std::to_string(box_.points().size());
+  if (box_.preview().missing_chunks() != 0) out += ", a part of the preview is not loaded";
+  return out;
 }
 
 Result<void, std::string> EditTool::submit(const EditDescriptor& edit, TimeUs due_us,

@@ -1,14 +1,17 @@
-// EditTool: makes edits from clicks, submits the edits of clicks and scripts to the session, and
+// EditTool: gives clicks to the tool box, submits the edits of clicks and scripts to the session, and
 // records when each was submitted. One thread.
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "client/app/player.hpp"
 #include "client/replica/ray_pick.hpp"
 #include "client/schedule/latency_recorder.hpp"
 #include "client/session/client_session.hpp"
+#include "client/tools/tool_box.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 
@@ -16,17 +19,42 @@ namespace runstone {
 
 class EditTool {
  public:
-  /// All three must outlive the tool.
-  EditTool(ClientSession& session, const Player& player, LatencyRecorder& recorder)
-      : session_(session), player_(player), recorder_(recorder) {}
+  /// All four must outlive the tool.
+  EditTool(ClientSession& session, const Player& player, LatencyRecorder& recorder, ToolBox& box)
+      : session_(session), player_(player), recorder_(recorder), box_(box) {}
 
+  const Replica& replica() const { return session_.replica(); }
+  ToolBox& box() { return box_; }
+  const ToolBox& box() const { return box_; }
   /// Returns the voxel that the player looks at, or nullopt if there is none within kReach.
   std::optional<RayHit> pick() const;
-  /// Removes the voxel that the player looks at. Fails with words for the player.
-  Result<void, std::string> remove(TimeUs now_us);
-  /// Places the player's material against the voxel that the player looks at, but never where the
-  /// player is. Fails with words for the player.
-  Result<void, std::string> place(TimeUs now_us);
+  /// Returns the place at which the player points, or at which a script aims.
+  Aim aim() const;
+  /// Aims at a face of a voxel, wherever the player looks; nullopt follows the look again.
+  void fix_aim(std::optional<FixedAim> aim) { fixed_aim_ = aim; }
+
+  /// Presses, holds and releases a mouse button, as ToolBox does. The edits are submitted. A single
+  /// voxel is never placed where the player is. Each fails with words for the player.
+  Result<void, std::string> press(ToolButton button, TimeUs now_us);
+  void drag();
+  Result<void, std::string> release(TimeUs now_us);
+  /// Returns true if the tool acts again and again while the button is held.
+  bool repeats() const { return &box_.tool() == box_.tools().front().get(); }
+  /// Submits the edits in their order. Fails with the first refusal; the edits after it are not
+  /// submitted. Passes on the failure of a tool.
+  Result<void, std::string> submit(const ToolEdits& edits, TimeUs now_us);
+
+  /// Makes the preview of the next click for a bounded time. Returns true if the ghosts changed.
+  bool step_preview();
+  /// Returns the ghosts to draw. There are none while the past is shown, and none of the plain voxel
+  /// tool: the outline of the voxel in sight says enough.
+  std::span<const GhostChunk> ghosts() const;
+  /// Returns true if the next click has a preview.
+  bool has_preview() const;
+  /// Returns the chosen tool, its parameters and the symmetry as a line for the player. It is empty
+  /// for the plain voxel tool.
+  std::string text() const;
+
   /// Submits an edit that was due at `due_us`. Fails with the reason, which is also logged, if the
   /// client does not accept it. If the client had no room for it, the edit counts as infinitely
   /// late. Any other refusal, such as that of an edit while the view shows the past, counts in
@@ -39,6 +67,8 @@ class EditTool {
   ClientSession& session_;
   const Player& player_;
   LatencyRecorder& recorder_;
+  ToolBox& box_;
+  std::optional<FixedAim> fixed_aim_;
   std::uint64_t refused_ = 0;
 };
 

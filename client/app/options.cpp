@@ -2,8 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
+#include "client/display/look_control.hpp"
+#include "common/core/day_time.hpp"
 #include "common/core/text.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/passphrase.hpp"
@@ -27,15 +31,30 @@ std::string parse_size(const std::string& text, ClientOptions& out) {
 
 /// Values that are converted to options after the whole command line was read.
 struct RawOptions {
-  std::string address, size, encoding = "auto", authorities, password_file;
+  std::string address, link, size, encoding = "auto", authorities, password_file;
   unsigned view = ClientOptions{}.view_radius, view_v = 0;
+  std::string time, quality = "auto", benchmark;
   bool no_render = false, no_cache = false, insecure = false;
 };
 
 void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
-  app.add_option("--connect", raw.address,
-                 "server: HOST, HOST:PORT or a link runstone://HOST:PORT/#INVITE; default port " +
-                     std::to_string(kDefaultPort));
+  CLI::Option* const connect = app.add_option(
+      "--connect", raw.address,
+      "server: HOST, HOST:PORT or a link runstone://HOST:PORT/#INVITE; default port " +
+          std::to_string(kDefaultPort));
+  app.add_option("LINK", raw.link, "the same as --connect LINK")->excludes(connect);
+  CLI::Option* const local =
+      app.add_option("--local", out.local_world,
+                     "start a server for this world on this computer, and join it; makes the world "
+                     "if there is none")
+          ->excludes(connect);
+  app.add_option("--generator", out.local_creation.generator,
+                 "for a new world of --local: terrain, flat or empty; default terrain")
+      ->check(CLI::IsMember({"terrain", "flat", "empty"}))
+      ->needs(local);
+  app.add_option("--seed", out.local_creation.seed,
+                 "for a new world of --local: seed of the terrain; default 1")
+      ->needs(local);
   CLI::Option* const insecure =
       app.add_flag("--insecure", raw.insecure,
                    "do not encrypt the connection; for servers that run with --insecure");
@@ -89,6 +108,16 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
       ->check(output_refusal);
   app.add_option("--screenshot-dir", out.screenshot_dir, "folder for screenshots")
       ->check(CLI::ExistingDirectory);
+  app.add_option("--time", raw.time, "time of day of the picture, HH or HH:MM; default 9:36")
+      ->check([](const std::string& text) {
+        return parse_day_time(text) ? "" : "expected a time from 0:00 to 23:59";
+      });
+  app.add_option("--quality", raw.quality,
+                 "effort of the picture; auto measures frames, off screen it is high")
+      ->check(CLI::IsMember({"low", "medium", "high", "auto"}));
+  app.add_option("--benchmark", raw.benchmark,
+                 "fly this camera path (docs/client.md), print how long frames took, then end")
+      ->check(CLI::ExistingFile);
   app.add_flag("--show-protected", out.show_protected,
                "outline protected boxes: green where the player may edit, red elsewhere");
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
@@ -116,19 +145,32 @@ void add_modes(CLI::App& app, ClientOptions& out) {
   }
 }
 
+/// Sets the server to join. Throws CLI::ParseError.
+void set_server(const RawOptions& raw, ClientOptions& out) {
+  const std::string& address = raw.address.empty() ? raw.link : raw.address;
+  // A client with a window keeps an identity, and one without a server shows the title screen.
+  const bool has_window = !raw.no_render && !out.headless && !out.list_materials;
+  if (address.empty()) {
+    out.has_server = false;
+    if (out.local_world.empty() && (!has_window || !out.script.empty()))
+      throw CLI::RequiredError("--connect");
+    return;
+  }
+  auto link = parse_server_link(address);
+  if (!link) throw CLI::ValidationError("--connect", link.error());
+  out.ticket = std::move(link->ticket);
+  if (!out.ticket.empty() && out.key_file.empty() && !has_window)
+    throw CLI::ValidationError("--connect",
+                               "the invite is for an identity that you keep: add --key FILE");
+  auto server = parse_host_port(link->address, kDefaultPort);
+  if (!server) throw CLI::ValidationError("--connect", server.error());
+  out.server = *std::move(server);
+}
+
 /// Sets the options that depend on `raw`. Throws CLI::ParseError.
 void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   if (!out.draw) {
-    if (raw.address.empty()) throw CLI::RequiredError("--connect");
-    auto link = parse_server_link(raw.address);
-    if (!link) throw CLI::ValidationError("--connect", link.error());
-    out.ticket = std::move(link->ticket);
-    if (!out.ticket.empty() && out.key_file.empty())
-      throw CLI::ValidationError("--connect",
-                                 "the invite is for an identity that you keep: add --key FILE");
-    auto server = parse_host_port(link->address, kDefaultPort);
-    if (!server) throw CLI::ValidationError("--connect", server.error());
-    out.server = *std::move(server);
+    set_server(raw, out);
   }
   if (raw.insecure) out.tls.reset();
   if (!raw.password_file.empty()) {
@@ -145,6 +187,9 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   }
   const std::string wrong_size = raw.size.empty() ? "" : parse_size(raw.size, out);
   if (!wrong_size.empty()) throw CLI::ValidationError("--size", wrong_size);
+  out.given = {app.count("--name") != 0, app.count("--view") != 0,
+               app.count("--view-vertical") != 0, app.count("--memory-mib") != 0,
+               app.count("--quality") != 0};
   out.view_radius = static_cast<std::uint8_t>(raw.view);
   out.view_radius_v = static_cast<std::uint8_t>(
       app.count("--view-vertical") != 0 ? raw.view_v : (raw.view + 1) / 2);
@@ -156,6 +201,16 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
                   : raw.encoding == "packed" ? 2
                   : raw.encoding == "coded"  ? 4
                                              : kEncodingsKnown;
+  out.time_of_day = parse_day_time(raw.time).value_or(out.time_of_day);
+  out.quality = parse_quality(raw.quality);
+  if (!raw.benchmark.empty()) {
+    if (!out.render) throw CLI::ValidationError("--benchmark", "needs a renderer");
+    std::ifstream in(raw.benchmark, std::ios::binary);
+    auto path =
+        FlightPath::parse(std::string{std::istreambuf_iterator<char>(in), {}}, raw.benchmark);
+    if (!path) throw CLI::ValidationError("--benchmark", path.error().message());
+    out.benchmark = *std::move(path);
+  }
   if (out.workers == 0) out.workers = std::max(2U, std::thread::hardware_concurrency()) - 1;
 }
 

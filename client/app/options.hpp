@@ -4,6 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "client/app/flight_path.hpp"
+#include "client/local/local_server.hpp"
+#include "client/render/frame_look.hpp"
+#include "client/settings/client_settings.hpp"
 #include "common/os/host_port.hpp"
 #include "common/tls/tls_context.hpp"
 #include "protocol/default_port.hpp"
@@ -12,11 +16,21 @@ namespace runstone {
 
 struct ClientOptions {
   HostPort server{"127.0.0.1", kDefaultPort};
+  bool has_server = true;        // false: the player chooses one on the title screen
+  std::string local_world;       // name of a world on this computer to start and join; empty: none
+  NewLocalWorld local_creation;  // of local_world, if there is none of this name
+  ClientSettings settings;       // mouse, keys and field of view; the options above win over it
+  /// What the command line has set; the settings give the others to a client with a window.
+  struct {
+    bool name = false, view = false, view_vertical = false, memory = false, quality = false;
+  } given;
   std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
   std::string name = "builder";
   std::string key_file;            // empty: a new key, for this process only
   std::string ticket;              // an invite token from the link; empty: none
   std::string password;            // of the world; empty: none was given
+  bool asks_at_terminal = true;    // for the password, if there is a terminal
+  std::string servers_file;        // gets the servers that were joined; empty: none does
   std::uint8_t view_radius = 6;    // chunks, horizontal
   std::uint8_t view_radius_v = 3;  // chunks, vertical
   bool headless = false;           // off screen, no display needed
@@ -27,6 +41,9 @@ struct ClientOptions {
   std::string digests;             // file; empty: none
   std::uint8_t encodings = 7;      // as in Hello
   std::string screenshot_dir = ".";
+  double time_of_day = FrameLook{}.time_of_day;
+  std::optional<Quality> quality;  // nullopt: automatic
+  std::optional<FlightPath> benchmark;
   bool show_protected = false;  // outline protected boxes from the start
   bool exit_on_goodbye = false;
   double reconnect_seconds = 30;    // the client ends after this time without an open world
@@ -37,6 +54,8 @@ struct ClientOptions {
   std::uint64_t memory_mib = 1024;  // of chunks, edits and meshes (MemoryBudget)
   bool verbose = false;
   bool list_materials = false;  // print the materials of the world instead of playing
+  /// Returns true if frames go to a window.
+  bool has_window() const { return render && !headless && !draw; }
   bool draw = false;  // take draw orders from standard input instead of playing (docs/client.md)
 };
 

@@ -88,15 +88,9 @@ ChunkCoord Player::chunk(std::int32_t edge) const {
   return chunk_of({down(eye_.x), down(eye_.y), down(eye_.z)}, edge);
 }
 
-void Player::turn(const WindowInput& input, std::size_t material_count) {
+void Player::turn(const WindowInput& input) {
   // Moving the mouse right lowers the yaw, because -x is to the right of +z.
   look(yaw_ - input.look_dx * kRadiansPerPixel, pitch_ - input.look_dy * kRadiansPerPixel);
-  if (material_count < 2) return;
-  const int last = static_cast<int>(std::min<std::size_t>(material_count, 65536)) - 1;
-  int held = held_;
-  if (input.digit >= 0) held = input.digit == 0 ? 10 : input.digit;
-  held += input.scroll;
-  held_ = static_cast<Material>(std::clamp(held, 1, last));
 }
 
 void Player::fly(const WindowInput& input, double seconds) {

@@ -1,11 +1,10 @@
 // Player: the position and direction of the eye, which flies through the world or walks in it, and
 // the selected material.
 #pragma once
-#include <cstddef>
 #include <optional>
 
 #include "client/body/walker.hpp"
-#include "client/platform/window.hpp"
+#include "client/input/window_input.hpp"
 #include "client/render/renderer.hpp"
 #include "client/replica/ray_pick.hpp"
 #include "common/core/ids.hpp"
@@ -40,8 +39,8 @@ class Player {
   void hold(Material material) { held_ = material; }
   /// Returns true if the player's body is in this voxel. A player that flies has an eye only.
   bool is_in(VoxelPos voxel) const;
-  /// Applies mouse, wheel and number keys. Materials 1 to material_count - 1 can be selected.
-  void turn(const WindowInput& input, std::size_t material_count);
+  /// Turns the player as the mouse moved.
+  void turn(const WindowInput& input);
   /// Applies the keys of the last `seconds` to a player that flies. Requires !is_walking().
   void fly(const WindowInput& input, double seconds);
   /// Applies the keys of the last `seconds` to a player that walks. Requires is_walking(). Cost:

@@ -6,23 +6,46 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "client/replica/surface.hpp"
 #include "common/materials/material_lookup.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
+namespace {
+
+/// Returns the characters of a text. Requires well-formed UTF-8.
+std::vector<char32_t> characters_of(std::string_view text) {
+  std::vector<char32_t> out;
+  for (const char byte : text) {
+    const auto bits = static_cast<std::uint8_t>(byte);
+    if (bits < 0x80) {
+      out.push_back(bits);
+    } else if (bits >= 0xC0) {
+      out.push_back(bits >= 0xF0 ? bits & 0x07U : bits >= 0xE0 ? bits & 0x0FU : bits & 0x1FU);
+    } else if (!out.empty()) {
+      out.back() = out.back() << 6 | (bits & 0x3FU);
+    }
+  }
+  return out;
+}
+
+}  // namespace
 
 ScriptActions::ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline,
                              EditTool& tool, const ViewFollower& view, TerminalChat& chat,
-                             std::string screenshot_folder)
+                             InputRouter& input, ClientHud& hud, std::string screenshot_folder)
     : session_(session),
       player_(player),
       pipeline_(pipeline),
       tool_(tool),
       view_(view),
       chat_(chat),
+      input_(input),
+      hud_(hud),
       screenshot_folder_(std::move(screenshot_folder)) {}
 
 void ScriptActions::move_to(const WorldPos& eye) {
@@ -32,6 +55,11 @@ void ScriptActions::move_to(const WorldPos& eye) {
 
 void ScriptActions::look(double yaw, double pitch) {
   player_.look(yaw, pitch);
+  pipeline_.moved();
+}
+
+void ScriptActions::set_time_of_day(double share) {
+  pipeline_.look().set_time_of_day(share);
   pipeline_.moved();
 }
 
@@ -46,6 +74,13 @@ Result<Material, std::string> ScriptActions::material(std::string_view name) con
 
 std::optional<std::int32_t> ScriptActions::surface(std::int32_t x, std::int32_t z) const {
   return surface_of(session_.replica(), x, z);
+}
+
+void ScriptActions::finish_preview() {
+  const Replica& shown = session_.replica();
+  if (!shown.opened() || !tool_.box().is_preview_shown()) return;
+  if (tool_.box().step_preview(shown, tool_.aim(), std::numeric_limits<std::size_t>::max()))
+    pipeline_.moved();
 }
 
 bool ScriptActions::loaded() const {
@@ -83,6 +118,30 @@ bool ScriptActions::show_answer() {
 TimeUs ScriptActions::utc_now_us() const {
   const auto utc = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::microseconds>(utc).count();
+}
+
+void ScriptActions::press(const KeyChord& chord) {
+  KeyEvent event;
+  event.place = event.key = chord.key;
+  event.control = chord.control;
+  event.shift = chord.shift;
+  event.alt = chord.alt;
+  event.is_pressed = true;
+  KeyEvent release = event;
+  release.is_pressed = false;
+  input_.push({event, release});
+}
+
+void ScriptActions::type(const std::string& text) {
+  std::vector<InputEvent> events;
+  for (const char32_t character : characters_of(text))
+    events.emplace_back(CharacterEvent{character});
+  input_.push(events);
+}
+
+void ScriptActions::click(double x, double y) {
+  input_.push({CursorEvent{x, y, 0, 0}, ButtonEvent{MouseButton::left, true},
+               ButtonEvent{MouseButton::left, false}});
 }
 
 bool ScriptActions::screenshot(const std::string& file) {

@@ -5,11 +5,13 @@
 #include <string>
 #include <string_view>
 
+#include "client/app/client_hud.hpp"
 #include "client/app/edit_tool.hpp"
 #include "client/app/player.hpp"
 #include "client/app/terminal_chat.hpp"
 #include "client/app/view_follower.hpp"
 #include "client/display/mesh_pipeline.hpp"
+#include "client/input/input_router.hpp"
 #include "client/replica/copy_box.hpp"
 #include "client/report/report.hpp"
 #include "client/script/script_host.hpp"
@@ -21,12 +23,14 @@ class ScriptActions final : public ScriptHost {
  public:
   /// All but `screenshot_folder` must outlive this object.
   ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline, EditTool& tool,
-                const ViewFollower& view, TerminalChat& chat, std::string screenshot_folder);
+                const ViewFollower& view, TerminalChat& chat, InputRouter& input, ClientHud& hud,
+                std::string screenshot_folder);
 
   bool ready() const override { return session_.connect_count() != 0; }
   WorldPos eye() const override { return player_.eye(); }
   void move_to(const WorldPos& eye) override;
   void look(double yaw, double pitch) override;
+  void set_time_of_day(double share) override;
   Result<Material, std::string> material(std::string_view name) const override;
   std::optional<Material> shown_at(VoxelPos at) const override {
     return session_.replica().shown_at(at);
@@ -35,6 +39,12 @@ class ScriptActions final : public ScriptHost {
     return copy_box(session_.replica(), box, solid ? CopyEmpty::as_untouched : CopyEmpty::as_empty);
   }
   std::optional<RayHit> pick() const override { return tool_.pick(); }
+  ToolBox& tool_box() override { return tool_.box(); }
+  const Replica& replica() const override { return session_.replica(); }
+  Aim aim() const override { return tool_.aim(); }
+  void fix_aim(std::optional<FixedAim> aim) override { tool_.fix_aim(aim); }
+  void hold(Material material) override { hud_.hold(material); }
+  void finish_preview() override;
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {
     return session_.edit_wait_us(edit, now_us);
@@ -56,6 +66,11 @@ class ScriptActions final : public ScriptHost {
   bool commanding() const override { return session_.commanding(); }
   bool show_answer() override;
   TimeUs utc_now_us() const override;
+  void press(const KeyChord& chord) override;
+  void type(const std::string& text) override;
+  void click(double x, double y) override;
+  bool handling_input() const override { return input_.has_events(); }
+  void show_interface(bool is_shown) override { hud_.set_shown(is_shown); }
   bool screenshot(const std::string& file) override;
   /// Returns where the screenshot of this name goes.
   std::string screenshot_path(const std::string& file) const;
@@ -75,6 +90,8 @@ class ScriptActions final : public ScriptHost {
   EditTool& tool_;
   const ViewFollower& view_;
   TerminalChat& chat_;
+  InputRouter& input_;
+  ClientHud& hud_;
   const std::string screenshot_folder_;
 };
 

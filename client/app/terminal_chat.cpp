@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <utility>
 
 #include "common/core/text.hpp"
@@ -12,6 +13,17 @@ namespace {
 void print(const std::string& line) {
   std::fputs((line + "\n").c_str(), stdout);
   std::fflush(stdout);
+}
+
+ChatTone tone_of(ChatLineKind kind) {
+  switch (kind) {
+    case ChatLineKind::player:
+      return ChatTone::player;
+    case ChatLineKind::refused:
+      return ChatTone::refused;
+    default:
+      return ChatTone::server;
+  }
 }
 
 }  // namespace
@@ -43,7 +55,8 @@ TerminalChat::TerminalChat(ClientSession& session, std::optional<int> input) : s
 void TerminalChat::step() {
   if (is_answer_due_ && !session_.commanding()) {  // before the next command takes its place
     is_answer_due_ = false;
-    for (const std::string& line : session_.command_lines()) print(line);
+    for (const std::string& line : session_.command_lines())
+      show({with_unseen_replaced(line), ChatTone::answer});
   }
   if (input_) {
     for (const std::string& typed : input_->take_lines()) send(typed);
@@ -51,8 +64,21 @@ void TerminalChat::step() {
   for (const ChatLine& line : session_.drain_chat()) {
     heard_.push_back(printed_line(line));
     if (heard_.size() > kHeardMax) heard_.pop_front();
-    print(heard_.back());
+    show({heard_.back(), tone_of(line.kind)});
   }
+}
+
+void TerminalChat::show(ShownLine entry) {
+  print(entry.text);
+  shown_.push_back(std::move(entry));
+  if (shown_.size() > kHeardMax) shown_.pop_front();
+}
+
+std::vector<ShownLine> TerminalChat::take_shown() {
+  std::vector<ShownLine> out(std::make_move_iterator(shown_.begin()),
+                             std::make_move_iterator(shown_.end()));
+  shown_.clear();
+  return out;
 }
 
 void TerminalChat::send(const std::string& typed) {
@@ -65,7 +91,7 @@ void TerminalChat::send(const std::string& typed) {
   } else if (const auto sent = session_.chat(typed); !sent) {
     why = sent.error();
   }
-  if (!why.empty()) print("[not sent] " + why);
+  if (!why.empty()) show({"[not sent] " + why, ChatTone::refused});
 }
 
 bool TerminalChat::take_heard(const std::string& text) {

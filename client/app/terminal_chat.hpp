@@ -6,9 +6,11 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/app/line_input.hpp"
 #include "client/session/client_session.hpp"
+#include "client/ui/chat_window.hpp"
 
 namespace runstone {
 
@@ -29,15 +31,21 @@ class TerminalChat {
 
   /// Sends what was typed, and prints what arrived.
   void step();
+  /// Sends a line, or gives a command if it begins with a slash. If it cannot be sent, a line says
+  /// why.
+  void send(const std::string& typed);
+  /// Returns the lines that were printed since the last call, kHeardMax at most.
+  std::vector<ShownLine> take_shown();
   /// Returns true if a printed line contains the text, and then forgets the lines up to it.
   bool take_heard(const std::string& text);
 
  private:
-  void send(const std::string& typed);
+  void show(ShownLine entry);
 
   ClientSession& session_;
   std::optional<LineInput> input_;
   std::deque<std::string> heard_;
+  std::deque<ShownLine> shown_;
   bool is_answer_due_ = false;  // of a command that was typed
 };
 

@@ -4,10 +4,13 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 #include <variant>
 
 #include "client/net/key_file.hpp"
+#include "client/settings/recent_servers.hpp"
 #include "common/core/hex.hpp"
 #include "common/os/passphrase.hpp"
 #include "common/os/steady_clock.hpp"
@@ -89,8 +92,8 @@ void ThreadedSession::receive() {
 }
 
 bool ThreadedSession::can_ask_password() const {
-  return session_.lacks_password() && !is_password_asked_ && !options_.key_file.empty() &&
-         ::isatty(STDIN_FILENO) == 1;
+  return session_.lacks_password() && options_.asks_at_terminal && !is_password_asked_ &&
+         !options_.key_file.empty() && ::isatty(STDIN_FILENO) == 1;
 }
 
 void ThreadedSession::ask_password() {
@@ -141,6 +144,8 @@ void ThreadedSession::on_disconnected(const LinkDisconnected& event) {
   keep_all_chunks();
   session_.disconnected();
   last_failure_ = event.why;
+  last_words_ = session_.end() ? words_of(*session_.end())
+                               : words_of_link(event.why, to_string(options_.server));
   if (session_.end() && !session_.end()->text.empty())
     last_failure_ += " (" + session_.end()->text + ")";
   if (!lost_us_) {
@@ -159,6 +164,17 @@ void ThreadedSession::on_world_opened() {
   spdlog::info("world open author={} epoch={} head={} durable={} edge={}", session_.author(),
                welcome.epoch, welcome.head, welcome.durable, welcome.chunk_edge);
   save_first_contact();
+  if (connects_handled_ == 1) list_server();
+}
+
+void ThreadedSession::list_server() const {
+  if (options_.servers_file.empty()) return;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto saved = save_recent_server(
+      options_.servers_file,
+      {to_string(options_.server), to_hex(session_.welcome()->world_id), options_.name,
+       std::chrono::duration_cast<std::chrono::microseconds>(now).count()});
+  if (!saved) spdlog::warn("{}", saved.error());
 }
 
 void ThreadedSession::save_first_contact() {
@@ -227,23 +243,39 @@ std::optional<std::string> ThreadedSession::refusal() const {
          (options_.key_file.empty() ? "--key FILE and " : "") + "--password-file FILE";
 }
 
+FailureWords ThreadedSession::failure_words() const {
+  const auto& end = session_.end();
+  return end && end->final ? words_of(*end) : last_words_;
+}
+
+double ThreadedSession::seconds_left(TimeUs now_us) const {
+  if (!lost_us_) return 0;
+  return std::max(0.0, options_.reconnect_seconds - static_cast<double>(now_us - *lost_us_) / 1e6);
+}
+
 std::optional<std::string> ThreadedSession::timeout(TimeUs now_us) const {
   if (!lost_us_ || static_cast<double>(now_us - *lost_us_) <= options_.reconnect_seconds * 1e6)
     return std::nullopt;
   return fmt::format("no server at {}: {}", to_string(options_.server), last_failure_);
 }
 
+NetCounts ThreadedSession::net_counts() const {
+  NetCounts out;
+  const LinkStats& net = net_->stats();
+  out.bytes_received = net.bytes_received;
+  out.bytes_sent = net.bytes_sent;
+  const Traffic received = net.received.read();
+  out.control_bytes = of_class(received, FrameClass::control).bytes;
+  out.edit_bytes = of_class(received, FrameClass::edits).bytes;
+  out.chunk_bytes = of_class(received, FrameClass::chunks).bytes;
+  for (const KindTraffic& kind : received) out.messages_received += kind.messages;
+  out.connections = net.connections;
+  return out;
+}
+
 void ThreadedSession::add_to(ClientReport& report) const {
   report.snapshots = snapshots_;
-  const LinkStats& net = net_->stats();
-  report.net.bytes_received = net.bytes_received;
-  report.net.bytes_sent = net.bytes_sent;
-  const Traffic received = net.received.read();
-  report.net.control_bytes = of_class(received, FrameClass::control).bytes;
-  report.net.edit_bytes = of_class(received, FrameClass::edits).bytes;
-  report.net.chunk_bytes = of_class(received, FrameClass::chunks).bytes;
-  for (const KindTraffic& kind : received) report.net.messages_received += kind.messages;
-  report.net.connections = net.connections;
+  report.net = net_counts();
   if (cache_) report.cache = cache_->counters();
 }
 

@@ -15,6 +15,7 @@
 #include "client/net/net_client.hpp"
 #include "client/report/report.hpp"
 #include "client/session/client_session.hpp"
+#include "client/session/failure_words.hpp"
 
 namespace runstone {
 
@@ -54,9 +55,15 @@ class ThreadedSession {
   bool is_connected() const { return !lost_us_.has_value(); }
   /// Returns the server's reason if it refused this client for good, otherwise nullopt.
   std::optional<std::string> refusal() const;
+  /// Returns in words why there is no connection, or what happened to the last attempt.
+  FailureWords failure_words() const;
+  /// Returns the seconds until timeout() ends the attempts to connect, or 0 while a world is open.
+  double seconds_left(TimeUs now_us) const;
   /// Returns a line of text if no world has been open for the option --reconnect-seconds, otherwise
   /// nullopt.
   std::optional<std::string> timeout(TimeUs now_us) const;
+  /// Returns the counts of the network so far.
+  NetCounts net_counts() const;
   /// Adds the counts of network, snapshots and cache.
   void add_to(ClientReport& report) const;
 
@@ -71,6 +78,8 @@ class ThreadedSession {
   void count_snapshots(const Chunks& chunks, const LinkReceived& event);
   void on_disconnected(const LinkDisconnected& event);
   void on_world_opened();
+  /// Puts the server into the list of servers that were joined, if the options name one.
+  void list_server() const;
   /// Logs the fingerprint of a server that is new to this player, and keeps its key.
   void save_first_contact();
   /// Returns true if the session lacks the password, it was not asked for yet, standard input is a
@@ -94,6 +103,7 @@ class ThreadedSession {
   bool is_password_asked_ = false;
   std::optional<TimeUs> lost_us_ = 0;  // when the last world was lost; nullopt while one is open
   std::string last_failure_;           // why the last attempt to connect failed
+  FailureWords last_words_;            // the same in words
   TimeUs kept_us_ = 0;                 // when the cache last got a batch
   std::unique_ptr<NetClient> net_;     // last: its thread calls wake_
 };

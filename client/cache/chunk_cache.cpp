@@ -3,11 +3,11 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
+#include "common/os/user_folders.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 
 namespace runstone {
@@ -63,13 +63,7 @@ void remove_database(const std::string& file) {
 
 }  // namespace
 
-std::string default_cache_folder() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  // The XDG specification ignores a relative path.
-  if (cache != nullptr && cache[0] == '/') return std::string(cache) + "/runstone";
-  const char* home = std::getenv("HOME");
-  return home != nullptr && home[0] == '/' ? std::string(home) + "/.cache/runstone" : std::string();
-}
+std::string default_cache_folder() { return user_folder(UserFolder::cache); }
 
 struct ChunkCache::Tables {
   explicit Tables(CacheDatabase& d)

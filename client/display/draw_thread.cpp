@@ -15,7 +15,8 @@ namespace {
 FrameDone draw_frame(Screen& screen, const FrameOrder& order) {
   FrameDone done;
   done.started_us = steady_now_us();
-  done.stats = screen.draw(order.camera, order.width, order.height, order.markers);
+  screen.set_overlay(order.overlay);
+  done.stats = screen.draw(order.camera, order.width, order.height, order.contents);
   done.presented_us = steady_now_us();
   if (order.screenshots.empty()) return done;
   const Image image = screen.read_image();
@@ -49,6 +50,7 @@ void DrawThread::set_materials(const MaterialTable& materials) {
 }
 
 void DrawThread::upload(const ChunkKey& key, ChunkUpload upload) {
+  queued_.insert(key);
   {
     const std::lock_guard lock(mutex_);
     work_.changes.insert_or_assign(key, std::move(upload));
@@ -57,11 +59,26 @@ void DrawThread::upload(const ChunkKey& key, ChunkUpload upload) {
 }
 
 void DrawThread::remove(const ChunkKey& key) {
+  queued_.erase(key);
   {
     const std::lock_guard lock(mutex_);
     work_.changes.insert_or_assign(key, std::nullopt);
   }
   changed_.notify_one();
+}
+
+void DrawThread::clear() {
+  {
+    std::unique_lock lock(mutex_);
+    work_ = {};
+    changed_.wait(lock, [this] { return !is_busy_ || state_ == State::failed; });
+    if (state_ == State::failed) throw std::runtime_error(failure_);
+    done_.clear();
+    for (const ChunkKey& key : queued_) work_.changes.emplace(key, std::nullopt);
+  }
+  queued_.clear();
+  frame_ordered_ = false;
+  changed_.notify_all();
 }
 
 void DrawThread::draw(FrameOrder order) {
@@ -119,7 +136,7 @@ void DrawThread::serve(const std::stop_token& stop, Screen& screen) {
     std::vector<DrawDone> uploads;
     for (const auto& [key, upload] : work->changes) {
       if (upload) {
-        screen.upload(key, upload->edge, *upload->mesh);
+        screen.upload(key, upload->edge, *upload->mesh, upload->voxels.get());
         uploads.emplace_back(UploadDone{key, upload->serial, steady_now_us()});
       } else {
         screen.remove(key);
@@ -135,8 +152,11 @@ void DrawThread::serve(const std::stop_token& stop, Screen& screen) {
 
 std::optional<DrawThread::Work> DrawThread::next(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
+  is_busy_ = false;
+  changed_.notify_all();
   if (!changed_.wait(lock, stop, [this] { return !work_.empty(); }) || stop.stop_requested())
     return std::nullopt;
+  is_busy_ = true;
   return std::exchange(work_, {});
 }
 

@@ -16,6 +16,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -28,18 +29,21 @@
 
 namespace runstone {
 
-/// The new quads of a chunk. `serial` is Replica::shown_serial() of the runs that were meshed.
+/// The new quads of a chunk, and the runs that were meshed. `serial` is Replica::shown_serial() of
+/// these runs.
 struct ChunkUpload {
   std::uint64_t serial = 0;
   std::int32_t edge = 0;  // voxels
   std::shared_ptr<const ChunkMesh> mesh;
+  std::shared_ptr<const RunChunk> voxels;  // may be null
 };
 
 struct FrameOrder {
   Camera camera;
   int width = 0, height = 0;  // pixels
-  std::vector<Marker> markers;
-  std::vector<std::string> screenshots;  // PNG files to write of this frame
+  FrameContents contents;
+  std::shared_ptr<const OverlayFrame> overlay;  // the user interface on top; null: none
+  std::vector<std::string> screenshots;         // PNG files to write of this frame
 };
 
 /// Times are those of steady_now_us().
@@ -79,6 +83,9 @@ class DrawThread {
   void upload(const ChunkKey& key, ChunkUpload upload);
   /// Queues a removal, which replaces a queued change of the same chunk.
   void remove(const ChunkKey& key);
+  /// Drops queued work and what take_done() would return, waits for the frame in progress, and
+  /// queues the removal of every chunk. So another world can be shown. Throws as take_done().
+  void clear();
   /// Orders a frame. Requires that take_done() has returned the frame ordered before.
   void draw(FrameOrder order);
 
@@ -108,11 +115,13 @@ class DrawThread {
   std::string name_;  // written before state_ becomes `drawing`, read after
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  State state_ = State::starting;  // guarded by mutex_, as are the next three
+  State state_ = State::starting;  // guarded by mutex_, as are the next four
   std::string failure_;
   Work work_;
   std::vector<DrawDone> done_;
+  bool is_busy_ = false;        // the draw thread uses work that it took
   bool frame_ordered_ = false;  // main thread
+  std::set<ChunkKey> queued_;   // chunks that are on the screen or queued for it; main thread
   std::jthread thread_;         // last: it uses the members above
 };
 

@@ -74,7 +74,7 @@ void DrawnWorld::mesh_changes() {
       dirty_.erase(dirty_.begin());
     }
     for (const MeshResult& result : pool_.take_results())
-      screen_.upload(result.key, result.edge, *result.mesh);
+      screen_.upload(result.key, result.edge, *result.mesh, result.chunk.get());
     if (pool_.in_flight() == 0) continue;
     // Each job in flight releases the semaphore once, after it has queued its result, so this wait
     // ends. The loop takes further releases whose results the next turn takes as well.

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "common/core/assert.hpp"
 #include "common/mesh/visibility.hpp"
 #include "common/os/steady_clock.hpp"
 
@@ -13,20 +14,27 @@ namespace runstone {
 
 namespace {
 
+/// Returns the memory of a chunk on the GPU: its quads, and at most one bit for each voxel.
+std::size_t gpu_bytes_of(const MeshResult& result) {
+  const std::size_t bits = result.chunk->is_uniform() ? 0 : result.chunk->volume() / 8;
+  return result.mesh->quad_count() * sizeof(Quad) + bits;
+}
+
 bool begins_with(std::span<const MaterialInfo> rows, std::span<const MaterialInfo> first) {
   return rows.size() >= first.size() && std::ranges::equal(rows.first(first.size()), first);
 }
 
 }  // namespace
 
-MeshPipeline::MeshPipeline(const Replica& replica, std::unique_ptr<DrawThread> draw_thread,
-                           bool watched, unsigned workers, std::function<void()> wake)
+MeshPipeline::MeshPipeline(const Replica& replica, DrawThread* draw_thread, bool watched,
+                           unsigned workers, std::function<void()> wake)
     : watched_(watched),
       workers_(workers),
       wake_(std::move(wake)),
-      recorder_(draw_thread ? LatencyStage::presented : LatencyStage::meshed),
+      recorder_(draw_thread != nullptr ? LatencyStage::presented : LatencyStage::meshed),
       planner_(replica),
-      draw_thread_(std::move(draw_thread)) {}
+      look_(!watched),
+      draw_thread_(draw_thread) {}
 
 void MeshPipeline::set_materials(const MaterialTable& materials) {
   if (pool_ && materials_ == materials) return;
@@ -73,10 +81,14 @@ void MeshPipeline::take_drawn() {
 void MeshPipeline::take_frame(const FrameDone& frame) {
   recorder_.presented(frame.presented_us);
   ++frames_.presented;
-  frames_.draw_us.add(frame.presented_us - frame.started_us);
+  last_frame_us_ = frame.presented_us - frame.started_us;
+  frames_.draw_us.add(last_frame_us_);
+  look_.frame_took(last_frame_us_);
+  recent_frames_.push_back(frame);
+  if (recent_frames_.size() > kRecentFramesMax) recent_frames_.pop_front();
   if (frame_.screenshots) screenshots_written_ = frame.unwritten.empty();
   frame_ = {};
-  if (!watched_) next_frame_us_ = frame.presented_us + kFrameOffScreenUs;
+  if (!watched_ && !is_unpaced_) next_frame_us_ = frame.presented_us + kFrameOffScreenUs;
   for (const std::string& file : frame.unwritten)
     spdlog::warn("screenshot={} cannot be written", file);
 }
@@ -99,8 +111,9 @@ void MeshPipeline::take_result(MeshResult result) {
   recorder_.meshed(result.key, result.serial, result.meshed_us);
   join_.done(result.key, result.meshed_us);
   if (!draw_thread_) return;
-  gpu_bytes_.set(result.key, result.mesh->quad_count() * sizeof(Quad));
-  draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
+  gpu_bytes_.set(result.key, gpu_bytes_of(result));
+  draw_thread_->upload(
+      result.key, {result.serial, result.edge, std::move(result.mesh), std::move(result.chunk)});
   changed_ = uploads_waiting_ = true;
   edits_waiting_ = edits_waiting_ || recorder_.open_edits() != 0;
 }
@@ -127,21 +140,30 @@ bool MeshPipeline::has_room_for_jobs() const {
          mesh_bytes() + gpu_bytes() + open_job_bytes_.total() < mesh_bytes_max_;
 }
 
-void MeshPipeline::draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,
-                        const std::function<std::vector<Marker>()>& markers) {
-  if (!draw_thread_ || frame_.in_progress) return;
-  const bool screenshot_due =
-      !screenshots_.empty() && (is_idle() || now_us - screenshot_since_us_ > kScreenshotWaitUs);
+bool MeshPipeline::is_screenshot_due(TimeUs now_us) const {
+  return !screenshots_.empty() && (is_idle() || now_us - screenshot_since_us_ > kScreenshotWaitUs);
+}
+
+bool MeshPipeline::is_frame_due(TimeUs now_us) const {
+  if (!draw_thread_ || frame_.in_progress) return false;
   // Off screen, frames serve edits and screenshots. More frames would only slow down loading.
-  const bool due = changed_ && now_us >= next_frame_us_;
-  if (!due && !screenshot_due && !edits_waiting_) return;
-  FrameOrder order{camera, size[0], size[1], markers(), {}};
-  if (screenshot_due) order.screenshots = std::exchange(screenshots_, {});
+  const bool is_due = changed_ && now_us >= next_frame_us_;
+  return is_due || edits_waiting_ || is_screenshot_due(now_us);
+}
+
+void MeshPipeline::draw(TimeUs now_us, FrameOrder order) {
+  RUNSTONE_ASSERT(is_frame_due(now_us));
+  const bool screenshot_due = is_screenshot_due(now_us);
+  order.contents.look = look_.look(now_us);
+  if (screenshot_due) {
+    order.contents.look.exact = true;
+    order.screenshots = std::exchange(screenshots_, {});
+  }
   draw_thread_->draw(std::move(order));
   ++frames_ordered_;
   frame_ = {true, uploads_waiting_, screenshot_due};
   changed_ = uploads_waiting_ = edits_waiting_ = false;
-  if (watched_) next_frame_us_ = now_us + kFrameUs;
+  if (watched_) next_frame_us_ = now_us + frame_interval_us_;
 }
 
 void MeshPipeline::request_screenshot(std::string path, TimeUs now_us) {

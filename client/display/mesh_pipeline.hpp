@@ -2,8 +2,8 @@
 // frames, and records when each of them was done.
 // Thread: the main thread only. The pool's threads mesh, and the draw thread uploads and draws.
 #pragma once
-#include <array>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "client/display/draw_thread.hpp"
+#include "client/display/look_control.hpp"
 #include "client/report/report.hpp"
 #include "client/schedule/byte_ledger.hpp"
 #include "client/schedule/join_recorder.hpp"
@@ -25,10 +26,10 @@ namespace runstone {
 
 class MeshPipeline {
  public:
-  /// `replica` must outlive the pipeline. `draw_thread` may be null; then the last stage of an edit
-  /// is `meshed`. `watched` is true if frames go to a window. `wake` is called from mesh threads.
-  MeshPipeline(const Replica& replica, std::unique_ptr<DrawThread> draw_thread, bool watched,
-               unsigned workers, std::function<void()> wake);
+  /// `replica` and `draw_thread` must outlive the pipeline. `draw_thread` shows nothing of another
+  /// world (DrawThread::clear()). It may be null; then the last stage of an edit is `meshed`. `watched` is true if frames go to a window. `wake` is called from mesh threads.
+  MeshPipeline(const Replica& replica, DrawThread* draw_thread, bool watched, unsigned workers,
+               std::function<void()> wake);
 
   bool draws() const { return draw_thread_ != nullptr; }
   std::string renderer_name() const { return draw_thread_ ? draw_thread_->screen_name() : "none"; }
@@ -43,10 +44,21 @@ class MeshPipeline {
   /// Sets the memory that meshes may take, those on the GPU included. Beyond it one job is made at
   /// a time, so that the nearest chunk is meshed all the same.
   void set_mesh_bytes_max(std::size_t bytes) { mesh_bytes_max_ = bytes; }
+  /// Returns the number of chunks that were meshed so far.
+  std::uint64_t meshed_count() const { return planner_.chunks_meshed(); }
   /// Returns the memory of the newest meshes of all chunks.
   std::size_t mesh_bytes() const { return planner_.kept_bytes(); }
-  /// Returns the memory of the quads that were queued for upload and not removed since.
+  /// Returns the memory of the chunks that were queued for upload and not removed since.
   std::size_t gpu_bytes() const { return gpu_bytes_.total(); }
+  /// The look of all frames.
+  LookControl& look() { return look_; }
+  const LookControl& look() const { return look_; }
+  /// With true, frames off screen follow one another without a pause, for measurements.
+  void set_unpaced(bool unpaced) { is_unpaced_ = unpaced; }
+  /// Returns the time that drawing the last presented frame took.
+  TimeUs last_frame_us() const { return last_frame_us_; }
+  /// Sets the least time between two frames of a window that show no new edit.
+  void set_frame_interval(TimeUs interval_us) { frame_interval_us_ = interval_us; }
   /// Call it when the camera or a marker moved.
   void moved() { changed_ = true; }
 
@@ -57,10 +69,11 @@ class MeshPipeline {
   /// Queues the completed meshes for upload, meshes small changes itself and gives the workers new
   /// jobs.
   void mesh();
-  /// Orders a frame of `size` (width, height in pixels) if no frame is in progress and one is due.
-  /// Calls `markers` only in that case.
-  void draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,
-            const std::function<std::vector<Marker>()>& markers);
+  /// Returns true if no frame is in progress and one is due.
+  bool is_frame_due(TimeUs now_us) const;
+  /// Orders a frame, with the screenshots that are due, and sets its look. Requires
+  /// is_frame_due().
+  void draw(TimeUs now_us, FrameOrder order);
 
   /// Writes a PNG of the next frame that is drawn while no mesh is unfinished, or of the first
   /// frame after kScreenshotWaitUs. Requires draws().
@@ -77,6 +90,13 @@ class MeshPipeline {
   /// takes at most two frames, whatever other players edit meanwhile. Call it when the program
   /// wants to end.
   bool has_caught_up();
+  /// Returns the last kRecentFramesMax frames that were presented; the newest one is the last.
+  const std::deque<FrameDone>& recent_frames() const { return recent_frames_; }
+  static constexpr std::size_t kRecentFramesMax = 120;
+  const FrameStats& frames() const { return frames_; }
+  const Histogram& whole_mesh_ns() const { return whole_ns_; }
+  const Histogram& layers_mesh_ns() const { return layers_ns_; }
+  std::uint64_t mesh_jobs() const { return planner_.jobs(); }
   std::uint64_t frames_presented() const { return frames_.presented; }
   LatencyRecorder& recorder() { return recorder_; }
   const LatencyRecorder& recorder() const { return recorder_; }
@@ -86,7 +106,7 @@ class MeshPipeline {
   /// Sets the counts of meshes and frames.
   void add_to(ClientReport& report) const;
 
-  /// The least time between two frame orders in a window. The swap decides the exact time of a
+  /// The default of set_frame_interval(). The swap decides the exact time of a
   /// frame.
   static constexpr TimeUs kFrameUs = 16'000;
   /// The time per turn that mesh() spends on meshes of changed layers. The workers make the other
@@ -97,6 +117,7 @@ class MeshPipeline {
   static constexpr TimeUs kScreenshotWaitUs = 10'000'000;
 
  private:
+  bool is_screenshot_due(TimeUs now_us) const;
   bool is_idle() const {
     return planner_.ready_count() == 0 && (!pool_ || pool_->in_flight() == 0);
   }
@@ -121,7 +142,11 @@ class MeshPipeline {
   MaterialTable materials_;
   Histogram whole_ns_, layers_ns_;
   FrameStats frames_;
+  std::deque<FrameDone> recent_frames_;
   // These flags are set by events since the last frame was ordered.
+  LookControl look_;
+  bool is_unpaced_ = false;
+  TimeUs last_frame_us_ = 0;
   bool changed_ = true;           // the camera, a marker or a mesh changed
   bool uploads_waiting_ = false;  // a mesh was queued for upload
   bool edits_waiting_ = false;    // a mesh was queued while an edit was not presented yet
@@ -130,11 +155,12 @@ class MeshPipeline {
   } frame_;  // the frame in progress; true if it shows new meshes, and if it becomes screenshots
   std::uint64_t frames_ordered_ = 0;
   std::optional<std::uint64_t> last_frame_;  // has_caught_up(): the frame to wait for
-  TimeUs next_frame_us_ = 0;                 // the earliest time of a frame without new edits
-  std::vector<std::string> screenshots_;     // files requested
+  TimeUs frame_interval_us_ = kFrameUs;
+  TimeUs next_frame_us_ = 0;              // the earliest time of a frame without new edits
+  std::vector<std::string> screenshots_;  // files requested
   TimeUs screenshot_since_us_ = 0;
   bool screenshots_written_ = true;
-  std::unique_ptr<DrawThread> draw_thread_;  // may be null
+  DrawThread* const draw_thread_;  // may be null
   // Null until the materials are set. It is the last member, because its threads use the others.
   std::unique_ptr<MeshPool> pool_;
 };

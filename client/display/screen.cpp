@@ -17,13 +17,18 @@ class GlScreen final : public Screen {
   void set_materials(const MaterialTable& materials) override {
     renderer_.set_materials(materials);
   }
-  void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh) override {
-    renderer_.upload(key, edge, mesh);
+  void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
+              const RunChunk* voxels) override {
+    renderer_.upload(key, edge, mesh, voxels);
   }
   void remove(const ChunkKey& key) override { renderer_.remove(key); }
+  void set_overlay(std::shared_ptr<const OverlayFrame> overlay) override {
+    overlay_ = std::move(overlay);
+  }
   RenderStats draw(const Camera& camera, int width, int height,
-                   std::span<const Marker> markers) override {
-    const RenderStats stats = renderer_.draw(camera, width, height, markers);
+                   const FrameContents& contents) override {
+    const RenderStats stats = renderer_.draw(camera, width, height, contents);
+    if (overlay_) renderer_.draw_overlay(*overlay_);
     if (context_->is_window()) renderer_.present(width, height);
     renderer_.finish();
     context_->swap();
@@ -34,6 +39,7 @@ class GlScreen final : public Screen {
  private:
   std::unique_ptr<GlContext> context_;
   Renderer renderer_;  // destroyed before its context
+  std::shared_ptr<const OverlayFrame> overlay_;
 };
 
 }  // namespace

@@ -4,14 +4,15 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <span>
 
 #include "client/platform/window.hpp"
 #include "client/render/image.hpp"
+#include "client/render/overlay_frame.hpp"
 #include "client/render/renderer.hpp"
 #include "common/core/coords.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/mesh/chunk_mesh.hpp"
+#include "common/runs/run_chunk.hpp"
 
 namespace runstone {
 
@@ -26,12 +27,15 @@ class Screen {
   virtual const char* name() const = 0;
   virtual void set_materials(const MaterialTable& materials) = 0;
   /// Do the same as Renderer::upload() and Renderer::remove().
-  virtual void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh) = 0;
+  virtual void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
+                      const RunChunk* voxels) = 0;
   virtual void remove(const ChunkKey& key) = 0;
+  /// Sets the user interface that the next frames have on top; null: none.
+  virtual void set_overlay(std::shared_ptr<const OverlayFrame> overlay) = 0;
   /// Draws a frame of width x height pixels. Waits for the fence after the frame off screen, and
   /// for the swap in a window. Throws std::runtime_error if the driver fails.
   virtual RenderStats draw(const Camera& camera, int width, int height,
-                           std::span<const Marker> markers) = 0;
+                           const FrameContents& contents) = 0;
   /// Returns the last frame. Requires a draw() before.
   virtual Image read_image() = 0;
 };

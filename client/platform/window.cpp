@@ -4,6 +4,8 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -11,19 +13,26 @@ namespace runstone {
 
 struct Window::State {
   GLFWwindow* window = nullptr;
-  WindowInput pending;  // presses since the last poll
+  std::vector<InputEvent> events;  // since the last poll
   bool captured = false;
   bool have_cursor = false;  // false until the first position after a capture, which is no movement
   double cursor_x = 0, cursor_y = 0;
 
-  void capture(bool on) {
-    captured = on;
-    have_cursor = false;
-    glfwSetInputMode(window, GLFW_CURSOR, on ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
-  }
-  bool held(int key) const { return glfwGetKey(window, key) == GLFW_PRESS; }
-  bool button_held(int button) const {
-    return captured && glfwGetMouseButton(window, button) == GLFW_PRESS;
+  void add_cursor(double x, double y) {
+    std::array<int, 2> size{}, pixels{};
+    glfwGetWindowSize(window, &size[0], &size[1]);
+    glfwGetFramebufferSize(window, &pixels[0], &pixels[1]);
+    CursorEvent event;
+    event.x = x * pixels[0] / std::max(size[0], 1);
+    event.y = y * pixels[1] / std::max(size[1], 1);
+    if (have_cursor) {
+      event.dx = x - cursor_x;
+      event.dy = y - cursor_y;
+    }
+    have_cursor = true;
+    cursor_x = x;
+    cursor_y = y;
+    events.emplace_back(event);
   }
 };
 
@@ -35,13 +44,72 @@ std::string glfw_error_text() {
   return text != nullptr ? text : "unknown GLFW error";
 }
 
-/// Returns true if the key has this letter, one of a to z, in the user's keyboard layout. GLFW's key
-/// codes name places of an American keyboard; a German one has Y and Z the other way round. In a
-/// layout without such letters the place decides.
-bool is_letter(char letter, int key, int code) {
-  const char* const name = glfwGetKeyName(key, code);
-  const bool is_latin = name != nullptr && name[0] >= 'a' && name[0] <= 'z';
-  return is_latin ? name[0] == letter : key == GLFW_KEY_A + (letter - 'a');
+struct NamedKey {
+  int glfw;
+  Key key;
+};
+constexpr NamedKey kNamedKeys[] = {
+    {GLFW_KEY_ESCAPE, Key::escape},
+    {GLFW_KEY_ENTER, Key::enter},
+    {GLFW_KEY_TAB, Key::tab},
+    {GLFW_KEY_BACKSPACE, Key::backspace},
+    {GLFW_KEY_INSERT, Key::insert},
+    {GLFW_KEY_DELETE, Key::delete_forward},
+    {GLFW_KEY_LEFT, Key::left},
+    {GLFW_KEY_RIGHT, Key::right},
+    {GLFW_KEY_UP, Key::up},
+    {GLFW_KEY_DOWN, Key::down},
+    {GLFW_KEY_PAGE_UP, Key::page_up},
+    {GLFW_KEY_PAGE_DOWN, Key::page_down},
+    {GLFW_KEY_HOME, Key::home},
+    {GLFW_KEY_END, Key::end},
+    {GLFW_KEY_SPACE, Key::space},
+    {GLFW_KEY_LEFT_SHIFT, Key::left_shift},
+    {GLFW_KEY_RIGHT_SHIFT, Key::right_shift},
+    {GLFW_KEY_LEFT_CONTROL, Key::left_control},
+    {GLFW_KEY_RIGHT_CONTROL, Key::right_control},
+    {GLFW_KEY_LEFT_ALT, Key::left_alt},
+    {GLFW_KEY_RIGHT_ALT, Key::right_alt},
+    {GLFW_KEY_MINUS, Key::minus},
+    {GLFW_KEY_EQUAL, Key::equal},
+    {GLFW_KEY_LEFT_BRACKET, Key::left_bracket},
+    {GLFW_KEY_RIGHT_BRACKET, Key::right_bracket},
+    {GLFW_KEY_COMMA, Key::comma},
+    {GLFW_KEY_PERIOD, Key::period},
+    {GLFW_KEY_SLASH, Key::slash},
+    {GLFW_KEY_KP_DIVIDE, Key::slash},
+    {GLFW_KEY_KP_ENTER, Key::keypad_enter},
+};
+
+Key key_after(Key first, int steps) { return static_cast<Key>(static_cast<int>(first) + steps); }
+
+/// Returns the key by its place on an American keyboard, which is how GLFW names keys.
+Key key_of(int glfw) {
+  if (glfw >= GLFW_KEY_A && glfw <= GLFW_KEY_Z) return key_after(Key::a, glfw - GLFW_KEY_A);
+  if (glfw >= GLFW_KEY_0 && glfw <= GLFW_KEY_9) return key_after(Key::digit_0, glfw - GLFW_KEY_0);
+  if (glfw >= GLFW_KEY_F1 && glfw <= GLFW_KEY_F12) return key_after(Key::f1, glfw - GLFW_KEY_F1);
+  const auto* const found =
+      std::find_if(std::begin(kNamedKeys), std::end(kNamedKeys),
+                   [glfw](const NamedKey& named) { return named.glfw == glfw; });
+  return found == std::end(kNamedKeys) ? Key::unknown : found->key;
+}
+
+/// Returns the key by its letter in the user's keyboard layout: a German keyboard has Y and Z the
+/// other way round. A key without such a letter, or of a layout without them, keeps its place.
+Key lettered_key(int glfw, int code) {
+  const char* const name = glfwGetKeyName(glfw, code);
+  const Key place = key_of(glfw);
+  if (name == nullptr || name[0] == 0 || name[1] != 0) return place;
+  if (name[0] >= 'a' && name[0] <= 'z') return key_after(Key::a, name[0] - 'a');
+  if (name[0] == '/') return Key::slash;
+  return place;
+}
+
+std::optional<MouseButton> button_of(int glfw) {
+  if (glfw == GLFW_MOUSE_BUTTON_LEFT) return MouseButton::left;
+  if (glfw == GLFW_MOUSE_BUTTON_RIGHT) return MouseButton::right;
+  if (glfw == GLFW_MOUSE_BUTTON_MIDDLE) return MouseButton::middle;
+  return std::nullopt;
 }
 
 class WindowContext final : public GlContext {
@@ -84,45 +152,33 @@ Window::Window(int width, int height, const std::string& title)
   glfwSetWindowUserPointer(state_->window, state_.get());
   glfwSetMouseButtonCallback(state_->window, [](GLFWwindow* w, int button, int action, int) {
     State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
-    if (action != GLFW_PRESS) return;
-    if (!state.captured) return state.capture(true);
-    if (button == GLFW_MOUSE_BUTTON_LEFT) ++state.pending.remove_clicks;
-    if (button == GLFW_MOUSE_BUTTON_RIGHT) ++state.pending.place_clicks;
-    if (button == GLFW_MOUSE_BUTTON_MIDDLE) ++state.pending.pick_clicks;
+    if (const auto known = button_of(button))
+      state.events.emplace_back(ButtonEvent{*known, action == GLFW_PRESS});
   });
   glfwSetCursorPosCallback(state_->window, [](GLFWwindow* w, double x, double y) {
-    State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
-    if (state.captured && state.have_cursor) {
-      state.pending.look_dx += x - state.cursor_x;
-      state.pending.look_dy += y - state.cursor_y;
-    }
-    state.have_cursor = state.captured;
-    state.cursor_x = x;
-    state.cursor_y = y;
+    static_cast<State*>(glfwGetWindowUserPointer(w))->add_cursor(x, y);
   });
   glfwSetScrollCallback(state_->window, [](GLFWwindow* w, double, double dy) {
-    static_cast<State*>(glfwGetWindowUserPointer(w))->pending.scroll += dy > 0   ? 1
-                                                                        : dy < 0 ? -1
-                                                                                 : 0;
+    static_cast<State*>(glfwGetWindowUserPointer(w))->events.emplace_back(WheelEvent{dy});
   });
   glfwSetKeyCallback(state_->window, [](GLFWwindow* w, int key, int code, int action, int mods) {
-    State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
-    if (action != GLFW_PRESS) return;
-    if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) state.pending.digit = key - GLFW_KEY_0;
-    if (key == GLFW_KEY_F2) state.pending.screenshot = true;
-    if (key == GLFW_KEY_LEFT_BRACKET) --state.pending.scrub;
-    if (key == GLFW_KEY_RIGHT_BRACKET) ++state.pending.scrub;
-    if ((mods & GLFW_MOD_CONTROL) != 0) {
-      if (is_letter('z', key, code)) state.pending.undo = true;
-      if (is_letter('y', key, code)) state.pending.redo = true;
-    }
-    if (key == GLFW_KEY_HOME) state.pending.live = true;
-    if (key == GLFW_KEY_G) ++state.pending.ground;
-    if (key == GLFW_KEY_F) ++state.pending.walking;
-    if (key == GLFW_KEY_ESCAPE) {
-      if (state.captured) return state.capture(false);
-      state.pending.escape = true;
-    }
+    KeyEvent event;
+    event.place = key_of(key);
+    event.key = lettered_key(key, code);
+    event.is_pressed = action != GLFW_RELEASE;
+    event.is_repeat = action == GLFW_REPEAT;
+    event.control = (mods & GLFW_MOD_CONTROL) != 0;
+    event.shift = (mods & GLFW_MOD_SHIFT) != 0;
+    event.alt = (mods & GLFW_MOD_ALT) != 0;
+    static_cast<State*>(glfwGetWindowUserPointer(w))->events.emplace_back(event);
+  });
+  glfwSetCharCallback(state_->window, [](GLFWwindow* w, unsigned character) {
+    static_cast<State*>(glfwGetWindowUserPointer(w))
+        ->events.emplace_back(CharacterEvent{static_cast<char32_t>(character)});
+  });
+  glfwSetWindowFocusCallback(state_->window, [](GLFWwindow* w, int has_focus) {
+    static_cast<State*>(glfwGetWindowUserPointer(w))
+        ->events.emplace_back(FocusEvent{has_focus == GLFW_TRUE});
   });
 }
 
@@ -131,20 +187,19 @@ Window::~Window() {
   glfwTerminate();
 }
 
-WindowInput Window::poll() {
+WindowEvents Window::poll() {
   glfwPollEvents();
-  WindowInput input = std::exchange(state_->pending, WindowInput{});
-  input.forward = state_->held(GLFW_KEY_W);
-  input.back = state_->held(GLFW_KEY_S);
-  input.left = state_->held(GLFW_KEY_A);
-  input.right = state_->held(GLFW_KEY_D);
-  input.up = state_->held(GLFW_KEY_SPACE);
-  input.down = state_->held(GLFW_KEY_LEFT_SHIFT);
-  input.fast = state_->held(GLFW_KEY_LEFT_CONTROL);
-  input.remove_held = state_->button_held(GLFW_MOUSE_BUTTON_LEFT);
-  input.place_held = state_->button_held(GLFW_MOUSE_BUTTON_RIGHT);
-  input.close = glfwWindowShouldClose(state_->window) == GLFW_TRUE;
-  return input;
+  WindowEvents out;
+  out.events = std::exchange(state_->events, {});
+  out.close = glfwWindowShouldClose(state_->window) == GLFW_TRUE;
+  return out;
+}
+
+void Window::set_captured(bool is_captured) {
+  if (std::exchange(state_->captured, is_captured) == is_captured) return;
+  state_->have_cursor = false;
+  glfwSetInputMode(state_->window, GLFW_CURSOR,
+                   is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
 }
 
 void Window::set_title(const std::string& title) {
@@ -155,7 +210,9 @@ std::array<int, 2> Window::framebuffer_size() const {
   glfwGetFramebufferSize(state_->window, &size[0], &size[1]);
   return {std::max(size[0], 1), std::max(size[1], 1)};
 }
-bool Window::mouse_captured() const { return state_->captured; }
+bool Window::has_focus() const {
+  return glfwGetWindowAttrib(state_->window, GLFW_FOCUSED) == GLFW_TRUE;
+}
 
 std::unique_ptr<GlContext> make_window_context(Window& window) {
   return std::make_unique<WindowContext>(window.state_->window);

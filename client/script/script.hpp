@@ -3,11 +3,14 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "client/tools/aim.hpp"
+#include "client/tools/symmetry.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
@@ -46,6 +49,10 @@ struct Roam {
 };
 struct Look {
   double yaw = 0, pitch = 0;  // degrees
+};
+/// Sets the time of day of the picture.
+struct TimeOfDay {
+  double share = 0;  // of the day: 0 midnight, 0.5 noon
 };
 struct LookAt {
   ScriptPosition at;
@@ -138,11 +145,78 @@ struct WaitChat {
 struct Command {
   std::string text;
 };
+/// Presses a key chord, such as F1 or ctrl+Z, and releases it.
+struct PressKey {
+  std::string chord;  // as parse_key_chord() reads it
+};
+/// Types characters.
+struct Type {
+  std::string text;  // UTF-8
+};
+/// Clicks with the mouse at a place of the frame, in pixels from its upper left corner.
+struct Click {
+  double x = 0, y = 0;
+};
+/// Shows or hides the user interface in the frames, and so in the screenshots.
+struct ShowInterface {
+  bool is_shown = true;
+};
+/// Chooses a building tool by its name.
+struct ChooseTool {
+  std::string name;
+};
+/// Sets a parameter of the chosen tool.
+struct SetParameter {
+  std::string name, value;  // the value is a number or one of the parameter's choices
+};
+/// Aims at a face of a voxel until the next AimAt.
+struct AimAt {
+  std::optional<ScriptPosition> voxel;  // nullopt: where the player looks
+  Direction face = Direction::pos_y;
+};
+/// Puts a material into the player's hand.
+struct Hold {
+  std::string material;
+};
+/// A mouse button with the chosen tool.
+struct UseTool {
+  enum class Part : std::uint8_t { click, press, drag, release };
+  Part part = Part::click;
+  ToolButton button = ToolButton::place;  // not for drag and release
+};
+/// Selects a box by two corner voxels, both included.
+struct Select {
+  std::optional<ScriptPosition> from, to;  // nullopt: selects nothing
+};
+/// Changes the selection, or the voxels in it.
+struct SelectionEdit {
+  enum class Kind : std::uint8_t { copy, cut, clear, fill, replace, stack, move, grow, shift };
+  Kind kind = Kind::copy;
+  bool is_solid = false;                   // copy, cut
+  std::string material, other;             // fill; replace: the old and the new one
+  Direction direction = Direction::pos_y;  // stack, move, grow, shift
+  std::int32_t count = 1;                  // the same
+};
+/// Turns the tools' clipboard by quarter turns, or mirrors it along an axis.
+struct TurnClipboard {
+  int quarters = 0;
+  std::optional<Axis> mirror;
+};
+struct SetSymmetry {
+  SymmetryKind kind = SymmetryKind::none;
+  ScriptPosition centre;  // its y does not count
+};
+/// Shows or hides the preview of the next click.
+struct ShowPreview {
+  bool is_shown = true;
+};
 struct Quit {};
 
-using Step = std::variant<Move, Walk, Roam, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste,
-                          Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End, Burst,
-                          Digests, HistoryRequest, Say, WaitChat, Command, Quit>;
+using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, Sphere, Stroke, Copy,
+                          Paste, Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End,
+                          Burst, Digests, HistoryRequest, Say, WaitChat, Command, PressKey, Type,
+                          Click, ShowInterface, ChooseTool, SetParameter, AimAt, Hold, UseTool,
+                          Select, SelectionEdit, TurnClipboard, SetSymmetry, ShowPreview, Quit>;
 
 }  // namespace script
 

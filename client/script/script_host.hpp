@@ -6,7 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "client/input/key.hpp"
 #include "client/replica/ray_pick.hpp"
+#include "client/tools/tool_box.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
@@ -25,6 +27,8 @@ class ScriptHost {
   virtual void move_to(const WorldPos& eye) = 0;
   /// Sets the direction, in radians.
   virtual void look(double yaw, double pitch) = 0;
+  /// Sets the time of day of the picture, as FrameLook::time_of_day.
+  virtual void set_time_of_day(double share) = 0;
 
   /// Returns a material by number or, as find_material() does, by name. Fails with one line of
   /// text.
@@ -36,6 +40,16 @@ class ScriptHost {
   virtual Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const = 0;
   /// Returns the voxel that the player looks at, or nullopt if there is none within reach.
   virtual std::optional<RayHit> pick() const = 0;
+  /// Returns the building tools, and the replica and the aim with which they work.
+  virtual ToolBox& tool_box() = 0;
+  virtual const Replica& replica() const = 0;
+  virtual Aim aim() const = 0;
+  /// Aims at a face of a voxel, wherever the player looks; nullopt follows the look again.
+  virtual void fix_aim(std::optional<FixedAim> aim) = 0;
+  /// Puts a material into the player's hand.
+  virtual void hold(Material material) = 0;
+  /// Makes the preview of the next click completely, if previews are shown.
+  virtual void finish_preview() = 0;
   /// Returns the y of the highest shown voxel of the column that is not empty, or nullopt if there
   /// is none.
   virtual std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const = 0;
@@ -75,6 +89,16 @@ class ScriptHost {
   virtual std::string travel_refusal() const = 0;
   /// Returns the time in UTC, for requests of a moment some seconds ago.
   virtual TimeUs utc_now_us() const = 0;
+
+  /// Presses a key chord and releases it, types a text in UTF-8, and clicks with the left button at
+  /// a place of the frame in pixels.
+  virtual void press(const KeyChord& chord) = 0;
+  virtual void type(const std::string& text) = 0;
+  virtual void click(double x, double y) = 0;
+  /// Returns true until the client has handled this input.
+  virtual bool handling_input() const = 0;
+  /// Shows or hides the user interface.
+  virtual void show_interface(bool is_shown) = 0;
 
   /// Requests a screenshot; poll screenshot_written(). Returns false if this client draws nothing.
   virtual bool screenshot(const std::string& file) = 0;

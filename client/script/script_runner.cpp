@@ -20,12 +20,6 @@ VoxelPos voxel_of(const WorldPos& at) {
   return {down(at.x), down(at.y), down(at.z)};
 }
 
-/// Returns the box with these corners, both included.
-VoxelBox box_between(VoxelPos a, VoxelPos b) {
-  return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-          {std::max(a.x, b.x) + 1, std::max(a.y, b.y) + 1, std::max(a.z, b.z) + 1}};
-}
-
 TimeUs after(TimeUs start_us, double seconds) {
   return start_us + static_cast<TimeUs>(std::llround(seconds * kUsPerSecond));
 }
@@ -195,6 +189,11 @@ ScriptRunner::Progress ScriptRunner::run(const script::Look& c) {
   return Progress::done;
 }
 
+ScriptRunner::Progress ScriptRunner::run(const script::TimeOfDay& c) {
+  host_.set_time_of_day(c.share);
+  return Progress::done;
+}
+
 ScriptRunner::Progress ScriptRunner::run(const script::LookAt& c) {
   const auto at = resolve(c.at);
   if (!at) return Progress::stop;
@@ -349,6 +348,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::WaitUntil& c) {
 ScriptRunner::Progress ScriptRunner::run(const script::Screenshot& c) {
   if (!started_) {
     start();
+    host_.finish_preview();
     if (!host_.screenshot(c.file)) {
       fail("no screenshot: this client draws nothing");
       return Progress::done;
@@ -450,6 +450,33 @@ ScriptRunner::Progress ScriptRunner::run(const script::End& c) {
   } else {
     repeats_left_.pop_back();
   }
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::after_input() {
+  start();
+  if (!host_.handling_input()) return Progress::done;
+  due_us_ = now_us_;
+  return Progress::waits;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::PressKey& c) {
+  if (!started_) host_.press(*parse_key_chord(c.chord));
+  return after_input();
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Type& c) {
+  if (!started_) host_.type(c.text);
+  return after_input();
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Click& c) {
+  if (!started_) host_.click(c.x, c.y);
+  return after_input();
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::ShowInterface& c) {
+  host_.show_interface(c.is_shown);
   return Progress::done;
 }
 

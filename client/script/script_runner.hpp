@@ -46,6 +46,7 @@ class ScriptRunner {
   Progress run(const script::Walk& c);
   Progress run(const script::Roam& c);
   Progress run(const script::Look& c);
+  Progress run(const script::TimeOfDay& c);
   Progress run(const script::LookAt& c);
   Progress run(const script::Set& c);
   Progress run(const script::Box& c);
@@ -67,6 +68,23 @@ class ScriptRunner {
   Progress run(const script::Say& c);
   Progress run(const script::WaitChat& c);
   Progress run(const script::Command& c);
+  /// Waits until the client has handled the input of this command.
+  Progress after_input();
+  Progress run(const script::PressKey& c);
+  Progress run(const script::Type& c);
+  Progress run(const script::Click& c);
+  Progress run(const script::ShowInterface& c);
+  // The building tools: script_tools.cpp.
+  Progress run(const script::ChooseTool& c);
+  Progress run(const script::SetParameter& c);
+  Progress run(const script::AimAt& c);
+  Progress run(const script::Hold& c);
+  Progress run(const script::UseTool& c);
+  Progress run(const script::Select& c);
+  Progress run(const script::SelectionEdit& c);
+  Progress run(const script::TurnClipboard& c);
+  Progress run(const script::SetSymmetry& c);
+  Progress run(const script::ShowPreview& c);
   Progress run(const script::Quit& c);
 
   void run_commands();
@@ -74,6 +92,13 @@ class ScriptRunner {
   /// Records a failure and ends the script.
   Progress give_up(const std::string& what);
   Progress submit(const EditDescriptor& edit);
+  /// Starts a command of a tool with its edits. If the tool refuses, the command fails, and the
+  /// script goes on.
+  void start_edits(ToolEdits edits);
+  /// Submits the edits of start_edits() that are left.
+  Progress submit_edits();
+  /// Returns the edits of a change of the selection. Requires its materials.
+  ToolEdits edits_of(const script::SelectionEdit& c, Material material, Material other);
   std::optional<WorldPos> resolve(const ScriptPosition& position);
   std::optional<VoxelPos> resolve_voxel(const ScriptPosition& position);
   std::optional<Material> resolve_material(const std::string& name);
@@ -92,6 +117,7 @@ class ScriptRunner {
   Started state_;
   std::vector<std::uint32_t> repeats_left_;  // rounds left of the open repeats, innermost last
   std::map<std::string, std::shared_ptr<const Clipboard>> clipboards_;
+  std::vector<EditDescriptor> edits_;  // of the tool command that runs
   struct Roaming {
     WorldPos to, back;
     double speed = 0;  // voxels a second

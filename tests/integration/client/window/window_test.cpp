@@ -5,6 +5,7 @@
 #include <iterator>
 #include <optional>
 
+#include "common/materials/material_table.hpp"
 #include "tests/integration/client/window/child_process.hpp"
 #include "tests/integration/client/window/virtual_display.hpp"
 #include "tests/integration/server/app/raw_client.hpp"
@@ -123,7 +124,8 @@ TEST_CASE("a display that goes away ends the client with the exit code of a miss
   CHECK(server->stop().is_clean);
 }
 
-TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work", "[integration]") {
+TEST_CASE("in a window, clicks dig and place, and palette, chat, resizing, F2 and escape work",
+          "[integration]") {
   if (const std::string missing = missing_programs(); !missing.empty()) {
     WARN("skipped: not installed:" << missing);
     return;
@@ -153,7 +155,8 @@ TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work",
   const bool has_window = wait_for(kLong, [&] { return display.hand(window); });
   INFO(text_of(log));
   REQUIRE(has_window);
-  REQUIRE(wait_for(kLong, [&] { return text_of(log).find("world open") != std::string::npos; }));
+  REQUIRE(
+      wait_for(kLong, [&] { return text_of(log).find("ground in view") != std::string::npos; }));
 
   // The first click captures the mouse. Then the player looks down at the ground some voxels ahead.
   REQUIRE(display.hand(with_window({"windowfocus", "mousemove", "240", "180", "click", "1"})));
@@ -173,11 +176,24 @@ TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work",
 
   REQUIRE(display.hand({"click", "3"}));
   const EditDescriptor placed = next_edit(watcher);
-  CHECK(placed.material == 1);
+  CHECK(placed.material == default_material_table().find("stone"));  // the first slot
   REQUIRE(std::holds_alternative<SetVoxel>(placed.shape));
   CHECK(std::get<SetVoxel>(placed.shape).at == std::get<SetVoxel>(dug.shape).at);  // the same voxel
   REQUIRE(wait_for(
       kLong, [&] { return changed_share(hole, centre(display, kWidth, kHeight)) > kChanged; }));
+
+  // The palette gives another material, and a line of chat is typed and sent. Both free the mouse
+  // and capture it again.
+  REQUIRE(display.hand({"key", "e"}));
+  REQUIRE(display.hand({"type", "--delay", "50", "gold"}));
+  REQUIRE(display.hand({"key", "Return"}));
+  REQUIRE(display.hand({"click", "3"}));
+  CHECK(next_edit(watcher).material == default_material_table().find("gold"));
+  REQUIRE(display.hand({"key", "t"}));
+  REQUIRE(display.hand({"type", "--delay", "50", "hello, world"}));
+  REQUIRE(display.hand({"key", "Return"}));
+  REQUIRE(wait_for(kLong,
+                   [&] { return text_of(log).find("<hands> hello, world") != std::string::npos; }));
 
   // A smaller window shows a smaller frame, filled to its edge, and F2 writes one of that size.
   REQUIRE(display.hand(with_window({"windowsize", "320", "240"})));
@@ -198,8 +214,8 @@ TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work",
   CHECK(next_edit(watcher).material == kEmpty);
   REQUIRE(display.hand({"mouseup", "1"}));
 
-  REQUIRE(display.hand({"key", "Escape"}));  // frees the mouse
-  REQUIRE(display.hand({"key", "Escape"}));
+  // Escape opens the pause menu. Its last button quits.
+  REQUIRE(display.hand({"key", "--delay", "200", "Escape", "Down", "Down", "Down", "space"}));
   const auto code = client.wait(kLong);
   INFO(text_of(log));
   REQUIRE(code.has_value());

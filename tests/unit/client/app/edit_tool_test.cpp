@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
+#include "client/app/tool_actions.hpp"
 #include "tests/support/authority_model.hpp"
 #include "tests/support/chunks_message.hpp"
 #include "tests/support/test_keys.hpp"
@@ -64,7 +65,8 @@ struct Fixture {
   ClientSession session{config()};
   Player player;
   LatencyRecorder recorder;
-  EditTool tool{session, player, recorder};
+  ToolBox box;
+  EditTool tool{session, player, recorder, box};
 };
 
 }  // namespace
@@ -104,8 +106,8 @@ TEST_CASE_METHOD(Fixture, "an edit that finds no room is infinitely late", "[cli
 }
 
 TEST_CASE_METHOD(Fixture, "a click at nothing makes no edit", "[client_app]") {
-  CHECK(tool.remove(kNow).error() == "nothing is in reach");
-  CHECK(tool.place(kNow).error() == "nothing is in reach");
+  CHECK(tool.press(ToolButton::clear, kNow).error() == "nothing is in reach");
+  CHECK(tool.press(ToolButton::place, kNow).error() == "nothing is in reach");
   CHECK(tool.refused() == 0);
   CHECK(session.replica().local_edits().all().empty());
 }
@@ -118,10 +120,66 @@ TEST_CASE_METHOD(Fixture, "a voxel is placed on the ground in sight, but not whe
   player.look(0, -std::numbers::pi / 2);
   for (const double inside : {0.5, -0.5}) {
     player.move_to({0.5, inside, 0.5});
-    CHECK(tool.place(kNow).error() == "you stand there: step back first");
+    CHECK(tool.press(ToolButton::place, kNow).error() == "you stand there: step back first");
   }
   CHECK(session.replica().local_edits().all().empty());
   player.move_to({0.5, 1.5, 0.5});
-  REQUIRE(tool.place(kNow).has_value());
+  REQUIRE(tool.press(ToolButton::place, kNow).has_value());
   REQUIRE(session.replica().local_edits().all().size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection", "[client_app]") {
+  runstone::test::AuthorityModel world(16);
+  receive(runstone::test::chunks_of(world.snapshot({0, -1, 0})));
+  const auto act = [&](Action action) {
+    const auto done = act_on_tool(tool, action, kNow);
+    REQUIRE(done.has_value());
+    return *done ? **done : "refused: " + done->error();
+  };
+  CHECK_FALSE(act_on_tool(tool, Action::help, kNow).has_value());
+  CHECK(act(Action::next_tool) == "tool: box");
+  CHECK(act(Action::previous_tool) == "tool: voxel");
+  CHECK(act(Action::previous_tool) == "tool: paste");
+  CHECK(act(Action::copy) == "refused: nothing is selected");
+  CHECK(act(Action::paste) == "refused: nothing was copied");
+  box.select(VoxelBox{{0, -2, 0}, {3, 0, 1}});
+  CHECK(act(Action::cut) == "cut");
+  REQUIRE(session.replica().local_edits().all().size() == 1);
+  CHECK(session.replica().local_edits().all().begin()->second.edit ==
+        EditDescriptor{FillBox{{{0, -2, 0}, {3, 0, 1}}}, {}, kEmpty});
+  act(Action::rotate);
+  act(Action::mirror);
+  CHECK(box.clipboard().orientation == Orientation{}.rotated_about_y(1).mirrored(Axis::x));
+  CHECK(act(Action::paste) == "tool: paste");
+  CHECK(act(Action::symmetry) == "refused: look at the voxel in the middle of the symmetry first");
+  tool.fix_aim(FixedAim{{4, -1, 7}, Direction::pos_y});
+  CHECK(act(Action::symmetry) == "tool: paste, mask everything, mirrored along x");
+  CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 8, 14});
+  CHECK(act(Action::preview) == "previews are hidden");
+  CHECK(act(Action::select) == "tool: select");
+  CHECK(act(Action::larger) == "tool: select, mirrored along x");
+}
+
+TEST_CASE_METHOD(Fixture, "a tool previews its next click, and nothing in the past",
+                 "[client_app]") {
+  runstone::test::AuthorityModel world(16);
+  for (const std::int32_t y : {-1, 0})
+    receive(runstone::test::chunks_of(world.snapshot({0, y, 0})));
+  player.hold(2);
+  tool.fix_aim(FixedAim{{4, -1, 7}, Direction::pos_y});
+  CHECK_FALSE(tool.step_preview());  // of the plain voxel tool
+  REQUIRE(tool.box().choose("fill").has_value());
+  CHECK(tool.step_preview());
+  REQUIRE(tool.ghosts().size() == 1);
+  CHECK(tool.ghosts()[0].placed->quad_count() > 0);
+  REQUIRE(tool.box().choose("voxel").has_value());
+  CHECK(tool.ghosts().empty());
+  REQUIRE(tool.box().choose("fill").has_value());
+  while (tool.step_preview()) continue;
+  CHECK_FALSE(tool.ghosts().empty());
+  REQUIRE(session.request_history({}).has_value());
+  ViewState past;
+  past.past = true;
+  receive(past);
+  CHECK(tool.ghosts().empty());
 }

@@ -32,7 +32,8 @@ int refused(std::vector<const char*> arguments) {
 TEST_CASE("the connection is encrypted unless the user says otherwise", "[client_app]") {
   CHECK(accepted({"--connect", "a:1"}).tls.has_value());
   CHECK_FALSE(accepted({"--connect", "a:1", "--insecure"}).tls.has_value());
-  CHECK(refused({"--connect", "runstone://a/#token"}) == 2);  // the key would be lost
+  CHECK(refused({"--connect", "runstone://a/#token", "--headless"}) == 2);  // the key would be lost
+  CHECK(accepted({"--connect", "runstone://a/#token"}).ticket == "token");  // a window keeps a key
   CHECK(refused({"--connect", "runstone://"}) == 2);
   CHECK(refused({"--connect", "a:1", "--ca", ""}) == 2);
   CHECK(refused({"--connect", "a:1", "--ca", "/nowhere/authority.pem"}) == 2);
@@ -47,7 +48,28 @@ TEST_CASE("the address is a host with or without a port, also in IPv6", "[client
   CHECK(refused({"--connect", "example.org:0"}) == 2);
   CHECK(refused({"--connect", "example.org:65536"}) == 2);
   CHECK(refused({"--connect", ":4000"}) == 2);
-  CHECK(refused({}) == 2);
+}
+
+TEST_CASE(
+    "a client without a server shows the title screen, and needs a window and a player for it",
+    "[client_app]") {
+  CHECK_FALSE(accepted({}).has_server);
+  CHECK(accepted({}).local_world.empty());
+  CHECK(accepted({"--connect", "a"}).has_server);
+  CHECK(refused({"--headless"}) == 2);
+  CHECK(refused({"--no-render"}) == 2);
+  CHECK(refused({"--script", "/dev/null"}) == 2);
+}
+
+TEST_CASE("a local world is joined instead of a server", "[client_app]") {
+  const ClientOptions options = accepted({"--local", "my world", "--headless"});
+  CHECK(options.local_world == "my world");
+  CHECK(options.local_creation == NewLocalWorld{});
+  CHECK(accepted({"--local", "w", "--generator", "flat", "--seed", "7"}).local_creation ==
+        NewLocalWorld{"flat", 7});
+  CHECK(refused({"--local", "w", "--connect", "a"}) == 2);
+  CHECK(refused({"--local", "w", "--generator", "marzipan"}) == 2);
+  CHECK(refused({"--connect", "a", "--seed", "7"}) == 2);
 }
 
 TEST_CASE("a link gives the address and the invite", "[client_app]") {
@@ -57,6 +79,10 @@ TEST_CASE("a link gives the address and the invite", "[client_app]") {
   CHECK(options.server.port == 5000);
   CHECK(options.ticket == "token");
   CHECK(accepted({"--connect", "runstone://example.org"}).ticket.empty());
+  const ClientOptions clicked = accepted({"runstone://example.org:5000/#token"});
+  CHECK(clicked.server == options.server);
+  CHECK(clicked.ticket == "token");
+  CHECK(refused({"runstone://a", "--connect", "b"}) == 2);
 }
 
 TEST_CASE("a password comes from a file, for an identity that is kept, and encrypted",

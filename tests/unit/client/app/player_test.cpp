@@ -40,11 +40,11 @@ TEST_CASE("forward moves in the direction of sight, and right moves to the right
   player = Player();
   input = {};
   input.look_dx = 100;  // the mouse moves right
-  player.turn(input, 10);
+  player.turn(input);
   CHECK(player.direction().x < 0);
   input = {};
   input.look_dy = -100;  // and up
-  player.turn(input, 10);
+  player.turn(input);
   CHECK(player.direction().y > 0);
 }
 
@@ -77,22 +77,6 @@ TEST_CASE("a player who walks is where the body's eye is, and flies on from ther
   player.fly(input, 1);
   CHECK(player.eye().y > 10);
   CHECK(player.eye().z > 4);
-}
-
-TEST_CASE("digits and the wheel select one of the world's materials", "[client_app]") {
-  Player player;
-  WindowInput input;
-  input.digit = 4;
-  player.turn(input, 8);
-  CHECK(player.held() == 4);
-  input = {};
-  input.scroll = -10;
-  player.turn(input, 8);
-  CHECK(player.held() == 1);
-  input = {};
-  input.digit = 0;
-  player.turn(input, 8);
-  CHECK(player.held() == 7);
 }
 
 TEST_CASE("the chunk of the eye is found by floor division", "[client_app]") {

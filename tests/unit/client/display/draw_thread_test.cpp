@@ -1,7 +1,9 @@
 #include "client/display/draw_thread.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <thread>
 
 #include "client/net/wake_up.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -169,4 +171,38 @@ TEST_CASE(
   Lines lines = screen_log.lines();
   std::erase(lines, "upload 1 quads 1");
   CHECK(lines == Lines{"draw", "gone"});
+}
+
+TEST_CASE("a cleared screen shows no chunk of before, and no result of before comes later",
+          "[client_app]") {
+  ThreadBench bench;
+  bench.thread.upload(chunk(1), mesh_of(1, 3));
+  bench.thread.upload(chunk(2), mesh_of(2, 3));
+  bench.thread.remove(chunk(2));
+  bench.thread.draw(small_frame());
+  bench.take_frames(1);
+  bench.done.clear();
+  bench.screen_log.hold();
+  bench.thread.upload(chunk(3), mesh_of(3, 3));
+  bench.thread.draw(small_frame());
+  bench.screen_log.wait_until_drawing();
+  bench.thread.upload(chunk(4), mesh_of(4, 3));  // queued behind the frame: never uploaded
+  std::thread releasing([&] {
+    while (bench.thread.waiting() != 0) std::this_thread::yield();  // until clear() dropped it
+    bench.screen_log.release();
+  });
+  bench.thread.clear();
+  releasing.join();
+  CHECK(bench.thread.take_done().empty());
+  bench.thread.draw(small_frame());
+  bench.take_frames(1);
+  CHECK(bench.done.size() == 1);
+  const Lines lines = bench.screen_log.lines();
+  const auto has = [&](const std::string& line) {
+    return std::find(lines.begin(), lines.end(), line) != lines.end();
+  };
+  CAPTURE(lines);
+  CHECK(has("remove 1"));
+  CHECK(has("remove 3"));
+  CHECK_FALSE(has("upload 4 quads 3"));
 }

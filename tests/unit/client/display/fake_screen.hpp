@@ -73,13 +73,17 @@ class FakeScreen final : public Screen {
   void set_materials(const MaterialTable& materials) override {
     log_.write("materials " + std::to_string(materials.size()));
   }
-  void upload(const ChunkKey& key, std::int32_t /*edge*/, const ChunkMesh& mesh) override {
+  void upload(const ChunkKey& key, std::int32_t /*edge*/, const ChunkMesh& mesh,
+              const RunChunk* /*voxels*/) override {
     log_.write("upload " + std::to_string(key.at.x) + " quads " +
                std::to_string(mesh.quad_count()));
   }
   void remove(const ChunkKey& key) override { log_.write("remove " + std::to_string(key.at.x)); }
+  void set_overlay(std::shared_ptr<const OverlayFrame> overlay) override {
+    if (overlay) log_.write("overlay " + std::to_string(overlay->vertices.size()));
+  }
   RenderStats draw(const Camera& /*camera*/, int width, int height,
-                   std::span<const Marker> /*markers*/) override {
+                   const FrameContents& /*contents*/) override {
     width_ = width;
     height_ = height;
     log_.draw();

@@ -20,6 +20,7 @@ using test::FakeScreenLog;
 namespace {
 
 constexpr std::int32_t kEdge = 16;
+constexpr std::size_t kBitsBytes = kEdge * kEdge * kEdge / 8;  // of a chunk with two materials
 
 /// One chunk in view, meshed on this thread and drawn on a fake screen, as off screen.
 struct Fixture {
@@ -49,8 +50,13 @@ struct Fixture {
     REQUIRE(replica.receive(world.commit({9, 1, ++edits}, set), {}).has_value());
     turn();
   }
-  void order() {
-    pipeline.draw(steady_now_us(), Camera{}, {8, 4}, [] { return std::vector<Marker>{}; });
+  void order() { order_at(steady_now_us()); }
+  /// Orders a frame if one is due at this time.
+  void order_at(TimeUs now_us) {
+    FrameOrder frame;
+    frame.width = 8;
+    frame.height = 4;
+    if (pipeline.is_frame_due(now_us)) pipeline.draw(now_us, std::move(frame));
   }
   void take_frames(std::uint64_t presented) {
     while (pipeline.frames_presented() < presented) {
@@ -71,11 +77,9 @@ struct Fixture {
   Replica replica;
   FakeScreenLog screen_log;
   WakeUp wake;
-  MeshPipeline pipeline{
-      replica,
-      std::make_unique<DrawThread>(test::fake_screen_on(screen_log), DrawPriority::normal,
-                                   [this] { wake.notify(); }),
-      false, 0, [this] { wake.notify(); }};
+  DrawThread draw_thread{test::fake_screen_on(screen_log), DrawPriority::normal,
+                         [this] { wake.notify(); }};
+  MeshPipeline pipeline{replica, &draw_thread, false, 0, [this] { wake.notify(); }};
   ClientSequence edits = 0;
 };
 
@@ -107,11 +111,10 @@ TEST_CASE_METHOD(
 TEST_CASE_METHOD(Fixture, "off screen an edit is drawn at once and anything else after a pause",
                  "[client_app]") {
   pipeline.moved();
-  pipeline.draw(0, Camera{}, {8, 4},
-                [] { return std::vector<Marker>{}; });  // before the pause ends
+  order_at(0);  // before the pause ends
   CHECK(pipeline.screenshots_done());
   edit({5, 5, 5});
-  pipeline.draw(0, Camera{}, {8, 4}, [] { return std::vector<Marker>{}; });
+  order_at(0);
   take_frames(2);
   CHECK(draws() == 2);
   CHECK(edits_presented() == 1);
@@ -134,8 +137,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(pipeline.recorder().open_edits() == 0);
   CHECK_FALSE(pipeline.is_up_to_date());  // queued for upload
   screen_log.hold();
-  pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
-                [] { return std::vector<Marker>{}; });
+  order_at(steady_now_us() + MeshPipeline::kFrameOffScreenUs);
   screen_log.wait_until_drawing();
   CHECK_FALSE(pipeline.is_up_to_date());  // being drawn
   screen_log.release();
@@ -162,8 +164,7 @@ TEST_CASE_METHOD(Fixture, "a screenshot is done when its file is written", "[cli
   CHECK(pipeline.screenshots_done());
   CHECK_FALSE(pipeline.screenshots_written());
   pipeline.moved();
-  pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
-                [] { return std::vector<Marker>{}; });
+  order_at(steady_now_us() + MeshPipeline::kFrameOffScreenUs);
   take_frames(4);
   CHECK_FALSE(
       pipeline.screenshots_written());  // a frame without screenshots does not change the result
@@ -219,8 +220,7 @@ TEST_CASE_METHOD(Fixture, "when materials change their look, all chunks are mesh
   pipeline.set_materials(invisible);
   turn();
   pipeline.moved();
-  pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
-                [] { return std::vector<Marker>{}; });
+  order_at(steady_now_us() + MeshPipeline::kFrameOffScreenUs);
   take_frames(pipeline.frames_presented() + 1);
   CHECK(screen_log.lines()[screen_log.lines().size() - 2] == "upload 0 quads 0");
 }
@@ -234,7 +234,7 @@ TEST_CASE_METHOD(Fixture, "a chunk with a material that was unknown is meshed ag
   };
   edit({5, 5, 5});
   edit({6, 5, 5}, 2);  // beside it, of a material that the table lacks: taken for opaque
-  CHECK(pipeline.gpu_bytes() == 10 * sizeof(Quad));
+  CHECK(pipeline.gpu_bytes() == kBitsBytes + 10 * sizeof(Quad));
   MaterialTable grown = pipeline.materials();
   REQUIRE(grown.append(2, std::vector<MaterialRow>{{"ice", {9, 9, 9, 90}, Visibility::transparent}})
               .has_value());
@@ -243,9 +243,10 @@ TEST_CASE_METHOD(Fixture, "a chunk with a material that was unknown is meshed ag
   CHECK(pipeline.materials().size() == 3);
   turn();
   CHECK(meshes() == before + 1);
-  CHECK(pipeline.gpu_bytes() == 11 * sizeof(Quad));  // the opaque voxel is seen through the other
+  // The opaque voxel is seen through the other one.
+  CHECK(pipeline.gpu_bytes() == kBitsBytes + 11 * sizeof(Quad));
   edit({6, 5, 6}, 2);  // no face between the two of ice, whose other faces merge
-  CHECK(pipeline.gpu_bytes() == 12 * sizeof(Quad));
+  CHECK(pipeline.gpu_bytes() == kBitsBytes + 12 * sizeof(Quad));
   REQUIRE(grown.append(3, std::vector<MaterialRow>{{"lime", {9, 9, 9, 255}, Visibility::opaque}})
               .has_value());
   const auto unused = meshes();
@@ -260,9 +261,9 @@ TEST_CASE_METHOD(Fixture, "the bytes of meshes count while their chunk is in vie
   CHECK(pipeline.gpu_bytes() == 0);
   edit({5, 5, 5});  // a single voxel: six quads of 8 bytes
   CHECK(pipeline.mesh_bytes() == sizeof(ChunkMesh) + 48);
-  CHECK(pipeline.gpu_bytes() == 48);
+  CHECK(pipeline.gpu_bytes() == kBitsBytes + 48);
   edit({9, 5, 5});
-  CHECK(pipeline.gpu_bytes() == 96);
+  CHECK(pipeline.gpu_bytes() == kBitsBytes + 96);
   replica.set_view({2, {9, 0, 0}, 0, 0});
   turn();
   CHECK(pipeline.mesh_bytes() == 0);

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,7 +25,7 @@ struct FakeScriptHost final : ScriptHost {
   std::optional<bool> picture = true;
   std::uint64_t pongs = 0;
   WorldPos at{10, 20, 30};
-  double yaw = 0, pitch = 0;
+  double yaw = 0, pitch = 0, time_of_day = 0;
   std::map<VoxelPos, Material> voxels;
   std::optional<RayHit> hit;
   std::vector<Submitted> edits;
@@ -39,6 +40,7 @@ struct FakeScriptHost final : ScriptHost {
   WorldPos eye() const override { return at; }
   void move_to(const WorldPos& eye) override { at = eye; }
   void look(double y, double p) override { yaw = y, pitch = p; }
+  void set_time_of_day(double share) override { time_of_day = share; }
   Result<Material, std::string> material(std::string_view name) const override {
     if (name == "air" || name == "0") return kEmpty;
     if (name == "stone") return Material{5};
@@ -67,6 +69,24 @@ struct FakeScriptHost final : ScriptHost {
     return cells.finish();
   }
   std::optional<RayHit> pick() const override { return hit; }
+  ToolBox tools;
+  Replica world;
+  std::optional<FixedAim> fixed_aim;
+  Material held = kEmpty;
+  int previews = 0;
+  ToolBox& tool_box() override { return tools; }
+  const Replica& replica() const override { return world; }
+  Aim aim() const override {
+    Aim out{at, {}, std::nullopt, held};
+    if (fixed_aim) {
+      out.hit = RayHit{fixed_aim->voxel, world.shown_at(fixed_aim->voxel).value_or(kEmpty),
+                       fixed_aim->face, 5};
+    }
+    return out;
+  }
+  void fix_aim(std::optional<FixedAim> aim) override { fixed_aim = aim; }
+  void hold(Material material) override { held = material; }
+  void finish_preview() override { ++previews; }
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t) const override {
     if (x > 1000) return std::nullopt;
     return 7;
@@ -107,6 +127,16 @@ struct FakeScriptHost final : ScriptHost {
   bool show_answer() override { return is_command_ok; }
   std::string travel_refusal() const override { return refusal; }
   TimeUs utc_now_us() const override { return 5'000'000; }
+  std::vector<std::string> input;  // what was pressed, typed and clicked
+  bool is_handling = false;
+  void press(const KeyChord& chord) override { input.push_back("press " + text_of(chord)); }
+  void type(const std::string& text) override { input.push_back("type " + text); }
+  void click(double x, double y) override {
+    input.push_back("click " + std::to_string(std::lround(x)) + " " +
+                    std::to_string(std::lround(y)));
+  }
+  bool handling_input() const override { return is_handling; }
+  void show_interface(bool is_shown) override { input.push_back(is_shown ? "on" : "off"); }
   bool screenshot(const std::string& file) override {
     files.push_back(file);
     return draws;

@@ -79,6 +79,13 @@ TEST_CASE_METHOD(ScriptBench, "an edit waits until the edit budget suffices", "[
   CHECK(runner->finished());
 }
 
+TEST_CASE_METHOD(ScriptBench, "time sets the time of day", "[bots]") {
+  run("time 18:00");
+  CHECK(host.time_of_day == 0.75);
+  CHECK_FALSE(parse_script("time 25:00", "s").has_value());
+  CHECK_FALSE(parse_script("time", "s").has_value());
+}
+
 TEST_CASE_METHOD(ScriptBench, "look takes degrees, and lookat takes a place", "[bots]") {
   run("look 90 -45");
   CHECK(host.yaw == Approx(std::numbers::pi / 2));
@@ -383,4 +390,26 @@ TEST_CASE("travel waits until the moment is here, and a refused travel ends the 
   CHECK(host.edits.empty());
   REQUIRE(runner.failures().size() == 1);
   CHECK(runner.failures()[0] == "t:1: no such moment: no such edit");
+}
+
+TEST_CASE_METHOD(ScriptBench, "keys, text and clicks reach the client in their order",
+                 "[client_script]") {
+  load("interface on\nkey ctrl+z\ntype Grüße an alle\nclick 12 40\ninterface off\n");
+  host.is_handling = true;
+  runner->step(0);
+  runner->step(1);
+  CHECK(host.input == std::vector<std::string>{"on", "press ctrl+Z"});  // the next one waits
+  host.is_handling = false;
+  runner->step(2);
+  CHECK(runner->finished());
+  CHECK(host.input ==
+        std::vector<std::string>{"on", "press ctrl+Z", "type Grüße an alle", "click 12 40", "off"});
+}
+
+TEST_CASE("wrong keys and places of clicks are found before the script runs", "[client_script]") {
+  for (const char* line :
+       {"key ctrl+", "key nosuch", "type", "click 3", "click -1 4", "interface"}) {
+    CAPTURE(line);
+    CHECK_FALSE(parse_script(line, "s.txt").has_value());
+  }
 }

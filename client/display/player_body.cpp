@@ -1,5 +1,8 @@
-#include "client/display/body_marker.hpp"
+#include "client/display/player_body.hpp"
 
+#include <numbers>
+
+#include "client/render/renderer.hpp"
 #include "common/core/hash.hpp"
 
 namespace runstone {
@@ -13,7 +16,8 @@ constexpr double kTooNear = 2 * Camera{}.near;
 
 }  // namespace
 
-std::optional<Marker> body_marker(AuthorId author, const WorldPos& at, const WorldPos& eye) {
+std::optional<Body> player_body(AuthorId author, const Pose& pose, const WorldPos& eye) {
+  const WorldPos& at = pose.at;
   const auto near = [](double v, double from, double to) {
     return v > from - kTooNear && v < to + kTooNear;
   };
@@ -24,8 +28,14 @@ std::optional<Marker> body_marker(AuthorId author, const WorldPos& at, const Wor
   const auto shade = [author](AuthorId channel) {
     return static_cast<std::uint8_t>(96 + mix64(author + channel) % 160);
   };
-  return Marker{at.x - kHalfWidth, feet,     at.z - kHalfWidth, 2 * kHalfWidth, kHeight,
-                2 * kHalfWidth,    shade(0), shade(1),          shade(2),       true};
+  return Body{at.x,
+              feet,
+              at.z,
+              pose.yaw * (2 * std::numbers::pi / 65536),
+              pose.pitch * (std::numbers::pi / 32768),
+              shade(0),
+              shade(1),
+              shade(2)};
 }
 
 }  // namespace runstone

@@ -1,0 +1,19 @@
+// ClientEnd: how the play on one server ended.
+#pragma once
+#include <string>
+
+#include "client/session/failure_words.hpp"
+
+namespace runstone {
+
+struct ClientEnd {
+  int exit_code = 0;  // ExitCode, if the program ends with this
+  /// The player left this server. The program goes on with its title screen if it has one.
+  bool is_left = false;
+  /// The reason of a failure, a line for the player. Empty: none.
+  std::string failure = {};
+  FailureWords words = {};      // the same for the title screen
+  bool lacks_password = false;  // the failure is that the world has a password, and none was given
+};
+
+}  // namespace runstone

@@ -1,0 +1,85 @@
+// ClientHud: the heads-up display of runstone-client. It fills the state that the display shows from
+// the session and the player, and carries out what the user does in the display. One thread.
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "client/app/hotbar.hpp"
+#include "client/app/player.hpp"
+#include "client/app/terminal_chat.hpp"
+#include "client/display/mesh_pipeline.hpp"
+#include "client/report/report.hpp"
+#include "client/session/client_session.hpp"
+#include "client/ui/hud.hpp"
+
+namespace runstone {
+
+/// What the display shows of the client's own state.
+struct HudScene {
+  bool is_captured = false, is_connected = false, shows_players = false;
+  std::optional<Material> aimed_at;
+  std::string state;  // as HudState::state
+  std::string tool;   // as HudState::tool
+  NetCounts net;      // filled only while ClientHud::shows_statistics()
+  MemoryUse memory;   // likewise
+  std::size_t memory_max = 0;
+  Camera camera;
+  std::array<int, 2> size{};  // of the frame, in pixels
+};
+
+class ClientHud {
+ public:
+  /// All but `keys` and the player's `name` must outlive this object.
+  ClientHud(ClientSession& session, Player& player, const MeshPipeline& pipeline,
+            TerminalChat& chat, std::string name, const KeyMap& keys);
+
+  /// Fills the hotbar for a world. Call it when a world opens for the first time, or another one.
+  void enter(const MaterialTable& materials);
+  /// Takes the lines of chat that were printed. Returns true if there were any.
+  bool take_chat();
+  /// Carries out an action of a key. Returns false if the display has nothing to do with it.
+  bool act(Action action);
+  /// Chooses another slot by the wheel.
+  void scroll(int steps);
+  /// Puts a material into the player's hand.
+  void hold(Material material);
+  void notify(std::string text, NoticeKind kind = NoticeKind::information) {
+    hud_.notify(std::move(text), kind);
+  }
+
+  void feed(const std::vector<InputEvent>& events) { hud_.feed(events); }
+  UiFocus focus() const { return hud_.focus(); }
+  /// Makes the overlay of a frame, and carries out what the user did in it. Returns null while the
+  /// display is hidden.
+  std::shared_ptr<const OverlayFrame> make_frame(const HudScene& scene, TimeUs now_us);
+  bool is_moving() const { return is_shown_ && hud_.is_moving(); }
+  void set_shown(bool is_shown) { is_shown_ = is_shown; }
+  bool is_shown() const { return is_shown_; }
+  bool shows_statistics() const { return hud_.shows_statistics(); }
+
+ private:
+  HudState state(const HudScene& scene) const;
+  void add_players(HudState& state) const;
+  void add_plates(const HudScene& scene, HudState& state) const;
+  TimelineState timeline() const;
+  StatisticsState statistics(const HudScene& scene, TimeUs now_us);
+  void add_traffic(const NetCounts& net, TimeUs now_us, StatisticsState& out);
+  void carry_out(const UiAction& action);
+
+  ClientSession& session_;
+  Player& player_;
+  const MeshPipeline& pipeline_;
+  TerminalChat& chat_;
+  const std::string name_;
+  Hud hud_;
+  Hotbar hotbar_;
+  bool is_shown_ = true;
+  NetCounts net_before_;           // at net_us_
+  std::array<double, 4> rates_{};  // bytes a second by class, in the interval before net_us_
+  TimeUs net_us_ = 0;
+  TimeUs made_us_ = 0;  // when the last frame was made
+};
+
+}  // namespace runstone

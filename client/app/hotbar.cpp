@@ -1,0 +1,59 @@
+#include "client/app/hotbar.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "common/materials/material_lookup.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::string_view kFirstNames[] = {
+    "stone", "grass", "dirt", "planks", "brick", "stone_brick", "glass", "log", "lamp",
+    // Names of Luanti's default game.
+    "dirt_with_grass", "wood", "stonebrick", "cobble", "tree", "meselamp", "sandstone"};
+
+bool is_block(const MaterialInfo& material) {
+  return material.visibility != Visibility::empty && material.body == MaterialBody::solid;
+}
+
+}  // namespace
+
+void Hotbar::fill(const MaterialTable& materials) {
+  slots_.fill(kEmpty);
+  std::size_t filled = 0;
+  const auto add = [&](Material material) {
+    const auto is_there = std::find(slots_.begin(), slots_.end(), material) != slots_.end();
+    if (filled < kSlotCount && !is_there) slots_[filled++] = material;
+  };
+  for (const std::string_view name : kFirstNames) {
+    const auto found = find_material(materials, name);
+    if (found && is_block(materials[*found])) add(*found);
+  }
+  // Full blocks hide what is behind them, unlike plants and fences.
+  for (const Visibility visibility : {Visibility::opaque, Visibility::transparent}) {
+    for (std::size_t id = 1; id < materials.size() && filled < kSlotCount; ++id) {
+      const auto material = static_cast<Material>(id);
+      if (is_block(materials[material]) && materials[material].visibility == visibility)
+        add(material);
+    }
+  }
+  slot_ = 0;
+}
+
+void Hotbar::scroll(int steps) {
+  const auto count = static_cast<int>(kSlotCount);
+  const int slot = (static_cast<int>(slot_) - steps) % count;
+  slot_ = static_cast<std::size_t>((slot + count) % count);
+}
+
+void Hotbar::hold(Material material) {
+  const auto found = std::find(slots_.begin(), slots_.end(), material);
+  if (found != slots_.end()) {
+    slot_ = static_cast<std::size_t>(found - slots_.begin());
+  } else {
+    slots_[slot_] = material;
+  }
+}
+
+}  // namespace runstone

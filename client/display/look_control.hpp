@@ -1,0 +1,64 @@
+// LookControl: chooses the look of the next frame. The automatic quality measures how long frames
+// take and takes the highest level whose frames are short enough. Pure: durations are arguments.
+//   - A level is left downwards if the median of kFrames frames is above the target.
+//   - It is left upwards if the median is below kUpShare of the target. If the higher level then
+//     turns out too slow, the next attempt waits twice as many frames, so that the level does not
+//     change to and fro.
+// Thread: one.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "client/render/frame_look.hpp"
+#include "common/core/ids.hpp"
+
+namespace runstone {
+
+class LookControl {
+ public:
+  /// With `exact`, every frame is a picture that depends only on the world and the view: quality
+  /// high unless it is set, and still water.
+  explicit LookControl(bool exact) : exact_(exact) {}
+
+  void set_exact(bool exact) { exact_ = exact; }
+  void set_time_of_day(double share) { look_.time_of_day = share; }
+  double time_of_day() const { return look_.time_of_day; }
+  /// nullopt: automatic.
+  void set_quality(std::optional<Quality> quality);
+  std::optional<Quality> quality() const { return fixed_; }
+
+  /// Returns the name of the level that frames have now, such as "auto: medium".
+  std::string name() const;
+  /// Returns the look of a frame that begins now.
+  FrameLook look(TimeUs now_us) const;
+  /// Call it for each frame, with the time that drawing took.
+  void frame_took(TimeUs us);
+
+  static constexpr TimeUs kTargetUs = 25'000;
+  static constexpr double kUpShare = 0.45;
+  static constexpr std::size_t kFrames = 24;
+  static constexpr unsigned kPatienceMax = 4096;  // frames
+
+ private:
+  void step(int levels);
+
+  bool exact_;
+  FrameLook look_;
+  std::optional<Quality> fixed_;
+  Quality automatic_ = Quality::medium;
+  std::array<TimeUs, kFrames> took_{};
+  std::size_t count_ = 0;         // of took_
+  unsigned waited_ = 0;           // frames since the last step
+  unsigned patience_ = 120;       // frames before a step upwards
+  bool came_from_below_ = false;  // the last step was upwards
+};
+
+/// Returns the quality of that name, or nullopt. "auto" is none of them.
+std::optional<Quality> parse_quality(std::string_view name);
+const char* to_string(Quality quality);
+
+}  // namespace runstone

@@ -1,0 +1,175 @@
+// The commands of ScriptRunner that work the building tools.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "client/script/script_runner.hpp"
+
+namespace runstone {
+namespace {
+
+/// Returns the value of a number or of a choice of the parameter, or nullopt if it is neither.
+std::optional<std::int32_t> value_of(const ToolParameter& parameter, const std::string& text) {
+  const auto choice = std::find(parameter.choices.begin(), parameter.choices.end(), text);
+  if (choice != parameter.choices.end())
+    return parameter.low + static_cast<std::int32_t>(choice - parameter.choices.begin());
+  std::int32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+void ScriptRunner::start_edits(ToolEdits edits) {
+  start();
+  edits_.clear();
+  if (!edits) return fail("edit refused: " + edits.error());
+  edits_ = *std::move(edits);
+}
+
+ScriptRunner::Progress ScriptRunner::submit_edits() {
+  for (; state_.count < edits_.size(); ++state_.count) {
+    const Progress progress = submit(edits_[state_.count]);
+    if (progress != Progress::done) return progress;
+  }
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::ChooseTool& c) {
+  if (const auto done = host_.tool_box().choose(c.name); !done) return give_up(done.error());
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::SetParameter& c) {
+  const Tool& tool = host_.tool_box().tool();
+  for (const ToolParameter& parameter : tool.parameters()) {
+    if (parameter.name != c.name) continue;
+    const auto value = value_of(parameter, c.value);
+    if (!value) return give_up("\"" + c.value + "\" is no value of " + c.name);
+    const auto done = host_.tool_box().set_parameter(c.name, *value);
+    return done ? Progress::done : give_up(done.error());
+  }
+  return give_up("the tool " + std::string(tool.name()) + " has no parameter " + c.name);
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::AimAt& c) {
+  if (!c.voxel) {
+    host_.fix_aim(std::nullopt);
+    return Progress::done;
+  }
+  const auto at = resolve_voxel(*c.voxel);
+  if (!at) return Progress::stop;
+  host_.fix_aim(FixedAim{*at, c.face});
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Hold& c) {
+  const auto material = resolve_material(c.material);
+  if (!material) return Progress::stop;
+  host_.hold(*material);
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::UseTool& c) {
+  using Part = script::UseTool::Part;
+  ToolBox& box = host_.tool_box();
+  if (!started_) {
+    if (!host_.replica().opened()) return give_up("no world is open");
+    const Aim aim = host_.aim();
+    ToolEdits edits = std::vector<EditDescriptor>{};
+    if (c.part == Part::click || c.part == Part::press)
+      edits = box.press(host_.replica(), aim, c.button);
+    if (c.part == Part::drag) box.drag(aim);
+    const bool releases =
+        c.part == Part::release || (c.part == Part::click && box.tool().is_drawn());
+    if (edits && releases) edits = box.release(host_.replica(), aim);
+    start_edits(std::move(edits));
+  }
+  return submit_edits();
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Select& c) {
+  if (!c.from || !c.to) {
+    host_.tool_box().select(std::nullopt);
+    return Progress::done;
+  }
+  const auto a = resolve_voxel(*c.from);
+  const auto b = resolve_voxel(*c.to);
+  if (!a || !b) return Progress::stop;
+  host_.tool_box().select(box_between(*a, *b));
+  return Progress::done;
+}
+
+ToolEdits ScriptRunner::edits_of(const script::SelectionEdit& c, Material material,
+                                 Material other) {
+  using Kind = script::SelectionEdit::Kind;
+  ToolBox& box = host_.tool_box();
+  const auto without_edits = [](const Result<void, std::string>& done) -> ToolEdits {
+    if (!done) return failure(done.error());
+    return std::vector<EditDescriptor>{};
+  };
+  switch (c.kind) {
+    case Kind::copy:
+      return without_edits(box.copy(host_.replica(), c.is_solid));
+    case Kind::cut:
+      return box.cut(host_.replica(), c.is_solid);
+    case Kind::clear:
+      return box.fill(kEmpty);
+    case Kind::fill:
+      return box.fill(material);
+    case Kind::replace:
+      return box.replace(material, other);
+    case Kind::stack:
+      return box.stack(host_.replica(), c.direction, c.count);
+    case Kind::move:
+      return box.move(host_.replica(), c.direction, c.count);
+    case Kind::grow:
+      return without_edits(box.grow(c.direction, c.count));
+    case Kind::shift:
+      return without_edits(box.shift(c.direction, c.count));
+  }
+  return std::vector<EditDescriptor>{};
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::SelectionEdit& c) {
+  if (!started_) {
+    Material materials[2] = {kEmpty, kEmpty};
+    const std::string* const names[2] = {&c.material, &c.other};
+    for (int i = 0; i < 2; ++i) {
+      if (names[i]->empty()) continue;
+      const auto material = resolve_material(*names[i]);
+      if (!material) return Progress::stop;
+      materials[i] = *material;
+    }
+    start_edits(edits_of(c, materials[0], materials[1]));
+  }
+  return submit_edits();
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::TurnClipboard& c) {
+  host_.tool_box().rotate(c.quarters);
+  if (c.mirror) host_.tool_box().mirror(*c.mirror);
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::SetSymmetry& c) {
+  if (c.kind == SymmetryKind::none) {
+    host_.tool_box().set_symmetry({});
+    return Progress::done;
+  }
+  const auto at = resolve(c.centre);
+  if (!at) return Progress::stop;
+  // A whole number is the middle of that voxel, and a half the border behind it.
+  const auto twice = [](double v) { return static_cast<std::int32_t>(std::lround(2 * v)); };
+  host_.tool_box().set_symmetry({c.kind, twice(at->x), twice(at->z)});
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::ShowPreview& c) {
+  host_.tool_box().show_preview(c.is_shown);
+  return Progress::done;
+}
+
+}  // namespace runstone

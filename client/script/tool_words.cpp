@@ -1,0 +1,145 @@
+#include "client/script/tool_words.hpp"
+
+#include <array>
+#include <string>
+#include <utility>
+
+namespace runstone {
+namespace {
+
+constexpr std::int32_t kStepsMax = 4096;
+
+Direction read_direction(ScriptWords& words) {
+  constexpr std::array<std::string_view, kDirectionCount> kNames = {"-x", "+x", "-y",
+                                                                    "+y", "-z", "+z"};
+  const std::string_view text = words.word("DIRECTION");
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (text == kNames[i]) return static_cast<Direction>(i);
+  }
+  throw LineError{"DIRECTION: \"" + std::string(text) + "\" is none of -x, +x, -y, +y, -z, +z"};
+}
+
+/// Takes the word if it is the next one.
+bool takes_word(ScriptWords& words, const char* word) {
+  if (words.peek() != word) return false;
+  words.word(word);
+  return true;
+}
+
+bool read_on_off(ScriptWords& words) {
+  const std::string_view state = words.word("on or off");
+  if (state != "on" && state != "off")
+    throw LineError{"\"" + std::string(state) + "\" is none of on, off"};
+  return state == "on";
+}
+
+script::Step use_step(script::UseTool::Part part, ScriptWords& words) {
+  const bool is_clear = takes_word(words, "clear");
+  return script::UseTool{part, is_clear ? ToolButton::clear : ToolButton::place};
+}
+
+script::Step aim_step(ScriptWords& words) {
+  script::AimAt aim;
+  if (takes_word(words, "look")) return aim;
+  aim.voxel = read_position(words);
+  aim.face = read_direction(words);
+  return aim;
+}
+
+script::Step select_step(ScriptWords& words) {
+  script::Select select;
+  if (takes_word(words, "none")) return select;
+  select.from = read_position(words);
+  select.to = read_position(words);
+  return select;
+}
+
+script::Step selection_step(ScriptWords& words) {
+  using Kind = script::SelectionEdit::Kind;
+  constexpr std::array<std::pair<std::string_view, Kind>, 9> kKinds = {{{"copy", Kind::copy},
+                                                                        {"cut", Kind::cut},
+                                                                        {"clear", Kind::clear},
+                                                                        {"fill", Kind::fill},
+                                                                        {"replace", Kind::replace},
+                                                                        {"stack", Kind::stack},
+                                                                        {"move", Kind::move},
+                                                                        {"grow", Kind::grow},
+                                                                        {"shift", Kind::shift}}};
+  const std::string_view text = words.word("what to do with the selection");
+  script::SelectionEdit edit;
+  bool is_known = false;
+  for (const auto& [name, kind] : kKinds) {
+    if (text != name) continue;
+    edit.kind = kind;
+    is_known = true;
+  }
+  if (!is_known)
+    throw LineError{"\"" + std::string(text) + "\" is nothing to do with the selection"};
+  switch (edit.kind) {
+    case Kind::copy:
+    case Kind::cut:
+      edit.is_solid = takes_word(words, "solid");
+      break;
+    case Kind::clear:
+      break;
+    case Kind::fill:
+      edit.material = read_material(words);
+      break;
+    case Kind::replace:
+      edit.material = read_material(words);
+      edit.other = read_material(words);
+      break;
+    case Kind::stack:
+    case Kind::move:
+    case Kind::grow:
+    case Kind::shift:
+      edit.direction = read_direction(words);
+      edit.count = read_number<std::int32_t>(words, "N", -kStepsMax, kStepsMax);
+      break;
+  }
+  return edit;
+}
+
+script::Step symmetry_step(ScriptWords& words) {
+  constexpr std::array<std::string_view, 5> kKinds = {"none", "x", "z", "both", "point"};
+  const std::string_view text = words.word("none, x, z, both or point");
+  script::SetSymmetry symmetry;
+  bool is_known = false;
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    if (text != kKinds[i]) continue;
+    symmetry.kind = static_cast<SymmetryKind>(i);
+    is_known = true;
+  }
+  if (!is_known)
+    throw LineError{"\"" + std::string(text) + "\" is none of none, x, z, both, point"};
+  if (symmetry.kind != SymmetryKind::none) symmetry.centre = read_position(words);
+  return symmetry;
+}
+
+}  // namespace
+
+std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words) {
+  using Part = script::UseTool::Part;
+  if (verb == "tool") return script::ChooseTool{std::string(words.word("TOOL"))};
+  if (verb == "param") {
+    script::SetParameter parameter{std::string(words.word("NAME")), {}};
+    parameter.value = words.word("VALUE");
+    return parameter;
+  }
+  if (verb == "aim") return aim_step(words);
+  if (verb == "hold") return script::Hold{read_material(words)};
+  if (verb == "use") return use_step(Part::click, words);
+  if (verb == "press") return use_step(Part::press, words);
+  if (verb == "drag") return script::UseTool{Part::drag, {}};
+  if (verb == "release") return script::UseTool{Part::release, {}};
+  if (verb == "select") return select_step(words);
+  if (verb == "selection") return selection_step(words);
+  if (verb == "rotate")
+    return script::TurnClipboard{read_number<int>(words, "QUARTERS", -3, 3), std::nullopt};
+  if (verb == "mirror") return script::TurnClipboard{0, read_axis(words)};
+  if (verb == "symmetry") return symmetry_step(words);
+  if (verb == "preview") return script::ShowPreview{read_on_off(words)};
+  return std::nullopt;
+}
+
+}  // namespace runstone

@@ -1,0 +1,102 @@
+#include "tests/support/chunks_message.hpp"
+#include "tests/unit/client/script/script_bench.hpp"
+
+using namespace runstone;
+using runstone::test::ScriptBench;
+
+namespace {
+
+/// A bench whose replica shows one chunk of edge 16: material 5 below y = 4.
+struct ToolScript : ScriptBench {
+  ToolScript() {
+    host.world.set_view({1, {0, 0, 0}, 1, 1});
+    static_cast<void>(host.world.open({16, 5, 77, 3, 0, 0, 0}));
+    ChunkSnapshot snapshot;
+    snapshot.key = {0, {0, 0, 0}};
+    snapshot.chunk.voxels = uniform_chunk(Extent::cube(16), kEmpty, AxisOrder::xzy);
+    fill(snapshot.chunk.voxels, 0, 16 * 16 * 4, 5);
+    snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
+    host.world.receive(test::chunks_of(std::move(snapshot)), {1000, 1100, 1200});
+  }
+  std::string error_of(std::string_view text) {
+    const auto parsed = parse_script(text, "s.txt");
+    return parsed ? "" : parsed.error().message();
+  }
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(ToolScript, "a script clicks with a tool, its parameters and the held material",
+                 "[bots]") {
+  run("tool sphere\nparam radius 2\nparam mask empty\nhold sand\naim 3 3 3 +y\nuse\nuse clear");
+  CHECK(runner->failures().empty());
+  REQUIRE(host.edits.size() == 2);
+  CHECK(host.edits[0].edit ==
+        EditDescriptor{FillSphere{{3, 4, 3}, 2}, {MaskKind::only_empty, 0}, 2});
+  CHECK(host.edits[1].edit ==
+        EditDescriptor{FillSphere{{3, 3, 3}, 2}, {MaskKind::only_empty, 0}, kEmpty});
+}
+
+TEST_CASE_METHOD(ToolScript, "a script draws a stroke, and one click of it is a sphere", "[bots]") {
+  run("tool stroke\nhold sand\naim 3 3 3 +y\npress\naim 6 3 3 +y\ndrag\naim 6 3 9 +y\nrelease\n"
+      "aim 1 3 1 +y\nuse");
+  CHECK(runner->failures().empty());
+  REQUIRE(host.edits.size() == 2);
+  CHECK(host.edits[0].edit ==
+        EditDescriptor{FillStroke{{{3, 4, 3}, {6, 4, 3}, {6, 4, 9}}, 2}, {}, 2});
+  CHECK(host.edits[1].edit == EditDescriptor{FillSphere{{1, 4, 1}, 2}, {}, 2});
+}
+
+TEST_CASE_METHOD(ToolScript, "a script selects, copies, turns and pastes", "[bots]") {
+  run("select 0 3 0 2 3 0\nselection grow +z 1\nselection copy\nselection shift +x 4\n"
+      "selection fill sand\nselection replace sand stone\nselection stack +y 2\nselection clear\n"
+      "rotate 1\nmirror z\ntool paste\naim 8 3 8 +y\nuse\nselect none\nselection clear");
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0] == "s.txt:15: edit refused: nothing is selected");
+  REQUIRE(host.edits.size() == 5);
+  CHECK(host.edits[0].edit == EditDescriptor{FillBox{{{4, 3, 0}, {7, 4, 2}}}, {}, 2});
+  CHECK(host.edits[1].edit ==
+        EditDescriptor{FillBox{{{4, 3, 0}, {7, 4, 2}}}, {MaskKind::only_material, 2}, 5});
+  CHECK(kind_of(host.edits[2].edit) == EditKind::paste);
+  CHECK(host.edits[3].edit == EditDescriptor{FillBox{{{4, 3, 0}, {7, 4, 2}}}, {}, kEmpty});
+  const auto* paste = std::get_if<runstone::Paste>(&host.edits[4].edit.shape);
+  REQUIRE(paste != nullptr);
+  CHECK(paste->orientation == Orientation{}.rotated_about_y(1).mirrored(Axis::z));
+  CHECK(paste->at == VoxelPos{7, 4, 7});  // 2 by 3 voxels with the place in their middle
+}
+
+TEST_CASE_METHOD(ToolScript, "a script sets symmetry and previews", "[bots]") {
+  run("symmetry x 5.5 0 0\nhold sand\naim 3 3 3 +y\nuse\nsymmetry none\npreview off\naim look\n"
+      "screenshot a.png\nuse");
+  CHECK_FALSE(host.tools.is_preview_shown());
+  CHECK(host.previews == 1);
+  REQUIRE(host.edits.size() == 1);
+  CHECK(bounding_box(host.edits[0].edit) == VoxelBox{{3, 4, 3}, {9, 5, 4}});
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0] == "s.txt:9: edit refused: nothing is in reach");
+}
+
+TEST_CASE_METHOD(ToolScript, "the edits of a tool wait for the edit budget, and are made once",
+                 "[bots]") {
+  host.budget_from_us = 1'500'000;
+  load("tool box\naim 1 3 1 +y\nuse\naim 2 3 2 +y\nuse");
+  runner->step(1'000'000);
+  CHECK(host.edits.empty());
+  runner->step(1'500'000);
+  CHECK(host.edits.size() == 1);
+  CHECK(runner->finished());
+}
+
+TEST_CASE_METHOD(ToolScript, "wrong commands of the tools are found", "[bots]") {
+  CHECK(error_of("aim 1 2 3 up").find("none of -x, +x") != std::string::npos);
+  CHECK(error_of("selection eat").find("nothing to do with the selection") != std::string::npos);
+  CHECK(error_of("symmetry y 1 2 3").find("none of none, x, z") != std::string::npos);
+  CHECK(error_of("preview maybe").find("none of on, off") != std::string::npos);
+  CHECK(error_of("rotate 4").find("QUARTERS") != std::string::npos);
+  for (const char* line : {"tool saw", "param radius 3", "tool sphere\nparam radius 99",
+                           "tool sphere\nparam mask glass", "hold glass"}) {
+    run(line);
+    CAPTURE(line);
+    CHECK(runner->failures().size() == 1);
+  }
+}
