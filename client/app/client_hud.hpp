@@ -16,7 +16,7 @@
 
 namespace runstone {
 
-/// What the display shows of the client's own state.
+/// The client's own state, as the display shows it.
 struct HudScene {
   bool is_captured = false, is_connected = false, shows_players = false;
   std::optional<Material> aimed_at;

@@ -20,7 +20,8 @@ struct ClientOptions {
   std::string local_world;       // name of a world on this computer to start and join; empty: none
   NewLocalWorld local_creation;  // of local_world, if there is none of this name
   ClientSettings settings;       // mouse, keys and field of view; the options above win over it
-  /// What the command line has set; the settings give the others to a client with a window.
+  /// The options that the command line has set. The settings give the others to a client with a
+  /// window.
   struct {
     bool name = false, view = false, view_vertical = false, memory = false, quality = false;
   } given;

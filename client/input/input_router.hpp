@@ -15,7 +15,7 @@
 
 namespace runstone {
 
-/// What the user interface wants of the next events.
+/// Which of the next events the user interface takes for itself.
 struct UiFocus {
   bool types = false;        // a text field has the keyboard
   bool has_window = false;   // a window is open that needs the mouse, such as the palette
