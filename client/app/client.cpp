@@ -238,10 +238,16 @@ void Client::handle_input(TimeUs now_us) {
 bool Client::is_scene_moving(TimeUs now_us) {
   const Pose pose = player_.pose();
   const bool has_moved = std::exchange(drawn_pose_, pose) != pose;
-  std::vector<std::optional<Pose>> poses;
-  for (const auto& [author, other] : session_.others()) poses.push_back(other.pose);
-  if (poses != poses_) posed_us_ = now_us;
-  poses_ = std::move(poses);
+  const auto& others = session_.others();
+  bool have_moved = poses_.size() != others.size();
+  poses_.resize(others.size());
+  std::size_t i = 0;
+  for (const auto& [author, other] : others) {
+    std::optional<Pose>& known = poses_[i++];
+    have_moved = have_moved || known != other.pose;
+    known = other.pose;
+  }
+  if (have_moved) posed_us_ = now_us;
   return has_moved || now_us - posed_us_ < kPoseUs || hud_.is_moving();
 }
 

@@ -1,6 +1,6 @@
 // Client: the main thread of runstone-client while it plays on a server. It owns the session, the
-// mesh pipeline and the script, and passes between them the results of the network thread, the mesh workers and
-// the draw thread. Its loop never waits for a peer or for a frame. Each turn handles what has
+// mesh pipeline and the script, and passes between them the results of the network thread, the mesh
+// workers and the draw thread. Its loop never waits for a peer or for a frame. Each turn handles what has
 // arrived. The next turn begins when more arrives (WakeUp), when a frame or the next poll of the
 // window is due, or when the script is due.
 #pragma once
@@ -37,9 +37,8 @@ namespace runstone {
 
 class Client {
  public:
-  /// `script` may be null. It, `display` and `menu` must outlive the client. Throws std::runtime_error if
-  /// the key file cannot be read.
-  /// `menu` may be null: then escape ends the play.
+  /// `script` and `menu` may be null; without a menu, escape ends the play. Both and `display` must
+  /// outlive the client. Throws std::runtime_error if the key file cannot be read.
   Client(ClientOptions options, const Script* script, ClientDisplay& display,
          GameMenu* menu = nullptr);
   ~Client();

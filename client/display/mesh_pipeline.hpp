@@ -26,8 +26,9 @@ namespace runstone {
 
 class MeshPipeline {
  public:
-  /// `replica` and `draw_thread` must outlive the pipeline. `draw_thread` shows nothing of another
-  /// world (DrawThread::clear()). It may be null; then the last stage of an edit is `meshed`. `watched` is true if frames go to a window. `wake` is called from mesh threads.
+  /// `replica` and `draw_thread` must outlive the pipeline. Requires that `draw_thread` shows nothing
+  /// of another world (DrawThread::clear()). It may be null; then the last stage of an edit is
+  /// `meshed`. `watched` is true if frames go to a window. `wake` is called from mesh threads.
   MeshPipeline(const Replica& replica, DrawThread* draw_thread, bool watched, unsigned workers,
                std::function<void()> wake);
 

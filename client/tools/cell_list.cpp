@@ -12,7 +12,8 @@ namespace runstone {
 
 Result<EditDescriptor, std::string> paste_of(std::vector<Cell> cells, Mask mask) {
   if (cells.empty()) return failure("there is nothing to change here");
-  // Of cells at one place the first one counts, so their order in the list is part of the key.
+  // If several cells have one place, the first one counts. So their order in the list is a part of
+  // the key.
   using Place = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::size_t>;
   std::vector<std::pair<Place, Material>> placed;
   placed.reserve(cells.size());

@@ -31,10 +31,10 @@ constexpr std::size_t kMessageReadBytes = 512;
 // The same for a ReceiveAck, which the world strand never sees. On a fast link a regular client
 // sends a thousand of them a second (kReceiveAckUsMin).
 constexpr std::size_t kAckReadBytes = 256;
-// Of a client that has broken a rule, has said goodbye or was refused before it authenticated, at most
-// so many further bytes are read and dropped: decrypting what a flood still sends would cost more than
-// the flood did. The connection stays open for the linger time, so that the client can read the
-// goodbye.
+// A client that has broken a rule, has said goodbye or was refused before it authenticated is being
+// closed. At most so many of its further bytes are read and dropped, because decrypting the rest of a
+// flood would cost more than the flood did. The connection stays open for the linger time, so that the
+// client can read the goodbye.
 constexpr std::size_t kDroppedBytesMax = 64 * 1024;
 // Room for a chunk fragment that must be sent although the socket has none.
 constexpr std::size_t kStarvedRoomBytes = 2 * 1024;
