@@ -7,26 +7,25 @@
 #include <array>
 #include <csignal>
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "client/app/benchmark.hpp"
+#include "client/app/change_notices.hpp"
 #include "client/app/client_display.hpp"
 #include "client/app/client_end.hpp"
 #include "client/app/client_hud.hpp"
+#include "client/app/display_pace.hpp"
 #include "client/app/edit_tool.hpp"
+#include "client/app/frame_scene.hpp"
 #include "client/app/game_menu.hpp"
-#include "client/app/held_button.hpp"
 #include "client/app/options.hpp"
 #include "client/app/player.hpp"
+#include "client/app/player_controls.hpp"
 #include "client/app/player_log.hpp"
 #include "client/app/script_actions.hpp"
 #include "client/app/terminal_chat.hpp"
 #include "client/app/threaded_session.hpp"
 #include "client/app/view_follower.hpp"
-#include "client/body/shown_space.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/input/input_router.hpp"
 #include "client/report/report.hpp"
@@ -58,13 +57,6 @@ class Client {
   void poll_window();
   /// Gives the events of the window, or of the script, to the player and to the interface.
   void handle_input(TimeUs now_us);
-  /// Carries out an action of a key.
-  void act(Action action, TimeUs now_us);
-  void edit_with(const WindowInput& input, TimeUs now_us);
-  void take_picture();
-  void move_player(const WindowInput& input, double seconds);
-  /// Moves the view by `steps` in time. The step after the newest edit is the live world.
-  void scrub(int steps);
   void follow_player(TimeUs now_us);
   MemoryUse memory_use() const;
   /// Keeps the memory within the budget: shrinks the view, or lets it grow again, and bounds the
@@ -76,21 +68,9 @@ class Client {
   void log_players(TimeUs now_us);
   void drain_changes();
   void draw(TimeUs now_us);
-  FrameContents contents() const;
-  std::vector<Marker> markers() const;
-  /// Adds the outlines of protected boxes if they are shown.
-  void add_ground(std::vector<Marker>& markers) const;
-  /// Adds the outlines of the selection and of the places that a tool has so far.
-  void add_selection(std::vector<Marker>& markers) const;
-  double draw_distance() const;  // voxels
   /// Returns the size of a frame, in pixels.
   std::array<int, 2> frame_size() const;
   HudScene hud_scene() const;
-  /// Returns true if the next frame differs from the last one: the player or another one moved, or
-  /// the display fades something.
-  bool is_scene_moving(TimeUs now_us);
-  /// Lets a window draw often while something moves, and seldom otherwise.
-  void wake_display(TimeUs now_us);
   /// Draws with the quality of the settings if the player changed them in this world.
   void use_quality();
   /// Returns the settings in force.
@@ -103,12 +83,6 @@ class Client {
   /// Carries out what the user chose in the menu, and closes the connecting screen when there is
   /// ground to see.
   void step_menu(TimeUs now_us);
-  ConnectingState connecting_state(TimeUs now_us) const;
-  PauseState pause_state() const;
-  /// Returns in words that the server is gone and what waits for it, or an empty text.
-  std::string lost_text(TimeUs now_us) const;
-  /// Returns the words for a failure, with the number of edits that no server confirmed.
-  FailureWords failure_words() const;
   void rest(TimeUs now_us);
   /// Sends a goodbye, writes the files of the options and prints the table. Returns `code`, or
   /// kExitFailed if `code` is kExitOk and a file cannot be written.
@@ -125,31 +99,25 @@ class Client {
   GameMenu* const menu_;    // may be null
   MeshPipeline pipeline_;
   Player player_;
-  BodyMaterials body_materials_;  // of the world
   EditTool tool_;
   InputRouter input_;
-  HeldButton remove_button_, place_button_;
   MemoryBudget budget_;
   ViewFollower view_;
   TerminalChat chat_;
   ClientHud hud_;
   ScriptActions actions_;
+  PlayerControls controls_;
+  FrameScene scene_;
+  DisplayPace pace_;
+  ChangeNotices notices_;
   std::optional<ScriptRunner> runner_;
   std::optional<Benchmark> benchmark_;
 
   TimeUs started_us_ = 0;
-  TimeUs polled_us_ = 0;                    // when the window was last polled
-  Pose drawn_pose_;                         // of the player, when the last frame was considered
-  std::vector<std::optional<Pose>> poses_;  // of the others then
-  TimeUs posed_us_ = 0;                     // when it last changed
-  TimeUs drawn_us_ = 0;                     // when the last frame was ordered
-  bool shows_players_ = false;              // the key for the list of players is held
-  std::optional<WorldId> world_;            // whose materials the hotbar has
-  std::string logged_refusal_;              // of the newest request to see the past
+  TimeUs polled_us_ = 0;          // when the window was last polled
+  std::optional<WorldId> world_;  // whose materials the hotbar has
   PlayerLog player_log_;
-  TimeUs players_logged_us_ = 0;   // when the player log was last updated
-  bool logged_read_only_ = false;  // the state of the server that was logged last
-  bool shows_ground_ = false;
+  TimeUs players_logged_us_ = 0;     // when the player log was last updated
   bool end_requested_ = false;       // by the user or a signal
   bool is_left_ = false;             // the user goes back to the title screen
   std::optional<TimeUs> opened_us_;  // when the first world of this client opened

@@ -1,0 +1,22 @@
+// Words for the player about the connection: while it is made, when it is lost, and when it ends.
+#pragma once
+#include <string>
+
+#include "client/app/threaded_session.hpp"
+#include "client/session/failure_words.hpp"
+#include "client/ui/menu_state.hpp"
+
+namespace runstone {
+
+/// Returns how far joining has come. `was_open`: a world was open before, so its chunks arrive.
+/// `is_encrypted`: the connection uses TLS.
+ConnectingState connecting_state(const ThreadedSession& network, bool was_open, bool is_encrypted,
+                                 TimeUs now_us);
+/// Returns who else is in the world.
+PauseState pause_state(const ClientSession& session);
+/// Returns that the server is gone and what waits for it, or an empty text if it is there.
+std::string lost_text(const ThreadedSession& network, TimeUs now_us);
+/// Returns the words for a failure, with the number of edits that no server confirmed.
+FailureWords failure_words(const ThreadedSession& network);
+
+}  // namespace runstone

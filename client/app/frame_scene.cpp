@@ -1,0 +1,81 @@
+#include "client/app/frame_scene.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <numbers>
+#include <span>
+
+#include "client/display/ground_marker.hpp"
+#include "client/display/player_body.hpp"
+
+namespace runstone {
+namespace {
+
+/// Returns the outline of a box, `gap` voxels outside of it, so that it is drawn before the faces of
+/// the box.
+Marker outline_of(const VoxelBox& box, double gap, std::uint8_t r, std::uint8_t g, std::uint8_t b) {
+  return {box.min.x - gap,
+          box.min.y - gap,
+          box.min.z - gap,
+          box.max.x - box.min.x + 2 * gap,
+          box.max.y - box.min.y + 2 * gap,
+          box.max.z - box.min.z + 2 * gap,
+          r,
+          g,
+          b,
+          false};
+}
+
+}  // namespace
+
+double FrameScene::draw_distance() const {
+  return (view_.radii().h + 1.5) * std::max(16, session_.replica().chunk_edge());
+}
+
+Camera FrameScene::camera(std::optional<double> field_of_view) const {
+  Camera out = player_.camera(draw_distance());
+  if (field_of_view) out.fov_y = *field_of_view * std::numbers::pi / 180;
+  return out;
+}
+
+FrameContents FrameScene::contents(bool outlines_aim, bool shows_ground) const {
+  FrameContents out;
+  add_bodies(out.bodies);
+  if (shows_ground) add_ground(out.markers);
+  if (outlines_aim) add_aim(out.markers);
+  add_selection(out.markers);
+  const std::span<const GhostChunk> ghosts = tool_.ghosts();
+  out.ghosts.assign(ghosts.begin(), ghosts.end());
+  return out;
+}
+
+void FrameScene::add_bodies(std::vector<Body>& bodies) const {
+  for (const auto& [author, other] : session_.others()) {
+    if (!other.pose) continue;
+    if (const auto body = player_body(author, *other.pose, player_.eye())) bodies.push_back(*body);
+  }
+}
+
+void FrameScene::add_ground(std::vector<Marker>& markers) const {
+  const Replica& replica = session_.replica();
+  if (replica.past()) return;
+  for (const auto& [seq, box] : replica.ground().boxes()) {
+    if (const auto outline = ground_marker(box, player_.eye(), draw_distance()))
+      markers.push_back(*outline);
+  }
+}
+
+void FrameScene::add_aim(std::vector<Marker>& markers) const {
+  if (const auto hit = tool_.pick())
+    markers.push_back(outline_of(box_between(hit->voxel, hit->voxel), 0.002, 20, 20, 20));
+}
+
+void FrameScene::add_selection(std::vector<Marker>& markers) const {
+  constexpr double kGap = 0.01;
+  if (const auto& selection = tool_.box().selection())
+    markers.push_back(outline_of(*selection, kGap, 60, 160, 255));
+  for (const VoxelPos at : tool_.box().points())
+    markers.push_back(outline_of(box_between(at, at), kGap, 255, 200, 60));
+}
+
+}  // namespace runstone

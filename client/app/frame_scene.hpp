@@ -1,0 +1,42 @@
+// FrameScene: makes the camera and the contents of a frame, besides the chunks and the interface:
+// other players, outlines and ghosts. Thread: the main thread.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "client/app/edit_tool.hpp"
+#include "client/app/player.hpp"
+#include "client/app/view_follower.hpp"
+#include "client/render/frame_contents.hpp"
+#include "client/render/renderer.hpp"
+#include "client/session/client_session.hpp"
+
+namespace runstone {
+
+class FrameScene {
+ public:
+  /// All must outlive the scene.
+  FrameScene(const ClientSession& session, const Player& player, const EditTool& tool,
+             const ViewFollower& view)
+      : session_(session), player_(player), tool_(tool), view_(view) {}
+
+  /// `field_of_view` is vertical, in degrees; nullopt: that of pictures of scripts.
+  Camera camera(std::optional<double> field_of_view) const;
+  /// `outlines_aim`: the voxel in sight is outlined. `shows_ground`: protected boxes are.
+  FrameContents contents(bool outlines_aim, bool shows_ground) const;
+
+ private:
+  double draw_distance() const;  // voxels
+  void add_bodies(std::vector<Body>& bodies) const;
+  void add_ground(std::vector<Marker>& markers) const;
+  void add_aim(std::vector<Marker>& markers) const;
+  /// Adds the outlines of the selection and of the places that a tool has so far.
+  void add_selection(std::vector<Marker>& markers) const;
+
+  const ClientSession& session_;
+  const Player& player_;
+  const EditTool& tool_;
+  const ViewFollower& view_;
+};
+
+}  // namespace runstone
