@@ -40,6 +40,7 @@ Camera FrameScene::camera(std::optional<double> field_of_view) const {
 
 FrameContents FrameScene::contents(bool outlines_aim, bool shows_ground) const {
   FrameContents out;
+  out.at_eye = session_.replica().shown_at(player_.voxel()).value_or(kEmpty);
   add_bodies(out.bodies);
   if (shows_ground) add_ground(out.markers);
   if (outlines_aim) add_aim(out.markers);

@@ -79,13 +79,13 @@ Camera Player::camera(double view_voxels) const {
   return camera;
 }
 
-ChunkCoord Player::chunk(std::int32_t edge) const {
+VoxelPos Player::voxel() const {
   const auto down = [](double v) {
     constexpr double kLimit = kWorldLimit - 1;
     if (std::isnan(v)) return 0;
     return static_cast<std::int32_t>(std::floor(std::clamp(v, -kLimit, kLimit)));
   };
-  return chunk_of({down(eye_.x), down(eye_.y), down(eye_.z)}, edge);
+  return {down(eye_.x), down(eye_.y), down(eye_.z)};
 }
 
 void Player::turn(const WindowInput& input) {

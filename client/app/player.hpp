@@ -30,9 +30,11 @@ class Player {
   Pose pose() const;
   /// `view_voxels` is the distance to the far plane; the camera uses 64 at least.
   Camera camera(double view_voxels) const;
-  /// Returns the chunk that the eye is in, or the nearest one inside the world. A coordinate that
-  /// is not a number counts as 0. `edge` is the edge of a chunk in voxels.
-  ChunkCoord chunk(std::int32_t edge) const;
+  /// Returns the voxel that the eye is in, or the nearest one inside the world. A coordinate that is
+  /// not a number counts as 0.
+  VoxelPos voxel() const;
+  /// Returns the chunk of voxel(). `edge` is the edge of a chunk in voxels.
+  ChunkCoord chunk(std::int32_t edge) const { return chunk_of(voxel(), edge); }
 
   /// Returns the material that a click places.
   Material held() const { return held_; }

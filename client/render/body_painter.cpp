@@ -41,10 +41,11 @@ constexpr const char* kBodyFragmentShader =
     "in vec3 relative;\n"
     "flat in vec3 normal;\n"
     "uniform vec3 colour;\n"  // linear
+    "uniform vec4 around;\n"  // light at the body
     "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL
     "void main() {\n"
     "  float sun = max(dot(normal, sun_direction), 0.0);\n"
-    "  vec3 lit = colour * (sun_colour * sun + sky_light(normal));\n"
+    "  vec3 lit = colour * (sun_colour * (sun * around.a) + field_lit(around, normal));\n"
     "  fragment = vec4(display(in_fog(lit, relative)), 1.0);\n"
     "}\n";
 
@@ -84,7 +85,7 @@ BodyPainter::BodyPainter()
       array_(GlVertexArray::make()) {}
 
 void BodyPainter::draw(std::span<const Body> bodies, const glm::dvec3& eye, const glm::mat4& clip,
-                       const DayLight& light) {
+                       const DayLight& light, const LightAt& light_at) {
   if (bodies.empty()) return;
   constexpr int kVertices = 36;
   glUseProgram(program_.get());
@@ -93,6 +94,7 @@ void BodyPainter::draw(std::span<const Body> bodies, const glm::dvec3& eye, cons
                      glm::value_ptr(clip));
   const GLint model = glGetUniformLocation(program_.get(), "model");
   const GLint colour = glGetUniformLocation(program_.get(), "colour");
+  const GLint around = glGetUniformLocation(program_.get(), "around");
   glBindVertexArray(array_.get());
   for (const Body& body : bodies) {
     const glm::vec3 feet(glm::dvec3{body.x, body.y, body.z} - eye);
@@ -101,6 +103,9 @@ void BodyPainter::draw(std::span<const Body> bodies, const glm::dvec3& eye, cons
                                         static_cast<float>(body.yaw), glm::vec3{0, 1, 0});
     const glm::mat4 head = glm::rotate(glm::translate(stand, glm::vec3{0, kNeck, 0}),
                                        -static_cast<float>(body.pitch), glm::vec3{1, 0, 0});
+    constexpr double kChest = 1.1;
+    const glm::vec4 at_body = light_at({body.x, body.y + kChest, body.z});
+    glUniform4fv(around, 1, glm::value_ptr(at_body));
     const auto draw_part = [&](const Part& part) {
       const glm::mat4 box = box_of(part.is_head ? head : stand, part);
       const glm::vec3 of_part = own * part.shade;

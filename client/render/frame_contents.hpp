@@ -6,11 +6,13 @@
 #include "client/render/frame_look.hpp"
 #include "client/render/ghost.hpp"
 #include "client/render/marker.hpp"
+#include "common/core/ids.hpp"
 
 namespace runstone {
 
 struct FrameContents {
   FrameLook look;
+  Material at_eye = kEmpty;  // of the voxel that holds the eye
   std::vector<Marker> markers;
   std::vector<Body> bodies;
   std::vector<GhostChunk> ghosts;

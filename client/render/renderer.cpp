@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "client/render/body_painter.hpp"
+#include "client/render/eye_medium.hpp"
 #include "client/render/frame_target.hpp"
 #include "client/render/gl_handle.hpp"
 #include "client/render/marker_painter.hpp"
@@ -54,6 +55,7 @@ struct Renderer::State {
   Terrain terrain;
   BodyPainter bodies;
   MarkerPainter markers;
+  MaterialTable materials;
   OverlayPainter overlay;
 };
 
@@ -61,6 +63,7 @@ Renderer::Renderer(GlContextLoader loader) : state_(std::make_unique<State>(load
 Renderer::~Renderer() = default;
 
 void Renderer::set_materials(const MaterialTable& materials) {
+  state_->materials = materials;
   state_->terrain.set_materials(materials);
 }
 
@@ -84,13 +87,18 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
 
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
-  s.terrain.draw_shadows(view);
+  s.terrain.update_light(view);
+  if (contents.at_eye != kEmpty && s.materials.knows(contents.at_eye)) {
+    view.light =
+        light_inside(s.materials[contents.at_eye], view.light, s.terrain.light_at(view, view.eye));
+  }
   s.target.bind(width, height);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glDisable(GL_CULL_FACE);
   s.sky.draw(view.clip, view.light);
   const TerrainStats drawn = s.terrain.draw_opaque(view);
-  s.bodies.draw(contents.bodies, view.eye, view.clip, view.light);
+  s.bodies.draw(contents.bodies, view.eye, view.clip, view.light,
+                [&](const glm::dvec3& at) { return s.terrain.light_at(view, at); });
   if (s.terrain.has_transparent()) {
     const bool reads_depth = view.look.quality != Quality::low;
     if (reads_depth) s.target.bind_colour();

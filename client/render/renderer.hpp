@@ -30,7 +30,7 @@ struct RenderStats {
   std::uint32_t chunks_drawn = 0, chunks_culled = 0;
   std::uint64_t quads_drawn = 0;
   std::uint64_t quad_bytes = 0;  // on the GPU, of all chunks
-  std::uint64_t gpu_bytes = 0;   // those, the opacity bits and the shadow maps
+  std::uint64_t gpu_bytes = 0;   // those, the light field and the shadow maps
 };
 
 /// A function that returns a GL function by name. eglGetProcAddress, OSMesaGetProcAddress and
@@ -47,7 +47,7 @@ class Renderer {
 
   void set_materials(const MaterialTable& materials);
   /// Replaces the chunk's quads on the GPU. `edge` is in voxels. `voxels` are the runs that were
-  /// meshed: they darken the corners of this chunk's faces and of those beside it. They may be
+  /// meshed: light and dark corners come from them. They may be
   /// null; then the chunk counts as empty there.
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels = nullptr);

@@ -21,6 +21,16 @@ ShadowMaps::ShadowMaps() : maps_(GlTexture::make()) {
   for (Cascade& cascade : cascades_) cascade.framebuffer = GlFramebuffer::make();
 }
 
+void ShadowMaps::set_quality(Quality quality) {
+  const bool is_high = quality == Quality::high;
+  resize(is_high ? 2048 : 1024);
+  // The comparison of four pixels is interpolated if the filter is linear.
+  const GLint filter = is_high ? GL_LINEAR : GL_NEAREST;
+  glBindTexture(GL_TEXTURE_2D_ARRAY, maps_.get());
+  glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, filter);
+}
+
 void ShadowMaps::resize(int side) {
   if (side == side_) return;
   side_ = side;
@@ -30,8 +40,8 @@ void ShadowMaps::resize(int side) {
   const auto set = [](GLenum what, GLint value) {
     glTexParameteri(GL_TEXTURE_2D_ARRAY, what, value);
   };
-  set(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  set(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  set(GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  set(GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   set(GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   set(GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   for (int i = 0; i < kCascades; ++i) {
@@ -79,7 +89,7 @@ glm::dvec3 ShadowMaps::middle_of(const Cascade& cascade, const glm::dvec3& eye) 
 
 void ShadowMaps::update(const glm::dvec3& eye, const DayLight& light, double near, double far,
                         Quality quality, bool all, const DrawTerrain& draw_terrain) {
-  resize(quality == Quality::high ? 2048 : 1024);
+  set_quality(quality);
   set_radii(near, far);
   if (light.sun_direction != sun_) {
     sun_ = light.sun_direction;
@@ -135,13 +145,12 @@ void ShadowMaps::use(const GlProgram& program, int cascade, const glm::dvec3& ey
   const Cascade& c = cascades_[static_cast<std::size_t>(cascade)];
   const double reach = c.radius * (1 + kStep);
   const double depth = cascades_.back().radius * kDepth;
-  // From turned coordinates to pixels, and to a depth of 0 .. 1. The light looks along its negative
+  // From turned coordinates to 0 .. 1 in the map, in depth too. The light looks along its negative
   // third axis.
   const glm::dvec3 to_unit = 0.5 / glm::dvec3{reach, reach, -depth};
-  const glm::dvec3 side{side_, side_, 1};
   const glm::dvec3 eye_from_middle = to_light_ * (eye - c.middle);
-  const glm::vec3 scale(to_unit * side);
-  const glm::vec3 offset((eye_from_middle * to_unit + 0.5) * side);
+  const glm::vec3 scale(to_unit);
+  const glm::vec3 offset(eye_from_middle * to_unit + 0.5);
   const auto at = [&program](const char* name) {
     return glGetUniformLocation(program.get(), name);
   };

@@ -18,11 +18,14 @@ namespace {
 constexpr double kShadowEdges = 1.75;
 
 /// Coordinates fixed to the world are taken modulo this number of voxels, so that a float holds
-/// them precisely. It is a multiple of OpacityMap::kTableSide chunks of any edge.
+/// them precisely.
 constexpr std::int32_t kPattern = 8192;
 
+/// The light field around the eye, in voxels: corners are dark and lamps light up to half of it away.
+constexpr std::int32_t kFieldWidth = 192, kFieldHeight = 128;
+
 // Texture units.
-constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kOpacityUnit = 3, kShadowUnit = 5, kDepthUnit = 6;
+constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kFieldUnit = 3, kShadowUnit = 5, kDepthUnit = 6;
 
 constexpr const char* kDepthVertexShader =
     "#version 330 core\n" RUNSTONE_QUAD_GLSL
@@ -48,18 +51,25 @@ constexpr const char* kGhostFragmentShader =
     "  fragment = vec4(c + 0.25 * rim, opaque);\n"
     "}\n";
 
-std::string variant(Quality quality, const char* shader) {
+std::string variant(Quality quality, bool has_field, const char* shader) {
   std::string out = "#version 330 core\n";
-  if (quality != Quality::low) {
-    out += "#define RUNSTONE_OCCLUSION\n#define RUNSTONE_SHADOWS\n#define RUNSTONE_DEPTH\n";
-  }
-  if (quality == Quality::high) out += "#define RUNSTONE_SOFT_SHADOWS\n";
+  if (quality != Quality::low) out += "#define RUNSTONE_SHADOWS\n#define RUNSTONE_DEPTH\n";
+  if (has_field) out += "#define RUNSTONE_FIELD\n";
   return out + shader;
 }
 
 glm::dvec3 origin_in_world(const ChunkKey& key, std::int32_t edge) {
   const VoxelPos o = origin_of(key.at, edge);
   return {o.x, o.y, o.z};
+}
+
+/// Returns the voxel that holds a place. Places beyond the limits of the world count as at them.
+VoxelPos voxel_at(const glm::dvec3& at) {
+  const auto whole = [](double v) {
+    constexpr double kLimit = kWorldLimit - 1;
+    return static_cast<std::int32_t>(std::floor(std::clamp(v, -kLimit, kLimit)));
+  };
+  return {whole(at.x), whole(at.y), whole(at.z)};
 }
 
 glm::vec3 pattern_of(const ChunkKey& key, std::int32_t edge) {
@@ -74,25 +84,32 @@ Terrain::Terrain()
     : depth_program_(link_program("depth", kDepthVertexShader, kDepthFragmentShader)),
       ghost_program_(
           link_program("ghost", (std::string("#version 330 core\n") + kTerrainVertexShader).c_str(),
-                       kGhostFragmentShader)) {
+                       kGhostFragmentShader)),
+      field_(kFieldWidth, kFieldHeight) {
   set_materials(MaterialTable{});
 }
 
 void Terrain::set_materials(const MaterialTable& materials) {
   materials_.set(materials);
-  opaque_ = opaque_materials(materials);
+  light_codes_ = light_codes(materials);
 }
 
 Terrain::Chunk Terrain::add_quads(std::int32_t edge, const ChunkMesh& mesh) {
+  Chunk out;
+  out.edge = edge;
+  out.tree = TransparentTree::build(mesh.transparent.quads);
   // Both passes lie in one span, so that a chunk has one range of the buffer.
   const auto opaque_count = static_cast<std::uint32_t>(mesh.opaque.quads.size());
   std::vector<Quad> quads = mesh.opaque.quads;
-  quads.insert(quads.end(), mesh.transparent.quads.begin(), mesh.transparent.quads.end());
+  const std::span<const Quad> transparent =
+      out.tree ? out.tree->pieces() : std::span<const Quad>(mesh.transparent.quads);
+  quads.insert(quads.end(), transparent.begin(), transparent.end());
   const std::uint32_t first = quads_.add(quads);
-  return {edge,
-          {first, static_cast<std::uint32_t>(quads.size())},
-          QuadSpans(mesh.opaque, edge, first),
-          QuadSpans(mesh.transparent, edge, first + opaque_count)};
+  out.quads = {first, static_cast<std::uint32_t>(quads.size())};
+  out.opaque = QuadSpans(mesh.opaque, edge, first);
+  out.transparent = {first + opaque_count, static_cast<std::uint32_t>(transparent.size())};
+  if (!out.tree) out.layers = QuadSpans(mesh.transparent, edge, first + opaque_count);
+  return out;
 }
 
 void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
@@ -104,9 +121,9 @@ void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& me
   if (!mesh.empty()) chunks_.emplace(key, add_quads(edge, mesh));
   if (key.lod == 0) {
     if (voxels != nullptr) {
-      opacity_.set(key.at, edge, opacity_bits(*voxels, opaque_));
+      field_.set(key.at, edge, light_chunk(*voxels, light_codes_));
     } else {
-      opacity_.remove(key.at);
+      field_.remove(key.at);
     }
   }
   edge_ = std::max(edge_, edge);
@@ -115,7 +132,7 @@ void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& me
 }
 
 void Terrain::remove(const ChunkKey& key) {
-  if (key.lod == 0) opacity_.remove(key.at);
+  if (key.lod == 0) field_.remove(key.at);
   const auto found = chunks_.find(key);
   if (found == chunks_.end()) return;
   const glm::dvec3 min = origin_in_world(key, found->second.edge);
@@ -124,22 +141,38 @@ void Terrain::remove(const ChunkKey& key) {
   chunks_.erase(found);
 }
 
-const GlProgram& Terrain::program(Quality quality, bool transparent) {
-  GlProgram& out = programs_[static_cast<std::size_t>(quality)][transparent ? 1 : 0];
-  if (!out) {
-    const char* fragment = transparent ? kTransparentFragmentShader : kTerrainFragmentShader;
-    out = link_program(transparent ? "transparent" : "terrain",
-                       variant(quality, kTerrainVertexShader).c_str(),
-                       variant(quality, fragment).c_str());
+Terrain::Program& Terrain::program(Quality quality, bool is_transparent, bool has_field) {
+  Program& out =
+      programs_[static_cast<std::size_t>(quality)][is_transparent ? 1 : 0][has_field ? 1 : 0];
+  if (!out.gl) {
+    const char* fragment = is_transparent ? kTransparentFragmentShader : kTerrainFragmentShader;
+    out.gl = link_program(is_transparent ? "transparent" : "terrain",
+                          variant(quality, has_field, kTerrainVertexShader).c_str(),
+                          variant(quality, has_field, fragment).c_str());
+    out.origin = glGetUniformLocation(out.gl.get(), "origin");
+    out.pattern = glGetUniformLocation(out.gl.get(), "pattern");
   }
   return out;
 }
 
-void Terrain::draw_shadows(const FrameView& view) {
+void Terrain::update_light(const FrameView& view) {
   if (view.look.quality == Quality::low) return;
   shadows_.update(
       view.eye, view.light, kShadowEdges * edge_, view.far, view.look.quality, view.look.exact,
       [this](const glm::mat4& clip, const glm::dvec3& middle) { draw_depth(clip, middle); });
+  relit_.clear();
+  field_.update(voxel_at(view.eye), view.look.exact, relit_);
+  field_texture_.copy(field_, relit_);
+}
+
+glm::vec4 Terrain::light_at(const FrameView& view, const glm::dvec3& at) const {
+  const VoxelPos voxel = voxel_at(at);
+  if (view.look.quality == Quality::low || !field_.box().contains(voxel)) return {0, 0, 0, 1};
+  const LightLevels levels = field_.levels_at(voxel);
+  const auto channel = [levels](unsigned shift) {
+    return static_cast<float>(levels >> shift & 255U) / static_cast<float>(kLightMax);
+  };
+  return {channel(0) * channel(0), channel(8) * channel(8), channel(16) * channel(16), channel(24)};
 }
 
 void Terrain::draw_depth(const glm::mat4& clip, const glm::dvec3& middle) {
@@ -182,95 +215,105 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
       continue;
     }
     const glm::vec3 centre = at + 0.5F * edge;
-    has_transparent_ = has_transparent_ || chunk.transparent.all().count != 0;
+    has_transparent_ = has_transparent_ || chunk.transparent.count != 0;
     visible_.push_back({&chunk,
                         at,
                         pattern_of(key, chunk.edge),
                         {-origin.x, -origin.y, -origin.z},
-                        glm::dot(centre, centre)});
+                        glm::dot(centre, centre),
+                        view.look.quality != Quality::low &&
+                            !intersect(box_of(key.at, chunk.edge), field_.box()).empty()});
   }
   std::sort(visible_.begin(), visible_.end(),
             [](const Visible& a, const Visible& b) { return a.distance2 < b.distance2; });
 }
 
-void Terrain::use(const GlProgram& program, const FrameView& view) {
-  glUseProgram(program.get());
-  set_light(program, view.light);
-  glUniformMatrix4fv(glGetUniformLocation(program.get(), "clip"), 1, GL_FALSE,
-                     glm::value_ptr(view.clip));
-  materials_.bind(program, kMaterialUnit);
-  quads_.bind(program, kQuadUnit);
-  if (view.look.quality == Quality::low) return;
-  opacity_.bind(program, kOpacityUnit);
-  shadows_.bind(program, kShadowUnit);
+void Terrain::begin_pass(const FrameView& view, bool is_transparent,
+                         const std::function<void(const GlProgram& program)>& set) {
+  const bool is_low = view.look.quality == Quality::low;
+  for (const bool has_field : {false, true}) {
+    if (has_field && is_low) continue;
+    Program& of_pass = program(view.look.quality, is_transparent, has_field);
+    of_pass.cascade = -1;
+    glUseProgram(of_pass.gl.get());
+    in_use_ = &of_pass;
+    set_light(of_pass.gl, view.light);
+    glUniformMatrix4fv(glGetUniformLocation(of_pass.gl.get(), "clip"), 1, GL_FALSE,
+                       glm::value_ptr(view.clip));
+    materials_.bind(of_pass.gl, kMaterialUnit);
+    quads_.bind(of_pass.gl, kQuadUnit);
+    if (!is_low) shadows_.bind(of_pass.gl, kShadowUnit);
+    if (has_field) field_texture_.bind(of_pass.gl, kFieldUnit, field_, view.eye);
+    set(of_pass.gl);
+  }
 }
 
-void Terrain::place_in_shadow(const GlProgram& program, const FrameView& view, const Visible& chunk,
-                              int& cascade) const {
+void Terrain::use_for(const Visible& chunk, const FrameView& view, bool is_transparent) {
+  Program& of_chunk = program(view.look.quality, is_transparent, chunk.is_in_field);
+  if (in_use_ != &of_chunk) {
+    glUseProgram(of_chunk.gl.get());
+    in_use_ = &of_chunk;
+  }
+  glUniform3fv(of_chunk.origin, 1, glm::value_ptr(chunk.origin));
+  glUniform3fv(of_chunk.pattern, 1, glm::value_ptr(chunk.pattern));
   if (view.look.quality == Quality::low) return;
   const double half = 0.5 * chunk.chunk->edge;
   const glm::dvec3 middle = view.eye + glm::dvec3(chunk.origin) + half;
-  const int of_chunk = shadows_.cascade_of(middle, half * std::sqrt(3.0));
-  if (of_chunk == cascade) return;
-  cascade = of_chunk;
-  shadows_.use(program, cascade, view.eye);
-}
-
-void Terrain::place(const GlProgram& program, const Visible& chunk) {
-  glUniform3fv(glGetUniformLocation(program.get(), "origin"), 1, glm::value_ptr(chunk.origin));
-  glUniform3fv(glGetUniformLocation(program.get(), "pattern"), 1, glm::value_ptr(chunk.pattern));
+  const int cascade = shadows_.cascade_of(middle, half * std::sqrt(3.0));
+  if (cascade == of_chunk.cascade) return;
+  of_chunk.cascade = cascade;
+  shadows_.use(of_chunk.gl, cascade, view.eye);
 }
 
 TerrainStats Terrain::draw_opaque(const FrameView& view) {
   TerrainStats stats;
   find_visible(view, stats);
-  const GlProgram& opaque = program(view.look.quality, false);
-  use(opaque, view);
-  glUniform1f(glGetUniformLocation(opaque.get(), "seam"), 0.0002F);
+  begin_pass(view, false, [](const GlProgram& program) {
+    glUniform1f(glGetUniformLocation(program.get(), "seam"), 0.0002F);
+  });
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
-  int cascade = -1;  // none yet
   // Chunks are drawn from near to far, so that hidden pixels fail the depth test early.
   for (const Visible& chunk : visible_) {
     spans_.clear();
     chunk.chunk->opaque.append_facing(chunk.eye, spans_);
     if (spans_.empty()) continue;
-    place(opaque, chunk);
-    place_in_shadow(opaque, view, chunk, cascade);
+    use_for(chunk, view, false);
     quads_.draw(spans_);
     for (const QuadSpan& span : spans_) stats.quads_drawn += span.count;
   }
   glDisable(GL_CULL_FACE);
-  for (const Visible& chunk : visible_) stats.quads_drawn += chunk.chunk->transparent.all().count;
+  for (const Visible& chunk : visible_) stats.quads_drawn += chunk.chunk->transparent.count;
   stats.chunks_drawn = static_cast<std::uint32_t>(visible_.size());
   return stats;
 }
 
 void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
   if (!has_transparent_) return;
-  const GlProgram& transparent = program(view.look.quality, true);
-  use(transparent, view);
-  const auto set = [&](const char* name, double value) {
-    glUniform1f(glGetUniformLocation(transparent.get(), name), static_cast<float>(value));
-  };
-  set("seconds", view.look.seconds);
-  set("seam", 0);  // quads that overlap would be blended twice
-  glUniform2f(glGetUniformLocation(transparent.get(), "depth_range"), static_cast<float>(view.near),
-              static_cast<float>(view.far));
   glActiveTexture(GL_TEXTURE0 + kDepthUnit);
   glBindTexture(GL_TEXTURE_2D, scene_depth);
-  glUniform1i(glGetUniformLocation(transparent.get(), "scene_depth"), kDepthUnit);
+  begin_pass(view, true, [&view](const GlProgram& program) {
+    const auto at = [&program](const char* name) {
+      return glGetUniformLocation(program.get(), name);
+    };
+    glUniform1f(at("seconds"), static_cast<float>(view.look.seconds));
+    glUniform1f(at("seam"), 0);  // quads that overlap would be blended twice
+    glUniform2f(at("depth_range"), static_cast<float>(view.near), static_cast<float>(view.far));
+    glUniform1i(at("scene_depth"), kDepthUnit);
+  });
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
-  int cascade = -1;  // none yet
   // Water is also seen from below, so both sides are drawn.
   for (auto chunk = visible_.rbegin(); chunk != visible_.rend(); ++chunk) {
     spans_.clear();
-    chunk->chunk->transparent.append_back_to_front(chunk->eye, spans_);
+    if (chunk->chunk->tree) {
+      chunk->chunk->tree->append_back_to_front(chunk->eye, chunk->chunk->transparent.first, spans_);
+    } else {
+      chunk->chunk->layers.append_back_to_front(chunk->eye, spans_);
+    }
     if (spans_.empty()) continue;
-    place(transparent, *chunk);
-    place_in_shadow(transparent, view, *chunk, cascade);
+    use_for(*chunk, view, true);
     quads_.draw(spans_);
   }
   glDepthMask(GL_TRUE);
@@ -320,7 +363,9 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
                         const glm::vec4& tint, float opaque) {
     if (!mesh || mesh->empty()) return;
     const glm::vec3 at(origin_in_world(ghost.key, ghost.edge) - view.eye);
-    place(ghost_program_, {nullptr, at, pattern_of(ghost.key, ghost.edge), {}, 0});
+    const glm::vec3 pattern = pattern_of(ghost.key, ghost.edge);
+    glUniform3fv(glGetUniformLocation(ghost_program_.get(), "origin"), 1, glm::value_ptr(at));
+    glUniform3fv(glGetUniformLocation(ghost_program_.get(), "pattern"), 1, glm::value_ptr(pattern));
     glUniform4fv(glGetUniformLocation(ghost_program_.get(), "tint"), 1, glm::value_ptr(tint));
     glUniform1f(glGetUniformLocation(ghost_program_.get(), "opaque"), opaque);
     const std::array<QuadSpan, 1> span = {ghosts_.at(mesh.get()).quads};
@@ -337,7 +382,8 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
 }
 
 std::uint64_t Terrain::gpu_bytes() const {
-  return quads_.used_bytes() + opacity_.used_bytes() + shadows_.byte_size();
+  return quads_.used_bytes() + field_.byte_size() + field_texture_.byte_size() +
+         shadows_.byte_size();
 }
 
 }  // namespace runstone

@@ -7,17 +7,20 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "client/render/day_light.hpp"
 #include "client/render/frame_look.hpp"
 #include "client/render/ghost.hpp"
+#include "client/render/light_field.hpp"
+#include "client/render/light_texture.hpp"
 #include "client/render/material_textures.hpp"
-#include "client/render/opacity_map.hpp"
 #include "client/render/quad_buffer.hpp"
 #include "client/render/quad_spans.hpp"
 #include "client/render/shadow_maps.hpp"
+#include "client/render/transparent_tree.hpp"
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/runs/run_chunk.hpp"
@@ -47,8 +50,11 @@ class Terrain {
               const RunChunk* voxels);
   void remove(const ChunkKey& key);
 
-  /// Draws the shadow maps that need it. Leaves another framebuffer bound.
-  void draw_shadows(const FrameView& view);
+  /// Draws the shadow maps and computes the light that need it. Leaves another framebuffer bound.
+  void update_light(const FrameView& view);
+  /// Returns the light at a place in world voxels: red, green and blue of lamps (linear), and the
+  /// share of the sky, 0 .. 1. Outside the light field, and at low quality, it is that of the open.
+  glm::vec4 light_at(const FrameView& view, const glm::dvec3& at) const;
   TerrainStats draw_opaque(const FrameView& view);
   /// Returns true if transparent quads are in view. Valid after draw_opaque().
   bool has_transparent() const { return has_transparent_; }
@@ -63,13 +69,18 @@ class Terrain {
   struct Chunk {
     std::int32_t edge = 0;  // voxels
     QuadSpan quads;         // of both passes
-    QuadSpans opaque, transparent;
+    QuadSpan transparent;
+    QuadSpans opaque;
+    /// The order of the transparent quads; nullopt if they are too many for a tree.
+    std::optional<TransparentTree> tree;
+    QuadSpans layers;  // of the transparent quads, without a tree
   };
   struct Visible {
     const Chunk* chunk;
     glm::vec3 origin, pattern;    // origin minus eye; origin modulo kPattern
     std::array<double, 3> eye{};  // relative to the origin
     float distance2;
+    bool is_in_field;
   };
   /// The quads of a ghost's mesh, kept as long as frames show it.
   struct GhostQuads {
@@ -80,26 +91,36 @@ class Terrain {
 
   Chunk add_quads(std::int32_t edge, const ChunkMesh& mesh);
   void find_visible(const FrameView& view, TerrainStats& stats);
-  void use(const GlProgram& program, const FrameView& view);
-  /// Sets the shadow map of a chunk, unless it is `cascade`, which is replaced.
-  void place_in_shadow(const GlProgram& program, const FrameView& view, const Visible& chunk,
-                       int& cascade) const;
-  static void place(const GlProgram& program, const Visible& chunk);
+  /// A program of a pass. A chunk is drawn by the one that reads the light field, or, if it lies
+  /// outside the field, by one that costs less.
+  struct Program {
+    GlProgram gl;
+    GLint origin = -1, pattern = -1;  // the uniforms of a chunk
+    int cascade = -1;                 // of the last chunk in this pass; -1: none
+  };
+  /// Sets the uniforms of a pass in its programs. `set` sets those that only this pass has.
+  void begin_pass(const FrameView& view, bool is_transparent,
+                  const std::function<void(const GlProgram& program)>& set);
+  /// Uses the program for a chunk and sets its uniforms. Requires begin_pass() before.
+  void use_for(const Visible& chunk, const FrameView& view, bool is_transparent);
   void draw_depth(const glm::mat4& clip, const glm::dvec3& middle);
-  const GlProgram& program(Quality quality, bool transparent);
+  Program& program(Quality quality, bool is_transparent, bool has_field);
   QuadSpan ghost_quads(const std::shared_ptr<const ChunkMesh>& mesh);
 
-  std::array<std::array<GlProgram, 2>, 3> programs_;  // by quality, then opaque and transparent
+  std::array<std::array<std::array<Program, 2>, 2>, 3> programs_;  // by quality, pass, field
   GlProgram depth_program_, ghost_program_;
   MaterialTextures materials_;
-  OpaqueMaterials opaque_;
+  LightCodes light_codes_;
+  LightField field_;
+  LightTexture field_texture_;
+  std::vector<VoxelBox> relit_;  // scratch
   QuadBuffer quads_;
-  OpacityMap opacity_;
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
   std::map<const ChunkMesh*, GhostQuads> ghosts_;
   std::vector<Visible> visible_;  // of the present frame, from near to far
-  std::vector<QuadSpan> spans_;   // scratch
+  const Program* in_use_ = nullptr;
+  std::vector<QuadSpan> spans_;  // scratch
   bool has_transparent_ = false;
   std::int32_t edge_ = 16;  // of the largest chunk so far, voxels
 };

@@ -1,9 +1,9 @@
 // The shaders of terrain, in GLSL 3.30. Their variants are chosen by definitions before the text:
-// RUNSTONE_OCCLUSION darkens corners, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH reads
+// RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH reads
 // the depth behind water.
 #pragma once
 #include "client/render/light_glsl.hpp"
-#include "client/render/opacity_map.hpp"
+#include "client/render/light_texture.hpp"
 #include "client/render/quad_glsl.hpp"
 #include "client/render/shadow_maps.hpp"
 
@@ -49,7 +49,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "#ifdef RUNSTONE_SHADOWS\n"
     "in vec3 in_shadow;\n"
     "#endif\n"
-    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_OCCLUSION_GLSL RUNSTONE_SHADOW_GLSL
+    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL RUNSTONE_SHADOW_GLSL
     "float hash(ivec3 p) {\n"
     "  uint h = uint(p.x) * 73856093u ^ uint(p.y) * 19349663u ^ uint(p.z) * 83492791u;\n"
     "  h = (h ^ (h >> 13)) * 1274126177u;\n"
@@ -78,14 +78,17 @@ inline constexpr const char* kTerrainFragmentShader =
     "  tint += fine * look.g * hash(ivec3(floor(voxel * 8.0)));\n"
     "  tint *= 1.0 - 0.35 * fine * step(0.1, look.a) * step(look.a, 0.9) * joint(st);\n"
     "  float sun = max(dot(normal, sun_direction), 0.0);\n"
-    "  float open = 1.0;\n"
-    "#ifdef RUNSTONE_OCCLUSION\n"
-    "  open = 1.0 - 0.8 * detail * occlusion(voxel + normal, normal);\n"
-    "#endif\n"
     "#ifdef RUNSTONE_SHADOWS\n"
     "  sun *= sunlit(in_shadow);\n"
     "#endif\n"
-    "  vec3 light = sun_colour * (sun * (0.5 + 0.5 * open)) + sky_light(normal) * open;\n"
+    "#ifdef RUNSTONE_FIELD\n"
+    // The light in front of the face. Far away the place lies farther from the face, where the dark
+    // corners are wider than they are deep; otherwise they would flicker.
+    "  vec4 around = field_light(relative + normal * (0.5 + min(pixel, 1.0)));\n"
+    "  vec3 light = sun_colour * (sun * (0.5 + 0.5 * around.a)) + field_lit(around, normal);\n"
+    "#else\n"
+    "  vec3 light = sun_colour * sun + sky_light(normal);\n"
+    "#endif\n"
     "  vec3 lit = colour.rgb * tint * (light + look.b * 3.0);\n"
     "  fragment = vec4(display(in_fog(lit, relative)), 1.0);\n"
     "}\n";
@@ -104,7 +107,7 @@ inline constexpr const char* kTransparentFragmentShader =
     "#ifdef RUNSTONE_SHADOWS\n"
     "in vec3 in_shadow;\n"
     "#endif\n"
-    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_SHADOW_GLSL
+    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL RUNSTONE_SHADOW_GLSL
     "float distance_of(float depth) {\n"
     "  float z = 2.0 * depth - 1.0;\n"
     "  return 2.0 * depth_range.x * depth_range.y /\n"
@@ -136,10 +139,17 @@ inline constexpr const char* kTransparentFragmentShader =
     "#else\n"
     "  float lit_by_sun = 1.0;\n"
     "#endif\n"
+    "#ifdef RUNSTONE_FIELD\n"
+    "  vec4 around = field_light(relative + n * 0.5);\n"
+    "  float open = around.a;\n"
+    "  vec3 body = colour.rgb * (sun_colour * (sun * lit_by_sun) + field_lit(around, n));\n"
+    "#else\n"
+    "  float open = 1.0;\n"
     "  vec3 body = colour.rgb * (sun_colour * (sun * lit_by_sun) + sky_light(n));\n"
+    "#endif\n"
     "  vec3 mirrored = reflect(sight, wave);\n"
     "  mirrored.y = abs(mirrored.y);\n"
-    "  vec3 reflection = sky(mirrored);\n"
+    "  vec3 reflection = sky(mirrored) * open;\n"
     "  float s = max(dot(mirrored, sun_direction), 0.0);\n"
     "  float s8 = s * s; s8 *= s8; s8 *= s8; float s64 = s8 * s8; s64 *= s64; s64 *= s64;\n"
     "  reflection += sun_colour * (s64 * s64 * 2.0 * lit_by_sun);\n"

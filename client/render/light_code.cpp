@@ -1,0 +1,37 @@
+#include "client/render/light_code.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/render/material_look.hpp"
+
+namespace runstone {
+namespace {
+
+LightPass light_pass(const MaterialInfo& material) {
+  if (material.body == MaterialBody::liquid) return LightPass::liquid;
+  // Leaves are often opaque to the mesher, but a wood is not as dark as a cave.
+  if (material.name.find("leaves") != std::string::npos) return LightPass::leaves;
+  return material.visibility == Visibility::opaque ? LightPass::opaque : LightPass::open;
+}
+
+}  // namespace
+
+LightCode light_code(const MaterialInfo& material) {
+  const float emission = material_look(material).emission;
+  const auto level = [&](std::size_t channel) {
+    const float linear = std::pow(static_cast<float>(material.colour[channel]) / 255.0F, 2.2F);
+    return static_cast<unsigned>(
+        std::lround(15 * std::sqrt(std::clamp(emission, 0.0F, 1.0F) * linear)));
+  };
+  return light_code(light_pass(material), level(0), level(1), level(2));
+}
+
+LightCodes light_codes(const MaterialTable& materials) {
+  LightCodes out;
+  out.reserve(materials.size());
+  for (const MaterialInfo& row : materials.rows()) out.push_back(light_code(row));
+  return out;
+}
+
+}  // namespace runstone

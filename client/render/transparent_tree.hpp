@@ -1,0 +1,53 @@
+// TransparentTree: the transparent quads of a chunk in an order that blends them rightly from every
+// place: what lies behind comes first, also between faces of different directions. It is a binary
+// space partition (Fuchs, Kedem and Naylor 1980) whose planes are those of the quads. A quad that
+// crosses a plane is cut into two, so no quads hide each other in a circle. Pure.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "client/render/quad_spans.hpp"
+#include "common/mesh/quad.hpp"
+
+namespace runstone {
+
+class TransparentTree {
+ public:
+  /// A chunk with more quads, or with more pieces of them, has no tree.
+  static constexpr std::size_t kQuadsMax = 1024, kPiecesMax = 2048;
+
+  /// Makes the tree of a chunk's quads. Returns nullopt if they are too many. Cost: O(pieces x
+  /// depth of the tree).
+  static std::optional<TransparentTree> build(std::span<const Quad> quads);
+
+  /// Returns the pieces in the order to which the spans refer.
+  std::span<const Quad> pieces() const { return pieces_; }
+  /// Appends the spans of all pieces from back to front; piece 0 lies at `first` in the buffer. `eye`
+  /// is in voxels relative to the origin of the chunk. Cost: O(planes).
+  void append_back_to_front(const std::array<double, 3>& eye, std::uint32_t first,
+                            std::vector<QuadSpan>& out) const;
+
+ private:
+  static constexpr std::int32_t kNone = -1;
+  /// A plane, the pieces in it, and the nodes on its two sides.
+  struct Node {
+    std::size_t axis = 0;
+    std::int32_t at = 0;  // voxels along the axis
+    std::uint32_t first = 0, count = 0;
+    std::int32_t below = kNone, above = kNone;
+  };
+  /// Returns the node of the quads, or kNone if there are none or too many pieces.
+  std::int32_t add(std::vector<QuadFields> quads);
+  void append(std::int32_t node, const std::array<double, 3>& eye, std::uint32_t first,
+              std::vector<QuadSpan>& out) const;
+
+  std::vector<Node> nodes_;
+  std::vector<Quad> pieces_;
+  std::int32_t root_ = kNone;
+};
+
+}  // namespace runstone
