@@ -14,10 +14,13 @@ namespace runstone {
 
 namespace {
 
-/// Returns the memory of a chunk on the GPU: its quads, and at most one bit for each voxel.
+/// Returns the memory of a chunk in the renderer: its quads, and at most its runs once more, with a
+/// byte for each column.
 std::size_t gpu_bytes_of(const MeshResult& result) {
-  const std::size_t bits = result.chunk->is_uniform() ? 0 : result.chunk->volume() / 8;
-  return result.mesh->quad_count() * sizeof(Quad) + bits;
+  const RunChunk& chunk = *result.chunk;
+  const std::size_t columns = std::size_t{chunk.extent.x} * chunk.extent.z;
+  const std::size_t light = chunk.is_uniform() ? 0 : chunk.runs.byte_size() + columns;
+  return result.mesh->quad_count() * sizeof(Quad) + light;
 }
 
 bool begins_with(std::span<const MaterialInfo> rows, std::span<const MaterialInfo> first) {

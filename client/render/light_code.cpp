@@ -18,11 +18,16 @@ LightPass light_pass(const MaterialInfo& material) {
 }  // namespace
 
 LightCode light_code(const MaterialInfo& material) {
-  const float emission = material_look(material).emission;
+  const float emission = std::clamp(material_look(material).emission, 0.0F, 1.0F);
+  const auto linear = [&](std::size_t channel) {
+    return std::pow(static_cast<float>(material.colour[channel]) / 255.0F, 2.2F);
+  };
+  // Bright light looks paler than the material that gives it off.
+  constexpr float kPale = 0.2F;
+  const float brightest = std::max({linear(0), linear(1), linear(2)});
   const auto level = [&](std::size_t channel) {
-    const float linear = std::pow(static_cast<float>(material.colour[channel]) / 255.0F, 2.2F);
-    return static_cast<unsigned>(
-        std::lround(15 * std::sqrt(std::clamp(emission, 0.0F, 1.0F) * linear)));
+    const float light = emission * std::lerp(linear(channel), brightest, kPale);
+    return static_cast<unsigned>(std::lround(15 * std::sqrt(light)));
   };
   return light_code(light_pass(material), level(0), level(1), level(2));
 }

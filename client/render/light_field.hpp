@@ -2,14 +2,14 @@
 // of lamps that reaches it. Light from the sky falls straight down through what is not opaque, and
 // from there it spreads as that of lamps does (LightFlood). So rooms and caves are dark, and light
 // comes in through doors and windows.
-//   - The runs of each chunk are kept as runs of light codes, so the box may move without its chunks
-//     being sent again.
+//   - The runs of each chunk are kept as runs of light codes, so a move of the box needs no chunk
+//     again.
 //   - A change marks a box of voxels, and update() computes the light anew as far from it as light
 //     reaches.
 //   - The levels stand in a ring: a voxel lies at its coordinates modulo the size of the box. So a
 //     move changes only the voxels that come into the box.
-// The field holds light, not materials. Its size does not depend on the world. Places without a chunk
-// are open. Pure. Thread: one thread at a time.
+// The field holds light, not materials, and its size does not depend on the world. Places without a
+// chunk are open. Pure. Thread: one thread at a time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +25,7 @@ namespace runstone {
 
 class LightField {
  public:
-  /// The box moves in steps of this many voxels, when the eye is farther than this from its middle.
+  /// The box moves in steps of this many voxels, as soon as the eye is farther than that from its middle.
   static constexpr std::int32_t kStep = 16;
 
   /// A box of `width` x `height` x `width` voxels. Requires multiples of 2 * kStep.

@@ -17,6 +17,7 @@ void set_light(const GlProgram& program, const DayLight& light) {
   colour("ambient_up", light.ambient_up);
   colour("ambient_down", light.ambient_down);
   colour("dark", light.dark);
+  glUniform1f(glGetUniformLocation(program.get(), "lamps"), light.lamps);
   glUniform1f(glGetUniformLocation(program.get(), "exposure"), light.exposure);
   glUniform2f(glGetUniformLocation(program.get(), "fog_range"), light.fog_start, light.fog_end);
 }

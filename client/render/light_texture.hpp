@@ -29,12 +29,12 @@ class LightTexture {
 
 /// vec4 field_light(vec3 relative): the light at a place relative to the eye. Red, green and blue are
 /// the linear light of lamps, and the last is the share of the sky that is seen, 0 .. 1. Outside the
-/// field, and at its rim, there are no lamps and all of the sky.
+/// field, and at its rim, there are no lamps and all of the sky. `at` is 0 .. 1 inside the field.
 #define RUNSTONE_FIELD_GLSL                                                                \
   "uniform sampler3D light_field;\n"                                                       \
   "uniform vec3 field_scale, field_offset, field_turn;\n"                                  \
   "vec4 field_light(vec3 relative) {\n"                                                    \
-  "  vec3 at = relative * field_scale + field_offset;\n" /* 0 .. 1 inside the field */     \
+  "  vec3 at = relative * field_scale + field_offset;\n"                                   \
   "  vec4 levels = textureLod(light_field, at + field_turn, 0.0) * (255.0 / 120.0);\n"     \
   "  vec3 from_middle = abs(at - 0.5);\n"                                                  \
   "  float rim = 0.5 - max(from_middle.x, max(from_middle.y, from_middle.z));\n"           \

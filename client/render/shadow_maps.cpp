@@ -121,7 +121,7 @@ void ShadowMaps::draw(Cascade& cascade, const glm::dvec3& middle, const DrawTerr
   glBindFramebuffer(GL_FRAMEBUFFER, cascade.framebuffer.get());
   glViewport(0, 0, side_, side_);
   glClear(GL_DEPTH_BUFFER_BIT);
-  draw_terrain(cascade.clip, middle);
+  draw_terrain(cascade.clip, middle, 2 * reach / static_cast<float>(side_));
   ++drawn_;
 }
 

@@ -23,8 +23,9 @@ class ShadowMaps {
   static constexpr int kCascades = 2;
 
   /// Draws the terrain into a cascade: everything that `clip` maps into its box. `clip` maps
-  /// coordinates relative to `middle`, in world voxels.
-  using DrawTerrain = std::function<void(const glm::mat4& clip, const glm::dvec3& middle)>;
+  /// coordinates relative to `middle`, in world voxels. `pixel` is the side of a pixel in voxels.
+  using DrawTerrain =
+      std::function<void(const glm::mat4& clip, const glm::dvec3& middle, float pixel)>;
 
   ShadowMaps();
   /// Call it for each chunk that changed: a box in world voxels.

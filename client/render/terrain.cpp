@@ -24,6 +24,10 @@ constexpr std::int32_t kPattern = 8192;
 /// The light field around the eye, in voxels: corners are dark and lamps light up to half of it away.
 constexpr std::int32_t kFieldWidth = 192, kFieldHeight = 128;
 
+/// The growth of a quad that closes pinholes, as a share of the distance: a thirtieth of a pixel of a
+/// picture of 720 lines, or eight times the precision of a rasterizer with 256 steps in a pixel.
+constexpr float kSeam = 0.00006F;
+
 // Texture units.
 constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kFieldUnit = 3, kShadowUnit = 5, kDepthUnit = 6;
 
@@ -31,7 +35,11 @@ constexpr const char* kDepthVertexShader =
     "#version 330 core\n" RUNSTONE_QUAD_GLSL
     "uniform mat4 clip;\n"
     "uniform vec3 origin;\n"
-    "void main() { gl_Position = clip * vec4(origin + quad_corner().at, 1.0); }\n";
+    "uniform float seam;\n"  // growth of a quad, which closes pinholes, in voxels
+    "void main() {\n"
+    "  QuadCorner c = quad_corner();\n"
+    "  gl_Position = clip * vec4(origin + c.at + c.outward * seam, 1.0);\n"
+    "}\n";
 constexpr const char* kDepthFragmentShader = "#version 330 core\nvoid main() {}\n";
 
 constexpr const char* kGhostFragmentShader =
@@ -157,9 +165,11 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, bool ha
 
 void Terrain::update_light(const FrameView& view) {
   if (view.look.quality == Quality::low) return;
-  shadows_.update(
-      view.eye, view.light, kShadowEdges * edge_, view.far, view.look.quality, view.look.exact,
-      [this](const glm::mat4& clip, const glm::dvec3& middle) { draw_depth(clip, middle); });
+  shadows_.update(view.eye, view.light, kShadowEdges * edge_, view.far, view.look.quality,
+                  view.look.exact,
+                  [this](const glm::mat4& clip, const glm::dvec3& middle, float pixel) {
+                    draw_depth(clip, middle, pixel);
+                  });
   relit_.clear();
   field_.update(voxel_at(view.eye), view.look.exact, relit_);
   field_texture_.copy(field_, relit_);
@@ -175,11 +185,14 @@ glm::vec4 Terrain::light_at(const FrameView& view, const glm::dvec3& at) const {
   return {channel(0) * channel(0), channel(8) * channel(8), channel(16) * channel(16), channel(24)};
 }
 
-void Terrain::draw_depth(const glm::mat4& clip, const glm::dvec3& middle) {
+void Terrain::draw_depth(const glm::mat4& clip, const glm::dvec3& middle, float pixel) {
   glUseProgram(depth_program_.get());
   quads_.bind(depth_program_, kQuadUnit);
   glUniformMatrix4fv(glGetUniformLocation(depth_program_.get(), "clip"), 1, GL_FALSE,
                      glm::value_ptr(clip));
+  // Light must not leak through the T-junctions of merged quads.
+  constexpr float kDepthSeam = 0.05F;  // of a pixel
+  glUniform1f(glGetUniformLocation(depth_program_.get(), "seam"), kDepthSeam * pixel);
   const GLint origin = glGetUniformLocation(depth_program_.get(), "origin");
   glEnable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
@@ -269,7 +282,7 @@ TerrainStats Terrain::draw_opaque(const FrameView& view) {
   TerrainStats stats;
   find_visible(view, stats);
   begin_pass(view, false, [](const GlProgram& program) {
-    glUniform1f(glGetUniformLocation(program.get(), "seam"), 0.0002F);
+    glUniform1f(glGetUniformLocation(program.get(), "seam"), kSeam);
   });
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);

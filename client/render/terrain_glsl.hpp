@@ -14,7 +14,7 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "uniform vec3 origin;\n"   // chunk origin minus eye
     "uniform vec3 pattern;\n"  // chunk origin modulo 8192: coordinates fixed to the world
     "uniform sampler2D palette, looks;\n"
-    "uniform float seam;\n"  // growth of a quad per unit of distance
+    "uniform float seam;\n"  // growth of a quad as a share of the distance
     "out vec3 relative;\n"
     "out vec3 voxel;\n"
     "flat out vec3 normal;\n"
@@ -26,9 +26,12 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "void main() {\n"
     "  QuadCorner c = quad_corner();\n"
     "  relative = origin + c.at;\n"
-    // Merged quads meet in T-junctions. Each quad grows by a fraction of a pixel, which closes
-    // pinholes there.
-    "  relative += c.outward * (length(relative) * seam);\n"
+    // Merged quads meet in T-junctions, where rounding leaves pinholes. So each quad grows by a small
+    // fraction of a pixel along both of its axes, whatever the angle at which they are seen: an axis
+    // of length 1 is seen with the length sqrt(q) / distance^2.
+    "  float d2 = dot(relative, relative);\n"
+    "  vec3 q = max(d2 - relative * relative, 0.0004 * d2);\n"
+    "  relative += c.outward * (seam * d2 * inversesqrt(q));\n"
     "  voxel = pattern + c.at - c.normal * 0.5;\n"
     "  normal = c.normal;\n"
     "  ivec2 row = ivec2(c.material & 255u, c.material >> 8);\n"
@@ -89,7 +92,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "#else\n"
     "  vec3 light = sun_colour * sun + sky_light(normal);\n"
     "#endif\n"
-    "  vec3 lit = colour.rgb * tint * (light + look.b * 3.0);\n"
+    "  vec3 lit = colour.rgb * tint * (light + look.b * lamps * 1.6);\n"
     "  fragment = vec4(display(in_fog(lit, relative)), 1.0);\n"
     "}\n";
 
@@ -164,7 +167,7 @@ inline constexpr const char* kTransparentFragmentShader =
     "#endif\n"
     "  vec3 c = mix(body, reflection, fresnel * mix(0.5, 1.0, liquid));\n"
     "  float fog = smoothstep(fog_range.x, fog_range.y, far);\n"
-    "  fragment = vec4(display(mix(c + colour.rgb * look.b * 3.0, sky(sight), fog)),\n"
+    "  fragment = vec4(display(mix(c + colour.rgb * look.b * lamps * 1.6, sky(sight), fog)),\n"
     "                  max(mix(deep, 1.0, fresnel), fog));\n"
     "}\n";
 
