@@ -8,32 +8,37 @@ namespace runstone {
 
 // field_lit() is the light of lamps and sky at a place of the light field (RUNSTONE_FIELD_GLSL).
 // display() is the only step from linear light to the picture: the filmic curve of Hejl and
-// Burgess-Dawson (2010), a quotient of polynomials that includes the encoding to sRGB.
-#define RUNSTONE_LIGHT_GLSL                                                             \
-  "uniform vec3 sun_direction, sun_colour, zenith, horizon, nadir, glow;\n"             \
-  "uniform vec3 ambient_up, ambient_down, dark;\n"                                      \
-  "uniform float exposure, lamps;\n"                                                    \
-  "uniform vec2 fog_range;\n"                                                           \
-  "vec3 sky(vec3 d) {\n"                                                                \
-  "  float low = 1.0 - clamp(d.y, 0.0, 1.0);\n"                                         \
-  "  vec3 c = mix(zenith, horizon, low * low * low);\n"                                 \
-  "  c = mix(c, nadir, clamp(-d.y * 3.0, 0.0, 1.0));\n"                                 \
-  "  float s = max(dot(d, sun_direction), 0.0);\n"                                      \
-  "  float s4 = s * s * s * s, s16 = s4 * s4 * s4 * s4;\n"                              \
-  "  return c + glow * (0.08 * s4 + 0.25 * s16 * s16);\n"                               \
-  "}\n"                                                                                 \
-  "vec3 sky_light(vec3 n) { return mix(ambient_down, ambient_up, 0.5 + 0.5 * n.y); }\n" \
-  "vec3 field_lit(vec4 around, vec3 n) {\n"                                             \
-  "  float open = around.a * (0.4 + 0.6 * around.a);\n"                                 \
-  "  return sky_light(n) * open + dark + around.rgb * lamps;\n"                         \
-  "}\n"                                                                                 \
-  "vec3 in_fog(vec3 c, vec3 relative) {\n"                                              \
-  "  float far = length(relative);\n"                                                   \
-  "  return mix(c, sky(relative / far), smoothstep(fog_range.x, fog_range.y, far));\n"  \
-  "}\n"                                                                                 \
-  "vec3 display(vec3 c) {\n"                                                            \
-  "  vec3 x = max(c * exposure - 0.004, 0.0);\n"                                        \
-  "  return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);\n"                    \
+// Burgess-Dawson (2010), a quotient of polynomials that includes the encoding to sRGB. Its cut of the
+// darkest tones is left out, because caves would be black. In ambient light the walls along x are a
+// little darker, so that hills in the shade and far away keep their shape.
+#define RUNSTONE_LIGHT_GLSL                                                            \
+  "uniform vec3 sun_direction, sun_colour, zenith, horizon, nadir, glow;\n"            \
+  "uniform vec3 ambient_up, ambient_down, dark;\n"                                     \
+  "uniform float exposure, lamps;\n"                                                   \
+  "uniform vec2 fog_range;\n"                                                          \
+  "vec3 sky(vec3 d) {\n"                                                               \
+  "  float low = 1.0 - clamp(d.y, 0.0, 1.0);\n"                                        \
+  "  vec3 c = mix(zenith, horizon, low * low * low);\n"                                \
+  "  c = mix(c, nadir, clamp(-d.y * 3.0, 0.0, 1.0));\n"                                \
+  "  float s = max(dot(d, sun_direction), 0.0);\n"                                     \
+  "  float s4 = s * s * s * s, s16 = s4 * s4 * s4 * s4;\n"                             \
+  "  return c + glow * (0.08 * s4 + 0.25 * s16 * s16);\n"                              \
+  "}\n"                                                                                \
+  "vec3 sky_light(vec3 n) {\n"                                                         \
+  "  vec3 c = mix(ambient_down, ambient_up, 0.5 + 0.5 * n.y);\n"                       \
+  "  return c * (1.0 - 0.14 * abs(n.x));\n"                                            \
+  "}\n"                                                                                \
+  "vec3 field_lit(vec4 around, vec3 n) {\n"                                            \
+  "  float open = mix(0.08, 1.0, around.a * (0.4 + 0.6 * around.a));\n"                \
+  "  return sky_light(n) * open + dark + around.rgb * lamps;\n"                        \
+  "}\n"                                                                                \
+  "vec3 in_fog(vec3 c, vec3 relative) {\n"                                             \
+  "  float far = length(relative);\n"                                                  \
+  "  return mix(c, sky(relative / far), smoothstep(fog_range.x, fog_range.y, far));\n" \
+  "}\n"                                                                                \
+  "vec3 display(vec3 c) {\n"                                                           \
+  "  vec3 x = max(c * exposure, 0.0);\n"                                               \
+  "  return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);\n"                   \
   "}\n"
 
 /// Sets the uniforms of RUNSTONE_LIGHT_GLSL. Requires that the program is in use.

@@ -152,7 +152,7 @@ inline constexpr const char* kTransparentFragmentShader =
     "#endif\n"
     "  vec3 mirrored = reflect(sight, wave);\n"
     "  mirrored.y = abs(mirrored.y);\n"
-    "  vec3 reflection = sky(mirrored) * open;\n"
+    "  vec3 reflection = sky(mirrored) * (0.25 + 0.75 * open);\n"
     "  float s = max(dot(mirrored, sun_direction), 0.0);\n"
     "  float s8 = s * s; s8 *= s8; s8 *= s8; float s64 = s8 * s8; s64 *= s64; s64 *= s64;\n"
     "  reflection += sun_colour * (s64 * s64 * 2.0 * lit_by_sun);\n"

@@ -17,6 +17,7 @@
 #include "tests/bench/frames/frames_world.hpp"
 #include "tests/bench/frames/gl/orbit.hpp"
 #include "tests/bench/frames/gl/plain_renderer.hpp"
+#include "tests/bench/frames/gl/product_planes.hpp"
 #include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/statistics.hpp"
 #include "tests/bench/meshing/mesher_case.hpp"
@@ -125,6 +126,7 @@ class FramesBench {
     for (int& side : size_) side *= static_cast<int>(world.edge);
     scenes_.clear();
     renderer_.reset();
+    planes_.reset();
     std::vector<Painter> painters = painters_of(world);
     time(painters);
     compare_pictures(painters);
@@ -199,6 +201,7 @@ class FramesBench {
 
   Painter product_painter(const FramesWorld& world) {
     renderer_ = std::make_unique<Renderer>(context_->loader());
+    planes_ = std::make_unique<ProductPlanes>(context_->loader(), world);
     Painter out;
     out.row.world = world.name;
     out.row.mesher = "rdm";
@@ -253,24 +256,35 @@ class FramesBench {
       plain_.draw(*reference->scene, at);
       const DrawnPicture expected = plain_.read();
       for (Painter& painter : painters) {
-        if (painter.scene != nullptr && painter.row.triangles != 0 && painter.wanted)
+        if (painter.row.triangles == 0 || !painter.wanted) continue;
+        if (painter.scene != nullptr) {
           look(painter, at, expected);
+        } else {
+          add_difference(painter.row, planes_->changed(at, expected), expected);
+        }
       }
     }
   }
 
+  /// Adds to the mean over the pictures.
+  void add(std::optional<double>& to, double value) const {
+    to = to.value_or(0) + value / options_.pictures;
+  }
+
+  void add_difference(FramesRow& row, const DrawnPicture& picture,
+                      const DrawnPicture& expected) const {
+    const PictureDifference difference = difference_of(picture, expected);
+    add(row.seam_pixels, static_cast<double>(difference.seam_pixels));
+    add(row.pinhole_pixels, static_cast<double>(difference.pinhole_pixels));
+  }
+
   void look(Painter& painter, const Camera& at, const DrawnPicture& expected) {
     FramesRow& row = painter.row;
-    const auto add = [this](std::optional<double>& to, double value) {
-      to = to.value_or(0) + value / options_.pictures;
-    };
     const auto drawn = static_cast<double>(plain_.fragments_drawn(*painter.scene, at));
     const DrawnPicture picture = plain_.read();
     const auto covered = static_cast<double>(covered_pixels(picture));
     add(row.covered_pixels, covered);
-    const PictureDifference difference = difference_of(picture, expected);
-    add(row.seam_pixels, static_cast<double>(difference.seam_pixels));
-    add(row.pinhole_pixels, static_cast<double>(difference.pinhole_pixels));
+    add_difference(row, picture, expected);
     if (covered == 0) return;  // avoids a division by zero
     add(row.overdraw, drawn / covered);
     add(row.depth_complexity,
@@ -284,6 +298,7 @@ class FramesBench {
   std::unique_ptr<GlContext> context_;  // outlives what was made in it
   PlainRenderer plain_;
   std::unique_ptr<Renderer> renderer_;
+  std::unique_ptr<ProductPlanes> planes_;
   std::vector<std::unique_ptr<PlainScene>> scenes_;
 };
 

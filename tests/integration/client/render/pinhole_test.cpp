@@ -15,32 +15,15 @@
 #include "client/platform/osmesa_context.hpp"
 #include "client/render/renderer.hpp"
 #include "common/core/hash.hpp"
-#include "common/mesh/quad.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/visibility.hpp"
+#include "tests/support/plane_colours.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr std::int32_t kHillEdge = 32;
 constexpr int kHillChunks = 4;  // along x and z
-constexpr Material kPlaneMaterials = 4000;
-
-/// Materials without variation whose colours are far apart.
-MaterialTable plane_materials() {
-  MaterialTable table;
-  SplitMix64 rng(77);
-  for (int id = 1; id <= kPlaneMaterials; ++id) {
-    const auto channel = [&rng] { return static_cast<std::uint8_t>(40 + 43 * rng.below(6)); };
-    REQUIRE(table
-                .add({"glass " + std::to_string(id),
-                      {channel(), channel(), channel(), 255},
-                      Visibility::opaque,
-                      {}})
-                .has_value());
-  }
-  return table;
-}
 
 /// Hills with steps, holes and pillars.
 RunChunk hill_chunk(ChunkCoord at) {
@@ -60,37 +43,6 @@ RunChunk hill_chunk(ChunkCoord at) {
   return chunk;
 }
 
-/// Returns the quads with the material of their plane in the world, each cut into its faces if `cut`.
-ChunkMesh coded(const ChunkMesh& mesh, ChunkCoord at, bool cut) {
-  const VoxelPos origin = origin_of(at, kHillEdge);
-  ChunkMesh out;
-  std::size_t layer = 0;
-  for (std::size_t i = 0; i < mesh.opaque.quads.size(); ++i) {
-    while (mesh.opaque.first[layer + 1] <= i) ++layer;
-    QuadFields quad = unpack(mesh.opaque.quads[i]);
-    const Axis axis = axis_of(quad.direction);
-    const std::array<std::int32_t, 3> place = {origin.x + quad.x, origin.y + quad.y,
-                                               origin.z + quad.z};
-    const auto plane = static_cast<std::uint64_t>(place[static_cast<std::size_t>(axis)]);
-    SplitMix64 rng(plane * 6 + static_cast<std::uint64_t>(quad.direction));
-    quad.material = static_cast<Material>(1 + rng.below(kPlaneMaterials));
-    const int columns = cut ? quad.width : 1, rows = cut ? quad.height : 1;
-    if (cut) quad.width = quad.height = 1;
-    const std::array<std::uint8_t*, 3> from = {&quad.x, &quad.y, &quad.z};
-    std::uint8_t& u = *from[static_cast<std::size_t>(u_axis_of(axis))];
-    std::uint8_t& v = *from[static_cast<std::size_t>(v_axis_of(axis))];
-    const std::uint8_t u0 = u, v0 = v;
-    for (int face = 0; face < columns * rows; ++face) {
-      u = static_cast<std::uint8_t>(u0 + face % columns);
-      v = static_cast<std::uint8_t>(v0 + face / columns);
-      out.opaque.quads.push_back(pack(quad));
-    }
-    for (std::size_t l = layer + 1; l < out.opaque.first.size(); ++l)
-      out.opaque.first[l] += static_cast<std::uint32_t>(columns * rows);
-  }
-  return out;
-}
-
 using Meshes = std::map<ChunkCoord, ChunkMesh>;
 
 Meshes hill_meshes() {
@@ -99,7 +51,7 @@ Meshes hill_meshes() {
     for (std::int32_t z = 0; z < kHillChunks; ++z)
       chunks.emplace(ChunkCoord{x, 0, z}, hill_chunk({x, 0, z}));
   }
-  const VisibilityTable visibility(visibilities(plane_materials()));
+  const VisibilityTable visibility(visibilities(plane_colours()));
   RdmScratch scratch;
   Meshes out;
   for (const auto& [at, chunk] : chunks) {
@@ -116,10 +68,12 @@ Meshes hill_meshes() {
 /// Draws the meshes from cameras above the hills and near the ground.
 class PlanePictures {
  public:
-  PlanePictures(GlContext& context, const Meshes& meshes, bool cut) : renderer_(context.loader()) {
-    renderer_.set_materials(plane_materials());
+  PlanePictures(GlContext& context, const Meshes& meshes, bool into_faces)
+      : renderer_(context.loader()) {
+    renderer_.set_materials(plane_colours());
     for (const auto& [at, mesh] : meshes)
-      renderer_.upload({0, at}, kHillEdge, coded(mesh, at, cut));
+      renderer_.upload({0, at}, kHillEdge,
+                       coloured_by_plane(mesh, origin_of(at, kHillEdge), into_faces));
   }
   Image draw(int number, Quality quality) {
     Camera camera;
