@@ -59,7 +59,7 @@ std::size_t LightField::index(VoxelPos at) const { return cursor(at.x, at.y, at.
 
 std::size_t LightField::byte_size() const {
   return chunk_bytes_ + codes_.capacity() * sizeof(LightCode) + falling_.capacity() +
-         levels_.capacity() * sizeof(LightLevels);
+         levels_.capacity() * sizeof(LightLevels) + flood_.byte_size();
 }
 
 void LightField::set(ChunkCoord at, std::int32_t edge, LightChunk chunk) {

@@ -1,11 +1,19 @@
 #include "client/render/light_flood.hpp"
 
+#include <algorithm>
+
 namespace runstone {
 
 void LightFlood::reset(int size_x, int size_y, int size_z) {
   stride_y_ = static_cast<std::size_t>(size_x);
   stride_z_ = stride_y_ * static_cast<std::size_t>(size_y);
   const std::size_t volume = stride_z_ * static_cast<std::size_t>(size_z);
+  // A large box is rare, and its memory is not kept for the small ones of edits.
+  constexpr std::size_t kKept = 1U << 20;
+  if (levels_.capacity() > std::max(kKept, 16 * volume)) {
+    voxels_ = {};
+    levels_ = {};
+  }
   voxels_.assign(volume, Voxel{});
   levels_.assign(volume, 0);
 }

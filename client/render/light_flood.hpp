@@ -34,6 +34,9 @@ class LightFlood {
   void add_source(std::size_t i) { push(i, brightest_of(levels_[i])); }
   /// Spreads the light of all sources. Cost: O(voxels that become brighter).
   void run();
+  std::size_t byte_size() const {
+    return voxels_.capacity() * sizeof(Voxel) + levels_.capacity() * sizeof(LightLevels);
+  }
 
  private:
   void push(std::size_t i, std::uint32_t level) {
