@@ -47,7 +47,7 @@ DayLight day_light(double time_of_day, double far) {
   // The eye adapts, so that a builder still sees the ground at night.
   out.exposure = glm::mix(2.6F, 0.95F, day) - 0.7F * dusk * (1 - day);
   // Lamps look brighter at night, but not by as much as the eye adapts.
-  out.lamps = 1.45F * std::pow(out.exposure, -0.65F);
+  out.lamps = std::pow(out.exposure, -0.25F);
   out.dark = glm::vec3{0.048F, 0.051F, 0.058F} / out.exposure;
   out.fog_end = static_cast<float>(far) * 0.98F;
   out.fog_start = static_cast<float>(far) * 0.55F;

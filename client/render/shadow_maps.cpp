@@ -35,8 +35,8 @@ void ShadowMaps::resize(int side) {
   if (side == side_) return;
   side_ = side;
   glBindTexture(GL_TEXTURE_2D_ARRAY, maps_.get());
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT32F, side, side, kCascades, 0,
-               GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT16, side, side, kCascades, 0,
+               GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, nullptr);
   const auto set = [](GLenum what, GLint value) {
     glTexParameteri(GL_TEXTURE_2D_ARRAY, what, value);
   };
@@ -161,7 +161,7 @@ void ShadowMaps::use(const GlProgram& program, int cascade, const glm::dvec3& ey
 }
 
 std::uint64_t ShadowMaps::byte_size() const {
-  return std::uint64_t{4} * kCascades * static_cast<std::uint64_t>(side_) *
+  return std::uint64_t{2} * kCascades * static_cast<std::uint64_t>(side_) *
          static_cast<std::uint64_t>(side_);
 }
 

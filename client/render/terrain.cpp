@@ -59,11 +59,23 @@ constexpr const char* kGhostFragmentShader =
     "  fragment = vec4(c + 0.25 * rim, opaque);\n"
     "}\n";
 
-std::string variant(Quality quality, bool has_field, const char* shader) {
+std::string variant_of(const char* shader, Quality quality, bool has_field, bool is_fine,
+                       bool has_fog) {
   std::string out = "#version 330 core\n";
   if (quality != Quality::low) out += "#define RUNSTONE_SHADOWS\n#define RUNSTONE_DEPTH\n";
   if (has_field) out += "#define RUNSTONE_FIELD\n";
+  if (is_fine) out += "#define RUNSTONE_FINE\n";
+  if (has_fog) out += "#define RUNSTONE_FOG\n";
   return out + shader;
+}
+
+/// Return the distance of the eye from the nearest place of a cube, 0 inside it, and from the
+/// farthest one. `min` is relative to the eye.
+double nearest_of(const glm::dvec3& min, double edge) {
+  return glm::length(glm::max(glm::max(min, -(min + edge)), 0.0));
+}
+double farthest_of(const glm::dvec3& min, double edge) {
+  return glm::length(glm::max(glm::abs(min), glm::abs(min + edge)));
 }
 
 glm::dvec3 origin_in_world(const ChunkKey& key, std::int32_t edge) {
@@ -149,14 +161,16 @@ void Terrain::remove(const ChunkKey& key) {
   chunks_.erase(found);
 }
 
-Terrain::Program& Terrain::program(Quality quality, bool is_transparent, bool has_field) {
-  Program& out =
-      programs_[static_cast<std::size_t>(quality)][is_transparent ? 1 : 0][has_field ? 1 : 0];
+Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigned variant) {
+  Program& out = programs_[static_cast<std::size_t>(quality)][is_transparent ? 1 : 0][variant];
   if (!out.gl) {
     const char* fragment = is_transparent ? kTransparentFragmentShader : kTerrainFragmentShader;
+    const auto text = [&](const char* shader) {
+      return variant_of(shader, quality, (variant & kInField) != 0, (variant & kFine) != 0,
+                        (variant & kInFog) != 0);
+    };
     out.gl = link_program(is_transparent ? "transparent" : "terrain",
-                          variant(quality, has_field, kTerrainVertexShader).c_str(),
-                          variant(quality, has_field, fragment).c_str());
+                          text(kTerrainVertexShader).c_str(), text(fragment).c_str());
     out.origin = glGetUniformLocation(out.gl.get(), "origin");
     out.pattern = glGetUniformLocation(out.gl.get(), "pattern");
   }
@@ -217,7 +231,10 @@ void Terrain::draw_depth(const glm::mat4& clip, const glm::dvec3& middle, float 
 
 void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
   visible_.clear();
+  has_variant_ = {};
   has_transparent_ = false;
+  // Grain fades out before a pixel is larger than this part of a voxel (kTerrainFragmentShader).
+  const double fine_distance = 0.0625 / view.pixel;
   const Frustum frustum(view.clip);
   for (const auto& [key, chunk] : chunks_) {
     const glm::dvec3 origin = origin_in_world(key, chunk.edge) - view.eye;
@@ -229,13 +246,19 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
     }
     const glm::vec3 centre = at + 0.5F * edge;
     has_transparent_ = has_transparent_ || chunk.transparent.count != 0;
+    unsigned variant = 0;
+    if (view.look.quality != Quality::low &&
+        !intersect(box_of(key.at, chunk.edge), field_.box()).empty())
+      variant |= kInField;
+    if (nearest_of(origin, chunk.edge) < fine_distance) variant |= kFine;
+    if (farthest_of(origin, chunk.edge) > double{view.light.fog_start}) variant |= kInFog;
+    has_variant_[variant] = true;
     visible_.push_back({&chunk,
                         at,
                         pattern_of(key, chunk.edge),
                         {-origin.x, -origin.y, -origin.z},
                         glm::dot(centre, centre),
-                        view.look.quality != Quality::low &&
-                            !intersect(box_of(key.at, chunk.edge), field_.box()).empty()});
+                        variant});
   }
   std::sort(visible_.begin(), visible_.end(),
             [](const Visible& a, const Visible& b) { return a.distance2 < b.distance2; });
@@ -244,9 +267,9 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
 void Terrain::begin_pass(const FrameView& view, bool is_transparent,
                          const std::function<void(const GlProgram& program)>& set) {
   const bool is_low = view.look.quality == Quality::low;
-  for (const bool has_field : {false, true}) {
-    if (has_field && is_low) continue;
-    Program& of_pass = program(view.look.quality, is_transparent, has_field);
+  for (unsigned variant = 0; variant < kVariants; ++variant) {
+    if (!has_variant_[variant]) continue;
+    Program& of_pass = program(view.look.quality, is_transparent, variant);
     of_pass.cascade = -1;
     glUseProgram(of_pass.gl.get());
     in_use_ = &of_pass;
@@ -256,13 +279,13 @@ void Terrain::begin_pass(const FrameView& view, bool is_transparent,
     materials_.bind(of_pass.gl, kMaterialUnit);
     quads_.bind(of_pass.gl, kQuadUnit);
     if (!is_low) shadows_.bind(of_pass.gl, kShadowUnit);
-    if (has_field) field_texture_.bind(of_pass.gl, kFieldUnit, field_, view.eye);
+    if ((variant & kInField) != 0) field_texture_.bind(of_pass.gl, kFieldUnit, field_, view.eye);
     set(of_pass.gl);
   }
 }
 
 void Terrain::use_for(const Visible& chunk, const FrameView& view, bool is_transparent) {
-  Program& of_chunk = program(view.look.quality, is_transparent, chunk.is_in_field);
+  Program& of_chunk = program(view.look.quality, is_transparent, chunk.variant);
   if (in_use_ != &of_chunk) {
     glUseProgram(of_chunk.gl.get());
     in_use_ = &of_chunk;

@@ -32,6 +32,7 @@ struct FrameView {
   glm::dvec3 eye{0};  // world voxels
   glm::mat4 clip{1};  // clip space from eye-relative space
   double near = 0.1, far = 1000;
+  double pixel = 0.002;  // the side of a pixel at distance 1
   DayLight light;
   FrameLook look;
 };
@@ -80,7 +81,7 @@ class Terrain {
     glm::vec3 origin, pattern;    // origin minus eye; origin modulo kPattern
     std::array<double, 3> eye{};  // relative to the origin
     float distance2;
-    bool is_in_field;
+    unsigned variant = 0;  // of the programs
   };
   /// The quads of a ghost's mesh, kept as long as frames show it.
   struct GhostQuads {
@@ -91,8 +92,11 @@ class Terrain {
 
   Chunk add_quads(std::int32_t edge, const ChunkMesh& mesh);
   void find_visible(const FrameView& view, TerrainStats& stats);
-  /// A program of a pass. A chunk is drawn by the one that reads the light field, or, if it lies
-  /// outside the field, by one that costs less.
+  /// The variants of a program: bits that add what not every chunk needs.
+  static constexpr unsigned kInField = 1;  // it reads the light field
+  static constexpr unsigned kFine = 2;     // grain and joints are seen
+  static constexpr unsigned kInFog = 4;    // a part of the chunk is in the fog
+  static constexpr std::size_t kVariants = 8;
   struct Program {
     GlProgram gl;
     GLint origin = -1, pattern = -1;  // the uniforms of a chunk
@@ -104,10 +108,10 @@ class Terrain {
   /// Uses the program for a chunk and sets its uniforms. Requires begin_pass() before.
   void use_for(const Visible& chunk, const FrameView& view, bool is_transparent);
   void draw_depth(const glm::mat4& clip, const glm::dvec3& middle, float pixel);
-  Program& program(Quality quality, bool is_transparent, bool has_field);
+  Program& program(Quality quality, bool is_transparent, unsigned variant);
   QuadSpan ghost_quads(const std::shared_ptr<const ChunkMesh>& mesh);
 
-  std::array<std::array<std::array<Program, 2>, 2>, 3> programs_;  // by quality, pass, field
+  std::array<std::array<std::array<Program, kVariants>, 2>, 3> programs_;  // by quality and pass
   GlProgram depth_program_, ghost_program_;
   MaterialTextures materials_;
   LightCodes light_codes_;
@@ -118,7 +122,8 @@ class Terrain {
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
   std::map<const ChunkMesh*, GhostQuads> ghosts_;
-  std::vector<Visible> visible_;  // of the present frame, from near to far
+  std::vector<Visible> visible_;               // of the present frame, from near to far
+  std::array<bool, kVariants> has_variant_{};  // one of them is drawn by it
   const Program* in_use_ = nullptr;
   std::vector<QuadSpan> spans_;  // scratch
   bool has_transparent_ = false;

@@ -1,6 +1,6 @@
 // The shaders of terrain, in GLSL 3.30. Their variants are chosen by definitions before the text:
 // RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH reads
-// the depth behind water.
+// the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, and RUNSTONE_FOG fades.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"
@@ -58,6 +58,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "  h = (h ^ (h >> 13)) * 1274126177u;\n"
     "  return float((h >> 16) & 255u) / 255.0 - 0.5;\n"
     "}\n"
+    "#ifdef RUNSTONE_FINE\n"
     // Planks and bricks have dark joints. Each row of bricks is shifted by half a brick.
     "float joint(vec2 st) {\n"
     "  float bricks = step(1.5, look.a * 4.0);\n"
@@ -67,6 +68,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "  float between_bricks = mix(1.0, step(abs(fract(along) - 0.5), 0.46), bricks);\n"
     "  return 1.0 - between_rows * between_bricks;\n"
     "}\n"
+    "#endif\n"
     "void main() {\n"
     // Each voxel has a slightly different tint, so that merged faces still look like voxels. The
     // detail fades out with distance before it would flicker.
@@ -74,12 +76,14 @@ inline constexpr const char* kTerrainFragmentShader =
     "  vec2 st = face.x > 0.5 ? voxel.zy : face.y > 0.5 ? voxel.xz : voxel.xy;\n"
     "  float pixel = max(fwidth(st.x), fwidth(st.y));\n"
     "  float detail = clamp(1.5 - 3.0 * pixel, 0.0, 1.0);\n"
-    "  float fine = clamp(1.5 - 24.0 * pixel, 0.0, 1.0);\n"
     "  vec2 edge = abs(fract(st) - 0.5);\n"
     "  float rim = smoothstep(0.5 - 0.06, 0.5, max(edge.x, edge.y));\n"
     "  float tint = 1.0 + detail * (look.r * hash(ivec3(floor(voxel))) - 0.07 * rim);\n"
+    "#ifdef RUNSTONE_FINE\n"
+    "  float fine = clamp(1.5 - 24.0 * pixel, 0.0, 1.0);\n"
     "  tint += fine * look.g * hash(ivec3(floor(voxel * 8.0)));\n"
     "  tint *= 1.0 - 0.35 * fine * step(0.1, look.a) * step(look.a, 0.9) * joint(st);\n"
+    "#endif\n"
     "  float sun = max(dot(normal, sun_direction), 0.0);\n"
     "#ifdef RUNSTONE_SHADOWS\n"
     "  sun *= sunlit(in_shadow);\n"
@@ -93,7 +97,10 @@ inline constexpr const char* kTerrainFragmentShader =
     "  vec3 light = sun_colour * sun + field_lit(vec4(0.0, 0.0, 0.0, 1.0), normal);\n"
     "#endif\n"
     "  vec3 lit = colour.rgb * tint * (light + look.b * lamps * 1.1);\n"
-    "  fragment = vec4(display(in_fog(lit, relative)), 1.0);\n"
+    "#ifdef RUNSTONE_FOG\n"
+    "  lit = in_fog(lit, relative);\n"
+    "#endif\n"
+    "  fragment = vec4(display(lit), 1.0);\n"
     "}\n";
 
 // Water and glass. The surface of a liquid moves and reflects the sky at flat angles; the path of
