@@ -20,9 +20,25 @@ constexpr double kPlateHeight = 0.45;      // voxels from the eye of a player to
 constexpr double kPlateDistanceMax = 160;  // voxels
 constexpr TimeUs kRateUs = 500'000;        // rates of traffic are measured over this time
 
+/// Returns the mode of inspection that an action shows or hides, or nullopt.
+std::optional<InspectionMode> mode_of(Action action) {
+  switch (action) {
+    case Action::inspect_wireframe:
+      return InspectionMode::wireframe;
+    case Action::inspect_runs:
+      return InspectionMode::runs;
+    case Action::inspect_orders:
+      return InspectionMode::orders;
+    case Action::inspect_layers:
+      return InspectionMode::layers;
+    default:
+      return std::nullopt;
+  }
+}
+
 }  // namespace
 
-ClientHud::ClientHud(ClientSession& session, Player& player, const MeshPipeline& pipeline,
+ClientHud::ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline,
                      TerminalChat& chat, std::string name, const KeyMap& keys)
     : session_(session),
       player_(player),
@@ -45,6 +61,12 @@ bool ClientHud::act(Action action) {
   }
   if (action == Action::interface) {
     is_shown_ = !is_shown_;
+    return true;
+  }
+  if (const auto mode = mode_of(action)) {
+    InspectionModes modes = pipeline_.inspection().modes();
+    modes.set(*mode, !modes[*mode]);
+    pipeline_.inspect(modes);
     return true;
   }
   return hud_.act(action);
@@ -94,6 +116,7 @@ HudState ClientHud::state(const HudScene& scene) const {
   if (out.shows_players) add_players(out);
   add_plates(scene, out);
   out.timeline = timeline();
+  out.inspection = pipeline_.inspection().modes();
   return out;
 }
 
@@ -218,6 +241,7 @@ void ClientHud::carry_out(const UiAction& action) {
   }
   if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
   if (const auto* held = std::get_if<HoldMaterial>(&action)) hold(held->material);
+  if (const auto* chosen = std::get_if<SetInspection>(&action)) pipeline_.inspect(chosen->modes);
 }
 
 }  // namespace runstone

@@ -32,8 +32,8 @@ struct HudScene {
 class ClientHud {
  public:
   /// All but `keys` and the player's `name` must outlive this object.
-  ClientHud(ClientSession& session, Player& player, const MeshPipeline& pipeline,
-            TerminalChat& chat, std::string name, const KeyMap& keys);
+  ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline, TerminalChat& chat,
+            std::string name, const KeyMap& keys);
 
   /// Fills the hotbar for a world. Call it when a world opens for the first time, or another one.
   void enter(const MaterialTable& materials);
@@ -70,7 +70,7 @@ class ClientHud {
 
   ClientSession& session_;
   Player& player_;
-  const MeshPipeline& pipeline_;
+  MeshPipeline& pipeline_;
   TerminalChat& chat_;
   const std::string name_;
   Hud hud_;

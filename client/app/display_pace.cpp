@@ -7,7 +7,9 @@ namespace runstone {
 void DisplayPace::step(MeshPipeline& pipeline, const ClientSession& session, bool has_focus,
                        const Pose& pose, bool is_hud_moving, TimeUs now_us) {
   pipeline.set_frame_interval(has_focus ? MeshPipeline::kFrameUs : kBackgroundFrameUs);
-  const TimeUs idle_us = has_focus ? kStillFrameUs : kStillFrameUsBackground;
+  const auto& frames = pipeline.recent_frames();
+  const bool is_animated = !frames.empty() && frames.back().stats.is_animated;
+  const TimeUs idle_us = has_focus && is_animated ? kAnimatedFrameUs : kStillFrameUs;
   if (is_moving(session, pose, is_hud_moving, now_us) || now_us - drawn_us_ >= idle_us)
     pipeline.moved();
 }

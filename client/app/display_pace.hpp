@@ -19,9 +19,10 @@ class DisplayPace {
   /// Call it when a frame was ordered.
   void drew(TimeUs now_us) { drawn_us_ = now_us; }
 
-  /// The time between two frames in which nothing has moved. Waves and a clock go on slowly.
-  static constexpr TimeUs kStillFrameUs = 200'000;
-  static constexpr TimeUs kStillFrameUsBackground = 1'000'000;
+  /// The time between two frames in which nothing has moved.
+  static constexpr TimeUs kStillFrameUs = 1'000'000;
+  /// The same while waves or the ghost of a preview are in sight. They go on slowly.
+  static constexpr TimeUs kAnimatedFrameUs = 200'000;
   /// The least time between two frames of a window without focus.
   static constexpr TimeUs kBackgroundFrameUs = 100'000;
   /// Other players count as moving for this time after a new pose.

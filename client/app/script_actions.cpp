@@ -144,6 +144,12 @@ void ScriptActions::click(double x, double y) {
                ButtonEvent{MouseButton::left, false}});
 }
 
+void ScriptActions::inspect(InspectionMode mode, bool is_on) {
+  InspectionModes modes = pipeline_.inspection().modes();
+  modes.set(mode, is_on);
+  pipeline_.inspect(modes);
+}
+
 bool ScriptActions::screenshot(const std::string& file) {
   if (!pipeline_.draws()) return false;
   pipeline_.request_screenshot(screenshot_path(file), steady_now_us());

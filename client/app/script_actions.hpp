@@ -71,6 +71,7 @@ class ScriptActions final : public ScriptHost {
   void click(double x, double y) override;
   bool handling_input() const override { return input_.has_events(); }
   void show_interface(bool is_shown) override { hud_.set_shown(is_shown); }
+  void inspect(InspectionMode mode, bool is_on) override;
   bool screenshot(const std::string& file) override;
   /// Returns where the screenshot of this name goes.
   std::string screenshot_path(const std::string& file) const;

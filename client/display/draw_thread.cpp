@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client/display/eye_chunk.hpp"
 #include "common/core/assert.hpp"
 #include "common/os/low_priority.hpp"
 #include "common/os/steady_clock.hpp"
@@ -29,8 +30,9 @@ FrameDone draw_frame(Screen& screen, const FrameOrder& order) {
 }  // namespace
 
 DrawThread::DrawThread(std::function<std::unique_ptr<Screen>()> make_screen, DrawPriority priority,
-                       std::function<void()> wake)
+                       std::function<void()> wake, UploadBudget budget)
     : wake_(std::move(wake)),
+      budget_(budget),
       thread_([this, make = std::move(make_screen), priority](const std::stop_token& stop) {
         run(stop, make, priority);
       }) {
@@ -53,7 +55,7 @@ void DrawThread::upload(const ChunkKey& key, ChunkUpload upload) {
   queued_.insert(key);
   {
     const std::lock_guard lock(mutex_);
-    work_.changes.insert_or_assign(key, std::move(upload));
+    work_.changes.put(key, std::move(upload));
   }
   changed_.notify_one();
 }
@@ -62,7 +64,7 @@ void DrawThread::remove(const ChunkKey& key) {
   queued_.erase(key);
   {
     const std::lock_guard lock(mutex_);
-    work_.changes.insert_or_assign(key, std::nullopt);
+    work_.changes.remove(key);
   }
   changed_.notify_one();
 }
@@ -74,7 +76,7 @@ void DrawThread::clear() {
     changed_.wait(lock, [this] { return !is_busy_ || state_ == State::failed; });
     if (state_ == State::failed) throw std::runtime_error(failure_);
     done_.clear();
-    for (const ChunkKey& key : queued_) work_.changes.emplace(key, std::nullopt);
+    for (const ChunkKey& key : queued_) work_.changes.remove(key);
   }
   queued_.clear();
   frame_ordered_ = false;
@@ -131,33 +133,114 @@ void DrawThread::run(const std::stop_token& stop,
 }
 
 void DrawThread::serve(const std::stop_token& stop, Screen& screen) {
-  while (const std::optional<Work> work = next(stop)) {
-    if (work->materials) screen.set_materials(*work->materials);
-    std::vector<DrawDone> uploads;
-    for (const auto& [key, upload] : work->changes) {
-      if (upload) {
-        screen.upload(key, upload->edge, *upload->mesh, upload->voxels.get());
-        uploads.emplace_back(UploadDone{key, upload->serial, steady_now_us()});
-      } else {
-        screen.remove(key);
-      }
+  while (await_work(stop)) {
+    std::optional<FrameOrder> order;
+    {
+      const std::lock_guard lock(mutex_);
+      order = std::exchange(work_.frame, std::nullopt);
     }
-    if (!uploads.empty()) done(std::move(uploads));
-    if (!work->frame) continue;
+    apply_removals(screen);
+    if (!order) {
+      upload_until_ordered(screen);
+      continue;
+    }
+    const std::size_t carried = upload_for(*order, screen);
     std::vector<DrawDone> frame;
-    frame.emplace_back(draw_frame(screen, *work->frame));
+    frame.emplace_back(draw_frame(screen, *order));
+    auto& drawn = std::get<FrameDone>(frame.back());
+    drawn.upload_us = std::exchange(uploads_.us, 0);
+    drawn.uploads = std::exchange(uploads_.count, 0);
+    drawn.carried = carried;
     done(std::move(frame));
   }
 }
 
-std::optional<DrawThread::Work> DrawThread::next(const std::stop_token& stop) {
+bool DrawThread::await_work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   is_busy_ = false;
   changed_.notify_all();
   if (!changed_.wait(lock, stop, [this] { return !work_.empty(); }) || stop.stop_requested())
-    return std::nullopt;
+    return false;
   is_busy_ = true;
-  return std::exchange(work_, {});
+  return true;
+}
+
+void DrawThread::apply_removals(Screen& screen) {
+  std::optional<MaterialTable> materials;
+  std::vector<ChunkKey> removals;
+  {
+    const std::lock_guard lock(mutex_);
+    materials = std::exchange(work_.materials, std::nullopt);
+    removals = work_.changes.take_removals();
+  }
+  if (materials) screen.set_materials(*materials);
+  for (const ChunkKey& key : removals) screen.remove(key);
+}
+
+void DrawThread::upload_until_ordered(Screen& screen) {
+  const TimeUs until_us = steady_now_us() + budget_.time_us;
+  do {
+    std::optional<std::pair<ChunkKey, ChunkUpload>> next;
+    {
+      const std::lock_guard lock(mutex_);
+      if (work_.frame || work_.materials) break;
+      next = work_.changes.take_upload();
+    }
+    if (!next) break;
+    upload(screen, next->first, next->second);
+  } while (steady_now_us() < until_us);
+  report_uploads();
+}
+
+std::size_t DrawThread::upload_for(const FrameOrder& order, Screen& screen) {
+  if (order.shows_all) {
+    UploadQueue all;
+    {
+      const std::lock_guard lock(mutex_);
+      all = std::exchange(work_.changes, {});
+    }
+    for (const ChunkKey& key : all.take_removals()) screen.remove(key);
+    while (const auto next = all.take_upload()) upload(screen, next->first, next->second);
+    report_uploads();
+    return 0;
+  }
+  const TimeUs until_us = steady_now_us() + budget_.time_us;
+  std::size_t bytes = 0, carried = 0;
+  bool is_first = true;
+  while (true) {
+    std::optional<std::pair<ChunkKey, ChunkUpload>> next;
+    {
+      const std::lock_guard lock(mutex_);
+      UploadQueue& changes = work_.changes;
+      if (is_first) {
+        changes.set_eye(chunk_of_eye(order.camera, edge_));
+        changes.frame_passed();
+      }
+      const bool is_spent = bytes >= budget_.bytes || steady_now_us() >= until_us;
+      if (is_first || !is_spent) next = changes.take_upload();
+      carried = changes.upload_count();
+    }
+    if (!next) break;
+    is_first = false;
+    upload(screen, next->first, next->second);
+    bytes += gpu_bytes(*next->second.mesh, next->second.voxels.get());
+  }
+  report_uploads();
+  return carried;
+}
+
+void DrawThread::upload(Screen& screen, const ChunkKey& key, const ChunkUpload& upload) {
+  const TimeUs start_us = steady_now_us();
+  screen.upload(key, upload.edge, *upload.mesh, upload.voxels.get());
+  const TimeUs end_us = steady_now_us();
+  edge_ = upload.edge;
+  uploads_.us += end_us - start_us;
+  ++uploads_.count;
+  uploads_.done.emplace_back(UploadDone{key, upload.number, upload.serial, end_us});
+}
+
+void DrawThread::report_uploads() {
+  if (!uploads_.done.empty()) done(std::exchange(uploads_.done, {}));
 }
 
 void DrawThread::done(std::vector<DrawDone> done) {

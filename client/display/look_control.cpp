@@ -1,6 +1,7 @@
 #include "client/display/look_control.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace runstone {
 
@@ -12,7 +13,8 @@ void LookControl::set_quality(std::optional<Quality> quality) {
 
 FrameLook LookControl::look(TimeUs now_us) const {
   FrameLook out = look_;
-  out.quality = fixed_.value_or(exact_ ? Quality::high : automatic_);
+  out.quality = fixed_.value_or(exact_ ? Quality::high : kLevels[level_].quality);
+  if (!fixed_ && !exact_) out.scale = kLevels[level_].scale;
   out.exact = exact_;
   // The value repeats after an hour, so that a float holds it precisely.
   if (!exact_) out.seconds = static_cast<double>(now_us % 3'600'000'000) / 1e6;
@@ -20,31 +22,41 @@ FrameLook LookControl::look(TimeUs now_us) const {
 }
 
 std::string LookControl::name() const {
-  const std::string level = to_string(look(0).quality);
-  return fixed_ ? level : "auto: " + level;
+  const FrameLook shown = look(0);
+  const std::string quality = to_string(shown.quality);
+  if (fixed_) return quality;
+  const std::string automatic = "auto: " + quality;
+  if (shown.scale == 1) return automatic;
+  return automatic + " at " + std::to_string(std::lround(100 * shown.scale)) + " %";
 }
 
 void LookControl::frame_took(TimeUs us) {
   if (fixed_ || exact_) return;
   took_[count_++] = us;
   ++waited_;
-  if (count_ < kFrames) return;
+  slow_ = us > 2 * kTargetUs ? slow_ + 1 : 0;
+  const bool is_far_too_slow = slow_ == kSlowFrames;
+  if (count_ < kFrames && !is_far_too_slow) return;
+  const std::size_t frames = count_;
   count_ = 0;
+  slow_ = 0;
   std::array<TimeUs, kFrames> sorted = took_;
-  std::nth_element(sorted.begin(), sorted.begin() + kFrames / 2, sorted.end());
-  const TimeUs median = sorted[kFrames / 2];
-  if (median > kTargetUs && automatic_ != Quality::low) {
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(frames / 2);
+  std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(frames));
+  const TimeUs median = *middle;
+  if ((is_far_too_slow || median > kTargetUs) && level_ != 0) {
     if (came_from_below_) patience_ = std::min(2 * patience_, kPatienceMax);
-    step(-1);
-  } else if (static_cast<double>(median) < kUpShare * static_cast<double>(kTargetUs) &&
-             automatic_ != Quality::high && waited_ >= patience_) {
-    step(1);
+    step_to(level_ - 1);
+  } else if (!is_far_too_slow &&
+             static_cast<double>(median) < kUpShare * static_cast<double>(kTargetUs) &&
+             level_ + 1 != kLevels.size() && waited_ >= patience_) {
+    step_to(level_ + 1);
   }
 }
 
-void LookControl::step(int levels) {
-  automatic_ = static_cast<Quality>(static_cast<int>(automatic_) + levels);
-  came_from_below_ = levels > 0;
+void LookControl::step_to(std::size_t level) {
+  came_from_below_ = level > level_;
+  level_ = level;
   waited_ = 0;
 }
 

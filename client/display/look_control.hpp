@@ -1,6 +1,8 @@
 // LookControl: chooses the look of the next frame. The automatic quality measures how long frames
 // take and takes the highest level whose frames are short enough. Pure: durations are arguments.
-//   - A level is left downwards if the median of kFrames frames is above the target.
+//   - The levels are those of Quality, and below `low` two that draw the world in a lower resolution.
+//   - A level is left downwards if the median of kFrames frames is above the target, or sooner, after
+//     kSlowFrames frames that took more than twice the target.
 //   - It is left upwards if the median is below kUpShare of the target. If the higher level then
 //     turns out too slow, the next attempt waits twice as many frames, so that the level does not
 //     change to and fro.
@@ -31,27 +33,42 @@ class LookControl {
   void set_quality(std::optional<Quality> quality);
   std::optional<Quality> quality() const { return fixed_; }
 
-  /// Returns the name of the level that frames have now, such as "auto: medium".
+  /// Returns the name of the level that frames have now, such as "auto: medium" or "auto: low at
+  /// 50 %".
   std::string name() const;
   /// Returns the look of a frame that begins now.
   FrameLook look(TimeUs now_us) const;
   /// Call it for each frame, with the time that drawing took.
   void frame_took(TimeUs us);
 
+  /// Where automatic quality may be, from the least effort on.
+  struct Level {
+    Quality quality;
+    double scale;  // as FrameLook::scale
+  };
+  static constexpr std::array<Level, 5> kLevels = {{{Quality::low, 0.5},
+                                                    {Quality::low, 0.75},
+                                                    {Quality::low, 1},
+                                                    {Quality::medium, 1},
+                                                    {Quality::high, 1}}};
+  /// Returns the index of the automatic level in kLevels.
+  std::size_t level() const { return level_; }
+
   static constexpr TimeUs kTargetUs = 25'000;
   static constexpr double kUpShare = 0.45;
-  static constexpr std::size_t kFrames = 24;
+  static constexpr std::size_t kFrames = 24, kSlowFrames = 6;
   static constexpr unsigned kPatienceMax = 4096;  // frames
 
  private:
-  void step(int levels);
+  void step_to(std::size_t level);
 
   bool exact_;
   FrameLook look_;
   std::optional<Quality> fixed_;
-  Quality automatic_ = Quality::medium;
+  std::size_t level_ = 3;  // automatic, of kLevels
   std::array<TimeUs, kFrames> took_{};
   std::size_t count_ = 0;         // of took_
+  std::size_t slow_ = 0;          // the last frames, if each took more than twice the target
   unsigned waited_ = 0;           // frames since the last step
   unsigned patience_ = 120;       // frames before a step upwards
   bool came_from_below_ = false;  // the last step was upwards

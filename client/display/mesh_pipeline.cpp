@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "client/display/eye_chunk.hpp"
 #include "common/core/assert.hpp"
 #include "common/mesh/visibility.hpp"
 #include "common/os/steady_clock.hpp"
@@ -13,15 +14,6 @@
 namespace runstone {
 
 namespace {
-
-/// Returns the memory of a chunk in the renderer: its quads, and at most its runs once more, with a
-/// byte for each column.
-std::size_t gpu_bytes_of(const MeshResult& result) {
-  const RunChunk& chunk = *result.chunk;
-  const std::size_t columns = std::size_t{chunk.extent.x} * chunk.extent.z;
-  const std::size_t light = chunk.is_uniform() ? 0 : chunk.runs.byte_size() + columns;
-  return result.mesh->quad_count() * sizeof(Quad) + light;
-}
 
 bool begins_with(std::span<const MaterialInfo> rows, std::span<const MaterialInfo> first) {
   return rows.size() >= first.size() && std::ranges::equal(rows.first(first.size()), first);
@@ -35,6 +27,7 @@ MeshPipeline::MeshPipeline(const Replica& replica, DrawThread* draw_thread, bool
       workers_(workers),
       wake_(std::move(wake)),
       recorder_(draw_thread != nullptr ? LatencyStage::presented : LatencyStage::meshed),
+      replica_(replica),
       planner_(replica),
       look_(!watched),
       draw_thread_(draw_thread) {}
@@ -65,6 +58,7 @@ void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock,
   for (const ChunkChange& chunk : changes.chunks) {
     if (!chunk.removed) continue;
     draw_thread_->remove(chunk.key);
+    tracker_.removed(chunk.key);
     gpu_bytes_.erase(chunk.key);
     changed_ = true;
   }
@@ -75,6 +69,7 @@ void MeshPipeline::take_drawn() {
   // The draw thread reports in order: a frame presents the uploads before it and none after it.
   for (const DrawDone& done : draw_thread_->take_done()) {
     if (const auto* upload = std::get_if<UploadDone>(&done)) {
+      tracker_.uploaded(upload->key, upload->number);
       recorder_.uploaded(upload->key, upload->serial, upload->at_us);
     }
     if (const auto* frame = std::get_if<FrameDone>(&done)) take_frame(*frame);
@@ -82,8 +77,10 @@ void MeshPipeline::take_drawn() {
 }
 
 void MeshPipeline::take_frame(const FrameDone& frame) {
+  tracker_.presented();
   recorder_.presented(frame.presented_us);
   ++frames_.presented;
+  frames_.upload_us.add(frame.upload_us);
   last_frame_us_ = frame.presented_us - frame.started_us;
   frames_.draw_us.add(last_frame_us_);
   look_.frame_took(last_frame_us_);
@@ -114,11 +111,11 @@ void MeshPipeline::take_result(MeshResult result) {
   recorder_.meshed(result.key, result.serial, result.meshed_us);
   join_.done(result.key, result.meshed_us);
   if (!draw_thread_) return;
-  gpu_bytes_.set(result.key, gpu_bytes_of(result));
-  draw_thread_->upload(
-      result.key, {result.serial, result.edge, std::move(result.mesh), std::move(result.chunk)});
-  changed_ = uploads_waiting_ = true;
-  edits_waiting_ = edits_waiting_ || recorder_.open_edits() != 0;
+  gpu_bytes_.set(result.key, runstone::gpu_bytes(*result.mesh, result.chunk.get()));
+  inspection_.meshed(result, result.meshed_us);
+  tracker_.queued(result.key, result.number, result.urgency);
+  draw_thread_->upload(result.key, {result.number, result.serial, result.edge, result.urgency,
+                                    std::move(result.mesh), std::move(result.chunk)});
 }
 
 void MeshPipeline::mesh_layers() {
@@ -150,8 +147,10 @@ bool MeshPipeline::is_screenshot_due(TimeUs now_us) const {
 bool MeshPipeline::is_frame_due(TimeUs now_us) const {
   if (!draw_thread_ || frame_.in_progress) return false;
   // Off screen, frames serve edits and screenshots. More frames would only slow down loading.
-  const bool is_due = changed_ && now_us >= next_frame_us_;
-  return is_due || edits_waiting_ || is_screenshot_due(now_us);
+  const bool is_changing =
+      changed_ || !tracker_.empty() || (watched_ && inspection_.is_fading(now_us));
+  const bool is_due = is_changing && now_us >= next_frame_us_;
+  return is_due || tracker_.has_edits() || is_screenshot_due(now_us);
 }
 
 void MeshPipeline::draw(TimeUs now_us, FrameOrder order) {
@@ -160,12 +159,17 @@ void MeshPipeline::draw(TimeUs now_us, FrameOrder order) {
   order.contents.look = look_.look(now_us);
   if (screenshot_due) {
     order.contents.look.exact = true;
+    order.shows_all = true;
     order.screenshots = std::exchange(screenshots_, {});
   }
+  if (inspection_.modes().any()) {
+    const ChunkCoord eye = chunk_of_eye(order.camera, replica_.chunk_edge());
+    order.contents.inspection =
+        inspection_.inspection(replica_, eye, order.contents.look.exact, now_us);
+  }
   draw_thread_->draw(std::move(order));
-  ++frames_ordered_;
-  frame_ = {true, uploads_waiting_, screenshot_due};
-  changed_ = uploads_waiting_ = edits_waiting_ = false;
+  frame_ = {true, screenshot_due};
+  changed_ = false;
   if (watched_) next_frame_us_ = now_us + frame_interval_us_;
 }
 
@@ -175,8 +179,8 @@ void MeshPipeline::request_screenshot(std::string path, TimeUs now_us) {
 }
 
 bool MeshPipeline::has_caught_up() {
-  if (!last_frame_) last_frame_ = frames_ordered_ + (edits_waiting_ ? 1 : 0);
-  return frames_.presented >= *last_frame_;
+  if (!last_job_) last_job_ = planner_.jobs();
+  return !tracker_.has_edits_up_to(*last_job_);
 }
 
 void MeshPipeline::add_to(ClientReport& report) const {

@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "client/display/draw_thread.hpp"
+#include "client/display/inspection_control.hpp"
 #include "client/display/look_control.hpp"
+#include "client/display/upload_tracker.hpp"
 #include "client/report/report.hpp"
 #include "client/schedule/byte_ledger.hpp"
 #include "client/schedule/join_recorder.hpp"
@@ -54,6 +56,12 @@ class MeshPipeline {
   /// The look of all frames.
   LookControl& look() { return look_; }
   const LookControl& look() const { return look_; }
+  /// What frames show of the way chunks are stored and meshed.
+  const InspectionControl& inspection() const { return inspection_; }
+  void inspect(const InspectionModes& modes) {
+    inspection_.set(modes);
+    changed_ = true;
+  }
   /// With true, frames off screen follow one another without a pause, for measurements.
   void set_unpaced(bool unpaced) { is_unpaced_ = unpaced; }
   /// Returns the time that drawing the last presented frame took.
@@ -85,11 +93,11 @@ class MeshPipeline {
 
   /// Returns true if all shown runs are meshed and a frame with all of these meshes was presented.
   bool is_up_to_date() const {
-    return planner_.dirty_count() == 0 && is_idle() && !uploads_waiting_ && !frame_.uploads;
+    return planner_.dirty_count() == 0 && is_idle() && tracker_.empty();
   }
   /// Returns true if every edit that was meshed before the first call has been presented. That
-  /// takes at most two frames, whatever other players edit meanwhile. Call it when the program
-  /// wants to end.
+  /// takes a bounded number of frames, whatever other players edit meanwhile (UploadQueue::kPatience).
+  /// Call it when the program wants to end.
   bool has_caught_up();
   /// Returns the last kRecentFramesMax frames that were presented; the newest one is the last.
   const std::deque<FrameDone>& recent_frames() const { return recent_frames_; }
@@ -136,6 +144,7 @@ class MeshPipeline {
   const std::function<void()> wake_;
   LatencyRecorder recorder_;
   JoinRecorder join_;
+  const Replica& replica_;
   MeshPlanner planner_;
   std::size_t mesh_bytes_max_ = std::numeric_limits<std::size_t>::max();
   ByteLedger<std::uint64_t> open_job_bytes_;  // expected, by job number
@@ -144,18 +153,17 @@ class MeshPipeline {
   Histogram whole_ns_, layers_ns_;
   FrameStats frames_;
   std::deque<FrameDone> recent_frames_;
-  // These flags are set by events since the last frame was ordered.
   LookControl look_;
+  InspectionControl inspection_;
   bool is_unpaced_ = false;
   TimeUs last_frame_us_ = 0;
-  bool changed_ = true;           // the camera, a marker or a mesh changed
-  bool uploads_waiting_ = false;  // a mesh was queued for upload
-  bool edits_waiting_ = false;    // a mesh was queued while an edit was not presented yet
+  // The next flag is set by events since the last frame was ordered.
+  bool changed_ = true;  // the camera, a marker or the look changed
   struct {
-    bool in_progress = false, uploads = false, screenshots = false;
-  } frame_;  // the frame in progress; true if it shows new meshes, and if it becomes screenshots
-  std::uint64_t frames_ordered_ = 0;
-  std::optional<std::uint64_t> last_frame_;  // has_caught_up(): the frame to wait for
+    bool in_progress = false, screenshots = false;
+  } frame_;                                // the frame in progress
+  UploadTracker tracker_;                  // of the meshes that draw_thread_ got
+  std::optional<std::uint64_t> last_job_;  // has_caught_up(): the newest mesh job to wait for
   TimeUs frame_interval_us_ = kFrameUs;
   TimeUs next_frame_us_ = 0;              // the earliest time of a frame without new edits
   std::vector<std::string> screenshots_;  // files requested

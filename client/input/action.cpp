@@ -57,6 +57,13 @@ constexpr std::array<ActionInfo, kActionCount> kTable = {{
     {Action::statistics, "statistics", "show or hide the measurements", window, "F3"},
     {Action::interface, "interface", "hide or show everything but the world", window, "F4"},
     {Action::ground, "ground", "show or hide the outlines of protected ground", window, "G"},
+    {Action::inspect_wireframe, "inspect_wireframe", "show or hide the edges of quads", window,
+     "F5"},
+    {Action::inspect_runs, "inspect_runs", "show or hide where stored runs end", window, "F6"},
+    {Action::inspect_orders, "inspect_orders", "show or hide the axis orders of chunks", window,
+     "F7"},
+    {Action::inspect_layers, "inspect_layers", "show or hide layers as they are meshed again",
+     window, "F8"},
     {Action::release, "release", "close a window; otherwise open the menu", window, "escape"},
 }};
 

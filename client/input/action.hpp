@@ -57,6 +57,10 @@ enum class Action : std::uint8_t {
   statistics,
   interface,
   ground,
+  inspect_wireframe,
+  inspect_runs,
+  inspect_orders,
+  inspect_layers,
   release,
 };
 inline constexpr std::size_t kActionCount = static_cast<std::size_t>(Action::release) + 1;

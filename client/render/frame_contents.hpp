@@ -5,6 +5,7 @@
 #include "client/render/body.hpp"
 #include "client/render/frame_look.hpp"
 #include "client/render/ghost.hpp"
+#include "client/render/inspection.hpp"
 #include "client/render/marker.hpp"
 #include "common/core/ids.hpp"
 
@@ -16,6 +17,7 @@ struct FrameContents {
   std::vector<Marker> markers;
   std::vector<Body> bodies;
   std::vector<GhostChunk> ghosts;
+  Inspection inspection;
 };
 
 }  // namespace runstone

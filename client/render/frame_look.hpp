@@ -18,6 +18,9 @@ struct FrameLook {
   /// values are equal.
   double seconds = 0;
   Quality quality = Quality::high;
+  /// The world is drawn with this share of the frame's width and height, and stretched. The user
+  /// interface is not. 0 < scale <= 1.
+  double scale = 1;
   /// True: a frame shows the shadows of exactly the present world. False: far shadows may be some
   /// frames old, so that no frame takes long. Pictures in files are exact.
   bool exact = true;

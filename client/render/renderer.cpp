@@ -1,5 +1,6 @@
 #include "client/render/renderer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -50,7 +51,12 @@ struct Renderer::State {
   explicit State(GlContextLoader loader) : gl(loader) {}
 
   LoadedGl gl;
-  FrameTarget target;
+  /// Returns the target that has the finished frame.
+  const FrameTarget& frame() const { return is_scaled ? stretched : target; }
+
+  FrameTarget target;     // of the world
+  FrameTarget stretched;  // of the same in the size of the frame, if that is another one
+  bool is_scaled = false;
   SkyPainter sky;
   Terrain terrain;
   BodyPainter bodies;
@@ -77,6 +83,9 @@ void Renderer::remove(const ChunkKey& key) { state_->terrain.remove(key); }
 RenderStats Renderer::draw(const Camera& camera, int width, int height,
                            const FrameContents& contents) {
   State& s = *state_;
+  const auto scaled = [&contents](int side) {
+    return std::max(1, static_cast<int>(std::lround(side * contents.look.scale)));
+  };
   FrameView view;
   view.eye = {camera.x, camera.y, camera.z};
   view.clip = clip_of(camera, width, height);
@@ -93,7 +102,7 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
     view.light =
         light_inside(s.materials[contents.at_eye], view.light, s.terrain.light_at(view, view.eye));
   }
-  s.target.bind(width, height);
+  s.target.bind(scaled(width), scaled(height));
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glDisable(GL_CULL_FACE);
   s.sky.draw(view.clip, view.light);
@@ -106,15 +115,25 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
     s.terrain.draw_transparent(view, s.target.depth());
     s.target.bind_all();
   }
+  s.terrain.draw_inspection(view, contents.inspection);
   s.terrain.draw_ghosts(view, contents.ghosts);
   s.markers.draw(contents.markers, view.eye, view.clip);
-  return {drawn.chunks_drawn, drawn.chunks_culled, drawn.quads_drawn, s.terrain.quad_bytes(),
-          s.terrain.gpu_bytes()};
+  s.is_scaled = s.target.width() != width || s.target.height() != height;
+  if (s.is_scaled) {
+    s.stretched.bind(width, height);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, s.target.framebuffer());
+    glBlitFramebuffer(0, 0, s.target.width(), s.target.height(), 0, 0, width, height,
+                      GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  }
+  return {drawn.chunks_drawn,    drawn.chunks_culled,
+          drawn.quads_drawn,     s.terrain.quad_bytes(),
+          s.terrain.gpu_bytes(), s.terrain.has_transparent() || !contents.ghosts.empty()};
 }
 
 void Renderer::draw_overlay(const OverlayFrame& overlay) {
-  FrameTarget& target = state_->target;
-  target.bind(target.width(), target.height());
+  const FrameTarget& target = state_->frame();
+  target.bind_all();
+  glViewport(0, 0, target.width(), target.height());
   state_->overlay.draw(overlay, target.width(), target.height());
 }
 
@@ -131,7 +150,7 @@ void Renderer::finish() {
 }
 
 Image Renderer::read_image() {
-  const FrameTarget& target = state_->target;
+  const FrameTarget& target = state_->frame();
   if (target.width() == 0) throw std::runtime_error("read_image before the first draw");
   Image image{target.width(), target.height(), {}};
   const std::size_t row = static_cast<std::size_t>(image.width) * 3;
@@ -148,12 +167,12 @@ Image Renderer::read_image() {
   return image;
 }
 
-void Renderer::present(int window_width, int window_height) {
-  const FrameTarget& target = state_->target;
+void Renderer::present(int left, int bottom, int width, int height) {
+  const FrameTarget& target = state_->frame();
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glBlitFramebuffer(0, 0, target.width(), target.height(), 0, 0, window_width, window_height,
-                    GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  glBlitFramebuffer(0, 0, target.width(), target.height(), left, bottom, left + width,
+                    bottom + height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
 }
 
 }  // namespace runstone

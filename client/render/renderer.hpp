@@ -31,6 +31,8 @@ struct RenderStats {
   std::uint64_t quads_drawn = 0;
   std::uint64_t quad_bytes = 0;  // on the GPU, of all chunks
   std::uint64_t gpu_bytes = 0;   // those, the light field and the shadow maps
+  /// The picture changes with FrameLook::seconds: it shows transparent faces or ghosts.
+  bool is_animated = false;
 };
 
 /// A function that returns a GL function by name. eglGetProcAddress, OSMesaGetProcAddress and
@@ -64,7 +66,9 @@ class Renderer {
   /// Returns the last frame, with what was drawn over it. Requires a draw() before.
   Image read_image();
   /// Copies the last frame to the window's default framebuffer.
-  void present(int window_width, int window_height);
+  void present(int window_width, int window_height) { present(0, 0, window_width, window_height); }
+  /// Copies it to a rectangle, in pixels from the lower left corner of the window.
+  void present(int left, int bottom, int width, int height);
 
  private:
   struct State;

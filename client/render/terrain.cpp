@@ -258,7 +258,8 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
                         pattern_of(key, chunk.edge),
                         {-origin.x, -origin.y, -origin.z},
                         glm::dot(centre, centre),
-                        variant});
+                        variant,
+                        key});
   }
   std::sort(visible_.begin(), visible_.end(),
             [](const Visible& a, const Visible& b) { return a.distance2 < b.distance2; });
@@ -354,6 +355,20 @@ void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
   }
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
+}
+
+void Terrain::draw_inspection(const FrameView& view, const Inspection& inspection) {
+  if (!inspection.modes.any()) return inspection_.reset();
+  if (!inspection_) inspection_.emplace();
+  inspection_->begin(inspection, view.clip, quads_, view.look.exact);
+  for (const Visible& chunk : visible_) {
+    spans_.clear();
+    chunk.chunk->opaque.append_facing(chunk.eye, spans_);
+    if (chunk.chunk->transparent.count != 0) spans_.push_back(chunk.chunk->transparent);
+    if (!spans_.empty() && inspection_->place(chunk.key, chunk.origin, chunk.chunk->edge))
+      quads_.draw(spans_);
+  }
+  InspectionPainter::end();
 }
 
 QuadSpan Terrain::ghost_quads(const std::shared_ptr<const ChunkMesh>& mesh) {

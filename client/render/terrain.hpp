@@ -14,6 +14,7 @@
 #include "client/render/day_light.hpp"
 #include "client/render/frame_look.hpp"
 #include "client/render/ghost.hpp"
+#include "client/render/inspection_painter.hpp"
 #include "client/render/light_field.hpp"
 #include "client/render/light_texture.hpp"
 #include "client/render/material_textures.hpp"
@@ -63,6 +64,9 @@ class Terrain {
   /// opaque ones. If the quality is not low, it is read and must not be bound for drawing.
   void draw_transparent(const FrameView& view, GLuint scene_depth);
   void draw_ghosts(const FrameView& view, std::span<const GhostChunk> ghosts);
+  /// Draws an inspection over the faces in view. Valid after draw_opaque(). Costs nothing if no mode
+  /// is on.
+  void draw_inspection(const FrameView& view, const Inspection& inspection);
   std::uint64_t quad_bytes() const { return quads_.used_bytes(); }
   std::uint64_t gpu_bytes() const;
 
@@ -82,6 +86,7 @@ class Terrain {
     std::array<double, 3> eye{};  // relative to the origin
     float distance2;
     unsigned variant = 0;  // of the programs
+    ChunkKey key;
   };
   /// The quads of a ghost's mesh, kept as long as frames show it.
   struct GhostQuads {
@@ -122,8 +127,9 @@ class Terrain {
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
   std::map<const ChunkMesh*, GhostQuads> ghosts_;
-  std::vector<Visible> visible_;               // of the present frame, from near to far
-  std::array<bool, kVariants> has_variant_{};  // one of them is drawn by it
+  std::optional<InspectionPainter> inspection_;  // while a mode is on
+  std::vector<Visible> visible_;                 // of the present frame, from near to far
+  std::array<bool, kVariants> has_variant_{};    // one of them is drawn by it
   const Program* in_use_ = nullptr;
   std::vector<QuadSpan> spans_;  // scratch
   bool has_transparent_ = false;

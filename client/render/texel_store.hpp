@@ -1,5 +1,12 @@
 // TexelStore: one large buffer on the GPU, divided into ranges, that shaders read as a buffer
-// texture. It doubles when it is full. Thread: the GL thread.
+// texture. Its size doubles when it becomes full. The contents then move piece by piece, a piece
+// with each add(), so that no call copies the whole buffer:
+//   - The move begins when less than a quarter is free.
+//   - Shaders read the old buffer until all texels were copied. Texels that are written meanwhile go
+//     to both buffers.
+//   - A piece is large enough that the move ends before the old buffer is full. If it is too
+//     fragmented for a range all the same, the rest is copied at once.
+// Thread: the GL thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +22,8 @@ class TexelStore {
   TexelStore(GLenum format, std::uint32_t texel_bytes, std::uint32_t texels);
 
   /// Copies `count` texels into a free range and returns its first texel. Throws
-  /// std::runtime_error if the driver allows no larger buffer texture. Requires count > 0.
+  /// std::runtime_error if the driver allows no larger buffer texture. Requires count > 0. Cost:
+  /// O(count) while less than three quarters are used for large `count`, see above.
   std::uint32_t add(const void* texels, std::uint32_t count);
   /// Overwrites texels. Requires a range inside the buffer.
   void write(std::uint32_t first, const void* texels, std::uint32_t count);
@@ -23,15 +31,26 @@ class TexelStore {
 
   GLuint texture() const { return texture_.get(); }
   std::uint64_t used_bytes() const { return std::uint64_t{ranges_.used()} * texel_bytes_; }
+  /// Returns the texels that the buffer holds, and true while they move to a larger one.
+  std::uint32_t capacity() const { return ranges_.capacity(); }
+  bool is_moving() const { return static_cast<bool>(next_); }
 
  private:
-  void grow(std::uint32_t texels);
+  /// Makes the larger buffer. Requires that none is there.
+  void begin_move(std::uint64_t texels);
+  /// Copies texels to the larger buffer, and takes it into use if it has all of them.
+  void move(std::uint32_t texels);
+  void write_to(const GlBuffer& buffer, std::uint32_t first, const void* texels,
+                std::uint32_t count) const;
 
   const GLenum format_;
   const std::uint32_t texel_bytes_;
-  RangeAllocator ranges_;
+  std::uint32_t texels_max_ = 0;  // that the driver allows
+  RangeAllocator ranges_;         // of buffer_
   GlBuffer buffer_;
-  GlTexture texture_;
+  GlTexture texture_;                        // of buffer_
+  GlBuffer next_;                            // to which the texels move; none if they do not move
+  std::uint32_t next_size_ = 0, moved_ = 0;  // texels
 };
 
 }  // namespace runstone

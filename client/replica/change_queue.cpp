@@ -51,6 +51,7 @@ void ChangeQueue::attribute(ChunkChange& chunk, std::span<EditChange* const> edi
       edit->chunks.push_back(chunk.key);
     }
     if (chunk.edits.empty() || chunk.edits.back() != edit->op) chunk.edits.push_back(edit->op);
+    chunk.has_local_edit = chunk.has_local_edit || edit->is_local;
   }
 }
 

@@ -37,6 +37,13 @@ struct ChangedLayers {
   friend bool operator==(const ChangedLayers&, const ChangedLayers&) = default;
 };
 
+/// How soon a change should be on the screen. A greater value comes first.
+enum class Urgency : std::uint8_t {
+  terrain,     // chunks that arrived, and those beside them
+  edit,        // edits of others
+  local_edit,  // an edit of this client
+};
+
 /// One chunk whose mesh is out of date. Changes of a chunk are merged until they are drained.
 struct ChunkChange {
   ChunkKey key;
@@ -45,7 +52,13 @@ struct ChunkChange {
   bool whole = false;        // nothing was shown here before, or at some time in between
   bool removed = false;      // out of view or unavailable: nothing is shown here
   std::vector<OperationId> edits;  // edits that this change contains, in the order applied
+  bool has_local_edit = false;     // one of them was made by this client instance
 };
+
+inline Urgency urgency_of(const ChunkChange& change) {
+  if (change.has_local_edit) return Urgency::local_edit;
+  return change.edits.empty() ? Urgency::terrain : Urgency::edit;
+}
 
 /// One edit that was applied in the replica: as a prediction, or at its place in the confirmed
 /// order.

@@ -214,7 +214,8 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
   out["memory"] = memory_json(report.memory, report.budget);
   out["cache"] = cache_json(report.cache);
   out["frames"] = Json{{"presented", report.frames.presented},
-                       {"draw_us", histogram_summary(report.frames.draw_us)}};
+                       {"draw_us", histogram_summary(report.frames.draw_us)},
+                       {"upload_us", histogram_summary(report.frames.upload_us)}};
   out["net"] = Json{{"bytes_received", report.net.bytes_received},
                     {"bytes_sent", report.net.bytes_sent},
                     {"control_bytes", report.net.control_bytes},

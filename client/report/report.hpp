@@ -34,7 +34,8 @@ struct MeshStats {
 /// Frames drawn by the draw thread.
 struct FrameStats {
   std::uint64_t presented = 0;
-  Histogram draw_us;  // per frame, from its start until it was presented
+  Histogram draw_us;    // per frame, from its start until it was presented
+  Histogram upload_us;  // per frame, what uploads took since the frame before
 };
 
 struct NetCounts {

@@ -1,18 +1,14 @@
 #include "client/schedule/mesh_planner.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include "client/schedule/chunk_distance.hpp"
 
 namespace runstone {
 namespace {
 
 ChunkKey beside(const ChunkKey& key, Direction d) { return {key.lod, neighbour(key.at, d)}; }
-
-std::int64_t distance_squared(ChunkCoord a, ChunkCoord b) {
-  const std::int64_t dx = std::int64_t{a.x} - b.x;
-  const std::int64_t dy = std::int64_t{a.y} - b.y;
-  const std::int64_t dz = std::int64_t{a.z} - b.z;
-  return dx * dx + dy * dy + dz * dz;
-}
 
 bool has_material_from(const RunChunk& chunk, Material first) {
   return chunk.runs.visit([first](const auto& runs) {
@@ -53,7 +49,7 @@ void MeshPlanner::take(std::span<const ChunkChange> changes) {
     State& state = states_[chunk.key];
     state.serial = chunk.serial;
     state.changed |= chunk.layers;
-    state.edited = state.edited || !chunk.edits.empty();
+    state.urgency = std::max(state.urgency, urgency_of(chunk));
     if (!chunk.whole) {
       mark(chunk.key, state);
       continue;
@@ -82,7 +78,7 @@ void MeshPlanner::set_eye(ChunkCoord eye) {
 
 bool MeshPlanner::ready(const ChunkKey& key, const State& state) const {
   if (!replica_.shown(key)) return false;
-  if (state.edited) return true;
+  if (state.urgency != Urgency::terrain) return true;
   for (int i = 0; i < kDirectionCount; ++i) {
     const ChunkKey next = beside(key, static_cast<Direction>(i));
     if (replica_.is_expected(next) && !replica_.shown(next)) return false;
@@ -99,7 +95,8 @@ void MeshPlanner::mark(const ChunkKey& key, State& state) {
 /// Marks the chunk to be meshed as a whole. Makes its open job void.
 void MeshPlanner::mark_whole(const ChunkKey& key, State& state) {
   keep(state, nullptr);
-  if (std::exchange(state.job, 0) != 0) state.edited = state.edited || state.edited_in_job;
+  if (std::exchange(state.job, 0) != 0)
+    state.urgency = std::max(state.urgency, state.urgency_in_job);
   mark(key, state);
 }
 
@@ -110,8 +107,11 @@ void MeshPlanner::place(const ChunkKey& key, State& state) {
     state.rank.reset();
   }
   if (!state.dirty || state.job != 0 || !ready(key, state)) return;
-  const int priority = state.mesh ? 0 : state.edited ? 1 : 2;
-  state.rank = Rank{priority, distance_squared(key.at, eye_), key};
+  state.rank =
+      Rank{state.mesh                          ? 0
+           : state.urgency != Urgency::terrain ? 1
+                                               : 2,
+           state.urgency == Urgency::local_edit ? 0 : 1, distance_squared(key.at, eye_), key};
   ready_.insert(*state.rank);
 }
 
@@ -152,7 +152,7 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
     state.job = job.number;
     if (!std::exchange(state.counted, true)) ++chunks_;
     state.dirty = false;
-    state.edited_in_job = std::exchange(state.edited, false);
+    state.urgency_in_job = job.urgency = std::exchange(state.urgency, Urgency::terrain);
     --dirty_;
     return job;
   }

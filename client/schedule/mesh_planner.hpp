@@ -7,7 +7,7 @@
 //   - An edited chunk does not wait, so that late terrain does not delay an edit.
 //   - A change at a border also meshes the neighbour again.
 //   - The order is: chunks of which layers changed, other edited chunks, then the nearest to the
-//     eye.
+//     eye. Among edited chunks, those with an edit of this client come first.
 //
 // The planner keeps the newest mesh of each chunk, and the layers that changed since its job was
 // made. The next job takes both, so that only those layers are meshed again. The changes of the
@@ -55,6 +55,7 @@ struct MeshJob {
   /// Null if the whole chunk is to be meshed.
   MeshPtr before;
   ChangedLayers changed;
+  Urgency urgency = Urgency::terrain;  // of the changes that the mesh shows
 };
 
 /// Returns a bound of the quads that meshing a chunk with these runs makes, in bytes, as far as its
@@ -103,15 +104,15 @@ class MeshPlanner {
   std::size_t kept_bytes() const { return kept_bytes_; }
 
  private:
-  using Rank = std::tuple<int, std::int64_t, ChunkKey>;
+  using Rank = std::tuple<int, int, std::int64_t, ChunkKey>;
   struct State {
     bool dirty = false;
-    bool edited = false;
-    bool edited_in_job = false;  // `edited` returns to true if that job is made void
-    bool counted = false;        // counted in chunks_
-    std::uint64_t job = 0;       // number of the open job; 0: none
-    std::uint64_t serial = 0;    // of the newest change
-    ChangedLayers changed;       // since the newest job was made
+    Urgency urgency = Urgency::terrain;         // of the changes since the newest job was made
+    Urgency urgency_in_job = Urgency::terrain;  // those of the job, which count again if it is void
+    bool counted = false;                       // counted in chunks_
+    std::uint64_t job = 0;                      // number of the open job; 0: none
+    std::uint64_t serial = 0;                   // of the newest change
+    ChangedLayers changed;                      // since the newest job was made
     // The sources of the newest job, and its mesh. The mesh is null while the job is open or void.
     AxisOrder order{};
     std::uint8_t open_sides = 0;  // bit per Direction: there was no neighbour

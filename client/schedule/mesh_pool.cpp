@@ -2,12 +2,26 @@
 
 #include <utility>
 
+#include "common/runs/layer_diff.hpp"
+
 namespace runstone {
 namespace {
 
 /// A scratch mesh of more quads is freed, so that no worker keeps the memory of a chunk of the
 /// worst case.
 constexpr std::size_t kScratchQuadsMax = 65'536;
+
+/// Returns the layers that a job meshes because a voxel in them or beside them changed.
+DirtyLayers layers_of(const MeshJob& job) {
+  DirtyLayers out = job.changed.here;
+  for (std::size_t i = 0; i < job.changed.beyond.size(); ++i) {
+    if (!job.changed.beyond[i].any()) continue;
+    const auto d = static_cast<Direction>(i);
+    const auto axis = static_cast<std::size_t>(axis_of(d));
+    out.layer[axis].set(is_positive(d) ? job.chunk->extent.sides()[axis] - 1U : 0U);
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -93,6 +107,7 @@ MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
   result.serial = job.serial;
   result.edge = job.chunk->extent.x;
   result.chunk = job.chunk;
+  result.urgency = job.urgency;
   MeshNeighbours neighbours{};
   for (std::size_t i = 0; i < neighbours.size(); ++i) neighbours[i] = job.neighbours[i].get();
   const std::int64_t start = clock_();
@@ -103,6 +118,7 @@ MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
   } else {
     mesh_rdm(*job.chunk, neighbours, visibility, scratch.rdm, scratch.mesh);
   }
+  result.layers = result.layers_only ? layers_of(job) : all_layers(job.chunk->extent);
   result.mesh = scratch.mesh.empty() ? empty_ : std::make_shared<const ChunkMesh>(scratch.mesh);
   if (scratch.mesh.quad_count() > kScratchQuadsMax) scratch.mesh = {};
   const std::int64_t end = clock_();

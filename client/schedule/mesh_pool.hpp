@@ -27,6 +27,8 @@ struct MeshResult {
   ShownPtr chunk;                        // the runs that were meshed
   MeshPtr mesh;                          // chunks without quads share one mesh
   bool layers_only = false;              // the other layers are those of the previous mesh
+  Urgency urgency = Urgency::terrain;    // of the job
+  DirtyLayers layers;                    // that were meshed, of those in which a voxel changed
   std::int64_t mesh_ns = 0;              // duration
   TimeUs meshed_us = 0;                  // when meshing ended
 };

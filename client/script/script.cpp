@@ -225,11 +225,13 @@ script::Step step_of(std::string_view verb, ScriptWords& words) {
     click.y = read_number<double>(words, "Y", 0, 65'535);
     return click;
   }
-  if (verb == "interface") {
-    const std::string_view state = words.word("on or off");
-    if (state != "on" && state != "off")
-      throw LineError{"\"" + std::string(state) + "\" is none of on, off"};
-    return script::ShowInterface{state == "on"};
+  if (verb == "interface") return script::ShowInterface{read_on_off(words)};
+  if (verb == "inspect") {
+    const std::string_view name = words.word("MODE");
+    const auto mode = parse_inspection_mode(name);
+    if (!mode)
+      throw LineError{"\"" + std::string(name) + "\" is none of wireframe, runs, orders, layers"};
+    return script::Inspect{*mode, read_on_off(words)};
   }
   if (verb == "quit") return script::Quit{};
   if (auto step = tool_step(verb, words)) return *std::move(step);

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "client/render/inspection.hpp"
 #include "client/tools/aim.hpp"
 #include "client/tools/symmetry.hpp"
 #include "common/core/result.hpp"
@@ -161,6 +162,11 @@ struct Click {
 struct ShowInterface {
   bool is_shown = true;
 };
+/// Shows or hides a mode of inspection.
+struct Inspect {
+  InspectionMode mode{};
+  bool is_on = true;
+};
 /// Chooses a building tool by its name.
 struct ChooseTool {
   std::string name;
@@ -212,11 +218,12 @@ struct ShowPreview {
 };
 struct Quit {};
 
-using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, Sphere, Stroke, Copy,
-                          Paste, Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End,
-                          Burst, Digests, HistoryRequest, Say, WaitChat, Command, PressKey, Type,
-                          Click, ShowInterface, ChooseTool, SetParameter, AimAt, Hold, UseTool,
-                          Select, SelectionEdit, TurnClipboard, SetSymmetry, ShowPreview, Quit>;
+using Step =
+    std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, Sphere, Stroke, Copy, Paste,
+                 Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests,
+                 HistoryRequest, Say, WaitChat, Command, PressKey, Type, Click, ShowInterface,
+                 Inspect, ChooseTool, SetParameter, AimAt, Hold, UseTool, Select, SelectionEdit,
+                 TurnClipboard, SetSymmetry, ShowPreview, Quit>;
 
 }  // namespace script
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "client/input/key.hpp"
+#include "client/render/inspection.hpp"
 #include "client/replica/ray_pick.hpp"
 #include "client/tools/tool_box.hpp"
 #include "common/core/coords.hpp"
@@ -99,6 +100,8 @@ class ScriptHost {
   virtual bool handling_input() const = 0;
   /// Shows or hides the user interface.
   virtual void show_interface(bool is_shown) = 0;
+  /// Shows or hides a mode of inspection.
+  virtual void inspect(InspectionMode mode, bool is_on) = 0;
 
   /// Requests a screenshot; poll screenshot_written(). Returns false if this client draws nothing.
   virtual bool screenshot(const std::string& file) = 0;

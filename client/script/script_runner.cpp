@@ -480,6 +480,11 @@ ScriptRunner::Progress ScriptRunner::run(const script::ShowInterface& c) {
   return Progress::done;
 }
 
+ScriptRunner::Progress ScriptRunner::run(const script::Inspect& c) {
+  host_.inspect(c.mode, c.is_on);
+  return Progress::done;
+}
+
 ScriptRunner::Progress ScriptRunner::run(const script::Quit&) { return Progress::stop; }
 
 }  // namespace runstone

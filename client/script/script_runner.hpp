@@ -74,6 +74,7 @@ class ScriptRunner {
   Progress run(const script::Type& c);
   Progress run(const script::Click& c);
   Progress run(const script::ShowInterface& c);
+  Progress run(const script::Inspect& c);
   // The building tools: script_tools.cpp.
   Progress run(const script::ChooseTool& c);
   Progress run(const script::SetParameter& c);

@@ -41,4 +41,11 @@ Axis read_axis(ScriptWords& words) {
 
 std::string read_material(ScriptWords& words) { return std::string(words.word("MATERIAL")); }
 
+bool read_on_off(ScriptWords& words) {
+  const std::string_view state = words.word("on or off");
+  if (state != "on" && state != "off")
+    throw LineError{"\"" + std::string(state) + "\" is none of on, off"};
+  return state == "on";
+}
+
 }  // namespace runstone

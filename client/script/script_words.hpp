@@ -92,6 +92,9 @@ ScriptPosition read_position(ScriptWords& words);
 /// Takes x, y or z.
 Axis read_axis(ScriptWords& words);
 
+/// Takes on or off.
+bool read_on_off(ScriptWords& words);
+
 /// Takes a material.
 std::string read_material(ScriptWords& words);
 

@@ -26,13 +26,6 @@ bool takes_word(ScriptWords& words, const char* word) {
   return true;
 }
 
-bool read_on_off(ScriptWords& words) {
-  const std::string_view state = words.word("on or off");
-  if (state != "on" && state != "off")
-    throw LineError{"\"" + std::string(state) + "\" is none of on, off"};
-  return state == "on";
-}
-
 script::Step use_step(script::UseTool::Part part, ScriptWords& words) {
   const bool is_clear = takes_word(words, "clear");
   return script::UseTool{part, is_clear ? ToolButton::clear : ToolButton::place};

@@ -3,6 +3,7 @@
 #include "client/input/key_rows.hpp"
 #include "client/ui/heads_up.hpp"
 #include "client/ui/help_window.hpp"
+#include "client/ui/inspection_panel.hpp"
 #include "client/ui/player_list.hpp"
 #include "client/ui/statistics_window.hpp"
 
@@ -93,7 +94,12 @@ void Hud::build(const HudState& state) {
   notices_.build(top, scale);
   if (auto line = chat_.build(top, scale)) actions_.emplace_back(SendLine{*std::move(line)});
   if (state.shows_players) build_player_list(state, scale);
-  if (shows_statistics_) build_statistics(state.statistics, scale, shows_statistics_);
+  build_inspection_legend(state.inspection, scale);
+  if (shows_statistics_) {
+    InspectionModes modes = state.inspection;
+    build_statistics(state.statistics, keys_, scale, modes, shows_statistics_);
+    if (modes != state.inspection) actions_.emplace_back(SetInspection{modes});
+  }
   if (const auto moment = timeline_.build(state.timeline, scale)) actions_.emplace_back(*moment);
   if (shows_help_) build_help(key_rows(keys_), shows_help_);
   const Material held = state.slots[state.slot];

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "client/render/inspection.hpp"
 #include "client/ui/statistics_window.hpp"
 #include "common/core/ids.hpp"
 #include "common/materials/material_table.hpp"
@@ -52,6 +53,7 @@ struct HudState {
   std::vector<ListedPlayer> players;
   std::vector<NamePlate> plates;
   TimelineState timeline;
+  InspectionModes inspection;
   StatisticsState statistics;  // filled only while Hud::shows_statistics()
 };
 

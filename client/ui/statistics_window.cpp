@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "client/ui/inspection_panel.hpp"
 #include "client/ui/ui_draw.hpp"
 
 namespace runstone {
@@ -109,7 +110,8 @@ void edit_plot(const StatisticsState& state, double scale) {
 
 }  // namespace
 
-void build_statistics(const StatisticsState& state, double scale, bool& is_open) {
+void build_statistics(const StatisticsState& state, const KeyMap& keys, double scale,
+                      InspectionModes& modes, bool& is_open) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   // It lies below the place of the timeline.
   const float width = std::min(static_cast<float>(520 * scale), size.x);
@@ -119,6 +121,8 @@ void build_statistics(const StatisticsState& state, double scale, bool& is_open)
   ImGui::Begin("Measurements", &is_open,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  build_inspection_boxes(keys, modes);
+  ImGui::Separator();
   frame_plot(state, scale);
   counts(state);
   traffic_lines(state);

@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "client/input/key_map.hpp"
+#include "client/render/inspection.hpp"
+
 namespace runstone {
 
 inline constexpr std::size_t kStageCount = 7;
@@ -41,7 +44,9 @@ struct StatisticsState {
   std::array<const char*, kStageCount> stages{};  // names, static texts
 };
 
-/// Makes the window with ImGui. Clears `is_open` if the user closed it.
-void build_statistics(const StatisticsState& state, double scale, bool& is_open);
+/// Makes the window with ImGui. Clears `is_open` if the user closed it. Changes `modes` if the user
+/// did.
+void build_statistics(const StatisticsState& state, const KeyMap& keys, double scale,
+                      InspectionModes& modes, bool& is_open);
 
 }  // namespace runstone

@@ -3,6 +3,7 @@
 #include <string>
 #include <variant>
 
+#include "client/render/inspection.hpp"
 #include "common/core/ids.hpp"
 
 namespace runstone {
@@ -21,6 +22,11 @@ struct ShowMoment {
   bool is_live = false;
 };
 
-using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment>;
+/// The user chose what frames show of storage and meshing.
+struct SetInspection {
+  InspectionModes modes;
+};
+
+using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection>;
 
 }  // namespace runstone

@@ -196,8 +196,11 @@ TEST_CASE("transparent quads blend over what lies behind them", "[render]") {
   if (!context) return;
   ChunkMesh mesh = slab();
   add(mesh.transparent, {4, 8, 4, 8, 8, Direction::pos_y, kGlass});
-  const auto bare = pixel(draw_with(*context, above(), slab()), 0.5, 0.5);
-  const auto behind_glass = pixel(draw_with(*context, above(), mesh), 0.5, 0.5);
+  RenderStats without, with;
+  const auto bare = pixel(draw_with(*context, above(), slab(), &without), 0.5, 0.5);
+  const auto behind_glass = pixel(draw_with(*context, above(), mesh, &with), 0.5, 0.5);
+  CHECK_FALSE(without.is_animated);
+  CHECK(with.is_animated);
   CHECK(behind_glass[2] > bare[2] + 20);
   CHECK(behind_glass[0] < bare[0]);
   CHECK(behind_glass[0] > behind_glass[1]);
@@ -321,6 +324,78 @@ TEST_CASE("corners are dark next to opaque voxels, however the faces are cut int
   // Some pixels at the outlines of blocks are rounded differently.
   CHECK(different_pixels(merged, picture(true, true)) <= 16);
   CHECK(different_pixels(merged, picture(false, false)) > 2000);
+}
+
+TEST_CASE("an inspection is drawn over the faces that it is about, and leaves no trace",
+          "[render]") {
+  const auto context = context_or_warn(&make_egl_surfaceless_context);
+  if (!context) return;
+  // A floor of one material. A second material is a run of its own within it.
+  RunChunk chunk = uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::xzy);
+  fill(chunk, 0, kEdge * kEdge, kRed);
+  fill(chunk, index_of({12, 0, 12}, chunk.extent, chunk.order), 6, 3);
+  const auto voxels = std::make_shared<const RunChunk>(chunk);
+  const ChunkKey key{0, {0, 0, 0}};
+  Renderer renderer(context->loader());
+  MaterialTable materials = red_and_glass();
+  REQUIRE(materials.add({"maroon", {200, 30, 30, 255}, Visibility::opaque, {}}).has_value());
+  renderer.set_materials(materials);
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  mesh_rdm(chunk, {}, VisibilityTable(visibilities(materials)), scratch, mesh);
+  renderer.upload(key, kEdge, mesh, voxels.get());
+  Camera camera = above();
+  camera.x = 16.3, camera.z = 16.4, camera.y = 14;
+  const auto picture = [&](const Inspection& inspection) {
+    FrameContents contents;
+    contents.look.quality = Quality::low;
+    contents.inspection = inspection;
+    renderer.draw(camera, 320, 240, contents);
+    renderer.finish();
+    return renderer.read_image();
+  };
+  const Image plain = picture({});
+  const auto changed = [&](const Inspection& inspection) {
+    return different_pixels(plain, picture(inspection));
+  };
+  constexpr std::size_t kAll = 320 * 240;
+
+  Inspection wireframe;
+  wireframe.modes.set(InspectionMode::wireframe, true);
+  CHECK(changed(wireframe) > 200);
+  CHECK(changed(wireframe) < kAll / 4);  // lines, not faces
+
+  Inspection orders;
+  orders.modes.set(InspectionMode::orders, true);
+  CHECK(changed(orders) == 0);  // it has no chunk
+  orders.chunks.push_back({key, voxels, false});
+  CHECK(changed(orders) > kAll * 9 / 10);
+
+  Inspection runs;
+  runs.modes.set(InspectionMode::runs, true);
+  runs.chunks.push_back({key, voxels, true});
+  const std::size_t with_two_starts = changed(runs);
+  CHECK(with_two_starts > 20);
+  CHECK(with_two_starts < kAll / 20);
+  // The pattern is that of the runs: other runs in the same order give another one.
+  RunChunk cut = chunk;
+  for (std::uint8_t x = 0; x < kEdge; x += 2)
+    fill(cut, index_of({x, 0, 14}, cut.extent, cut.order), 1, 3);
+  runs.chunks[0].voxels = std::make_shared<const RunChunk>(cut);
+  CHECK(changed(runs) > 2 * with_two_starts);
+
+  Inspection layers;
+  layers.modes.set(InspectionMode::layers, true);
+  FlashedLayers flash{key, {}, 1.0F};
+  flash.layers.layer[0].set(16);
+  layers.flashes.push_back(flash);
+  const std::size_t one_layer = changed(layers);
+  CHECK(one_layer > 100);
+  CHECK(one_layer < kAll / 8);
+  layers.flashes[0].strength = 0;
+  CHECK(changed(layers) == 0);
+
+  CHECK(picture({}).rgb == plain.rgb);
 }
 
 TEST_CASE("both headless paths draw the same picture", "[render]") {

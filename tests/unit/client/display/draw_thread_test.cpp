@@ -36,21 +36,35 @@ FrameOrder small_frame() {
   return order;
 }
 
+/// Uploads that take no time fit it, however busy the machine is.
+constexpr UploadBudget kAmple{3'600'000'000, std::size_t{1} << 40};
+/// One upload a frame.
+constexpr UploadBudget kLeast{0, 0};
+
 /// A draw thread with a fake screen, and the list of what it did.
 struct ThreadBench {
-  ThreadBench() = default;
+  explicit ThreadBench(UploadBudget limits = kAmple) : budget(limits) {}
   ~ThreadBench() { screen_log.release(); }  // also after a failed check, so that the thread can end
   ThreadBench(const ThreadBench&) = delete;
   ThreadBench& operator=(const ThreadBench&) = delete;
 
+  const UploadBudget budget;
   FakeScreenLog screen_log;
   WakeUp wake;
   std::vector<DrawDone> done;
-  DrawThread thread{fake_screen_on(screen_log), DrawPriority::normal, [this] { wake.notify(); }};
+  DrawThread thread{fake_screen_on(screen_log), DrawPriority::normal, [this] { wake.notify(); },
+                    budget};
 
   /// Waits until this many frames are done.
   void take_frames(std::size_t count) {
     while (frames() < count) {
+      wake.wait(std::chrono::seconds(1));
+      for (DrawDone& one : thread.take_done()) done.push_back(std::move(one));
+    }
+  }
+  /// Waits until nothing is queued and no upload is in progress, and takes what was done.
+  void take_uploads(std::size_t count) {
+    while (done.size() - frames() < count) {
       wake.wait(std::chrono::seconds(1));
       for (DrawDone& one : thread.take_done()) done.push_back(std::move(one));
     }
@@ -86,7 +100,7 @@ TEST_CASE(
   bench.take_frames(2);
   CHECK(bench.thread.waiting() == 0);
   CHECK(bench.screen_log.lines() ==
-        Lines{"draw", "upload 1 quads 3", "remove 2", "upload 3 quads 4", "draw"});
+        Lines{"draw", "remove 2", "upload 1 quads 3", "upload 3 quads 4", "draw"});
 }
 
 TEST_CASE("results come in the order of the draw thread: uploads, then the frame that shows them",
@@ -112,6 +126,66 @@ TEST_CASE("results come in the order of the draw thread: uploads, then the frame
   CHECK(frame.started_us <= frame.presented_us);
   CHECK(frame.presented_us <= second.at_us);
   CHECK(second.at_us <= last.started_us);
+}
+
+TEST_CASE("a frame makes the uploads that its budget allows and carries the others over",
+          "[client_app]") {
+  ThreadBench bench(kLeast);
+  bench.screen_log.hold_uploads();
+  bench.thread.upload(chunk(9), mesh_of(1, 1));
+  bench.screen_log.wait_until_uploading();
+  // The frame is ordered while the upload above is in progress, which therefore ends before it.
+  for (const std::int32_t x : {3, 1, 2}) bench.thread.upload(chunk(x), mesh_of(2, 1));
+  bench.thread.remove(chunk(4));
+  bench.thread.draw(small_frame());
+  bench.screen_log.release();
+  bench.take_frames(1);
+  bench.take_uploads(4);
+  CHECK(bench.screen_log.lines() == Lines{"upload 9 quads 1", "remove 4", "upload 1 quads 1",
+                                          "draw", "upload 2 quads 1", "upload 3 quads 1"});
+  // The frame is reported after the uploads that it shows, and before the others.
+  REQUIRE(bench.done.size() == 5);
+  CHECK(std::get<UploadDone>(bench.done[1]).key == chunk(1));
+  const auto& frame = std::get<FrameDone>(bench.done[2]);
+  CHECK(frame.uploads == 2);
+  CHECK(frame.carried == 2);
+  CHECK(std::get<UploadDone>(bench.done[3]).at_us >= frame.presented_us);
+}
+
+TEST_CASE("uploads that are carried over are replaced and removed like others", "[client_app]") {
+  ThreadBench bench(kLeast);
+  bench.screen_log.hold_uploads();
+  bench.thread.upload(chunk(9), mesh_of(1, 1));
+  bench.screen_log.wait_until_uploading();
+  for (const std::int32_t x : {1, 2, 3}) bench.thread.upload(chunk(x), mesh_of(2, 1));
+  bench.screen_log.hold();
+  bench.thread.draw(small_frame());
+  bench.screen_log.release_uploads();
+  bench.screen_log.wait_until_drawing();  // chunks 2 and 3 are carried over
+  bench.thread.upload(chunk(2), mesh_of(3, 5));
+  bench.thread.remove(chunk(3));
+  bench.screen_log.release();
+  bench.take_uploads(3);
+  CHECK(bench.screen_log.lines() ==
+        Lines{"upload 9 quads 1", "upload 1 quads 1", "draw", "remove 3", "upload 2 quads 5"});
+  CHECK(std::get<UploadDone>(bench.done.back()).serial == 3);
+}
+
+TEST_CASE("a frame that shows all has every upload that was queued before its order",
+          "[client_app]") {
+  ThreadBench bench(kLeast);
+  bench.screen_log.hold_uploads();
+  bench.thread.upload(chunk(9), mesh_of(1, 1));
+  bench.screen_log.wait_until_uploading();
+  for (const std::int32_t x : {3, 1, 2}) bench.thread.upload(chunk(x), mesh_of(2, 1));
+  FrameOrder order = small_frame();
+  order.shows_all = true;
+  bench.thread.draw(std::move(order));
+  bench.screen_log.release();
+  bench.take_frames(1);
+  CHECK(bench.screen_log.lines() == Lines{"upload 9 quads 1", "upload 1 quads 1",
+                                          "upload 2 quads 1", "upload 3 quads 1", "draw"});
+  CHECK(std::get<FrameDone>(bench.done.back()).carried == 0);
 }
 
 TEST_CASE("materials reach the screen before the frame that needs them", "[client_app]") {

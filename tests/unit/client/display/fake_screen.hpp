@@ -30,12 +30,28 @@ class FakeScreenLog {
     const std::lock_guard lock(mutex_);
     held_ = true;
   }
+  /// After this call an upload ends only with release(). Its line is written when it begins.
+  void hold_uploads() {
+    const std::lock_guard lock(mutex_);
+    uploads_held_ = true;
+  }
   void release() {
     {
       const std::lock_guard lock(mutex_);
-      held_ = false;
+      held_ = uploads_held_ = false;
     }
     changed_.notify_all();
+  }
+  void release_uploads() {
+    {
+      const std::lock_guard lock(mutex_);
+      uploads_held_ = false;
+    }
+    changed_.notify_all();
+  }
+  void wait_until_uploading() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return uploading_; });
   }
   void wait_until_drawing() {
     std::unique_lock lock(mutex_);
@@ -47,6 +63,14 @@ class FakeScreenLog {
     fails_ = true;
   }
 
+  void upload(std::string line) {
+    std::unique_lock lock(mutex_);
+    lines_.push_back(std::move(line));
+    uploading_ = true;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return !uploads_held_; });
+    uploading_ = false;
+  }
   void draw() {
     std::unique_lock lock(mutex_);
     lines_.emplace_back("draw");
@@ -62,6 +86,7 @@ class FakeScreenLog {
   std::condition_variable changed_;
   std::vector<std::string> lines_;
   bool held_ = false, drawing_ = false, fails_ = false;
+  bool uploads_held_ = false, uploading_ = false;
 };
 
 class FakeScreen final : public Screen {
@@ -75,8 +100,8 @@ class FakeScreen final : public Screen {
   }
   void upload(const ChunkKey& key, std::int32_t /*edge*/, const ChunkMesh& mesh,
               const RunChunk* /*voxels*/) override {
-    log_.write("upload " + std::to_string(key.at.x) + " quads " +
-               std::to_string(mesh.quad_count()));
+    log_.upload("upload " + std::to_string(key.at.x) + " quads " +
+                std::to_string(mesh.quad_count()));
   }
   void remove(const ChunkKey& key) override { log_.write("remove " + std::to_string(key.at.x)); }
   void set_overlay(std::shared_ptr<const OverlayFrame> overlay) override {

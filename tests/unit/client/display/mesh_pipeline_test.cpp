@@ -20,7 +20,9 @@ using test::FakeScreenLog;
 namespace {
 
 constexpr std::int32_t kEdge = 16;
-constexpr std::size_t kBitsBytes = kEdge * kEdge * kEdge / 8;  // of a chunk with two materials
+
+/// Returns the bytes of a chunk in the light field: runs of 4 bytes, and a byte for each column.
+constexpr std::size_t light_bytes(std::size_t runs) { return 4 * runs + kEdge * kEdge; }
 
 /// One chunk in view, meshed on this thread and drawn on a fake screen, as off screen.
 struct Fixture {
@@ -78,7 +80,7 @@ struct Fixture {
   FakeScreenLog screen_log;
   WakeUp wake;
   DrawThread draw_thread{test::fake_screen_on(screen_log), DrawPriority::normal,
-                         [this] { wake.notify(); }};
+                         [this] { wake.notify(); }, UploadBudget{3'600'000'000, SIZE_MAX}};
   MeshPipeline pipeline{replica, &draw_thread, false, 0, [this] { wake.notify(); }};
   ClientSequence edits = 0;
 };
@@ -234,7 +236,7 @@ TEST_CASE_METHOD(Fixture, "a chunk with a material that was unknown is meshed ag
   };
   edit({5, 5, 5});
   edit({6, 5, 5}, 2);  // beside it, of a material that the table lacks: taken for opaque
-  CHECK(pipeline.gpu_bytes() == kBitsBytes + 10 * sizeof(Quad));
+  CHECK(pipeline.gpu_bytes() == light_bytes(4) + 10 * sizeof(Quad));
   MaterialTable grown = pipeline.materials();
   REQUIRE(grown.append(2, std::vector<MaterialRow>{{"ice", {9, 9, 9, 90}, Visibility::transparent}})
               .has_value());
@@ -244,9 +246,9 @@ TEST_CASE_METHOD(Fixture, "a chunk with a material that was unknown is meshed ag
   turn();
   CHECK(meshes() == before + 1);
   // The opaque voxel is seen through the other one.
-  CHECK(pipeline.gpu_bytes() == kBitsBytes + 11 * sizeof(Quad));
+  CHECK(pipeline.gpu_bytes() == light_bytes(4) + 11 * sizeof(Quad));
   edit({6, 5, 6}, 2);  // no face between the two of ice, whose other faces merge
-  CHECK(pipeline.gpu_bytes() == kBitsBytes + 12 * sizeof(Quad));
+  CHECK(pipeline.gpu_bytes() == light_bytes(6) + 12 * sizeof(Quad));
   REQUIRE(grown.append(3, std::vector<MaterialRow>{{"lime", {9, 9, 9, 255}, Visibility::opaque}})
               .has_value());
   const auto unused = meshes();
@@ -261,9 +263,9 @@ TEST_CASE_METHOD(Fixture, "the bytes of meshes count while their chunk is in vie
   CHECK(pipeline.gpu_bytes() == 0);
   edit({5, 5, 5});  // a single voxel: six quads of 8 bytes
   CHECK(pipeline.mesh_bytes() == sizeof(ChunkMesh) + 48);
-  CHECK(pipeline.gpu_bytes() == kBitsBytes + 48);
+  CHECK(pipeline.gpu_bytes() == light_bytes(3) + 48);
   edit({9, 5, 5});
-  CHECK(pipeline.gpu_bytes() == kBitsBytes + 96);
+  CHECK(pipeline.gpu_bytes() == light_bytes(5) + 96);
   replica.set_view({2, {9, 0, 0}, 0, 0});
   turn();
   CHECK(pipeline.mesh_bytes() == 0);

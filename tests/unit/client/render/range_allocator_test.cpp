@@ -42,3 +42,18 @@ TEST_CASE("ranges never overlap, and freed ranges join", "[render]") {
   ranges.grow(1001);
   CHECK(ranges.take(1) == 1000U);
 }
+
+TEST_CASE("a range is taken from the smallest free one that holds it", "[render]") {
+  RangeAllocator ranges;
+  ranges.grow(100);
+  REQUIRE(ranges.take(30) == 0U);
+  REQUIRE(ranges.take(10) == 30U);
+  REQUIRE(ranges.take(20) == 40U);
+  REQUIRE(ranges.take(5) == 60U);
+  ranges.give_back(0, 30);
+  ranges.give_back(40, 20);
+  CHECK(ranges.take(15) == 40U);  // not from the 30 or the 35 at the end
+  CHECK(ranges.take(5) == 55U);
+  CHECK(ranges.take(31) == 65U);
+  CHECK(ranges.take(30) == 0U);
+}

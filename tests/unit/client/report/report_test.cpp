@@ -93,6 +93,7 @@ TEST_CASE("the report has the durations of frames, and so has the table of a cli
   const json frames = json::parse(to_json(report, session))["frames"];
   CHECK(frames["presented"] == 3);
   CHECK(frames["draw_us"]["p50"] == 250);
+  CHECK(frames["upload_us"]["count"] == 0);
   CHECK_THAT(to_table(report, session), Catch::Contains("frames: 3, each 0.25 ms (p50)\n"));
 }
 

@@ -172,6 +172,39 @@ TEST_CASE_METHOD(PlannerBench, "edited chunks come first, then the nearest", "[s
   CHECK(order == std::vector<ChunkCoord>{{-1, 0, 0}, {0, 0, 0}});
 }
 
+TEST_CASE_METHOD(PlannerBench, "a chunk with an edit of this client comes before nearer ones",
+                 "[schedule]") {
+  load_all();
+  drain();
+  commit({5, 5, 5}, 2);  // at the eye
+  REQUIRE(replica.submit({SetVoxel{{-10, 5, 5}}, {}, 2}, 0, 0).has_value());
+  pass_changes();
+  auto first = planner.next();
+  auto second = planner.next();
+  REQUIRE(first);
+  REQUIRE(second);
+  CHECK(first->key.at == ChunkCoord{-1, 0, 0});
+  CHECK(first->urgency == Urgency::local_edit);
+  CHECK(second->key.at == ChunkCoord{0, 0, 0});
+  CHECK(second->urgency == Urgency::edit);
+}
+
+TEST_CASE_METHOD(PlannerBench, "the urgency of a job that is made void returns to the chunk",
+                 "[schedule]") {
+  load_all();
+  drain();
+  commit({5, 5, 5}, 2);
+  auto job = planner.next();
+  REQUIRE(job);
+  CHECK(job->urgency == Urgency::edit);
+  planner.forget_meshes();
+  CHECK_FALSE(finish(*job));
+  job = planner.next();
+  REQUIRE(job);
+  CHECK(job->key.at == ChunkCoord{0, 0, 0});
+  CHECK(job->urgency == Urgency::edit);
+}
+
 TEST_CASE_METHOD(PlannerBench,
                  "a chunk has one job at a time, and later changes are for the next job",
                  "[schedule]") {

@@ -137,6 +137,9 @@ struct FakeScriptHost final : ScriptHost {
   }
   bool handling_input() const override { return is_handling; }
   void show_interface(bool is_shown) override { input.push_back(is_shown ? "on" : "off"); }
+  void inspect(InspectionMode mode, bool is_on) override {
+    input.push_back(std::string(to_string(mode)) + (is_on ? " on" : " off"));
+  }
   bool screenshot(const std::string& file) override {
     files.push_back(file);
     return draws;

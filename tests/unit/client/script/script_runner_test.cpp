@@ -394,7 +394,9 @@ TEST_CASE("travel waits until the moment is here, and a refused travel ends the 
 
 TEST_CASE_METHOD(ScriptBench, "keys, text and clicks reach the client in their order",
                  "[client_script]") {
-  load("interface on\nkey ctrl+z\ntype Grüße an alle\nclick 12 40\ninterface off\n");
+  load(
+      "interface on\nkey ctrl+z\ntype Grüße an alle\nclick 12 40\ninterface off\n"
+      "inspect runs on\ninspect wireframe off\n");
   host.is_handling = true;
   runner->step(0);
   runner->step(1);
@@ -402,13 +404,13 @@ TEST_CASE_METHOD(ScriptBench, "keys, text and clicks reach the client in their o
   host.is_handling = false;
   runner->step(2);
   CHECK(runner->finished());
-  CHECK(host.input ==
-        std::vector<std::string>{"on", "press ctrl+Z", "type Grüße an alle", "click 12 40", "off"});
+  CHECK(host.input == std::vector<std::string>{"on", "press ctrl+Z", "type Grüße an alle",
+                                               "click 12 40", "off", "runs on", "wireframe off"});
 }
 
 TEST_CASE("wrong keys and places of clicks are found before the script runs", "[client_script]") {
-  for (const char* line :
-       {"key ctrl+", "key nosuch", "type", "click 3", "click -1 4", "interface"}) {
+  for (const char* line : {"key ctrl+", "key nosuch", "type", "click 3", "click -1 4", "interface",
+                           "inspect", "inspect runs", "inspect quads on", "inspect runs maybe"}) {
     CAPTURE(line);
     CHECK_FALSE(parse_script(line, "s.txt").has_value());
   }

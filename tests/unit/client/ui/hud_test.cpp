@@ -226,6 +226,31 @@ TEST_CASE_METHOD(HudBench, "the measurements are shown by F3 and do not take the
   CHECK(frame() == without);
 }
 
+TEST_CASE_METHOD(HudBench, "the boxes of the measurements choose what is inspected, with a legend",
+                 "[client_ui]") {
+  press(Key::f3);
+  frame();
+  frame();
+  const std::size_t without = frame();
+  // The boxes are the only things in this window that a click changes: try places until one does.
+  const auto* chosen = [&]() -> const SetInspection* {
+    for (double y = 124; y < 240; y += 6) {
+      click(140, y);
+      for (const UiAction& action : actions) {
+        if (const auto* set = std::get_if<SetInspection>(&action)) return set;
+      }
+    }
+    return nullptr;
+  }();
+  REQUIRE(chosen != nullptr);
+  CHECK(chosen->modes.any());
+  state.inspection.set(InspectionMode::orders, true);
+  frame();                         // ImGui measures a new window first
+  CHECK(frame() > without + 100);  // the legend of six orders
+  press(Key::f3);
+  CHECK(frame() > 100);  // the legend stays without the measurements
+}
+
 TEST_CASE("the name of another material in the hand is shown and fades", "[client_ui]") {
   Hud hud{KeyMap{}};
   HudState state = some_state();
