@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "tests/bench/app/program_options.hpp"
+#include "tests/bench/client/client_bench.hpp"
 #include "tests/bench/edits/edit_bench.hpp"
 #include "tests/bench/edits/log_bench.hpp"
 #include "tests/bench/frames/frames_bench.hpp"
@@ -15,6 +16,7 @@
 #include "tests/bench/network/net_bench.hpp"
 #include "tests/bench/report/report.hpp"
 #include "tests/bench/storage/storage_bench.hpp"
+#include "tests/bench/view/view_bench.hpp"
 #include "tests/bench/wire/bytes_bench.hpp"
 
 namespace runstone::bench {
@@ -106,6 +108,24 @@ int frames(const FramesOptions& options, std::ostream& out, std::ostream& err) {
   });
 }
 
+int view(const ViewOptions& options, std::ostream& out, std::ostream& err) {
+  const auto result = run_view(options);
+  if (!result) {
+    fmt::print(err, "runstone-bench: {}\n", result.error());
+    return 1;
+  }
+  write_machine(this_machine(), out);
+  write_table(*result, out);
+  return 0;
+}
+
+int client(const ClientBenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_client_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_tables(result, out);
+  });
+}
+
 int storage(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   return finish(run_storage_bench(options, err), options, err, [&](const auto& result) {
     write_machine(result.machine, out);
@@ -149,6 +169,10 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return net(options.net, out, err);
     case Command::frames:
       return frames(options.frames, out, err);
+    case Command::view:
+      return view(options.view, out, err);
+    case Command::client:
+      return client(options.client, out, err);
   }
   return 2;
 }

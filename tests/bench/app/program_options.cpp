@@ -37,6 +37,7 @@ ParsedProgramOptions parse_program_options(int argc, const char* const* argv, st
   app.require_subcommand(1);
   ProgramOptions options;
   options.net.luanti = options.frames.luanti = options.report.luanti = kSmallLuanti;
+  options.view.luanti = options.client.luanti = kSmallLuanti;
   // Each subcommand has defaults of its own.
   std::array<BenchOptions, kSubcommands.size()> bench;
   std::array<const CLI::App*, kSubcommands.size()> parsers{};
@@ -46,6 +47,8 @@ ParsedProgramOptions parse_program_options(int argc, const char* const* argv, st
   }
   const CLI::App* net = add_net_command(app, options.net);
   const CLI::App* frames = add_frames_command(app, options.frames);
+  const CLI::App* view = add_view_command(app, options.view);
+  const CLI::App* client = add_client_command(app, options.client);
   const CLI::App* report = add_report_command(app, options.report);
   try {
     app.parse(argc, argv);
@@ -54,6 +57,8 @@ ParsedProgramOptions parse_program_options(int argc, const char* const* argv, st
   }
   if (net->parsed()) options.command = Command::net;
   if (frames->parsed()) options.command = Command::frames;
+  if (client->parsed()) options.command = Command::client;
+  if (view->parsed()) options.command = Command::view;
   if (report->parsed()) options.command = Command::report;
   for (std::size_t i = 0; i < kSubcommands.size(); ++i) {
     if (!parsers[i]->parsed()) continue;

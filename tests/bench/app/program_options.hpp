@@ -3,21 +3,38 @@
 #include <iosfwd>
 #include <optional>
 
+#include "tests/bench/client/client_options.hpp"
 #include "tests/bench/frames/frames_options.hpp"
 #include "tests/bench/harness/bench_options.hpp"
 #include "tests/bench/network/net_options.hpp"
 #include "tests/bench/report/report_options.hpp"
+#include "tests/bench/view/view_options.hpp"
 
 namespace runstone::bench {
 
-enum class Command { mesh, chunk_edge, mesh_once, edits, log, bytes, storage, net, frames, report };
+enum class Command {
+  mesh,
+  chunk_edge,
+  mesh_once,
+  edits,
+  log,
+  bytes,
+  storage,
+  net,
+  frames,
+  view,
+  client,
+  report
+};
 
 struct ProgramOptions {
   Command command = Command::mesh;
-  BenchOptions bench;    // of every command without an entry below
-  NetOptions net;        // of Command::net
-  FramesOptions frames;  // of Command::frames
-  ReportOptions report;  // of Command::report
+  BenchOptions bench;         // of every command without an entry below
+  NetOptions net;             // of Command::net
+  FramesOptions frames;       // of Command::frames
+  ViewOptions view;           // of Command::view
+  ClientBenchOptions client;  // of Command::client
+  ReportOptions report;       // of Command::report
 };
 
 /// The options, or the exit code of a program that ends here: 0 after help, 2 after a mistake.

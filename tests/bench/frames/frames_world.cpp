@@ -87,6 +87,7 @@ FramesWorld block_of(const VoxelWorld& world, VoxelPos origin, std::array<int, 3
                      unsigned edge) {
   const auto side = static_cast<std::int32_t>(edge);
   FramesWorld out{world.name, edge, size, world.visibility, {}};
+  out.materials = world.materials;
   for (int z = 0; z < size[2]; ++z) {
     for (int y = 0; y < size[1]; ++y) {
       for (int x = 0; x < size[0]; ++x) {

@@ -23,6 +23,7 @@ struct FramesWorld {
   std::array<int, 3> size{};  // chunks along x, y, z
   std::shared_ptr<const VisibilityTable> visibility;
   std::vector<FramesChunk> chunks;
+  std::shared_ptr<const MaterialTable> materials = nullptr;  // null: only their visibility is known
 };
 
 /// Returns "scenario_1" .. "scenario_37", then "luanti".

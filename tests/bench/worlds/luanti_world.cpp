@@ -73,6 +73,7 @@ Result<VoxelWorld, std::string> luanti_world(const std::string& folder, PlantsKe
   VoxelWorld out;
   out.name = "luanti";
   out.visibility = std::make_shared<const VisibilityTable>(visibilities(report->materials));
+  out.materials = std::make_shared<const MaterialTable>(report->materials);
   out.bounds = dense.box;
   out.column = [dense = std::make_shared<const DenseBox>(std::move(dense))](
                    VoxelPos at, std::span<Material> to) {

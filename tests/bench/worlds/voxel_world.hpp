@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/core/coords.hpp"
+#include "common/materials/material_table.hpp"
 #include "common/mesh/visibility.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "tests/support/mesh_scene.hpp"
@@ -26,6 +27,7 @@ struct VoxelWorld {
   /// Writes the voxels (at.x, at.y + i, at.z). Requires voxels inside the bounds, and at most
   /// kSideMax of them.
   std::function<void(VoxelPos at, std::span<Material> out)> column;
+  std::shared_ptr<const MaterialTable> materials;  // null: only their visibility is known
 };
 
 /// Returns a cube of the world in its cheapest axis order. Cost: O(volume).

@@ -59,6 +59,8 @@ TEST_CASE("each subcommand of runstone-bench has defaults of its own", "[options
 
   CHECK(options_of({"net"}).command == Command::net);
   CHECK(options_of({"frames"}).command == Command::frames);
+  CHECK(options_of({"view"}).command == Command::view);
+  CHECK(options_of({"client"}).command == Command::client);
   CHECK(options_of({"report", "--out", "x"}).command == Command::report);
 }
 

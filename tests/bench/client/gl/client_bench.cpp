@@ -1,0 +1,125 @@
+#include "tests/bench/client/client_bench.hpp"
+
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "client/platform/gl_context.hpp"
+#include "client/render/renderer.hpp"
+#include "common/core/assert.hpp"
+#include "tests/bench/client/gl/client_rig.hpp"
+#include "tests/bench/client/gl/effects_case.hpp"
+#include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/worlds/seeded_worlds.hpp"
+
+namespace runstone::bench {
+namespace {
+
+constexpr unsigned kStillFrames = 20;
+
+double ms_of(TimeUs us) { return static_cast<double>(us) / 1e3; }
+
+const VoxelWorld& hills(const std::vector<VoxelWorld>& worlds) {
+  const auto found = std::find_if(worlds.begin(), worlds.end(),
+                                  [](const VoxelWorld& world) { return world.name == "hills"; });
+  RUNSTONE_ASSERT(found != worlds.end());
+  return *found;
+}
+
+BurstRow measure_bursts(const VoxelWorld& world, const ClientBenchOptions& options,
+                        const char* name, const UploadBudget& budget) {
+  RigOptions rig_options;
+  rig_options.width = options.width;
+  rig_options.height = options.height;
+  rig_options.budget = budget;
+  ClientRig rig(world, rig_options);
+  BurstRow out;
+  out.budget = name;
+  out.edits = options.edits;
+  out.bursts = options.bursts;
+  out.frames_min = std::numeric_limits<std::size_t>::max();
+  std::vector<double> still_ms;
+  for (unsigned i = 0; i < kStillFrames; ++i) still_ms.push_back(ms_of(rig.frame().draw_us));
+  out.still_ms = median(still_ms);
+  for (unsigned burst = 0; burst < options.bursts; ++burst) {
+    rig.finish();
+    rig.receive_edits(options.edits);
+    std::size_t frames = 0;
+    do {
+      const FrameCost cost = rig.frame();
+      ++frames;
+      out.worst_added_ms = std::max(out.worst_added_ms, ms_of(cost.added_us()));
+      out.worst_mesh_ms = std::max(out.worst_mesh_ms, ms_of(cost.mesh_us));
+      out.worst_upload_ms = std::max(out.worst_upload_ms, ms_of(cost.upload_us));
+      out.total_ms += ms_of(cost.added_us()) / options.bursts;
+      out.carried_max = std::max(out.carried_max, cost.carried);
+    } while (rig.has_open_edits());
+    out.frames_min = std::min(out.frames_min, frames);
+    out.frames_max = std::max(out.frames_max, frames);
+  }
+  return out;
+}
+
+OwnEditRow measure_own_edits(const VoxelWorld& world, const ClientBenchOptions& options) {
+  RigOptions rig_options;
+  rig_options.width = options.width;
+  rig_options.height = options.height;
+  rig_options.quality = Quality::low;
+  rig_options.watches_pixels = true;
+  ClientRig rig(world, rig_options);
+  OwnEditRow out;
+  out.edits = options.own_edits;
+  for (unsigned i = 0; i < options.own_edits; ++i) {
+    rig.finish();
+    // A frame is in progress when the edit is made: frame() orders the next one in its last turn.
+    const std::uint64_t before = rig.pixels();
+    rig.edit();
+    std::size_t frames = 0;
+    constexpr std::size_t kFramesMax = 100;
+    do {
+      rig.frame();
+      ++frames;
+    } while (rig.pixels() == before && frames < kFramesMax);
+    out.frames_max = std::max(out.frames_max, frames);
+    out.frames_mean += static_cast<double>(frames) / options.own_edits;
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<ClientBenchResult, std::string> run_client_bench(const ClientBenchOptions& options,
+                                                        std::ostream& progress) {
+  ClientBenchResult out;
+  out.machine = this_machine();
+  out.width = options.width;
+  out.height = options.height;
+  const std::vector<VoxelWorld> worlds = seeded_worlds();
+  const VoxelWorld& world = hills(worlds);
+  const auto say = [&progress](const char* what) {
+    fmt::print(progress, "{}\n", what);
+    progress.flush();
+  };
+  try {
+    out.bursts.push_back(measure_bursts(world, options, "at most 4 ms", {}));
+    say("bursts, with a budget");
+    constexpr UploadBudget kNone{std::numeric_limits<TimeUs>::max() / 2,
+                                 std::numeric_limits<std::size_t>::max()};
+    out.bursts.push_back(measure_bursts(world, options, "all", kNone));
+    say("bursts, without");
+    out.own_edit = measure_own_edits(world, options);
+    say("own edits");
+    auto effects = measure_effects(options, progress);
+    if (!effects) return Unexpected<std::string>{effects.error()};
+    out.effects = std::move(effects->rows);
+    out.gl_renderer = effects->gl_renderer;
+    out.gl_context = effects->gl_context;
+    return out;
+  } catch (const std::runtime_error& error) {  // the platform and the renderer throw
+    return Unexpected<std::string>{error.what()};
+  }
+}
+
+}  // namespace runstone::bench

@@ -1,0 +1,32 @@
+// ViewPane: the chunks of a world as one mesher makes them, for one part of the split view.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "common/mesh/chunk_mesh.hpp"
+#include "tests/bench/frames/frames_world.hpp"
+
+namespace runstone::bench {
+
+struct ViewChunk {
+  ChunkCoord at;
+  ChunkMesh mesh;
+};
+
+struct ViewPane {
+  std::string name;   // of the mesher, for people
+  std::string timed;  // what mesh_us contains
+  std::vector<ViewChunk> chunks;
+  std::size_t quads = 0;
+  double mesh_us = 0;  // to mesh all chunks: the median over the repetitions
+  std::size_t gpu_bytes() const { return quads * sizeof(Quad); }
+};
+
+/// Meshes all chunks with culled faces, binary greedy meshing and RDM. RDM begins with the stored
+/// runs; the others decode them first, which their time contains. In each repetition the meshers take
+/// turns. Times are those of the thread's processor. Requires repetitions > 0 and an edge of at most
+/// 64.
+std::vector<ViewPane> view_panes(const FramesWorld& world, unsigned repetitions);
+
+}  // namespace runstone::bench
