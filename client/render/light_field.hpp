@@ -36,11 +36,11 @@ class LightField {
   void set(ChunkCoord at, std::int32_t edge, LightChunk chunk);
   void remove(ChunkCoord at);
 
-  /// Moves the box to the eye and computes light. If `all` is false, it stops after `kWorkMax`
-  /// voxels, and the rest is left for the next call. Small changes come first. Appends the boxes
+  /// Moves the box to the eye and computes light. Small changes come first. If `all` is false, no
+  /// change is begun after `kWorkMax` voxels; the rest is left for the next call. Appends the boxes
   /// whose levels changed.
   void update(VoxelPos eye, bool all, std::vector<VoxelBox>& changed);
-  static constexpr std::int64_t kWorkMax = 1'000'000;
+  static constexpr std::int64_t kWorkMax = 300'000;
 
   /// Returns the box. It is empty before the first update().
   const VoxelBox& box() const { return box_; }
