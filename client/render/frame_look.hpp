@@ -5,9 +5,9 @@
 namespace runstone {
 
 enum class Quality : std::uint8_t {
-  low,     // no ambient occlusion, no shadows
-  medium,  // ambient occlusion, and shadows in half the resolution with hard edges
-  high,    // ambient occlusion, and shadows with soft edges
+  low,     // no light of lamps, no dark rooms and corners, no shadows
+  medium,  // all light, and shadows in half the resolution with hard edges
+  high,    // all light, and shadows with soft edges
 };
 
 struct FrameLook {
@@ -21,8 +21,8 @@ struct FrameLook {
   /// The world is drawn with this share of the frame's width and height, and stretched. The user
   /// interface is not. 0 < scale <= 1.
   double scale = 1;
-  /// True: a frame shows the shadows of exactly the present world. False: far shadows may be some
-  /// frames old, so that no frame takes long. Pictures in files are exact.
+  /// True: a frame shows the light and shadows of exactly the present world. False: those of distant
+  /// changes may be some frames old, so that no frame takes long. Pictures in files are exact.
   bool exact = true;
 };
 

@@ -91,7 +91,7 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   view.clip = clip_of(camera, width, height);
   view.near = camera.near;
   view.far = camera.far * static_cast<double>(kFarPlane);
-  view.pixel = 2 * std::tan(camera.fov_y / 2) / height;
+  view.pixel = 2 * std::tan(camera.fov_y / 2) / scaled(height);
   view.light = day_light(contents.look.time_of_day, camera.far);
   view.look = contents.look;
 
