@@ -1,6 +1,7 @@
 // OverlayFrame: what the user interface wants drawn over a frame: triangles in pixels, with clip
-// rectangles and an atlas of glyphs. It has no types of the library that makes it, so that the draw
-// thread needs only OpenGL. A frame is never changed after it was made, and any thread may read it.
+// rectangles, an atlas of glyphs and images. It has no types of the library that makes it, so that
+// the draw thread needs only OpenGL. A frame is never changed after it was made, and any thread may
+// read it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,7 +11,7 @@
 namespace runstone {
 
 /// A corner of a triangle. x and y are pixels from the upper left corner of the frame. u and v are
-/// places in the atlas, 0 to 1. The colour is sRGB, red in the lowest byte and alpha in the highest.
+/// places in the atlas or image, 0 to 1. The colour is sRGB, red in the lowest byte and alpha in the highest.
 struct OverlayVertex {
   float x = 0, y = 0;
   float u = 0, v = 0;
@@ -19,12 +20,14 @@ struct OverlayVertex {
 };
 static_assert(sizeof(OverlayVertex) == 20);
 
-/// Triangles that are clipped by the same rectangle. Commands are drawn in their order.
+/// Triangles that are clipped by the same rectangle and have the same texture. Commands are drawn in
+/// their order.
 struct OverlayCommand {
   std::array<float, 4> clip{};     // left, top, right, bottom in pixels
   std::uint32_t first_index = 0;   // in OverlayFrame::indices
   std::uint32_t index_count = 0;   // a multiple of 3
   std::uint32_t first_vertex = 0;  // is added to each index
+  std::uint32_t image = 0;         // 0: the atlas; otherwise the number in OverlayFrame::images + 1
   friend bool operator==(const OverlayCommand&, const OverlayCommand&) = default;
 };
 
@@ -34,12 +37,20 @@ struct OverlayAtlas {
   std::vector<std::uint8_t> coverage;  // width * height
 };
 
+/// A picture in a window, such as a part of a map. It is uploaded when a frame has it that the frame
+/// before had not, so a picture that changes is a new one.
+struct OverlayImage {
+  int width = 0, height = 0;
+  std::vector<std::uint32_t> pixels;  // width * height, in the form of OverlayVertex::colour
+};
+
 struct OverlayFrame {
   int width = 0, height = 0;  // pixels of the frame that it was made for
   std::vector<OverlayVertex> vertices;
   std::vector<std::uint16_t> indices;
   std::vector<OverlayCommand> commands;
   std::shared_ptr<const OverlayAtlas> atlas;  // not null; frames of one interface share it
+  std::vector<std::shared_ptr<const OverlayImage>> images;  // not null
 };
 
 }  // namespace runstone

@@ -1,8 +1,10 @@
 #include "client/render/overlay_painter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace runstone {
 namespace {
@@ -13,10 +15,10 @@ constexpr const char* kVertexShader =
     "layout(location = 1) in vec2 place;\n"
     "layout(location = 2) in vec4 colour;\n"
     "uniform vec2 size;\n"
-    "out vec2 glyph;\n"
+    "out vec2 texel;\n"
     "out vec4 tint;\n"
     "void main() {\n"
-    "  glyph = place;\n"
+    "  texel = place;\n"
     "  tint = colour;\n"
     "  vec2 unit = position / size * 2.0 - 1.0;\n"
     "  gl_Position = vec4(unit.x, -unit.y, 0.0, 1.0);\n"
@@ -24,11 +26,11 @@ constexpr const char* kVertexShader =
 
 constexpr const char* kFragmentShader =
     "#version 330 core\n"
-    "in vec2 glyph;\n"
+    "in vec2 texel;\n"
     "in vec4 tint;\n"
-    "uniform sampler2D glyphs;\n"
+    "uniform sampler2D picture;\n"
     "out vec4 fragment;\n"
-    "void main() { fragment = vec4(tint.rgb, tint.a * texture(glyphs, glyph).r); }\n";
+    "void main() { fragment = tint * texture(picture, texel); }\n";
 
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
@@ -78,16 +80,41 @@ void OverlayPainter::upload_atlas(const std::shared_ptr<const OverlayAtlas>& atl
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  // The coverage of a glyph is its alpha, and its colour is white.
+  constexpr std::array<GLint, 4> kSwizzle = {GL_ONE, GL_ONE, GL_ONE, GL_RED};
+  glTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, kSwizzle.data());
+}
+
+void OverlayPainter::upload_images(const OverlayFrame& frame) {
+  std::map<std::shared_ptr<const OverlayImage>, GlTexture> before = std::exchange(images_, {});
+  for (const auto& image : frame.images) {
+    if (images_.contains(image)) continue;
+    if (const auto known = before.find(image); known != before.end()) {
+      images_.insert(before.extract(known));
+      continue;
+    }
+    GlTexture texture = GlTexture::make();
+    glBindTexture(GL_TEXTURE_2D, texture.get());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, image->width, image->height, 0, GL_RGBA,
+                 GL_UNSIGNED_BYTE, image->pixels.data());
+    glGenerateMipmap(GL_TEXTURE_2D);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    images_.emplace(image, std::move(texture));
+  }
 }
 
 void OverlayPainter::draw(const OverlayFrame& frame, int width, int height) {
   if (frame.commands.empty() || frame.width <= 0 || frame.height <= 0) return;
   glActiveTexture(GL_TEXTURE0);
+  upload_images(frame);
   upload_atlas(frame.atlas);
   glUseProgram(program_.get());
   glUniform2f(glGetUniformLocation(program_.get(), "size"), static_cast<float>(frame.width),
               static_cast<float>(frame.height));
-  glUniform1i(glGetUniformLocation(program_.get(), "glyphs"), 0);
+  glUniform1i(glGetUniformLocation(program_.get(), "picture"), 0);
   glBindVertexArray(array_.get());
   glBindBuffer(GL_ARRAY_BUFFER, vertices_.get());
   glBufferData(GL_ARRAY_BUFFER,
@@ -105,6 +132,9 @@ void OverlayPainter::draw(const OverlayFrame& frame, int width, int height) {
   const double scale_y = static_cast<double>(height) / frame.height;
   for (const OverlayCommand& command : frame.commands) {
     if (!clip_to(command, scale_x, scale_y, width, height)) continue;
+    glBindTexture(GL_TEXTURE_2D, command.image == 0
+                                     ? glyphs_.get()
+                                     : images_.at(frame.images[command.image - 1]).get());
     glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.index_count),
                              GL_UNSIGNED_SHORT, offset(command.first_index * sizeof(std::uint16_t)),
                              static_cast<GLint>(command.first_vertex));

@@ -98,6 +98,7 @@ void add_list(const ImDrawList& list, OverlayFrame& out) {
     added.first_index = first_index + command.IdxOffset;
     added.index_count = command.ElemCount;
     added.first_vertex = first_vertex + command.VtxOffset;
+    added.image = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(command.TextureId));
     out.commands.push_back(added);
   }
 }
@@ -203,6 +204,7 @@ void UiContext::run_frame(std::array<int, 2> size, double seconds,
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(size[0]), static_cast<float>(size[1])};
   io.DeltaTime = static_cast<float>(std::max(seconds, kSecondsMin));
+  images_.clear();
   ImGui::NewFrame();
   build();
   ImGui::Render();
@@ -217,7 +219,13 @@ std::shared_ptr<const OverlayFrame> UiContext::overlay_frame() const {
   out.indices.reserve(static_cast<std::size_t>(data.TotalIdxCount));
   for (int i = 0; i < data.CmdListsCount; ++i) add_list(*data.CmdLists[i], out);
   out.atlas = atlas_;
+  out.images = images_;
   return std::make_shared<const OverlayFrame>(std::move(out));
+}
+
+void* UiContext::add_image(std::shared_ptr<const OverlayImage> image) {
+  images_.push_back(std::move(image));
+  return reinterpret_cast<void*>(static_cast<std::uintptr_t>(images_.size()));
 }
 
 bool UiContext::types() const {

@@ -35,6 +35,9 @@ class UiContext {
   std::shared_ptr<const OverlayFrame> make_frame(std::array<int, 2> size, double seconds,
                                                  const std::function<void()>& build);
 
+  /// Shows an image in the frame that is made, and returns its name for ImGui. Call it from `build`.
+  void* add_image(std::shared_ptr<const OverlayImage> image);
+
   /// Makes a frame that takes no events and no time and is not returned. A text field that was asked
   /// to take the keyboard has it after at most kFocusFrames such frames, before it would miss events.
   void make_hidden_frame(std::array<int, 2> size, const std::function<void()>& build);
@@ -59,6 +62,7 @@ class UiContext {
   const double scale_;
   std::unique_ptr<ImGuiContext, Deleter> context_;
   std::shared_ptr<const OverlayAtlas> atlas_;
+  std::vector<std::shared_ptr<const OverlayImage>> images_;  // of the frame that is made
   std::deque<InputEvent> events_;
 };
 

@@ -276,6 +276,43 @@ TEST_CASE("an overlay is drawn over the frame, in its place, clipped and blended
   CHECK(renderer.read_image().rgb == without.rgb);
 }
 
+TEST_CASE("an overlay shows images in their colours, and another image in the next frame",
+          "[render]") {
+  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_osmesa_context);
+  const auto context = context_or_warn(make);
+  if (!context) return;
+  Renderer renderer(context->loader());
+  Camera camera;
+  camera.pitch = 0.3;
+  renderer.draw(camera, 160, 120);
+  const Image without = renderer.read_image();
+  OverlayFrame overlay;
+  overlay.width = 160;
+  overlay.height = 120;
+  overlay.atlas =
+      std::make_shared<const OverlayAtlas>(OverlayAtlas{1, 1, std::vector<std::uint8_t>{255}});
+  // Red, and a pixel without colour.
+  const auto two = [](std::uint32_t first) {
+    return std::make_shared<const OverlayImage>(OverlayImage{2, 1, {first, 0x00FFFFFF}});
+  };
+  overlay.images = {two(0xFF0000FF)};
+  for (const auto& [x, y] : {std::pair{0.F, 0.F}, {160.F, 0.F}, {160.F, 120.F}, {0.F, 120.F}})
+    overlay.vertices.push_back({x, y, x / 160, 0.5F, 0xFFFFFFFF});
+  overlay.indices = {0, 1, 2, 0, 2, 3};
+  overlay.commands = {{{0, 0, 160, 120}, 0, 6, 0, 1}};
+  renderer.draw_overlay(overlay);
+  renderer.finish();
+  const Image with = renderer.read_image();
+  CHECK(pixel(with, 0.1, 0.5) == std::array<int, 3>{255, 0, 0});
+  CHECK(pixel(with, 0.45, 0.9) == std::array<int, 3>{255, 0, 0});
+  CHECK(pixel(with, 0.75, 0.5) == pixel(without, 0.75, 0.5));
+  renderer.draw(camera, 160, 120);
+  overlay.images = {two(0xFFFF0000)};
+  renderer.draw_overlay(overlay);
+  renderer.finish();
+  CHECK(pixel(renderer.read_image(), 0.1, 0.5) == std::array<int, 3>{0, 0, 255});
+}
+
 TEST_CASE("corners are dark next to opaque voxels, however the faces are cut into quads",
           "[render]") {
   const auto context = context_or_warn(&make_egl_surfaceless_context);
