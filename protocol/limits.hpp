@@ -22,9 +22,11 @@ inline constexpr std::uint64_t kFeatureRights = 8;  // Permissions and Protected
 inline constexpr std::uint64_t kFeatureChat = 16;   // ChatRequest and ChatLines
 inline constexpr std::uint64_t kFeatureKeyTransfer = 32;  // KeyRequest, KeyDeposit, their answers
 inline constexpr std::uint64_t kFeatureMaterials = 64;    // MaterialsAdded
-inline constexpr std::uint64_t kFeaturesKnown = kFeatureCommands | kFeatureReceiveAck |
-                                                kFeatureNames | kFeatureRights | kFeatureChat |
-                                                kFeatureKeyTransfer | kFeatureMaterials;
+inline constexpr std::uint64_t kFeatureLogMarks = 128;    // LogMarksRequest and LogMarks
+inline constexpr std::uint64_t kFeatureRestorePreview = 256;  // RestorePreview
+inline constexpr std::uint64_t kFeaturesKnown =
+    kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
+    kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -103,6 +105,16 @@ inline constexpr std::size_t kChatLinesMax = 64;   // per message
 // Keys for another device.
 inline constexpr std::size_t kKeySlotBytes = 16;
 inline constexpr std::size_t kSealedKeyBytesMax = 512;
+
+// Marks of the log.
+inline constexpr std::size_t kLogMarksMax = 128;  // per message
+
+// Previews of rollbacks.
+inline constexpr std::size_t kPreviewIdBytesMax = 32;
+inline constexpr std::size_t kRestorePreviewEditsMax = 512;
+inline constexpr std::size_t kRestorePreviewBytesMax =
+    256 * 1024;  // of their descriptors, together
+static_assert(kDescriptorBytesMax <= kRestorePreviewBytesMax, "every descriptor fits a preview");
 
 // Commands.
 inline constexpr std::size_t kCommandBytesMax = 1024;      // one line

@@ -85,6 +85,13 @@ struct BodyReader {
   // ---- material_bodies.cpp
   Result<Message> read(const wire::MaterialsAdded& t) const;
 
+  // ---- log_mark_bodies.cpp
+  Result<Message> read(const wire::LogMarksRequest& t) const;
+  Result<Message> read(const wire::LogMarks& t) const;
+
+  // ---- restore_preview_bodies.cpp
+  Result<Message> read(const wire::RestorePreview& t) const;
+
   using TakeEdit = std::function<Result<void>()>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then
   /// calls `take`, which may move from both. Before Welcome, `touched` stays

@@ -18,7 +18,8 @@ using Bodies =
                wire::ViewState, wire::CommandRequest, wire::CommandOutput, wire::ReceiveAck,
                wire::UniformChunks, wire::CachedChunks, wire::ChunksNotModified, wire::Permissions,
                wire::ProtectedGround, wire::ChatRequest, wire::ChatLines, wire::KeyRequest,
-               wire::SealedKey, wire::KeyDeposit, wire::KeyDeposited, wire::MaterialsAdded>;
+               wire::SealedKey, wire::KeyDeposit, wire::KeyDeposited, wire::MaterialsAdded,
+               wire::LogMarksRequest, wire::LogMarks, wire::RestorePreview>;
 static_assert(std::tuple_size_v<Bodies> == kMessageKindCount);
 
 using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);

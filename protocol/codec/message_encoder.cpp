@@ -137,7 +137,8 @@ struct BodyBuilder {
     for (const PlayerName& p : m.players) {
       const auto name = b.CreateString(p.name);
       const auto key = bytes_of(b, p.key);
-      players.push_back(wire::CreatePlayerName(b, p.author, name, key));
+      const auto role = p.role.empty() ? 0 : b.CreateString(p.role);
+      players.push_back(wire::CreatePlayerName(b, p.author, name, key, role));
     }
     return wire::CreatePlayerList(b, b.CreateVector(players), m.is_change,
                                   m.is_change ? b.CreateVector(m.left) : 0);
@@ -231,6 +232,38 @@ struct BodyBuilder {
     RUNSTONE_ASSERT(m.first != 0 && !m.rows.empty());
     RUNSTONE_ASSERT(m.first + m.rows.size() <= kMaterialCountMax);
     return wire::CreateMaterialsAdded(b, m.first, material_rows(m.rows));
+  }
+
+  Offset<wire::LogMarksRequest> operator()(const LogMarksRequest& m) {
+    RUNSTONE_ASSERT(m.first != 0 && m.first <= m.last);
+    RUNSTONE_ASSERT(m.count != 0 && m.count <= kLogMarksMax);
+    return wire::CreateLogMarksRequest(b, m.request, m.first, m.last, m.count);
+  }
+  Offset<wire::LogMarks> operator()(const LogMarks& m) {
+    RUNSTONE_ASSERT(m.marks.size() <= kLogMarksMax && m.authors.size() <= kLogMarksMax);
+    std::vector<wire::LogMark> marks;
+    marks.reserve(m.marks.size());
+    for (const LogMark& mark : m.marks)
+      marks.emplace_back(mark.seq, mark.utc_us, mark.author, static_cast<std::uint8_t>(mark.cause),
+                         static_cast<std::uint8_t>(mark.kind));
+    std::vector<Offset<wire::LogAuthor>> authors;
+    authors.reserve(m.authors.size());
+    for (const LogAuthor& author : m.authors)
+      authors.push_back(wire::CreateLogAuthor(b, author.author, b.CreateString(author.name)));
+    const auto marks_at = b.CreateVectorOfStructs(marks);
+    const auto authors_at = b.CreateVector(authors);
+    return wire::CreateLogMarks(b, m.request, m.first, marks_at, authors_at, text(m.refusal));
+  }
+  Offset<wire::RestorePreview> operator()(const RestorePreview& m) {
+    RUNSTONE_ASSERT(m.edits.size() <= kRestorePreviewEditsMax);
+    std::vector<Offset<wire::EditBytes>> edits;
+    edits.reserve(m.edits.size());
+    for (const EditDescriptor& edit : m.edits)
+      edits.push_back(wire::CreateEditBytes(b, bytes_of(b, encode(edit))));
+    RUNSTONE_ASSERT(m.preview.size() <= kPreviewIdBytesMax);
+    const auto preview = b.CreateString(m.preview);
+    return wire::CreateRestorePreview(b, m.command, preview, m.voxels, m.chunks,
+                                      b.CreateVector(edits), m.is_cut);
   }
 
   template <class Rows>

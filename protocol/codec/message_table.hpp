@@ -79,6 +79,9 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"KeyDeposit", client, kControl, authenticating, kFeatureKeyTransfer},
       {"KeyDeposited", server, kControl, authenticating, kFeatureKeyTransfer},
       {"MaterialsAdded", server, kEdits, open, kFeatureMaterials},
+      {"LogMarksRequest", client, kControl, open, kFeatureLogMarks},
+      {"LogMarks", server, kControl, open, kFeatureLogMarks},
+      {"RestorePreview", server, kControl, open, kFeatureRestorePreview},
   }};
 }();
 

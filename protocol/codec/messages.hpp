@@ -30,6 +30,8 @@
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/key_transfer_messages.hpp"
+#include "protocol/codec/log_mark_messages.hpp"
+#include "protocol/codec/restore_preview_messages.hpp"
 #include "protocol/codec/rights_messages.hpp"
 #include "protocol/limits.hpp"
 
@@ -343,11 +345,12 @@ struct PlayerName {
   AuthorId author = 0;
   std::string name;
   PublicKey key{};
+  std::string role = {};  // 0 .. kGroundNameBytesMax bytes; empty: the server does not name it
   friend bool operator==(const PlayerName&, const PlayerName&) = default;
 };
 /// The players in the world: all of them, or the changes since the last list.
 struct PlayerList {
-  std::vector<PlayerName> players;  // of a change: those who joined or changed their name
+  std::vector<PlayerName> players;  // of a change: those who joined, or changed name or role
   bool is_change = false;
   std::vector<AuthorId> left;  // of a change only: those who left
   friend bool operator==(const PlayerList&, const PlayerList&) = default;
@@ -425,7 +428,8 @@ using Message =
                  Ping, Pong, Goodbye, ChunkUnavailable, HistoryRequest, ViewState, CommandRequest,
                  CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified,
                  Permissions, ProtectedGround, ChatRequest, ChatLines, KeyRequest, SealedKey,
-                 KeyDeposit, KeyDeposited, MaterialsAdded>;
+                 KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest, LogMarks,
+                 RestorePreview>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

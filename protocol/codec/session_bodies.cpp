@@ -139,6 +139,8 @@ Result<Message> BodyReader::read(const wire::PlayerList& t) const {
       return bad("player name is not a name of 1 .. 32 bytes");
     }
     if (!take_exact(p.key(), m.players[i].key)) return bad("player key is not 32 bytes");
+    if (!take_text(p.role(), 0, kGroundNameBytesMax, m.players[i].role))
+      return bad("role of a player is not 0 .. 32 bytes of text");
   }
   m.is_change = t.change();
   const auto gone =

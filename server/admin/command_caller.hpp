@@ -5,6 +5,7 @@
 
 #include "common/rights/change_rules.hpp"
 #include "common/rights/rights_state.hpp"
+#include "protocol/codec/messages.hpp"
 #include "server/admin/command_rules.hpp"
 
 namespace runstone {
@@ -12,6 +13,8 @@ namespace runstone {
 struct CommandCaller {
   AuthorId author = 0;  // 0: console or control
   RightsActor actor;    // without a key: console or control
+  /// The view of a client that shows what a rollback would change, otherwise nullopt.
+  std::optional<View> preview_view = std::nullopt;
 };
 
 /// Returns true if the caller has the right now. Console and operators have every right.

@@ -14,6 +14,7 @@
 #include "server/admin/player_list.hpp"
 #include "server/draw/preview_pictures.hpp"
 #include "server/rollback/newest_edits.hpp"
+#include "server/rollback/preview_edits.hpp"
 
 namespace runstone {
 namespace {
@@ -115,7 +116,7 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
   }
   if (const auto* log_of = std::get_if<LogCommand>(&*command)) return log(*log_of, now, reply);
   if (const auto* preview_of = std::get_if<RollbackPreviewCommand>(&*command)) {
-    return preview(*preview_of, now, reply);
+    return preview(caller, *preview_of, now, reply);
   }
   if (std::holds_alternative<RollbackListCommand>(*command))
     return rollback_.list(std::move(reply));
@@ -270,19 +271,35 @@ void CommandHandler::add_materials(const std::string& file, const Clocks& now,
                });
 }
 
-void CommandHandler::preview(const RollbackPreviewCommand& command, const Clocks& now,
-                             const CommandReply& reply) {
-  const auto go_on = [this, now, reply, picture = command.picture](const SelectionFilter& filter) {
-    if (!picture) return rollback_.preview(filter, now, reply);
-    const auto pictures = std::make_shared<PreviewPictures>(world_folder_);
-    rollback_.preview(
-        filter, now, reply, [pictures](const RestorePlan& plan) { pictures->add(plan); },
-        [pictures](WorldReader& reader, const Generator& generator, const std::string& id,
-                   const ShouldContinue& wanted) {
-          return pictures->draw(reader, generator, id, wanted);
-        });
+void CommandHandler::preview(const CommandCaller& caller, const RollbackPreviewCommand& command,
+                             const Clocks& now, const CommandReply& reply) {
+  const auto edits = caller.preview_view ? std::make_shared<PreviewEdits>(*caller.preview_view)
+                                         : std::shared_ptr<PreviewEdits>();
+  const auto pictures = command.picture ? std::make_shared<PreviewPictures>(world_folder_)
+                                        : std::shared_ptr<PreviewPictures>();
+  const auto view_plan = [edits, pictures](const RestorePlan& plan) {
+    if (edits) edits->add(plan);
+    if (pictures) pictures->add(plan);
   };
-  resolve(command.filter, "rollback preview", reply, go_on);
+  RollbackPreview::Summary summarise;
+  if (pictures) {
+    summarise = [pictures](WorldReader& reader, const Generator& generator, const std::string& id,
+                           const ShouldContinue& wanted) {
+      return pictures->draw(reader, generator, id, wanted);
+    };
+  }
+  const auto answer = [edits, reply](CommandAnswer given) {
+    if (edits && given.restore) {
+      RestorePreview shown = *given.restore;
+      edits->take(shown);
+      given.restore = std::make_shared<const RestorePreview>(std::move(shown));
+    }
+    reply(given);
+  };
+  resolve(command.filter, "rollback preview", reply,
+          [this, now, answer, view_plan, summarise](const SelectionFilter& filter) {
+            rollback_.preview(filter, now, answer, view_plan, summarise);
+          });
 }
 
 }  // namespace runstone

@@ -39,7 +39,8 @@ class CommandHandler {
   void release_name(const std::string& name, const CommandReply& reply);
   void add_materials(const std::string& file, const Clocks& now, const CommandReply& reply);
   void log(const LogCommand& command, const Clocks& now, const CommandReply& reply);
-  void preview(const RollbackPreviewCommand& command, const Clocks& now, const CommandReply& reply);
+  void preview(const CommandCaller& caller, const RollbackPreviewCommand& command,
+               const Clocks& now, const CommandReply& reply);
   /// Looks up the authors that a filter names, on a worker. Calls `go_on` with the result, or
   /// rejects the command if a name is unknown or ambiguous.
   void resolve(const CommandFilter& filter, const std::string& command, const CommandReply& reply,

@@ -1,10 +1,13 @@
 // CommandReply: how RollbackService and CommandHandler answer a command.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 
 namespace runstone {
+
+struct RestorePreview;
 
 /// One answer: one or more lines of text, without a line break at the end. The last answer to a
 /// command has `is_done`.
@@ -12,6 +15,8 @@ struct CommandAnswer {
   std::string text;
   bool is_done = true;
   bool is_ok = true;  // of the last answer
+  /// Of the last answer to a preview of a rollback: what a client shows of it.
+  std::shared_ptr<const RestorePreview> restore = nullptr;
 };
 using CommandReply = std::function<void(const CommandAnswer&)>;
 

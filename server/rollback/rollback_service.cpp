@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "common/core/utc_text.hpp"
+#include "protocol/codec/restore_preview_messages.hpp"
 #include "server/rollback/count_text.hpp"
 #include "server/rollback/rollback_groups.hpp"
 
@@ -165,10 +166,14 @@ void RollbackService::answer_preview(RollbackPreview& preview, const std::string
   }
   if (preview.is_empty()) {
     previews_.erase(preview.number);
-    return reply({preview.text_of_nothing(), true, true});
+    return reply({preview.text_of_nothing(), true, true, std::make_shared<const RestorePreview>()});
   }
   preview.state = RollbackPreview::State::ready;
-  reply({preview.text(), true, true});
+  RestorePreview shown;
+  shown.preview = preview.id();
+  shown.voxels = preview.voxels;
+  shown.chunks = preview.chunks;
+  reply({preview.text(), true, true, std::make_shared<const RestorePreview>(std::move(shown))});
 }
 
 RollbackPreview* RollbackService::find_preview(const std::string& id) {

@@ -80,11 +80,13 @@ void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key
                         const std::string& text) {
   // The handler may answer at once, and WorldServer must not be called from within its own call.
   strand_.post([this, session, author, key, text] {
-    const CommandCaller caller{author, {key, operators_.contains(key)}};
+    const CommandCaller caller{
+        author, {key, operators_.contains(key)}, world_.restore_preview_view(session)};
     if (caller.actor.is_operator || has_power(world_.rights().role_of(key).rights))
       logger("app").info("command author={} key={} command=\"{}\"", author, key_fingerprint(key),
                          logged_text(text));
     const auto reply = [this, session](const CommandAnswer& answer) {
+      if (answer.restore) world_.show_restore(session, *answer.restore);
       world_.answer_command(session, answer_lines(answer.text), answer.is_done, answer.is_ok);
     };
     handler_.run(caller, text, read_clocks(), reply);

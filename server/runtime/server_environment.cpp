@@ -102,6 +102,13 @@ void ServerEnvironment::load_history_chunk(SessionId session, HistoryNumber hist
       });
 }
 
+void ServerEnvironment::read_log_marks(SessionId session, const LogMarksRequest& request) {
+  readers_.read_log_marks(request, [this, session, request = request.request](
+                                       const WorldReaders::FoundLogMarksResult& found) {
+    world_->log_marks_read(session, request, found, read_clocks());
+  });
+}
+
 void ServerEnvironment::save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                                        Sequence checkpoint) {
   // The checkpointer has one job under way at a time, so the queue of jobs has room unless the

@@ -63,6 +63,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void open_history(SessionId session, const HistoryRequest& request) override;
   void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                           const ChunkKey& key) override;
+  void read_log_marks(SessionId session, const LogMarksRequest& request) override;
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                       Sequence checkpoint) override;
   void command(SessionId session, AuthorId author, const PublicKey& key,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "server/history/log_marks.hpp"
 #include "server/runtime/logging.hpp"
 
 namespace runstone {
@@ -54,6 +55,23 @@ void WorldReaders::load_history_chunk(Sequence at, const ChunkKey& key,
       chunk = Unexpected<std::string>{loaded.error().message()};
     }
     strand_.post([then, chunk = std::move(chunk)]() mutable { then(std::move(chunk)); });
+  });
+}
+
+void WorldReaders::read_log_marks(const LogMarksRequest& request,
+                                  std::function<void(FoundLogMarksResult)> then) {
+  asio::post(*history_readers_, [this, request, then = std::move(then)] {
+    FoundLogMarksResult found = Unexpected<std::string>{"the log cannot be read now"};
+    const auto read = chunks_.with_reader([&](WorldReader& reader) {
+      auto marks = runstone::read_log_marks(reader, request);
+      if (marks) {
+        found = *std::move(marks);
+      } else {
+        logger("store").error("{}", marks.error().message());
+      }
+    });
+    if (!read) logger("store").error("{}", read.error().message());
+    strand_.post([then, found = std::move(found)]() mutable { then(std::move(found)); });
   });
 }
 

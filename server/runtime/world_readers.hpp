@@ -2,7 +2,8 @@
 // log. Each call returns at once; `then` runs later on the world strand. There are three groups of
 // threads, so that one kind of read does not wait for another:
 //   - the workers, shared with encoding, load chunks;
-//   - the history readers open moments of the past and make their chunks;
+//   - the history readers open moments of the past and make their chunks, and read marks of the
+//     log;
 //   - the log readers run the queries of commands and rollbacks.
 // All have a low priority.
 // Threads: any, until stop().
@@ -36,6 +37,11 @@ class WorldReaders {
   /// Makes a chunk as it was after edit `at`. The error names file, table and row.
   void load_history_chunk(Sequence at, const ChunkKey& key,
                           std::function<void(Result<ChunkPtr, std::string>)> then);
+
+  using FoundLogMarksResult = Result<FoundLogMarks, std::string>;
+  /// Reads marks of the log. The error is for the client, so it names no file of this machine.
+  void read_log_marks(const LogMarksRequest& request,
+                      std::function<void(FoundLogMarksResult)> then);
 
   /// Runs `work` with a reader of its own. The text is empty, or says why there was no reader and
   /// `work` did not run.

@@ -1,6 +1,7 @@
 #include "server/world/command_handlers.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace runstone {
 namespace {
@@ -33,6 +34,21 @@ void on_command(WorldState& world, SessionId session, const CommandRequest& requ
   }
   mine.command = request.id;
   world.environment.command(session, mine.author, mine.key, request.text);
+}
+
+std::optional<View> restore_preview_view(const WorldState& world, SessionId session) {
+  const WorldSession* const mine = world.find(session);
+  if (mine == nullptr || mine->state != SessionStage::open ||
+      (mine->features & kFeatureRestorePreview) == 0)
+    return std::nullopt;
+  return world.interest.find(session)->view();
+}
+
+void send_restore_preview(WorldState& world, SessionId session, RestorePreview preview) {
+  const WorldSession* const mine = world.find(session);
+  if (mine == nullptr || !mine->command || (mine->features & kFeatureRestorePreview) == 0) return;
+  preview.command = *mine->command;
+  send_or_skip(world, session, encode_message(preview));
 }
 
 void send_command_output(WorldState& world, SessionId session,

@@ -3,40 +3,43 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace runstone {
 namespace {
 
-/// Returns the names of the players with open sessions. Two clients of one player are one entry.
-std::map<AuthorId, std::string> names_of(const WorldState& world) {
-  std::map<AuthorId, std::string> names;
+using Entries = std::map<AuthorId, ListedEntry>;
+
+/// Returns the players with open sessions. Two clients of one player are one entry.
+Entries entries_of(const WorldState& world) {
+  Entries entries;
   for (const auto& [id, session] : world.sessions) {
-    if (session.state == SessionStage::open) names[session.author] = session.name;
+    if (session.state == SessionStage::open)
+      entries[session.author] = {session.name, world.rights.role_of(session.key).name};
   }
-  return names;
+  return entries;
 }
 
-PlayerName entry_of(const WorldState& world, AuthorId author, const std::string& name) {
-  return {author, name, world.players.key_of(author).value_or(PublicKey{})};
+PlayerName listed(const WorldState& world, AuthorId author, const ListedEntry& entry) {
+  return {author, entry.name, world.players.key_of(author).value_or(PublicKey{}), entry.role};
 }
 
-PlayerList full_player_list(const WorldState& world, const std::map<AuthorId, std::string>& names) {
+PlayerList full_player_list(const WorldState& world, const Entries& entries) {
   PlayerList list;
-  list.players.reserve(names.size());
-  for (const auto& [author, name] : names) list.players.push_back(entry_of(world, author, name));
+  list.players.reserve(entries.size());
+  for (const auto& [author, entry] : entries) list.players.push_back(listed(world, author, entry));
   return list;
 }
 
-PlayerList change_between(const WorldState& world, const std::map<AuthorId, std::string>& before,
-                          const std::map<AuthorId, std::string>& after) {
+PlayerList change_between(const WorldState& world, const Entries& before, const Entries& after) {
   PlayerList change;
   change.is_change = true;
-  for (const auto& [author, name] : after) {
+  for (const auto& [author, entry] : after) {
     const auto known = before.find(author);
-    if (known == before.end() || known->second != name)
-      change.players.push_back(entry_of(world, author, name));
+    if (known == before.end() || known->second != entry)
+      change.players.push_back(listed(world, author, entry));
   }
-  for (const auto& [author, name] : before) {
+  for (const auto& [author, entry] : before) {
     if (!after.contains(author)) change.left.push_back(author);
   }
   return change;
@@ -47,8 +50,8 @@ PlayerList change_between(const WorldState& world, const std::map<AuthorId, std:
 void broadcast_player_list(WorldState& world) {
   if (!world.player_list_changed) return;
   world.player_list_changed = false;
-  std::map<AuthorId, std::string> names = names_of(world);
-  const PlayerList change = change_between(world, world.sent_player_list, names);
+  Entries entries = entries_of(world);
+  const PlayerList change = change_between(world, world.sent_player_list, entries);
   const bool has_change = !change.players.empty() || !change.left.empty();
   const EncodedMessage encoded_change = encode_message(change);
   std::optional<EncodedMessage> encoded_full;  // made only if a session needs it
@@ -56,12 +59,12 @@ void broadcast_player_list(WorldState& world) {
     WorldSession& mine = *world.find(session);
     if (mine.has_player_list && !has_change) continue;
     if (!mine.has_player_list && !encoded_full)
-      encoded_full = encode_message(full_player_list(world, names));
+      encoded_full = encode_message(full_player_list(world, entries));
     mine.has_player_list =
         send_or_skip(world, session, mine.has_player_list ? encoded_change : *encoded_full);
     if (!mine.has_player_list) world.player_list_changed = true;
   }
-  world.sent_player_list = std::move(names);
+  world.sent_player_list = std::move(entries);
 }
 
 void broadcast_poses(WorldState& world, const Clocks& now) {

@@ -170,6 +170,7 @@ void add_changed_ground(const RightsState& rights, const RightsChange& change,
 }
 
 void rights_changed(WorldState& world, const std::vector<VoxelBox>& ground) {
+  world.player_list_changed = true;  // it has the roles
   for (auto& [id, session] : world.sessions) {
     if (!has_ground(session)) continue;
     refresh_permissions(world, session);

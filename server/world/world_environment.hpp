@@ -39,6 +39,12 @@ struct OpenedHistory {
   TimeUs utc_us = 0;  // the time when that edit was ordered
 };
 
+/// Marks of the log that a reader has found.
+struct FoundLogMarks {
+  Sequence first = 1;          // of the log; at least 1
+  std::vector<LogMark> marks;  // as in LogMarks
+};
+
 /// Why a chunk could not be loaded.
 enum class LoadFailure : std::uint8_t {
   damaged,  // its row does not decode, or contradicts the log
@@ -115,6 +121,9 @@ class WorldEnvironment {
   /// WorldServer::history_chunk_loaded().
   virtual void load_history_chunk(SessionId /*session*/, HistoryNumber /*history*/, Sequence /*at*/,
                                   const ChunkKey& /*key*/) {}
+  /// Reads marks of the log, on a reader. Called at most once for a session until it is answered.
+  /// Answer: WorldServer::log_marks_read().
+  virtual void read_log_marks(SessionId /*session*/, const LogMarksRequest& /*request*/) {}
   /// Writes immutable chunks as snapshots, then moves the checkpoint: every edit up to it is
   /// contained in snapshots. Requires that each chunk's version is durable. Answer:
   /// WorldServer::snapshots_saved().

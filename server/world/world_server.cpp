@@ -16,6 +16,7 @@
 #include "server/world/delivery.hpp"
 #include "server/world/digest_check_scheduler.hpp"
 #include "server/world/handshake_handlers.hpp"
+#include "server/world/log_mark_handlers.hpp"
 #include "server/world/material_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
@@ -44,6 +45,8 @@ void on_open_message(WorldState& world, SessionId session, const Message& messag
   if (const auto* ping = std::get_if<Ping>(&message)) return on_ping(world, session, *ping, now);
   if (const auto* request = std::get_if<HistoryRequest>(&message))
     return on_history_request(world, session, *request, now);
+  if (const auto* request = std::get_if<LogMarksRequest>(&message))
+    return on_log_marks_request(world, session, *request, now);
   if (const auto* command = std::get_if<CommandRequest>(&message)) {
     return on_command(world, session, *command, now);
   }
@@ -287,6 +290,7 @@ void WorldServer::tick(const Clocks& now) {
   broadcast_durable(world, now);
   send_due_digest_checks(world, now);
   open_waiting_history(world, now);
+  read_waiting_log_marks(world, now);
   retry_loads(world, now);
   retry_pending(world, now);
   step_checkpointer(now);
@@ -349,6 +353,20 @@ void WorldServer::history_chunk_loaded(SessionId session, HistoryNumber history,
     state_->environment.report(OperatorLogLevel::error,
                                "chunk=" + text_of(key) + " of the past: " + chunk.error());
   on_history_chunk(*state_, session, history, key, chunk ? *chunk : nullptr, now);
+}
+
+std::optional<View> WorldServer::restore_preview_view(SessionId session) const {
+  return runstone::restore_preview_view(*state_, session);
+}
+
+void WorldServer::show_restore(SessionId session, const RestorePreview& preview) {
+  send_restore_preview(*state_, session, preview);
+}
+
+void WorldServer::log_marks_read(SessionId session, std::uint32_t request,
+                                 const Result<FoundLogMarks, std::string>& found,
+                                 const Clocks& now) {
+  on_log_marks_read(*state_, session, request, found, now);
 }
 
 void WorldServer::durable(Sequence seq, const Clocks& now) {

@@ -133,6 +133,9 @@ class WorldServer {
   std::string invite_link(InviteId invite) const;
   /// Closes the sessions of a key, or of a range of addresses. Returns their number.
   std::size_t kick(const RestrictionSubject& who, const std::string& reason);
+  /// See command_handlers.hpp.
+  std::optional<View> restore_preview_view(SessionId session) const;
+  void show_restore(SessionId session, const RestorePreview& preview);
   /// Returns why the author may not make this edit, or nullopt. The server (0) may make every edit.
   std::optional<std::string> edit_refusal(AuthorId author, const EditDescriptor& edit) const;
 
@@ -148,6 +151,9 @@ class WorldServer {
   /// Brings a chunk of the past for this history view. The error names file, table and row.
   void history_chunk_loaded(SessionId session, HistoryNumber history, const ChunkKey& key,
                             const Result<ChunkPtr, std::string>& chunk, const Clocks& now);
+  /// Answers a session's request for marks of the log. The error is for the client.
+  void log_marks_read(SessionId session, std::uint32_t request,
+                      const Result<FoundLogMarks, std::string>& found, const Clocks& now);
   /// Reports that every edit up to `seq` is on disk.
   void durable(Sequence seq, const Clocks& now);
   /// Reports that so many more changes of names are on disk, the oldest first.

@@ -100,6 +100,10 @@ struct WorldSession {
   TimeUs history_due_us = 0;                           // when the next request may take effect
   std::optional<HistoryView> history;                  // nullopt: the session sees the live world
   std::uint32_t history_request = 0;                   // the newest one that was answered
+  // Marks of the log (log_mark_handlers.hpp).
+  std::optional<LogMarksRequest> next_log_marks;  // the newest request, until it is read
+  bool is_reading_log_marks = false;
+  TimeUs log_marks_due_us = 0;  // when the next request may take effect
   // Reports that precede the session's next chunk, in this order.
   std::optional<ViewState> begins_due, refused_due, complete_due;
   bool is_view_complete = true;  // of the view in force it was reported, or there is no view

@@ -44,6 +44,12 @@ inline constexpr const char* kTooManyGuesses =
     "too many wrong passwords or codes came from your network: wait a minute";
 inline constexpr const char* kMemoryIsFull = "the server's memory is full (memory_mib)";
 
+/// What the player list says of a player besides the key.
+struct ListedEntry {
+  std::string name, role;
+  friend bool operator==(const ListedEntry&, const ListedEntry&) = default;
+};
+
 struct WorldState {
   WorldState(WorldConfig config_, const WorldStart& start, WorldEnvironment& environment_,
              RandomBytes random_);
@@ -88,7 +94,7 @@ struct WorldState {
   TimeUs stop_due_us = 0;  // when a stop that is under way begins no more snapshots
   // Presence.
   bool player_list_changed = false;
-  std::map<AuthorId, std::string> sent_player_list;
+  std::map<AuthorId, ListedEntry> sent_player_list;
   TimeUs poses_us = 0;           // when poses were sent last
   SessionId pose_sent_last = 0;  // the session whose pose was sent last
   TimeUs durable_due_us = 0;     // when every session gets the durable watermark next
@@ -107,6 +113,7 @@ struct WorldState {
   // Time travel.
   std::uint32_t history_count = 0;    // history views since the start
   std::size_t histories_opening = 0;  // requests that workers open
+  std::size_t log_mark_reads = 0;     // requests for marks that readers read
 
   std::vector<SessionId> open_sessions() const {
     std::vector<SessionId> open;

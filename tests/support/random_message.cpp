@@ -338,7 +338,7 @@ PlayerList any_player_list(SplitMix64& rng) {
   PlayerList m;
   m.players.resize(rng.below(20));
   for (PlayerName& p : m.players) {
-    p = {rng.below(1000), any_name(rng), {}};
+    p = {rng.below(1000), any_name(rng), {}, any_text(rng, 0, kGroundNameBytesMax)};
     draw(rng, p.key);
   }
   m.is_change = rng.below(2) == 0;
@@ -407,6 +407,49 @@ MaterialsAdded any_materials_added(SplitMix64& rng) {
     m.rows.push_back({info.name, info.colour, info.visibility, info.body});
   const auto ids = static_cast<std::uint32_t>(kMaterialCountMax - m.rows.size());
   m.first = static_cast<Material>(1 + rng.below(ids));
+  return m;
+}
+
+LogMarksRequest any_log_marks_request(SplitMix64& rng) {
+  LogMarksRequest m;
+  m.request = 1 + rng.below(1'000'000);
+  m.first = 1 + rng.below(1'000'000);
+  m.last = m.first + (any64(rng) >> 2);
+  m.count = static_cast<std::uint8_t>(1 + rng.below(kLogMarksMax));
+  return m;
+}
+
+LogMarks any_log_marks(SplitMix64& rng) {
+  LogMarks m;
+  m.request = 1 + rng.below(1'000'000);
+  m.first = 1 + rng.below(1'000'000);
+  if (rng.below(8) == 0) {
+    m.refusal = any_text(rng, 1, kTextBytesMax);
+    return m;
+  }
+  Sequence seq = m.first;
+  for (std::uint32_t left = rng.below(kLogMarksMax + 1); left != 0; --left) {
+    m.marks.push_back({seq, any_time(rng), rng.below(1000),
+                       static_cast<Cause>(rng.below(kCauseMax + 1u)),
+                       static_cast<EditKind>(1 + rng.below(255))});
+    seq += 1 + rng.below(1000);
+  }
+  AuthorId author = 0;
+  for (std::uint32_t left = rng.below(kLogMarksMax + 1); left != 0; --left) {
+    author += 1 + rng.below(1000);
+    m.authors.push_back({author, any_name(rng)});
+  }
+  return m;
+}
+
+RestorePreview any_restore_preview(SplitMix64& rng) {
+  RestorePreview m;
+  m.command = rng.below(1000);
+  m.preview = any_text(rng, 0, kPreviewIdBytesMax);
+  m.voxels = any64(rng);
+  m.chunks = any64(rng);
+  m.is_cut = rng.below(2) == 0;
+  for (std::uint32_t left = rng.below(8); left != 0; --left) m.edits.push_back(any_edit(rng));
   return m;
 }
 
@@ -498,9 +541,15 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
     }
     case kKindOf<KeyDeposited>:
       return KeyDeposited{rng.below(1000), any_text(rng, 0, kTextBytesMax)};
-    default:
-      RUNSTONE_ASSERT(kind == kKindOf<MaterialsAdded>);
+    case kKindOf<MaterialsAdded>:
       return any_materials_added(rng);
+    case kKindOf<LogMarksRequest>:
+      return any_log_marks_request(rng);
+    case kKindOf<LogMarks>:
+      return any_log_marks(rng);
+    default:
+      RUNSTONE_ASSERT(kind == kKindOf<RestorePreview>);
+      return any_restore_preview(rng);
   }
 }
 

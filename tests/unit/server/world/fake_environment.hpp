@@ -54,6 +54,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::vector<Save> saves;
   std::deque<std::pair<SessionId, HistoryRequest>> history_requests;
   std::deque<HistoryLoad> history_loads;
+  std::deque<std::pair<SessionId, LogMarksRequest>> mark_requests;
   std::vector<std::string> lines;
   std::vector<PlayerVisit> came, left;
   std::vector<std::string> commands;
@@ -119,6 +120,9 @@ class FakeEnvironment : public WorldEnvironment {
   }
   void open_history(SessionId session, const HistoryRequest& request) override {
     history_requests.emplace_back(session, request);
+  }
+  void read_log_marks(SessionId session, const LogMarksRequest& request) override {
+    mark_requests.emplace_back(session, request);
   }
   void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                           const ChunkKey& key) override {

@@ -31,6 +31,30 @@ TEST_CASE("changed poses are sent to every session, at most ten times a second",
   CHECK(poses.back().players[0].pose == pose);
 }
 
+TEST_CASE("the player list has the roles of players, and a change of them is sent",
+          "[world][rights]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.join(2, 2);
+  bench.tick();
+  const auto lists = [&] { return bench.environment.messages<PlayerList>(1, kEdge); };
+  REQUIRE_FALSE(lists().empty());
+  const std::size_t before = lists().size();
+  CHECK_FALSE(lists().back().players.at(0).role.empty());
+  const PublicKey two = key_pair_of(seed_of(2)).public_key;
+  REQUIRE(bench.server.change_rights(GrantRole{two, kModeratorRole}, {}, 0, bench.now()));
+  bench.tick();
+  REQUIRE(lists().size() == before + 1);
+  const PlayerList change = lists().back();
+  CHECK(change.is_change);
+  REQUIRE(change.players.size() == 1);
+  CHECK(change.players[0].key == two);
+  CHECK(change.players[0].role == kModeratorRole);
+  REQUIRE(bench.server.change_rights(GrantRole{two, kModeratorRole}, {}, 0, bench.now()));
+  bench.tick();
+  CHECK(lists().size() == before + 1);  // nothing changed
+}
+
 TEST_CASE("with many players poses are sent less often, some at a time, and every player's in turn",
           "[world]") {
   WorldConfig c = config();
@@ -74,8 +98,8 @@ TEST_CASE("the player list is sent in full once, then as changes, and in full af
   CHECK_FALSE(lists[0].is_change);
   CHECK(lists[1].is_change);
   CHECK(lists[1].players ==
-        std::vector<PlayerName>{{2, "player2", key_pair_of(seed_of(2)).public_key},
-                                {3, "player3", key_pair_of(seed_of(3)).public_key}});
+        std::vector<PlayerName>{{2, "player2", key_pair_of(seed_of(2)).public_key, kBuilderRole},
+                                {3, "player3", key_pair_of(seed_of(3)).public_key, kBuilderRole}});
   lists = bench.environment.messages<PlayerList>(3, kEdge);
   REQUIRE(lists.size() == 1);
   CHECK_FALSE(lists[0].is_change);
