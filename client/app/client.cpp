@@ -81,12 +81,13 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
       budget_(options_.memory_mib << 20, {options_.view_radius, options_.view_radius_v}),
       view_(session_, player_, budget_.radii()),
       chat_(session_, terminal_of(script)),
-      hud_(session_, player_, pipeline_, chat_, options_.name, input_.keys()),
-      actions_(session_, player_, pipeline_, tool_, view_, chat_, input_, hud_,
+      panels_(session_, player_, tool_.box()),
+      hud_(session_, player_, pipeline_, chat_, panels_, options_.name, input_.keys()),
+      actions_(session_, player_, pipeline_, tool_, view_, chat_, input_, hud_, panels_,
                options_.screenshot_dir),
       controls_(session_, player_, tool_, pipeline_, hud_, chat_, actions_,
                 driver_of(options_, script)),
-      scene_(session_, player_, tool_, view_),
+      scene_(session_, player_, tool_, view_, panels_),
       notices_(session_, hud_) {
   controls_.show_ground(options_.show_protected);
   hud_.set_shown(window_ != nullptr);
@@ -122,6 +123,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     take_new_materials();
     drain_changes();  // before the script asks whether all of it is drawn
     const TimeUs now_us = steady_now_us();
+    if (panels_.step(hud_.shown_panels(), now_us)) pipeline_.moved();
     limit_memory(now_us);
     poll_window();
     handle_input(now_us);
@@ -174,6 +176,7 @@ void Client::take_new_materials() {
 }
 
 void Client::set_tool_materials(const MaterialTable& materials) {
+  panels_.set_materials(materials);
   const std::string lost = tool_.box().set_materials(materials);
   if (!lost.empty()) hud_.notify(lost, NoticeKind::warning);
 }
@@ -202,7 +205,9 @@ void Client::handle_input(TimeUs now_us) {
   polled_us_ = now_us;
   const bool was_captured = input_.is_captured();
   const RoutedInput routed = input_.route(hud_.focus());
-  if (menu_ != nullptr && was_captured && !input_.is_captured()) menu_->pause();  // by escape
+  // By escape. Beside a window it only frees the mouse.
+  const bool is_freed = was_captured && !input_.is_captured();
+  if (menu_ != nullptr && is_freed && !hud_.focus().has_panel) menu_->pause();
   controls_.take(routed.player, std::min(seconds, 0.1), settings(), now_us);
   if (controls_.take_release()) {
     if (menu_ != nullptr) {
@@ -216,7 +221,8 @@ void Client::handle_input(TimeUs now_us) {
     // The interface takes the events now, so that it knows before the next ones whether it types.
     static_cast<void>(hud_.make_frame(hud_scene(), now_us));
   }
-  input_.set_window_open(hud_.focus().has_window);
+  const UiFocus focus = hud_.focus();
+  input_.set_windows(focus.has_window, focus.has_panel);
   if (window_) window_->set_captured(input_.is_captured());
   if (!routed.for_ui.empty()) pipeline_.moved();
 }
@@ -257,6 +263,7 @@ void Client::limit_memory(TimeUs now_us) {
 void Client::drain_changes() {
   const ReplicaChanges changes = session_.replica().drain_changes();
   pipeline_.take(changes, session_.clock(), steady_now_us());
+  panels_.take(changes);
   notices_.take(changes);
 }
 
@@ -309,7 +316,8 @@ HudScene Client::hud_scene() const {
 
 void Client::draw(TimeUs now_us) {
   if (window_) {
-    pace_.step(pipeline_, session_, window_->has_focus(), player_.pose(), hud_.is_moving(), now_us);
+    const bool is_moving = panels_.take_moved(now_us) || hud_.is_moving();
+    pace_.step(pipeline_, window_->has_focus(), player_.pose(), is_moving, now_us);
   }
   if (!pipeline_.is_frame_due(now_us)) return;
   pace_.drew(now_us);

@@ -26,6 +26,7 @@
 #include "client/app/terminal_chat.hpp"
 #include "client/app/threaded_session.hpp"
 #include "client/app/view_follower.hpp"
+#include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/input/input_router.hpp"
 #include "client/report/report.hpp"
@@ -104,6 +105,7 @@ class Client {
   MemoryBudget budget_;
   ViewFollower view_;
   TerminalChat chat_;
+  WorldPanels panels_;
   ClientHud hud_;
   ScriptActions actions_;
   PlayerControls controls_;

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "client/render/projection.hpp"
+#include "client/replica/ray_pick.hpp"
 #include "common/core/text.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 
@@ -18,6 +20,9 @@ static_assert(kStageCount == kLatencyStageCount);
 
 constexpr double kPlateHeight = 0.45;      // voxels from the eye of a player to its name
 constexpr double kPlateDistanceMax = 160;  // voxels
+constexpr double kPlateFadeFrom = 40;      // voxels
+constexpr std::size_t kPlatesMax = 64;     // the nearest ones
+constexpr double kPlateBehindWall = 0.35;  // the share of a plate that is seen there
 constexpr TimeUs kRateUs = 500'000;        // rates of traffic are measured over this time
 
 /// Returns the mode of inspection that an action shows or hides, or nullopt.
@@ -39,11 +44,12 @@ std::optional<InspectionMode> mode_of(Action action) {
 }  // namespace
 
 ClientHud::ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline,
-                     TerminalChat& chat, std::string name, const KeyMap& keys)
+                     TerminalChat& chat, WorldPanels& panels, std::string name, const KeyMap& keys)
     : session_(session),
       player_(player),
       pipeline_(pipeline),
       chat_(chat),
+      panels_(panels),
       name_(std::move(name)),
       hud_(keys) {}
 
@@ -117,16 +123,25 @@ HudState ClientHud::state(const HudScene& scene) const {
   add_plates(scene, out);
   out.timeline = timeline();
   out.inspection = pipeline_.inspection().modes();
+  panels_.fill(out, shown_panels());
   return out;
+}
+
+ShownPanels ClientHud::shown_panels() const {
+  const MapWindow& map = hud_.map();
+  return {map.is_open(), hud_.shows_timeline(), hud_.shows_rollback(), map.centre_x(),
+          map.centre_z()};
 }
 
 void ClientHud::add_players(HudState& state) const {
   const auto& permissions = session_.replica().ground().permissions();
-  if (permissions) state.role = permissions->role;
-  state.players.push_back({name_, "you", {}});
+  state.players.push_back({name_, "you", permissions ? permissions->role : "", {}});
   const WorldPos eye = player_.eye();
   for (const auto& [author, other] : session_.others()) {
-    ListedPlayer listed{with_unseen_replaced(other.name), key_fingerprint(other.key), {}};
+    ListedPlayer listed{with_unseen_replaced(other.name),
+                        key_fingerprint(other.key),
+                        with_unseen_replaced(other.role),
+                        {}};
     if (other.pose) {
       const WorldPos& at = other.pose->at;
       listed.distance =
@@ -137,16 +152,38 @@ void ClientHud::add_players(HudState& state) const {
 }
 
 void ClientHud::add_plates(const HudScene& scene, HudState& state) const {
-  for (const auto& [author, other] : session_.others()) {
-    if (!other.pose) continue;
-    const WorldPos above{other.pose->at.x, other.pose->at.y + kPlateHeight, other.pose->at.z};
-    const auto at = project(scene.camera, scene.size, above.x, above.y, above.z);
-    if (!at || at->distance > kPlateDistanceMax) continue;
-    state.plates.push_back({with_unseen_replaced(other.name), at->x, at->y, at->distance});
+  struct Seen {
+    NamePlate plate;
+    WorldPos head;
+  };
+  std::vector<Seen> seen;
+  for (const auto& [author, pose] : panels_.poses()) {
+    const auto other = session_.others().find(author);
+    if (other == session_.others().end()) continue;
+    const auto at =
+        project(scene.camera, scene.size, pose.at.x, pose.at.y + kPlateHeight, pose.at.z);
+    if (at && at->distance <= kPlateDistanceMax)
+      seen.push_back({{other->second.name, at->x, at->y, at->distance}, pose.at});
   }
+  std::ranges::sort(seen, {}, [](const Seen& each) { return each.plate.distance; });
+  if (seen.size() > kPlatesMax) seen.resize(kPlatesMax);
   // The nearest one is drawn last, over the others.
-  std::sort(state.plates.begin(), state.plates.end(),
-            [](const NamePlate& a, const NamePlate& b) { return a.distance > b.distance; });
+  for (auto each = seen.rbegin(); each != seen.rend(); ++each) {
+    each->plate.name = with_unseen_replaced(each->plate.name);
+    each->plate.alpha = plate_alpha(each->head, each->plate.distance);
+    state.plates.push_back(std::move(each->plate));
+  }
+}
+
+double ClientHud::plate_alpha(const WorldPos& head, double distance) const {
+  const double far = (kPlateDistanceMax - distance) / (kPlateDistanceMax - kPlateFadeFrom);
+  const double alpha = std::clamp(far, 0.0, 1.0);
+  const WorldPos eye = player_.eye();
+  const double dx = head.x - eye.x, dy = head.y - eye.y, dz = head.z - eye.z;
+  const double length = std::max(1e-6, std::sqrt(dx * dx + dy * dy + dz * dz));
+  const bool is_hidden =
+      pick(session_.replica(), eye, {dx / length, dy / length, dz / length}, length).has_value();
+  return is_hidden ? alpha * kPlateBehindWall : alpha;
 }
 
 TimelineState ClientHud::timeline() const {
@@ -242,6 +279,8 @@ void ClientHud::carry_out(const UiAction& action) {
   if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
   if (const auto* held = std::get_if<HoldMaterial>(&action)) hold(held->material);
   if (const auto* chosen = std::get_if<SetInspection>(&action)) pipeline_.inspect(chosen->modes);
+  if (const auto* order = std::get_if<RollbackOrder>(&action))
+    static_cast<void>(panels_.carry_out(*order));  // the window says why not
 }
 
 }  // namespace runstone

@@ -9,6 +9,7 @@
 #include "client/app/hotbar.hpp"
 #include "client/app/player.hpp"
 #include "client/app/terminal_chat.hpp"
+#include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/report/report.hpp"
 #include "client/session/client_session.hpp"
@@ -33,7 +34,7 @@ class ClientHud {
  public:
   /// All but `keys` and the player's `name` must outlive this object.
   ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline, TerminalChat& chat,
-            std::string name, const KeyMap& keys);
+            WorldPanels& panels, std::string name, const KeyMap& keys);
 
   /// Fills the hotbar for a world. Call it when a world opens for the first time, or another one.
   void enter(const MaterialTable& materials);
@@ -58,11 +59,17 @@ class ClientHud {
   void set_shown(bool is_shown) { is_shown_ = is_shown; }
   bool is_shown() const { return is_shown_; }
   bool shows_statistics() const { return hud_.shows_statistics(); }
+  /// Returns which windows of WorldPanels are open.
+  ShownPanels shown_panels() const;
+  MapWindow& map() { return hud_.map(); }
+  void show_timeline(bool is_shown) { hud_.show_timeline(is_shown); }
 
  private:
   HudState state(const HudScene& scene) const;
   void add_players(HudState& state) const;
   void add_plates(const HudScene& scene, HudState& state) const;
+  /// Returns how much of a name plate is seen: it fades with the distance, and is dim behind walls.
+  double plate_alpha(const WorldPos& head, double distance) const;
   TimelineState timeline() const;
   StatisticsState statistics(const HudScene& scene, TimeUs now_us);
   void add_traffic(const NetCounts& net, TimeUs now_us, StatisticsState& out);
@@ -72,6 +79,7 @@ class ClientHud {
   Player& player_;
   MeshPipeline& pipeline_;
   TerminalChat& chat_;
+  WorldPanels& panels_;
   const std::string name_;
   Hud hud_;
   Hotbar hotbar_;

@@ -45,15 +45,14 @@ FrameContents FrameScene::contents(bool outlines_aim, bool shows_ground) const {
   if (shows_ground) add_ground(out.markers);
   if (outlines_aim) add_aim(out.markers);
   add_selection(out.markers);
-  const std::span<const GhostChunk> ghosts = tool_.ghosts();
-  out.ghosts.assign(ghosts.begin(), ghosts.end());
+  for (const std::span<const GhostChunk> ghosts : {tool_.ghosts(), panels_.rollback().ghosts()})
+    out.ghosts.insert(out.ghosts.end(), ghosts.begin(), ghosts.end());
   return out;
 }
 
 void FrameScene::add_bodies(std::vector<Body>& bodies) const {
-  for (const auto& [author, other] : session_.others()) {
-    if (!other.pose) continue;
-    if (const auto body = player_body(author, *other.pose, player_.eye())) bodies.push_back(*body);
+  for (const auto& [author, pose] : panels_.poses()) {
+    if (const auto body = player_body(author, pose, player_.eye())) bodies.push_back(*body);
   }
 }
 

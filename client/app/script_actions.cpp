@@ -37,7 +37,8 @@ std::vector<char32_t> characters_of(std::string_view text) {
 
 ScriptActions::ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline,
                              EditTool& tool, const ViewFollower& view, TerminalChat& chat,
-                             InputRouter& input, ClientHud& hud, std::string screenshot_folder)
+                             InputRouter& input, ClientHud& hud, WorldPanels& panels,
+                             std::string screenshot_folder)
     : session_(session),
       player_(player),
       pipeline_(pipeline),
@@ -46,6 +47,7 @@ ScriptActions::ScriptActions(ClientSession& session, Player& player, MeshPipelin
       chat_(chat),
       input_(input),
       hud_(hud),
+      panels_(panels),
       screenshot_folder_(std::move(screenshot_folder)) {}
 
 void ScriptActions::move_to(const WorldPos& eye) {
@@ -148,6 +150,18 @@ void ScriptActions::inspect(InspectionMode mode, bool is_on) {
   InspectionModes modes = pipeline_.inspection().modes();
   modes.set(mode, is_on);
   pipeline_.inspect(modes);
+}
+
+void ScriptActions::show_map(bool is_shown, bool is_full) {
+  hud_.map().set_full(is_full);
+  hud_.map().set_open(is_shown);
+  pipeline_.moved();
+}
+
+bool ScriptActions::show_rollback_answer() {
+  for (const std::string& line : panels_.rollback().answer()) fmt::print("{}\n", line);
+  std::fflush(stdout);
+  return panels_.rollback().has_succeeded();
 }
 
 bool ScriptActions::screenshot(const std::string& file) {

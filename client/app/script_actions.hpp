@@ -10,6 +10,7 @@
 #include "client/app/player.hpp"
 #include "client/app/terminal_chat.hpp"
 #include "client/app/view_follower.hpp"
+#include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/input/input_router.hpp"
 #include "client/replica/copy_box.hpp"
@@ -24,7 +25,7 @@ class ScriptActions final : public ScriptHost {
   /// All but `screenshot_folder` must outlive this object.
   ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline, EditTool& tool,
                 const ViewFollower& view, TerminalChat& chat, InputRouter& input, ClientHud& hud,
-                std::string screenshot_folder);
+                WorldPanels& panels, std::string screenshot_folder);
 
   bool ready() const override { return session_.connect_count() != 0; }
   WorldPos eye() const override { return player_.eye(); }
@@ -72,6 +73,18 @@ class ScriptActions final : public ScriptHost {
   bool handling_input() const override { return input_.has_events(); }
   void show_interface(bool is_shown) override { hud_.set_shown(is_shown); }
   void inspect(InspectionMode mode, bool is_on) override;
+  void show_map(bool is_shown, bool is_full) override;
+  void zoom_map(double pixels) override { hud_.map().set_zoom(pixels); }
+  void show_timeline(bool is_shown) override { hud_.show_timeline(is_shown); }
+  bool loading_panels() const override { return panels_.is_loading(hud_.shown_panels()); }
+  std::string preview_rollback(const std::string& filters) override {
+    return panels_.rollback().preview(filters);
+  }
+  std::string apply_rollback() override { return panels_.carry_out(ApplyRollback{}); }
+  std::string undo_rollback() override { return panels_.carry_out(UndoRollback{}); }
+  std::string forget_rollback() override { return panels_.carry_out(ForgetRollback{}); }
+  bool rolling_back() const override { return panels_.rollback().is_busy(); }
+  bool show_rollback_answer() override;
   bool screenshot(const std::string& file) override;
   /// Returns where the screenshot of this name goes.
   std::string screenshot_path(const std::string& file) const;
@@ -93,6 +106,7 @@ class ScriptActions final : public ScriptHost {
   TerminalChat& chat_;
   InputRouter& input_;
   ClientHud& hud_;
+  WorldPanels& panels_;
   const std::string screenshot_folder_;
 };
 

@@ -48,6 +48,8 @@ enum class Action : std::uint8_t {
   preview,
   chat,
   command,
+  map,
+  rollback,
   timeline,
   earlier,
   later,

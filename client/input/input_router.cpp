@@ -90,7 +90,7 @@ void InputRouter::take_button(const ButtonEvent& event, const UiFocus& focus, Ro
     return;
   }
   if (!is_captured_) {
-    is_captured_ = !focus.has_window && !focus.over_window && !is_window_open_;
+    is_captured_ = !focus.has_window && !focus.over_window && !has_window_;
     return;
   }
   if (held != nullptr) *held = true;
@@ -115,14 +115,18 @@ void InputRouter::release_all() {
   remove_held_ = place_held_ = false;
 }
 
-void InputRouter::set_window_open(bool is_open) {
-  if (std::exchange(is_window_open_, is_open) == is_open) return;
+void InputRouter::set_windows(bool has_window, bool has_panel) {
+  const bool had_window = std::exchange(has_window_, has_window);
+  const bool had_panel = std::exchange(has_panel_, has_panel);
+  if (had_window == has_window && had_panel == has_panel) return;
   release_all();
-  if (is_open) {
-    captures_again_ = std::exchange(is_captured_, false);
-  } else {
-    is_captured_ = is_captured_ || captures_again_;
+  if (had_panel && !has_panel) {
+    bool& captures = has_window ? captures_after_window_ : is_captured_;
+    captures = captures || captures_after_panel_;
   }
+  if (had_window && !has_window) is_captured_ = is_captured_ || captures_after_window_;
+  if (!had_panel && has_panel) captures_after_panel_ = std::exchange(is_captured_, false);
+  if (!had_window && has_window) captures_after_window_ = std::exchange(is_captured_, false);
 }
 
 void InputRouter::add_held(WindowInput& input) const {

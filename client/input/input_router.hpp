@@ -1,7 +1,8 @@
 // InputRouter: decides who gets each event of keyboard and mouse.
 //   - While the mouse is captured, the player gets it, and the user interface gets nothing.
 //   - While the mouse is free, the user interface gets it. A click beside its windows captures the
-//     mouse, unless a window waits for an answer.
+//     mouse, unless a window waits for an answer. A window that is used beside playing, such as the
+//     map, frees the mouse when it opens.
 //   - While a text is typed, the user interface gets the keys. Only function keys and escape act.
 // One thread.
 #pragma once
@@ -20,6 +21,7 @@ struct UiFocus {
   bool types = false;        // a text field has the keyboard
   bool has_window = false;   // a window is open that needs the mouse, such as the palette
   bool over_window = false;  // the cursor is over some window
+  bool has_panel = false;    // a window is open that is used beside playing, such as the map
 };
 
 struct RoutedInput {
@@ -43,9 +45,9 @@ class InputRouter {
   bool is_captured() const { return is_captured_; }
   /// Captures the mouse, as a click beside all windows does.
   void capture() { is_captured_ = true; }
-  /// Frees the mouse while a window needs it. Afterwards the mouse is captured again if it was
-  /// captured before.
-  void set_window_open(bool is_open);
+  /// Frees the mouse while a window needs it, and when a panel opens. When they close, the mouse is
+  /// captured again if it was captured before.
+  void set_windows(bool has_window, bool has_panel);
 
  private:
   bool takes_key(const KeyEvent& event, const UiFocus& focus, RoutedInput& out);
@@ -61,8 +63,9 @@ class InputRouter {
   std::array<bool, kActionCount> held_{};
   bool remove_held_ = false, place_held_ = false;
   bool is_captured_ = false;
-  bool is_window_open_ = false;
-  bool captures_again_ = false;  // when the window closes
+  bool has_window_ = false, has_panel_ = false;
+  // Whether the mouse is captured again when they close.
+  bool captures_after_window_ = false, captures_after_panel_ = false;
 };
 
 }  // namespace runstone

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "client/input/key.hpp"
+#include "client/script/panel_words.hpp"
 #include "client/script/script_words.hpp"
 #include "client/script/tool_words.hpp"
 #include "common/core/day_time.hpp"
@@ -235,6 +236,7 @@ script::Step step_of(std::string_view verb, ScriptWords& words) {
   }
   if (verb == "quit") return script::Quit{};
   if (auto step = tool_step(verb, words)) return *std::move(step);
+  if (auto step = panel_step(verb, words)) return *std::move(step);
   throw LineError{"unknown command \"" + std::string(verb) + "\""};
 }
 

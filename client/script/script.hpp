@@ -167,6 +167,24 @@ struct Inspect {
   InspectionMode mode{};
   bool is_on = true;
 };
+/// Shows or hides the map from above.
+struct ShowMap {
+  bool is_shown = true;
+  bool is_full = false;  // in all of the frame
+};
+/// Sets the pixels of the map for each voxel.
+struct ZoomMap {
+  double pixels = 1;
+};
+struct ShowTimeline {
+  bool is_shown = true;
+};
+/// A rollback, as in its window.
+struct Rollback {
+  enum class Kind : std::uint8_t { preview, apply, undo, forget };
+  Kind kind = Kind::preview;
+  std::string filters;  // of a preview, as the server reads them
+};
 /// Chooses a building tool by its name.
 struct ChooseTool {
   std::string name;
@@ -218,12 +236,12 @@ struct ShowPreview {
 };
 struct Quit {};
 
-using Step =
-    std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, Sphere, Stroke, Copy, Paste,
-                 Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests,
-                 HistoryRequest, Say, WaitChat, Command, PressKey, Type, Click, ShowInterface,
-                 Inspect, ChooseTool, SetParameter, AimAt, Hold, UseTool, Select, SelectionEdit,
-                 TurnClipboard, SetSymmetry, ShowPreview, Quit>;
+using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, Sphere, Stroke, Copy,
+                          Paste, Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End,
+                          Burst, Digests, HistoryRequest, Say, WaitChat, Command, PressKey, Type,
+                          Click, ShowInterface, Inspect, ShowMap, ZoomMap, ShowTimeline, Rollback,
+                          ChooseTool, SetParameter, AimAt, Hold, UseTool, Select, SelectionEdit,
+                          TurnClipboard, SetSymmetry, ShowPreview, Quit>;
 
 }  // namespace script
 

@@ -103,6 +103,24 @@ class ScriptHost {
   /// Shows or hides a mode of inspection.
   virtual void inspect(InspectionMode mode, bool is_on) = 0;
 
+  /// Shows or hides the map from above; `is_full`: in all of the frame.
+  virtual void show_map(bool is_shown, bool is_full) = 0;
+  /// Sets the pixels of the map for each voxel.
+  virtual void zoom_map(double pixels) = 0;
+  virtual void show_timeline(bool is_shown) = 0;
+  /// Returns true until the open map is drawn and the open timeline has its marks.
+  virtual bool loading_panels() const = 0;
+  /// Begin a rollback's preview, apply it, undo it, or forget it, and show its ghosts. Return an empty
+  /// text, or why the command cannot be sent.
+  virtual std::string preview_rollback(const std::string& filters) = 0;
+  virtual std::string apply_rollback() = 0;
+  virtual std::string undo_rollback() = 0;
+  virtual std::string forget_rollback() = 0;
+  /// Returns true until the answer to it is complete and the ghosts are made.
+  virtual bool rolling_back() const = 0;
+  /// Prints the answer. Returns true if the command succeeded.
+  virtual bool show_rollback_answer() = 0;
+
   /// Requests a screenshot; poll screenshot_written(). Returns false if this client draws nothing.
   virtual bool screenshot(const std::string& file) = 0;
   /// Returns nullopt while the screenshot is in progress, then true if its file was written.

@@ -75,6 +75,13 @@ class ScriptRunner {
   Progress run(const script::Click& c);
   Progress run(const script::ShowInterface& c);
   Progress run(const script::Inspect& c);
+  // script_panels.cpp
+  Progress run(const script::ShowMap& c);
+  Progress run(const script::ZoomMap& c);
+  Progress run(const script::ShowTimeline& c);
+  Progress run(const script::Rollback& c);
+  /// Waits until `is_busy` is false. Ends the script if it takes too long.
+  Progress wait_for_panel(bool is_busy, const char* what);
   // The building tools: script_tools.cpp.
   Progress run(const script::ChooseTool& c);
   Progress run(const script::SetParameter& c);

@@ -32,6 +32,7 @@ void ClientSession::disconnected() {
   lookups_stale_ += std::exchange(lookups_open_, 0);
   others_.clear();
   history_.clear();
+  timeline_.disconnected();
   chat_.disconnected();
   if (is_commanding_) command_lines_ = {"the connection ended before the answer came"};
   is_commanding_ = false;
@@ -46,6 +47,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
     case ServerConnection::Dispatch::another_world:
       lost_.clear();
       chat_.clear();
+      timeline_.clear();
       return replica_->reset();
     case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
@@ -96,6 +98,10 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           on_player_list(m);
         } else if constexpr (std::is_same_v<T, CommandOutput>) {
           on_command_output(std::move(m));
+        } else if constexpr (std::is_same_v<T, LogMarks>) {
+          if (timeline_.receive(m, arrival.now_us)) ++timeline_serial_;
+        } else if constexpr (std::is_same_v<T, RestorePreview>) {
+          on_restore_preview(std::move(m));
         } else if constexpr (std::is_same_v<T, ChatLines>) {
           chat_.receive(std::move(m));
         } else {
@@ -212,6 +218,7 @@ Result<void> ClientSession::command(std::string text) {
   is_commanding_ = true;
   is_command_ok_ = false;
   command_lines_.clear();
+  restore_preview_.reset();
   connection_.send(CommandRequest{++command_, std::move(text)});
   return {};
 }
@@ -233,6 +240,23 @@ void ClientSession::on_command_output(CommandOutput output) {
   }
   is_commanding_ = !output.is_done;
   is_command_ok_ = output.is_done && output.is_ok;
+}
+
+void ClientSession::on_restore_preview(RestorePreview preview) {
+  if (!is_commanding_ || preview.command != command_) return;
+  const std::size_t materials = welcome()->materials.size();
+  std::erase_if(preview.edits,
+                [&](const EditDescriptor& edit) { return material_max(edit) >= materials; });
+  restore_preview_ = std::move(preview);
+}
+
+void ClientSession::step_timeline(TimeUs now_us) {
+  if (!is_open() || (welcome()->features & kFeatureLogMarks) == 0) return;
+  // The server reads marks from its disk, so it has none of the edits that are not durable.
+  const Sequence newest = replica_->durable();
+  const auto& past = replica_->past();
+  if (const auto request = timeline_.next_request(newest, past ? past->seq : newest, now_us))
+    connection_.send(*request);
 }
 
 Result<void> ClientSession::request_history(const HistoryRequest& request) {
@@ -314,6 +338,7 @@ void ClientSession::on_player_list(const PlayerList& list) {
     OtherPlayer& other = others_[player.author];
     other.name = player.name;
     other.key = player.key;
+    other.role = player.role;
     if (const auto before = known.find(player.author); before != known.end())
       other.pose = before->second.pose;
   }

@@ -20,6 +20,7 @@
 #include "client/session/chat_inbox.hpp"
 #include "client/session/edit_allowance.hpp"
 #include "client/session/history_requests.hpp"
+#include "client/session/log_timeline.hpp"
 #include "client/session/lost_edits.hpp"
 #include "client/session/server_connection.hpp"
 #include "common/core/result.hpp"
@@ -47,6 +48,7 @@ struct OtherPlayer {
   std::string name;
   PublicKey key{};
   std::optional<Pose> pose;
+  std::string role = {};  // empty: the server did not name it
 };
 
 class ClientSession {
@@ -110,6 +112,17 @@ class ClientSession {
   /// Returns true if the newest command has completed and succeeded.
   bool command_ok() const { return is_command_ok_; }
 
+  /// Returns what a rollback would change, if the newest command was a preview and its server sent
+  /// it. Edits with materials that this client does not know are left out.
+  const std::optional<RestorePreview>& restore_preview() const { return restore_preview_; }
+
+  /// Asks for the marks that the timeline lacks, if it is time. Call it while the timeline is on the
+  /// screen. Does nothing unless open, and with servers that send no marks.
+  void step_timeline(TimeUs now_us);
+  const LogTimeline& timeline() const { return timeline_; }
+  /// Returns a number that rises with each change of the timeline.
+  std::uint64_t timeline_serial() const { return timeline_serial_; }
+
   /// Sends a line to everybody. Fails with one line of text unless open, if the server has no chat,
   /// or as chat_text() does. The server answers with the line itself, or with one that says why
   /// not.
@@ -168,6 +181,7 @@ class ClientSession {
   void on_player_list(const PlayerList& list);
   void on_poses(const PlayerPoses& poses);
   void on_view_state(const ViewState& state);
+  void on_restore_preview(RestorePreview preview);
   /// Sends the view, or first looks up in the cache the chunks of it that are missing.
   void refresh_view();
   /// Sends the claims of what is held, and then the view.
@@ -183,6 +197,9 @@ class ClientSession {
   std::uint32_t command_ = 0;  // id of the newest command
   bool is_commanding_ = false, is_command_ok_ = false;
   std::vector<std::string> command_lines_;  // kCommandLinesKept at most
+  std::optional<RestorePreview> restore_preview_;
+  LogTimeline timeline_;
+  std::uint64_t timeline_serial_ = 0;
 
   ChatInbox chat_;
 

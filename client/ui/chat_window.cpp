@@ -49,6 +49,15 @@ void wrapped_text(const ShownLine& entry, double alpha) {
 struct ChatFieldCallback {
   static int run(ImGuiInputTextCallbackData* data) {
     auto& chat = *static_cast<ChatWindow*>(data->UserData);
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
+      const ChatCompletion::Line line = chat.completion_.complete(
+          {std::string(data->Buf, static_cast<std::size_t>(data->BufTextLen)),
+           static_cast<std::size_t>(data->CursorPos)});
+      data->DeleteChars(0, data->BufTextLen);
+      data->InsertChars(0, line.text.data(), line.text.data() + line.text.size());
+      data->CursorPos = static_cast<int>(line.cursor);
+      return 0;
+    }
     if (data->EventFlag != ImGuiInputTextFlags_CallbackHistory) return 0;
     if (chat.typed_at_ == chat.typed_.size()) chat.draft_ = data->Buf;
     const std::string& line = chat.typed_line(data->EventKey == ImGuiKey_UpArrow ? -1 : 1);
@@ -123,10 +132,12 @@ std::optional<std::string> ChatWindow::build_open(double bottom, double scale) {
   ImGui::EndChild();
   ImGui::SetNextItemWidth(-1);
   if (takes_focus_) ImGui::SetKeyboardFocusHere();
-  constexpr ImGuiInputTextFlags kFlags =
-      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory;
-  const bool is_entered = ImGui::InputTextWithHint("##line", "a line, or /command", &field_, kFlags,
-                                                   &ChatFieldCallback::run, this);
+  constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue |
+                                         ImGuiInputTextFlags_CallbackHistory |
+                                         ImGuiInputTextFlags_CallbackCompletion;
+  const bool is_entered =
+      ImGui::InputTextWithHint("##line", "a line, or /command   (tab completes)", &field_, kFlags,
+                               &ChatFieldCallback::run, this);
   // The field takes the keyboard in the frame after the request, and selects its text. A slash that
   // opened the window must not be selected, because the next character would replace it.
   if (ImGui::IsItemActive() && std::exchange(takes_focus_, false)) {

@@ -6,7 +6,10 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "client/ui/chat_completion.hpp"
 
 namespace runstone {
 
@@ -29,6 +32,8 @@ class ChatWindow {
   static constexpr double kShownSeconds = 10, kFadeSeconds = 1.5;
 
   void hear(ShownLine entry);
+  /// Sets the names that the tab key completes.
+  void set_names(std::vector<std::string> names) { completion_.set_names(std::move(names)); }
   /// Opens the field with a text in it, such as "/".
   void open(std::string text);
   void close();
@@ -60,6 +65,7 @@ class ChatWindow {
   std::size_t typed_at_ = 0;  // the typed line in the field; typed_.size(): a new one
   std::string draft_;         // the new line, while an older one is in the field
   std::string field_;
+  ChatCompletion completion_;
   bool is_open_ = false, takes_focus_ = false, has_new_line_ = false;
 };
 

@@ -62,9 +62,10 @@ void name_plates(ImDrawList& list, const HudState& state, float scale) {
     const float width = width_of(plate.name), height = ImGui::GetTextLineHeight();
     const ImVec2 at{static_cast<float>(plate.x) - width / 2,
                     static_cast<float>(plate.y) - height - 2 * scale};
+    const auto ground = static_cast<int>(std::clamp(130 * plate.alpha, 0.0, 130.0));
     list.AddRectFilled({at.x - 4 * scale, at.y - 1}, {at.x + width + 4 * scale, at.y + height + 2},
-                       IM_COL32(10, 12, 16, 130), 3 * scale);
-    shadowed_text(list, at, kBright, plate.name);
+                       IM_COL32(10, 12, 16, ground), 3 * scale);
+    shadowed_text(list, at, kBright, plate.name, plate.alpha);
   }
 }
 

@@ -34,6 +34,12 @@ bool Hud::act(Action action) {
     case Action::timeline:
       timeline_.toggle();
       return true;
+    case Action::map:
+      map_.toggle();
+      return true;
+    case Action::rollback:
+      rollback_.toggle();
+      return true;
     case Action::release:
       return close_top();
     default:
@@ -44,7 +50,8 @@ bool Hud::act(Action action) {
 bool Hud::close_top() {
   if (chat_.is_open()) return chat_.close(), true;
   if (palette_.is_open()) return palette_.close(), true;
-  return std::exchange(shows_help_, false) || timeline_.close();
+  return std::exchange(shows_help_, false) || rollback_.close() || timeline_.close() ||
+         map_.close();
 }
 
 bool Hud::takes_focus() const { return chat_.takes_focus() || palette_.takes_focus(); }
@@ -55,6 +62,7 @@ UiFocus Hud::focus() const {
   // ImGui still names a text field whose window was closed after the last frame.
   out.types = out.has_window && (context_.types() || takes_focus());
   out.over_window = context_.over_window();
+  out.has_panel = map_.is_open() || timeline_.is_open() || rollback_.is_open();
   return out;
 }
 
@@ -77,6 +85,9 @@ std::shared_ptr<const OverlayFrame> Hud::make_frame(const HudState& state, std::
   const Material held = state.slots[state.slot];
   if (std::exchange(held_, held) != held) name_seconds_ = 0;
   const auto make = [&] { build(state); };
+  // ImGui knows the height of a window only after it was made once.
+  const std::array<bool, 3> open = {timeline_.is_open(), map_.is_open(), rollback_.is_open()};
+  if (std::exchange(open_, open) != open) context_.make_hidden_frame(size, make);
   for (int i = 0; i < UiContext::kFocusFrames && takes_focus(); ++i)
     context_.make_hidden_frame(size, make);
   return context_.make_frame(size, seconds, make);
@@ -92,6 +103,7 @@ void Hud::build(const HudState& state) {
   const double top = build_heads_up(state, name_seconds_, context_.scale());
   const double scale = context_.scale();
   notices_.build(top, scale);
+  if (chat_.is_open()) chat_.set_names(state.names);
   if (auto line = chat_.build(top, scale)) actions_.emplace_back(SendLine{*std::move(line)});
   if (state.shows_players) build_player_list(state, scale);
   build_inspection_legend(state.inspection, scale);
@@ -101,6 +113,8 @@ void Hud::build(const HudState& state) {
     if (modes != state.inspection) actions_.emplace_back(SetInspection{modes});
   }
   if (const auto moment = timeline_.build(state.timeline, scale)) actions_.emplace_back(*moment);
+  map_.build(state.map, *state.materials, context_);
+  if (auto order = rollback_.build(state.rollback, scale)) actions_.emplace_back(*std::move(order));
   if (shows_help_) build_help(key_rows(keys_), shows_help_);
   const Material held = state.slots[state.slot];
   if (const auto chosen = palette_.build(*state.materials, held, scale))

@@ -3,14 +3,18 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "client/render/inspection.hpp"
+#include "client/ui/map_window.hpp"
+#include "client/ui/rollback_window.hpp"
 #include "client/ui/statistics_window.hpp"
 #include "common/core/ids.hpp"
 #include "common/materials/material_table.hpp"
+#include "protocol/codec/log_mark_messages.hpp"
 
 namespace runstone {
 
@@ -19,7 +23,8 @@ inline constexpr std::size_t kSlotCount = 9;
 /// A player in the list. The first one is this client's.
 struct ListedPlayer {
   std::string name, fingerprint;
-  std::string distance;  // such as "120 voxels", or empty
+  std::string role;           // empty if the server did not name it
+  std::string distance = {};  // such as "120 voxels", or empty
 };
 
 /// A name over the head of another player.
@@ -27,15 +32,26 @@ struct NamePlate {
   std::string name;
   double x = 0, y = 0;  // pixels; the plate stands above this point
   double distance = 0;  // voxels
+  double alpha = 1;     // 0 .. 1
 };
 
-/// The state of the timeline.
+/// The state of the timeline. Its marks are filled only while Hud::shows_timeline().
 struct TimelineState {
   Sequence newest = 0;  // of the live world
   Sequence shown = 0;   // equal to `newest` in the live world
   bool is_past = false;
   bool is_loading = false;
-  std::string moment;  // the shown moment in words, for example its time in UTC
+  std::string moment;                // the shown moment in words, for example its time in UTC
+  std::vector<LogMark> band = {};    // over all of the log, ascending by seq
+  std::vector<LogMark> recent = {};  // that end at the shown moment, ascending by seq
+  std::map<AuthorId, std::string> authors = {};  // names of those of the marks
+  std::string refusal = {};                      // why there are no marks; empty: they come
+
+  /// Returns the name of an author, or "#N" if it is not known.
+  std::string name_of(AuthorId author) const {
+    const auto found = authors.find(author);
+    return found == authors.end() ? "#" + std::to_string(author) : found->second;
+  }
 };
 
 struct HudState {
@@ -49,11 +65,13 @@ struct HudState {
   std::string state;                 // for example that the past is shown; empty: nothing special
   std::string tool;                  // the chosen tool and its numbers; empty: the plain hand
   bool shows_players = false;
-  std::string role;  // of this player; empty if the server named none
   std::vector<ListedPlayer> players;
+  std::vector<std::string> names;  // of the other players, for completion
   std::vector<NamePlate> plates;
   TimelineState timeline;
   InspectionModes inspection;
+  MapState map;
+  RollbackState rollback;
   StatisticsState statistics;  // filled only while Hud::shows_statistics()
 };
 

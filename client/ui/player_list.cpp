@@ -12,18 +12,16 @@ void build_player_list(const HudState& state, double scale) {
   ImGui::Begin("players", nullptr, kShowOnly);
   ImGui::Text("%zu %s here", state.players.size(),
               state.players.size() == 1 ? "player is" : "players are");
-  if (!state.role.empty()) {
-    ImGui::SameLine();
-    ImGui::TextDisabled("your role: %s", state.role.c_str());
-  }
   ImGui::Separator();
-  if (ImGui::BeginTable("list", 3)) {
+  if (ImGui::BeginTable("list", 4, ImGuiTableFlags_SizingFixedFit)) {
     for (const ListedPlayer& player : state.players) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(player.name.c_str());
       ImGui::TableNextColumn();
       ImGui::TextDisabled("%s", player.fingerprint.c_str());
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(player.role.c_str());
       ImGui::TableNextColumn();
       ImGui::TextDisabled("%s", player.distance.c_str());
     }

@@ -4,8 +4,7 @@
 
 namespace runstone {
 
-/// Makes the list with ImGui: name, fingerprint of the key, and distance of each player, and the
-/// role of this one.
+/// Makes the list with ImGui: name, fingerprint of the key, role, and distance of each player.
 void build_player_list(const HudState& state, double scale);
 
 }  // namespace runstone

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client/ui/log_words.hpp"
+#include "client/ui/timeline_band.hpp"
 #include "client/ui/ui_draw.hpp"
+#include "common/core/utc_text.hpp"
 
 namespace runstone {
 
@@ -57,8 +60,35 @@ std::optional<ShowMoment> TimelineWindow::build(const TimelineState& state, doub
   if (ImGui::Button("live")) move_to(newest);
   ImGui::SameLine();
   ImGui::TextDisabled("%s%s", state.moment.c_str(), state.is_loading ? "  loading ..." : "");
+  if (const auto clicked = build_band(state, scale)) move_to(static_cast<double>(*clicked));
+  build_legend(state);
+  if (const auto chosen = build_recent(state)) move_to(static_cast<double>(*chosen));
   ImGui::End();
   return out;
+}
+
+std::optional<Sequence> TimelineWindow::build_recent(const TimelineState& state) {
+  if (state.recent.empty()) return std::nullopt;
+  std::optional<Sequence> chosen;
+  constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg;
+  if (!ImGui::BeginTable("recent", 4, kFlags)) return std::nullopt;
+  for (auto mark = state.recent.rbegin(); mark != state.recent.rend(); ++mark) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    const std::string label = fmt::format("{}##{}", mark->seq, mark->seq);
+    if (ImGui::Selectable(label.c_str(), mark->seq == state.shown,
+                          ImGuiSelectableFlags_SpanAllColumns))
+      chosen = mark->seq;
+    ImGui::TableNextColumn();
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(author_colour(mark->author)), "%s",
+                       state.name_of(mark->author).c_str());
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(record_words(mark->kind, mark->cause).c_str());
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", utc_text(mark->utc_us).c_str());
+  }
+  ImGui::EndTable();
+  return chosen;
 }
 
 }  // namespace runstone

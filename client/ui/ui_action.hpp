@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "client/render/inspection.hpp"
+#include "client/ui/rollback_window.hpp"
 #include "common/core/ids.hpp"
 
 namespace runstone {
@@ -27,6 +28,6 @@ struct SetInspection {
   InspectionModes modes;
 };
 
-using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection>;
+using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder>;
 
 }  // namespace runstone

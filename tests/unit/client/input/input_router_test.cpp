@@ -71,11 +71,46 @@ TEST_CASE("a window frees the mouse, and closing it captures the mouse again", "
   InputRouter router;
   capture(router);
   turn(router, {key(Key::w, true)});
-  router.set_window_open(true);
+  router.set_windows(true, false);
   CHECK_FALSE(router.is_captured());
   CHECK_FALSE(turn(router, {}).player.forward);  // a key that was held moves nobody any more
-  router.set_window_open(true);
-  router.set_window_open(false);
+  router.set_windows(true, false);
+  router.set_windows(false, false);
+  CHECK(router.is_captured());
+}
+
+TEST_CASE("a panel frees the mouse when it opens, and a click beside it captures it again",
+          "[client_input]") {
+  InputRouter router;
+  capture(router);
+  router.set_windows(false, true);
+  CHECK_FALSE(router.is_captured());
+  UiFocus focus;
+  focus.has_panel = focus.over_window = true;
+  turn(router, {button(MouseButton::left, true), button(MouseButton::left, false)}, focus);
+  CHECK_FALSE(router.is_captured());
+  focus.over_window = false;
+  turn(router, {button(MouseButton::left, true), button(MouseButton::left, false)}, focus);
+  CHECK(router.is_captured());
+  router.set_windows(true, true);  // such as the chat
+  CHECK_FALSE(router.is_captured());
+  router.set_windows(false, true);
+  CHECK(router.is_captured());
+  router.set_windows(false, false);
+  CHECK(router.is_captured());
+}
+
+TEST_CASE("closing a panel captures the mouse only if it was captured before", "[client_input]") {
+  InputRouter router;
+  router.set_windows(false, true);
+  router.set_windows(false, false);
+  CHECK_FALSE(router.is_captured());
+  capture(router);
+  router.set_windows(false, true);
+  router.set_windows(true, true);
+  router.set_windows(true, false);  // the panel closes under the window
+  CHECK_FALSE(router.is_captured());
+  router.set_windows(false, false);
   CHECK(router.is_captured());
 }
 

@@ -140,6 +140,27 @@ struct FakeScriptHost final : ScriptHost {
   void inspect(InspectionMode mode, bool is_on) override {
     input.push_back(std::string(to_string(mode)) + (is_on ? " on" : " off"));
   }
+  bool is_loading_panels = false, is_rolling_back = false, is_rollback_ok = true;
+  std::string rollback_refusal;
+  void show_map(bool is_shown, bool is_full) override {
+    input.push_back(!is_shown ? "map off" : is_full ? "map full" : "map on");
+  }
+  void zoom_map(double pixels) override {
+    input.push_back("zoom " + std::to_string(std::lround(pixels)));
+  }
+  void show_timeline(bool is_shown) override {
+    input.push_back(is_shown ? "timeline on" : "timeline off");
+  }
+  bool loading_panels() const override { return is_loading_panels; }
+  std::string preview_rollback(const std::string& filters) override {
+    input.push_back("preview " + filters);
+    return rollback_refusal;
+  }
+  std::string apply_rollback() override { return input.push_back("apply"), rollback_refusal; }
+  std::string undo_rollback() override { return input.push_back("undo"), rollback_refusal; }
+  std::string forget_rollback() override { return input.push_back("forget"), rollback_refusal; }
+  bool rolling_back() const override { return is_rolling_back; }
+  bool show_rollback_answer() override { return is_rollback_ok; }
   bool screenshot(const std::string& file) override {
     files.push_back(file);
     return draws;

@@ -42,7 +42,7 @@ struct HudBench {
       }
       hud.feed(routed.for_ui);
       frame();
-      router.set_window_open(hud.focus().has_window);
+      router.set_windows(hud.focus().has_window, hud.focus().has_panel);
     } while (router.has_events());
     return left;
   }

@@ -1,0 +1,66 @@
+// WorldPanels: what the client shows of the world and its players besides the picture: where the
+// others are, the map from above, who edited when, and what a rollback would change. Thread: the
+// main thread.
+#pragma once
+#include <map>
+#include <span>
+
+#include "client/app/player.hpp"
+#include "client/app/rollback_control.hpp"
+#include "client/display/smooth_players.hpp"
+#include "client/map/world_map.hpp"
+#include "client/tools/tool_box.hpp"
+#include "client/ui/hud_state.hpp"
+
+namespace runstone {
+
+/// The windows that are open.
+struct ShownPanels {
+  bool map = false, timeline = false, rollback = false;
+  double map_x = 0, map_z = 0;  // the middle of the map, voxels
+};
+
+class WorldPanels {
+ public:
+  /// All must outlive the object.
+  WorldPanels(ClientSession& session, const Player& player, const ToolBox& tools)
+      : session_(session), player_(player), tools_(tools), rollback_(session) {}
+
+  void set_materials(const MaterialTable& materials);
+  /// Takes what changed in the replica.
+  void take(const ReplicaChanges& changes) { map_.take(changes); }
+  /// Takes poses and answers, and does a bounded part of the work of open windows. Returns true if
+  /// what they show has changed.
+  bool step(const ShownPanels& shown, TimeUs now_us);
+  /// Fills the state of the open windows, and the names of the others.
+  void fill(HudState& state, const ShownPanels& shown) const;
+
+  /// Returns where the others are shown in this turn, by author.
+  const std::map<AuthorId, Pose>& poses() const { return poses_; }
+  /// Returns true if others moved since the last call.
+  bool take_moved(TimeUs now_us) { return players_.take_moved(now_us); }
+  RollbackControl& rollback() { return rollback_; }
+  const RollbackControl& rollback() const { return rollback_; }
+  /// As RollbackControl::carry_out().
+  std::string carry_out(const RollbackOrder& order) {
+    return rollback_.carry_out(order, player_.eye(), tools_.selection());
+  }
+  /// Returns true until the open windows have what they show.
+  bool is_loading(const ShownPanels& shown) const;
+
+ private:
+  void fill_map(MapState& state) const;
+  void fill_timeline(TimelineState& state) const;
+  void fill_rollback(RollbackState& state) const;
+
+  ClientSession& session_;
+  const Player& player_;
+  const ToolBox& tools_;
+  SmoothPlayers players_;
+  std::map<AuthorId, Pose> poses_;
+  WorldMap map_;
+  RollbackControl rollback_;
+  std::uint64_t timeline_serial_ = 0;  // of the timeline that was shown last
+};
+
+}  // namespace runstone

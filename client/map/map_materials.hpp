@@ -1,0 +1,24 @@
+// MapMaterials: what the map from above needs of a world's materials.
+#pragma once
+#include <vector>
+
+#include "common/core/material_row.hpp"
+#include "common/materials/material_table.hpp"
+#include "common/runs/column_tops.hpp"
+
+namespace runstone {
+
+struct MapMaterials {
+  ShowingMaterials showing;             // every material that is drawn
+  ShowingMaterials ground;              // those through which nothing is seen
+  std::vector<MaterialColour> colours;  // by id
+
+  /// Returns the colour of a material; magenta if the table lacks it.
+  MaterialColour colour(Material id) const {
+    return id < colours.size() ? colours[id] : MaterialColour{255, 0, 255, 255};
+  }
+};
+
+MapMaterials map_materials(const MaterialTable& table);
+
+}  // namespace runstone

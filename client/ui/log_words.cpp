@@ -1,0 +1,63 @@
+#include "client/ui/log_words.hpp"
+
+#include <imgui.h>
+
+#include <cmath>
+
+namespace runstone {
+namespace {
+
+std::string kind_words(EditKind kind) {
+  switch (kind) {
+    case EditKind::set_voxel:
+      return "voxel";
+    case EditKind::fill_box:
+      return "box";
+    case EditKind::fill_sphere:
+      return "sphere";
+    case EditKind::fill_stroke:
+      return "stroke";
+    case EditKind::paste:
+      return "paste";
+    case EditKind::rights:
+      return "change of rights";
+    case EditKind::materials:
+      return "new materials";
+  }
+  return "edit";  // a kind that this client does not know
+}
+
+}  // namespace
+
+std::string record_words(EditKind kind, Cause cause) {
+  switch (cause) {
+    case Cause::undo:
+      return "undo";
+    case Cause::redo:
+      return "redo";
+    case Cause::rollback:
+      return "rollback";
+    case Cause::import:
+      return "import (" + kind_words(kind) + ")";
+    case Cause::player:
+    case Cause::console:
+    case Cause::rights:
+    case Cause::materials:
+      return kind_words(kind);
+  }
+  return kind_words(kind);
+}
+
+std::uint32_t author_colour(AuthorId author) {
+  if (author == 0) return IM_COL32(150, 155, 160, 255);
+  // Steps of the golden section spread hues evenly, however many there are.
+  constexpr double kGolden = 0.6180339887;
+  double whole = 0;
+  const auto hue = static_cast<float>(std::modf(author * kGolden, &whole));
+  const float value = author % 2 == 0 ? 0.80F : 0.97F;
+  float r = 0, g = 0, b = 0;
+  ImGui::ColorConvertHSVtoRGB(hue, 0.62F, value, r, g, b);
+  return ImGui::ColorConvertFloat4ToU32({r, g, b, 1});
+}
+
+}  // namespace runstone
