@@ -7,7 +7,7 @@ namespace runstone {
 std::shared_ptr<const OverlayFrame> caption_frame(UiContext& context, const Caption& caption,
                                                   std::array<int, 2> size) {
   const auto gap = static_cast<float>(8 * context.scale());
-  return context.make_frame(size, 0, [&] {
+  const auto build = [&] {
     ImGui::SetNextWindowPos({gap, gap});
     ImGui::SetNextWindowBgAlpha(0.72F);
     ImGui::Begin("##caption", nullptr, kShowOnly);
@@ -15,7 +15,11 @@ std::shared_ptr<const OverlayFrame> caption_frame(UiContext& context, const Capt
     for (const std::string& line : caption.lines)
       ImGui::TextUnformatted(line.data(), line.data() + line.size());
     ImGui::End();
-  });
+  };
+  // ImGui measures a new text in one frame and shows the window in its size in the next one.
+  context.make_hidden_frame(size, build);
+  context.make_hidden_frame(size, build);
+  return context.make_frame(size, 0, build);
 }
 
 }  // namespace runstone

@@ -16,8 +16,10 @@ std::size_t layer_of(Quad quad) {
 }
 
 void sort_into_layers(QuadLayers& layers) {
-  std::stable_sort(layers.quads.begin(), layers.quads.end(),
-                   [](Quad a, Quad b) { return layer_of(a) < layer_of(b); });
+  std::sort(layers.quads.begin(), layers.quads.end(), [](Quad a, Quad b) {
+    const std::size_t of_a = layer_of(a), of_b = layer_of(b);
+    return of_a != of_b ? of_a < of_b : a < b;
+  });
   std::size_t next = 0;  // the first layer without a start
   for (std::size_t i = 0; i < layers.quads.size(); ++i) {
     for (const std::size_t layer = layer_of(layers.quads[i]); next <= layer; ++next)

@@ -12,13 +12,18 @@ namespace {
 constexpr unsigned kEdge = 32;
 constexpr const char* kHill = "hill";
 
-/// Colours of stone, earth, plants and sand.
-constexpr std::array<MaterialColour, 6> kColours = {{{142, 146, 152, 255},
-                                                     {150, 112, 78, 255},
-                                                     {104, 148, 74, 255},
-                                                     {206, 188, 132, 255},
-                                                     {120, 96, 140, 255},
-                                                     {170, 84, 70, 255}}};
+/// Colours of the materials of the seeded worlds, in the order of Block.
+constexpr std::array<MaterialColour, 11> kColours = {{{142, 146, 152, 255},
+                                                      {150, 112, 78, 255},
+                                                      {104, 148, 74, 255},
+                                                      {206, 188, 132, 255},
+                                                      {62, 110, 190, 255},
+                                                      {190, 214, 226, 255},
+                                                      {128, 92, 56, 255},
+                                                      {170, 84, 70, 255},
+                                                      {74, 120, 58, 255},
+                                                      {196, 160, 70, 255},
+                                                      {150, 92, 84, 255}}};
 
 Material last_material(const FramesWorld& world) {
   Material out = 0;

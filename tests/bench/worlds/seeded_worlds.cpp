@@ -117,10 +117,9 @@ const MaterialTable& seeded_materials() {
 
 std::vector<VoxelWorld> seeded_worlds() {
   const auto visibility = std::make_shared<const VisibilityTable>(visibilities(seeded_materials()));
-  const auto materials = std::make_shared<const MaterialTable>(seeded_materials());
   std::vector<VoxelWorld> out;
   const auto add = [&](const char* name, auto column) {
-    out.push_back({name, visibility, std::nullopt, std::move(column), materials});
+    out.push_back({name, visibility, std::nullopt, std::move(column), nullptr});
   };
   add("hills", by_ground(kGentle, hills));
   add("hills_plain", by_ground(kGentle, hills_plain));

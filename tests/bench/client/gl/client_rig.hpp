@@ -34,7 +34,7 @@ struct RigOptions {
 
 class ClientRig {
  public:
-  static constexpr std::int32_t kEdge = 32, kRadius = 8;
+  static constexpr std::int32_t kEdge = 32, kRadius = 9;
   static constexpr std::uint8_t kRadiusV = 1;
 
   /// Makes the chunks of `world` around its ground, a disc of kRadius chunks, and shows them. Throws

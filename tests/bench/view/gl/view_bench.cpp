@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 
 #include "client/platform/gl_context.hpp"
 #include "client/platform/window.hpp"
 #include "client/render/gl_handle.hpp"
+#include "common/mesh/quad_corners.hpp"
 #include "tests/bench/harness/statistics.hpp"
 #include "tests/bench/view/gl/split_view.hpp"
 #include "tests/bench/view/gl/view_camera.hpp"
@@ -38,16 +41,34 @@ std::string gl_renderer() {
   return text == nullptr ? "unknown" : reinterpret_cast<const char*>(text);
 }
 
+/// Returns a camera that sees all quads of a pane.
+ViewCamera camera_of(const ViewPane& pane, int edge, const ViewOptions& options) {
+  constexpr int kFar = std::numeric_limits<int>::max();
+  std::array<int, 3> low = {kFar, kFar, kFar}, high = {-kFar, -kFar, -kFar};
+  for (const ViewChunk& chunk : pane.chunks) {
+    const std::array<int, 3> origin = {chunk.at.x * edge, chunk.at.y * edge, chunk.at.z * edge};
+    for (const QuadLayers* layers : {&chunk.mesh.opaque, &chunk.mesh.transparent}) {
+      for (const Quad quad : layers->quads) {
+        for (const Corner& corner : quad_corners(quad)) {
+          for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], origin[i] + static_cast<int>(corner[i]));
+            high[i] = std::max(high[i], origin[i] + static_cast<int>(corner[i]));
+          }
+        }
+      }
+    }
+  }
+  if (pane.quads == 0) return {{0, 0, 0}, {edge, edge, edge}, options.turn, options.pitch};
+  return {low, high, options.turn, options.pitch};
+}
+
 class ViewProgram {
  public:
   ViewProgram(const ViewOptions& options, const FramesWorld& world, GlContextLoader loader)
       : options_(options),
         panes_(view_panes(world, options.repetitions)),
         view_(loader, world, materials_of(world), panes_),
-        camera_({world.size[0] * static_cast<int>(world.edge),
-                 world.size[1] * static_cast<int>(world.edge),
-                 world.size[2] * static_cast<int>(world.edge)},
-                options.turn, options.pitch) {
+        camera_(camera_of(panes_.front(), static_cast<int>(world.edge), options)) {
     result_.world = world.name;
     result_.chunks = world.chunks.size();
     result_.renderer = gl_renderer();

@@ -13,21 +13,25 @@ constexpr double kTurnPerPixel = 0.006;  // radians
 
 }  // namespace
 
-ViewCamera::ViewCamera(const std::array<int, 3>& size, double turn, double pitch)
-    : size_(size), turn_(turn * kDegree), pitch_(pitch * kDegree) {}
+ViewCamera::ViewCamera(const std::array<int, 3>& low, const std::array<int, 3>& high, double turn,
+                       double pitch)
+    : radius_(std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2),
+      turn_(turn * kDegree),
+      pitch_(pitch * kDegree) {
+  for (std::size_t i = 0; i < 3; ++i) middle_[i] = (low[i] + high[i]) / 2.0;
+}
 
 Camera ViewCamera::camera() const {
-  const double radius = std::hypot(size_[0], size_[1], size_[2]) / 2;
-  const double distance = distance_ * 0.92 * radius / std::sin(kFovY / 2);
+  const double distance = distance_ * radius_ / std::sin(kFovY / 2);
   Camera out;
   out.yaw = turn_;
   out.pitch = -pitch_;
   out.fov_y = kFovY;
-  out.x = size_[0] / 2.0 - distance * std::sin(out.yaw) * std::cos(out.pitch);
-  out.y = size_[1] / 2.0 - distance * std::sin(out.pitch);
-  out.z = size_[2] / 2.0 - distance * std::cos(out.yaw) * std::cos(out.pitch);
-  out.near = std::max(0.1, distance - 1.1 * radius);
-  out.far = 4 * (distance + radius);  // the chunks lie before the fog
+  out.x = middle_[0] - distance * std::sin(out.yaw) * std::cos(out.pitch);
+  out.y = middle_[1] - distance * std::sin(out.pitch);
+  out.z = middle_[2] - distance * std::cos(out.yaw) * std::cos(out.pitch);
+  out.near = std::max(0.1, distance - 1.1 * radius_);
+  out.far = 4 * (distance + radius_);  // the chunks lie before the fog
   return out;
 }
 

@@ -11,8 +11,9 @@ namespace runstone::bench {
 
 class ViewCamera {
  public:
-  /// `size` is that of the block in voxels, which begins at 0 0 0. Angles are in degrees.
-  ViewCamera(const std::array<int, 3>& size, double turn, double pitch);
+  /// Looks at the middle of the box from `low` to `high`, in voxels. Angles are in degrees.
+  ViewCamera(const std::array<int, 3>& low, const std::array<int, 3>& high, double turn,
+             double pitch);
 
   Camera camera() const;
   /// Turns the camera while the left button is held, and moves it by the wheel. Returns true if it
@@ -20,7 +21,8 @@ class ViewCamera {
   bool feed(std::span<const InputEvent> events);
 
  private:
-  std::array<int, 3> size_;
+  std::array<double, 3> middle_{};
+  double radius_;        // of the box, voxels
   double turn_, pitch_;  // radians
   double distance_ = 1;  // as a factor of the one at which all is in view
   bool is_held_ = false;
