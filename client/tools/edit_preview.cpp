@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
+#include "common/edits/apply/edit_changes.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/edits/descriptor/straight_paste.hpp"
 #include "common/runs/run_builder.hpp"
+#include "common/runs/run_cursor.hpp"
 
 namespace runstone {
 namespace {
@@ -24,25 +28,6 @@ struct Stretches {
   RunBuilder runs;
   const std::uint32_t volume;
   std::uint64_t voxels = 0;
-};
-
-/// The voxels in which two states of a chunk differ.
-struct Difference {
-  Difference(Extent extent, AxisOrder order) : placed(extent, order), removed(extent, order) {}
-  template <class Before, class After>
-  void read(const Before& before, const After& after) {
-    std::size_t b = 0, a = 0;
-    for (std::uint32_t first = 0; first < placed.volume;) {
-      const Material was = before.material(b), is = after.material(a);
-      const std::uint32_t was_end = before.end(b), is_end = after.end(a);
-      const std::uint32_t last = std::min(was_end, is_end);
-      if (was != is) (is == kEmpty ? removed : placed).add(first, last, is == kEmpty ? was : is);
-      b += static_cast<std::size_t>(was_end == last);
-      a += static_cast<std::size_t>(is_end == last);
-      first = last;
-    }
-  }
-  Stretches placed, removed;
 };
 
 }  // namespace
@@ -89,8 +74,24 @@ bool EditPreview::step(const Replica& replica, std::size_t chunks_max) {
   return false;
 }
 
+void EditPreview::straighten() {
+  applied_ = edits_;
+  for (EditDescriptor& edit : applied_) {
+    const auto* const paste = std::get_if<Paste>(&edit.shape);
+    if (paste == nullptr || paste->orientation == Orientation{}) continue;
+    if (straight_.clipboard != paste->clipboard || straight_.orientation != paste->orientation) {
+      straight_ = {paste->clipboard, paste->orientation,
+                   straight_paste({{0, 0, 0}, paste->clipboard, paste->orientation})};
+    }
+    if (!straight_.straight) continue;
+    Paste moved = *straight_.straight;
+    moved.at = {moved.at.x + paste->at.x, moved.at.y + paste->at.y, moved.at.z + paste->at.z};
+    edit.shape = std::move(moved);
+  }
+}
+
 void EditPreview::begin(const Replica& replica) {
-  is_restarted_ = false;
+  if (std::exchange(is_restarted_, false)) straighten();
   edge_ = replica.chunk_edge();
   chunks_.clear();
   parts_.clear();
@@ -100,7 +101,7 @@ void EditPreview::begin(const Replica& replica) {
   is_cut_ = false;
   next_ = 0;
   stage_ = Stage::compare;
-  for (const EditDescriptor& edit : edits_) {
+  for (const EditDescriptor& edit : applied_) {
     is_cut_ = is_cut_ || touched_chunks_bound(edit, edge_) > kChunksMax;
     if (touched_chunks_bound(edit, edge_) > kTouchedChunksMax) continue;  // it will be refused
     const std::vector<ChunkCoord> touched = touched_chunks(edit, edge_);
@@ -140,20 +141,32 @@ bool EditPreview::is_outdated(const Replica& replica) const {
 void EditPreview::compare(ChunkCoord at, Part& part) {
   if (!part.shown) return;
   const RunChunk& before = *part.shown;
-  RunChunk after = before;
-  Digest digest;  // nobody compares it
-  apply_stack(after, digest, origin_of(at, edge_), edits_, apply_, applied_);
-  if (!applied_.changed) return;
-  Difference difference(before.extent, before.order);
-  before.runs.visit([&](const auto& was) {
-    after.runs.visit([&](const auto& is) { difference.read(was, is); });
+  const std::span<const Change> changes =
+      find_changes(before, origin_of(at, edge_), applied_, apply_);
+  if (changes.empty()) return;
+  Stretches placed(before.extent, before.order), removed(before.extent, before.order);
+  before.runs.visit([&]<class Runs>(Runs runs) {
+    RunCursor<Runs> cursor(runs);
+    for (const Change& change : changes) {
+      if (change.material != kEmpty) {
+        placed.add(change.first, change.last, change.material);
+        continue;
+      }
+      cursor.seek(change.first);
+      for (VoxelIndex from = change.first; from < change.last;) {
+        const VoxelIndex end = std::min(cursor.end(), change.last);
+        removed.add(from, end, cursor.material());
+        from = end;
+        if (from < change.last) cursor.next();
+      }
+    }
   });
-  made_placed_ += difference.placed.voxels;
-  made_removed_ += difference.removed.voxels;
-  part.has_placed = difference.placed.voxels != 0;
-  part.has_removed = difference.removed.voxels != 0;
-  if (part.has_placed) part.placed = difference.placed.finish();
-  if (part.has_removed) part.removed = difference.removed.finish();
+  made_placed_ += placed.voxels;
+  made_removed_ += removed.voxels;
+  part.has_placed = placed.voxels != 0;
+  part.has_removed = removed.voxels != 0;
+  if (part.has_placed) part.placed = placed.finish();
+  if (part.has_removed) part.removed = removed.finish();
 }
 
 std::shared_ptr<const ChunkMesh> EditPreview::mesh(ChunkCoord at, RunChunk Part::* runs,

@@ -1,12 +1,14 @@
 // EditPreview: the exact effect of edits that are not made yet, as ghosts that are drawn over the
-// world. The edits are applied to a copy of the shown runs by apply_stack(), the function of the
-// server. The difference to the shown runs is meshed. Work is divided over turns: step() does a
+// world. The changes to the shown runs are found by the search of apply_stack(), the function of the
+// server. They are meshed. Work is divided over turns: step() does a
 // bounded part, and the ghosts of the edits before stay until all of the new ones are made.
 // One thread. No clock.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,6 +44,7 @@ class EditPreview {
   /// begin of the work. Tools read the neighbours, too. Cost: O(touched chunks).
   bool is_outdated(const Replica& replica) const;
 
+  const std::vector<EditDescriptor>& edits() const { return edits_; }
   const std::vector<GhostChunk>& ghosts() const { return ghosts_; }
   /// Returns the number of touched chunks that are not here, and so have no ghost.
   std::size_t missing_chunks() const { return missing_; }
@@ -59,12 +62,23 @@ class EditPreview {
     bool has_placed = false, has_removed = false;
   };
 
+  /// A turned paste at the origin, and the same one made straight.
+  struct StraightPaste {
+    std::shared_ptr<const Clipboard> clipboard;
+    Orientation orientation;
+    std::optional<Paste> straight;
+  };
+
+  /// Fills applied_ with edits_, in which turned pastes are made straight.
+  void straighten();
   void begin(const Replica& replica);
   void watch(const Replica& replica);
   void compare(ChunkCoord at, Part& part);
   std::shared_ptr<const ChunkMesh> mesh(ChunkCoord at, RunChunk Part::* runs, bool Part::* has);
 
   std::vector<EditDescriptor> edits_;
+  std::vector<EditDescriptor> applied_;
+  StraightPaste straight_;  // the last one: a paste is moved about as it lies
   std::int32_t edge_ = 0;
   std::vector<ChunkCoord> chunks_;  // ascending
   std::map<ChunkCoord, Part> parts_;
@@ -80,7 +94,6 @@ class EditPreview {
   std::uint64_t made_placed_ = 0, made_removed_ = 0;
   VisibilityTable visibility_{{}};
   ApplyScratch apply_;
-  ApplyResult applied_;
   RdmScratch mesher_;
 };
 

@@ -31,8 +31,9 @@ LineBits layers_around(std::uint32_t first, std::uint32_t last, std::uint32_t co
 }  // namespace
 
 ChangeTally::ChangeTally(const RunChunk& shape, std::vector<Change>& changes,
-                         MaterialFactors& factors)
-    : shape_(shape),
+                         MaterialFactors& factors, Want want)
+    : want_(want),
+      shape_(shape),
       extent_(ordered(shape.extent, shape.order)),
       axes_(axes_of(shape.order)),
       changes_(changes),
@@ -78,6 +79,7 @@ void ChangeTally::line(std::uint32_t m, std::uint32_t s, LineBits changed, LineB
     layer_ = s;
   }
   const VoxelIndex begin = (s * extent_.m + m) * extent_.f;
+  if (want_ == Want::changes) return note_line(begin, changed, cuts, after);
   std::array<const std::uint64_t*, kDigestLanes> prefix;
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
     prefix[lane] = digest_axis_prefix(static_cast<int>(lane), axes_[0]).data();
@@ -108,6 +110,17 @@ void ChangeTally::line(std::uint32_t m, std::uint32_t s, LineBits changed, LineB
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
     layer_sum_[lane] =
         m61::add(layer_sum_[lane], m61::mul(reduce_wide(sum[lane]), factor_at(lane, axes_[1], m)));
+  }
+}
+
+void ChangeTally::note_line(VoxelIndex begin, LineBits changed, LineBits cuts,
+                            const Material* after) {
+  cuts = cuts | ~changed;
+  while (changed.any()) {
+    const std::uint32_t first = changed.lowest();
+    const std::uint32_t last = std::min((cuts & ~bits_below(first + 1)).lowest(), extent_.f);
+    changed = changed & ~bits_below(last);
+    note(begin + first, begin + last, after[first]);
   }
 }
 

@@ -21,15 +21,22 @@ namespace runstone {
 
 class ChangeTally {
  public:
+  enum class Want : std::uint8_t {
+    everything,
+    changes,  // the list alone; digest, layers and number stay 0
+  };
+
   /// Only extent and order of `shape` are used. Appends to `changes`. Requires that `changes` is
   /// empty.
-  ChangeTally(const RunChunk& shape, std::vector<Change>& changes, MaterialFactors& factors);
+  ChangeTally(const RunChunk& shape, std::vector<Change>& changes, MaterialFactors& factors,
+              Want want = Want::everything);
 
   /// Adds a stretch: the voxels [first, last), which all were `before`, became `after`. Requires
   /// `before` != `after`, and stretches that ascend and do not overlap.
   void stretch(VoxelIndex first, VoxelIndex last, Material before, Material after) {
-    voxels_ += last - first;
     note(first, last, after);
+    if (want_ == Want::changes) return;
+    voxels_ += last - first;
     if (first >= line_end_) open_line(first);
     if (last <= line_end_) {
       in_line(first - line_begin_, last - line_begin_, before, after);
@@ -61,9 +68,12 @@ class ChangeTally {
       changes_.push_back({first, last, after});
     }
   }
+  /// Notes the stretches of a line, as line() does.
+  void note_line(VoxelIndex begin, LineBits changed, LineBits cuts, const Material* after);
   void in_line(std::uint32_t first, std::uint32_t last, Material before, Material after);
   void across_lines(VoxelIndex first, VoxelIndex last, Material before, Material after);
 
+  const Want want_;
   const RunChunk& shape_;
   const OrderedExtent extent_;
   const std::array<Axis, 3> axes_;

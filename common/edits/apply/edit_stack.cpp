@@ -5,6 +5,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/edits/apply/change_tally.hpp"
+#include "common/edits/apply/edit_changes.hpp"
 #include "common/edits/apply/edit_stack_strategies.hpp"
 #include "common/edits/apply/edit_sweep.hpp"
 #include "common/edits/apply/layer_painter.hpp"
@@ -55,6 +56,15 @@ void search_stack(ChangeSearch search, const RunChunk& chunk, ApplyScratch& scra
   }
 }
 
+// Passes all changes of the edits to `tally`.
+void search_edits(const RunChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
+                  ApplyScratch& scratch, ChangeTally& tally) {
+  if (edits.size() == 1 && std::holds_alternative<Paste>(edits.front().shape))
+    return walk_paste(chunk, origin, edits.front(), scratch, tally);
+  const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
+  if (count != 0) search_stack(cheaper_search(count, chunk, scratch.stack), chunk, scratch, tally);
+}
+
 // Fills the result, and the patch in scratch.runs, with what search(tally) finds. The chunk does
 // not change.
 template <class Search>
@@ -86,17 +96,9 @@ void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
                  std::span<const EditDescriptor> edits, ApplyScratch& scratch,
                  ApplyResult& result) {
   reset(result);
-  if (edits.size() == 1 && std::holds_alternative<Paste>(edits.front().shape)) {
-    plan_changes(chunk, digest, scratch, result, [&](ChangeTally& tally) {
-      walk_paste(chunk, origin, edits.front(), scratch, tally);
-    });
-  } else {
-    const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
-    if (count == 0) return;
-    plan_changes(chunk, digest, scratch, result, [&](ChangeTally& tally) {
-      search_stack(cheaper_search(count, chunk, scratch.stack), chunk, scratch, tally);
-    });
-  }
+  plan_changes(chunk, digest, scratch, result,
+               [&](ChangeTally& tally) { search_edits(chunk, origin, edits, scratch, tally); });
+  if (!result.changed) return;
   write_patch(chunk, result.areas, scratch.runs, cheaper_write(chunk, result.areas), scratch.whole);
 }
 
@@ -105,6 +107,15 @@ ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
   ApplyResult result;
   apply_stack(chunk, digest, origin, edits, scratch, result);
   return result;
+}
+
+std::span<const Change> find_changes(const RunChunk& chunk, VoxelPos origin,
+                                     std::span<const EditDescriptor> edits, ApplyScratch& scratch) {
+  scratch.changes.clear();
+  ChangeTally tally(chunk, scratch.changes, scratch.factors, ChangeTally::Want::changes);
+  search_edits(chunk, origin, edits, scratch, tally);
+  tally.finish();
+  return scratch.changes;
 }
 
 ApplyResult apply_stack_by(ApplyStrategy strategy, RunChunk& chunk, Digest& digest, VoxelPos origin,

@@ -18,7 +18,8 @@ struct EditRecord {
   TimeUs time_us = 0;  // UTC, never decreasing along the log
   Cause cause = Cause::player;
   EditDescriptor edit;
-  // The edit that this one reverts or restores (rollback, undo, redo); below version.seq. 0: none.
+  // The edit that this one reverts or restores (rollback, undo, redo), or the first edit of the
+  // player's action that this one belongs to (player); below version.seq. 0: none.
   Sequence subject = 0;
   LogId log = 0;  // version.seq and subject count in this log
   friend bool operator==(const EditRecord&, const EditRecord&) = default;

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <string>
 
+#include "common/edits/apply/edit_changes.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/apply/edit_stack_strategies.hpp"
 #include "common/runs/reorder.hpp"
@@ -70,6 +72,9 @@ const char* difference(RunChunk& chunk, Digest& digest, DenseChunk& oracle, Voxe
                        OracleFault fault = OracleFault::none) {
   const RunChunk before = chunk;
   const ApplyResult result = apply_stack(chunk, digest, origin, edits, scratch);
+  const std::span<const Change> made = changes_of(scratch, result);
+  const std::vector<Change> changes(made.begin(), made.end());
+  if (!std::ranges::equal(find_changes(before, origin, edits, scratch), changes)) return "changes";
   const OracleOutcome expected = oracle_apply(oracle, origin, edits, fault);
   if (!validate(chunk)) return "invariants";
   if (!(DenseChunk::of(chunk) == oracle)) return "voxels";
