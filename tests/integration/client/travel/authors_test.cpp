@@ -72,10 +72,10 @@ TEST_CASE("a client sees what a rollback would change, applies it, and takes it 
   REQUIRE(control(folder.path(),
                   {"grant", "#" + std::to_string(host.session().author()), "administrator"})
               .is_ok);
-  const auto before = griefer.replica().shown_at({4, 30, 4});
-  griefer.edit(sphere({4, 30, 4}, 6));
+  const auto before = griefer.replica().shown_at({4, 24, 4});
+  griefer.edit(sphere({4, 24, 4}, 6));
   griefer.catch_up();
-  host.until([&] { return host.replica().shown_at({4, 30, 4}) == Material{6}; });
+  host.until([&] { return host.replica().shown_at({4, 24, 4}) == Material{6}; });
   CHECK(rollback.preview(filter).empty());
   finish();
   INFO(rollback.answer().at(0));
@@ -89,11 +89,11 @@ TEST_CASE("a client sees what a rollback would change, applies it, and takes it 
   CHECK(rollback.carry_out(ApplyRollback{}, {}, {}).empty());
   finish();
   CHECK(rollback.has_succeeded());
-  host.until([&] { return host.replica().shown_at({4, 30, 4}) == before; });
+  host.until([&] { return host.replica().shown_at({4, 24, 4}) == before; });
   CHECK(rollback.carry_out(UndoRollback{}, {}, {}).empty());
   finish();
   CHECK(rollback.has_succeeded());
-  host.until([&] { return host.replica().shown_at({4, 30, 4}) == Material{6}; });
+  host.until([&] { return host.replica().shown_at({4, 24, 4}) == Material{6}; });
   server->stop();
 }
 
