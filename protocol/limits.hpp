@@ -24,9 +24,11 @@ inline constexpr std::uint64_t kFeatureKeyTransfer = 32;  // KeyRequest, KeyDepo
 inline constexpr std::uint64_t kFeatureMaterials = 64;    // MaterialsAdded
 inline constexpr std::uint64_t kFeatureLogMarks = 128;    // LogMarksRequest and LogMarks
 inline constexpr std::uint64_t kFeatureRestorePreview = 256;  // RestorePreview
+inline constexpr std::uint64_t kFeaturePreviews = 512;        // PreviewShare and PlayerPreview
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
-    kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview;
+    kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
+    kFeaturePreviews;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -97,6 +99,13 @@ inline constexpr std::size_t kClaimsPerSessionMax = 32'768;  // claims that wait
 inline constexpr std::size_t kGroundBoxesMax = 1024;    // that a session knows at a time
 inline constexpr std::size_t kGroundNameBytesMax = 32;  // of boxes and roles
 inline constexpr std::int32_t kGroundPriorityMax = 1000;
+
+inline constexpr std::size_t kActionEditsMax = 256;  // edits that are undone as one
+
+// Previews of others.
+inline constexpr std::size_t kPreviewEditsMax = 4;         // of one player
+inline constexpr std::size_t kPreviewBytesMax = 2 * 1024;  // of their descriptors together
+inline constexpr std::uint64_t kPreviewChunksMax = 64;     // that an edit's bounds touch
 
 // Chat.
 inline constexpr std::size_t kChatBytesMax = 512;  // one line

@@ -77,17 +77,18 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
       pipeline_(session_.replica(), display.draw_thread.get(), window_ != nullptr, options_.workers,
                 [this] { wake_.notify(); }),
       tool_(session_, player_, pipeline_.recorder(), display.tools),
+      previews_(session_, tool_),
       input_(router_of(options_.settings)),
       budget_(options_.memory_mib << 20, {options_.view_radius, options_.view_radius_v}),
       view_(session_, player_, budget_.radii()),
       chat_(session_, terminal_of(script)),
       panels_(session_, player_, tool_.box()),
-      hud_(session_, player_, pipeline_, chat_, panels_, options_.name, input_.keys()),
+      hud_(session_, player_, pipeline_, chat_, panels_, tool_, options_.name, input_.keys()),
       actions_(session_, player_, pipeline_, tool_, view_, chat_, input_, hud_, panels_,
                options_.screenshot_dir),
       controls_(session_, player_, tool_, pipeline_, hud_, chat_, actions_,
                 driver_of(options_, script)),
-      scene_(session_, player_, tool_, view_, panels_),
+      scene_(session_, player_, tool_, previews_, view_, panels_),
       notices_(session_, hud_) {
   controls_.show_ground(options_.show_protected);
   hud_.set_shown(window_ != nullptr);
@@ -141,6 +142,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     network_.step_cache(now_us, budget_.room(memory_use()));
     flush();
     if (tool_.step_preview()) pipeline_.moved();
+    if (previews_.step(settings(), now_us)) pipeline_.moved();
     draw(now_us);
     if (stop != 0) end_requested_ = true;
     end = end_of_play(steady_now_us());
@@ -177,6 +179,7 @@ void Client::take_new_materials() {
 
 void Client::set_tool_materials(const MaterialTable& materials) {
   panels_.set_materials(materials);
+  previews_.set_materials(materials);
   const std::string lost = tool_.box().set_materials(materials);
   if (!lost.empty()) hud_.notify(lost, NoticeKind::warning);
 }
@@ -298,7 +301,7 @@ HudScene Client::hud_scene() const {
   scene.is_captured = !window_ || input_.is_captured();
   scene.is_connected = network_.is_connected();
   scene.shows_players = controls_.shows_players();
-  if (const auto hit = tool_.pick()) scene.aimed_at = hit->material;
+  scene.sight = tool_.pick();
   scene.state = moment_text(session_.replica().past());
   const std::string lost = opened_us_ ? lost_text(network_, steady_now_us()) : std::string();
   if (!lost.empty()) scene.state = lost;

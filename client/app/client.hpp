@@ -22,6 +22,7 @@
 #include "client/app/player.hpp"
 #include "client/app/player_controls.hpp"
 #include "client/app/player_log.hpp"
+#include "client/app/preview_exchange.hpp"
 #include "client/app/script_actions.hpp"
 #include "client/app/terminal_chat.hpp"
 #include "client/app/threaded_session.hpp"
@@ -101,6 +102,7 @@ class Client {
   MeshPipeline pipeline_;
   Player player_;
   EditTool tool_;
+  PreviewExchange previews_;
   InputRouter input_;
   MemoryBudget budget_;
   ViewFollower view_;

@@ -44,12 +44,14 @@ std::optional<InspectionMode> mode_of(Action action) {
 }  // namespace
 
 ClientHud::ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline,
-                     TerminalChat& chat, WorldPanels& panels, std::string name, const KeyMap& keys)
+                     TerminalChat& chat, WorldPanels& panels, EditTool& tool, std::string name,
+                     const KeyMap& keys)
     : session_(session),
       player_(player),
       pipeline_(pipeline),
       chat_(chat),
       panels_(panels),
+      tool_(tool),
       name_(std::move(name)),
       hud_(keys) {}
 
@@ -100,7 +102,7 @@ std::shared_ptr<const OverlayFrame> ClientHud::make_frame(const HudScene& scene,
   HudState shown = state(scene);
   if (hud_.shows_statistics()) shown.statistics = statistics(scene, now_us);
   auto frame = hud_.make_frame(shown, scene.size, seconds);
-  for (const UiAction& action : hud_.take_actions()) carry_out(action);
+  for (const UiAction& action : hud_.take_actions()) carry_out(action, now_us);
   if (!is_shown_) return nullptr;
   return frame;
 }
@@ -115,7 +117,12 @@ HudState ClientHud::state(const HudScene& scene) const {
   const WorldPos eye = player_.eye();
   out.place = fmt::format("{:.0f} {:.0f} {:.0f}  {}", std::floor(eye.x), std::floor(eye.y),
                           std::floor(eye.z), player_.is_walking() ? "walking" : "flying");
-  out.aimed_at = scene.aimed_at;
+  if (scene.sight) {
+    out.aimed_at = scene.sight->material;
+    out.sight = scene.sight->voxel;
+  }
+  out.tools = &tool_.box();
+  out.has_preview = tool_.has_preview();
   out.state = scene.state;
   out.tool = scene.tool;
   out.shows_players = scene.shows_players;
@@ -267,7 +274,7 @@ void ClientHud::add_traffic(const NetCounts& net, TimeUs now_us, StatisticsState
   for (std::size_t i = 0; i < now.size(); ++i) out.traffic[i] = {kNames[i], now[i], rates_[i]};
 }
 
-void ClientHud::carry_out(const UiAction& action) {
+void ClientHud::carry_out(const UiAction& action, TimeUs now_us) {
   if (const auto* moment = std::get_if<ShowMoment>(&action)) {
     HistoryRequest request;  // the live world
     if (!moment->is_live) {
@@ -281,6 +288,10 @@ void ClientHud::carry_out(const UiAction& action) {
   if (const auto* chosen = std::get_if<SetInspection>(&action)) pipeline_.inspect(chosen->modes);
   if (const auto* order = std::get_if<RollbackOrder>(&action))
     static_cast<void>(panels_.carry_out(*order));  // the window says why not
+  if (const auto* command = std::get_if<ToolCommand>(&action)) {
+    if (const auto done = tool_.carry_out(*command, now_us); !done)
+      notify(done.error(), NoticeKind::warning);
+  }
 }
 
 }  // namespace runstone

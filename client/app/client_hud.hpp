@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "client/app/edit_tool.hpp"
 #include "client/app/hotbar.hpp"
 #include "client/app/player.hpp"
 #include "client/app/terminal_chat.hpp"
@@ -20,11 +21,11 @@ namespace runstone {
 /// The client's own state, as the display shows it.
 struct HudScene {
   bool is_captured = false, is_connected = false, shows_players = false;
-  std::optional<Material> aimed_at;
-  std::string state;  // as HudState::state
-  std::string tool;   // as HudState::tool
-  NetCounts net;      // filled only while ClientHud::shows_statistics()
-  MemoryUse memory;   // likewise
+  std::optional<RayHit> sight;  // the voxel that the player looks at
+  std::string state;            // as HudState::state
+  std::string tool;             // as HudState::tool
+  NetCounts net;                // filled only while ClientHud::shows_statistics()
+  MemoryUse memory;             // likewise
   std::size_t memory_max = 0;
   Camera camera;
   std::array<int, 2> size{};  // of the frame, in pixels
@@ -34,7 +35,7 @@ class ClientHud {
  public:
   /// All but `keys` and the player's `name` must outlive this object.
   ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline, TerminalChat& chat,
-            WorldPanels& panels, std::string name, const KeyMap& keys);
+            WorldPanels& panels, EditTool& tool, std::string name, const KeyMap& keys);
 
   /// Fills the hotbar for a world. Call it when a world opens for the first time, or another one.
   void enter(const MaterialTable& materials);
@@ -73,13 +74,14 @@ class ClientHud {
   TimelineState timeline() const;
   StatisticsState statistics(const HudScene& scene, TimeUs now_us);
   void add_traffic(const NetCounts& net, TimeUs now_us, StatisticsState& out);
-  void carry_out(const UiAction& action);
+  void carry_out(const UiAction& action, TimeUs now_us);
 
   ClientSession& session_;
   Player& player_;
   MeshPipeline& pipeline_;
   TerminalChat& chat_;
   WorldPanels& panels_;
+  EditTool& tool_;
   const std::string name_;
   Hud hud_;
   Hotbar hotbar_;

@@ -46,7 +46,15 @@ Aim EditTool::aim() const {
 
 Result<void, std::string> EditTool::press(ToolButton button, TimeUs now_us) {
   if (!session_.replica().opened()) return failure("no world is open");
-  const auto edits = box_.press(session_.replica(), aim(), button);
+  return submit_beside(box_.press(session_.replica(), aim(), button), now_us);
+}
+
+Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs now_us) {
+  return submit_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command),
+                       now_us);
+}
+
+Result<void, std::string> EditTool::submit_beside(const ToolEdits& edits, TimeUs now_us) {
   if (edits && edits->size() == 1 && edits->front().material != kEmpty) {
     const auto* const voxel = std::get_if<SetVoxel>(&edits->front().shape);
     if (voxel != nullptr && player_.is_in(voxel->at))
@@ -66,14 +74,16 @@ Result<void, std::string> EditTool::release(TimeUs now_us) {
 
 Result<void, std::string> EditTool::submit(const ToolEdits& edits, TimeUs now_us) {
   if (!edits) return failure(edits.error());
-  for (const EditDescriptor& edit : *edits) {
-    if (auto done = submit(edit, now_us, now_us); !done) return done;
+  for (std::size_t i = 0; i < edits->size(); ++i) {
+    if (auto done = submit((*edits)[i], now_us, now_us, part_of_action(i, edits->size())); !done)
+      return done;
   }
   return {};
 }
 
 bool EditTool::has_preview() const {
-  const bool is_plain = repeats() && box_.symmetry().kind == SymmetryKind::none;
+  const bool is_plain =
+      repeats() && box_.symmetry().kind == SymmetryKind::none && !box_.typed_places();
   return !is_plain && session_.replica().opened() && !session_.replica().past();
 }
 
@@ -103,10 +113,14 @@ std::string EditTool::text() const {
   return out;
 }
 
-Result<void, std::string> EditTool::submit(const EditDescriptor& edit, TimeUs due_us,
-                                           TimeUs now_us) {
-  const auto seq = session_.submit(edit, due_us, now_us);
+Result<void, std::string> EditTool::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                           ActionPart part) {
+  if (part == ActionPart::first) action_ = 0;
+  ClientSequence action = 0;
+  if (part != ActionPart::alone) action = action_ != 0 ? action_ : kBeginsAction;
+  const auto seq = session_.submit(edit, due_us, now_us, action);
   if (seq) {
+    if (action == kBeginsAction) action_ = *seq;
     recorder_.submitted(*seq, due_us);
     return {};
   }

@@ -47,6 +47,7 @@ FrameContents FrameScene::contents(bool outlines_aim, bool shows_ground) const {
   add_selection(out.markers);
   for (const std::span<const GhostChunk> ghosts : {tool_.ghosts(), panels_.rollback().ghosts()})
     out.ghosts.insert(out.ghosts.end(), ghosts.begin(), ghosts.end());
+  previews_.append_ghosts(out.ghosts);
   return out;
 }
 

@@ -6,6 +6,7 @@
 
 #include "client/app/edit_tool.hpp"
 #include "client/app/player.hpp"
+#include "client/app/preview_exchange.hpp"
 #include "client/app/view_follower.hpp"
 #include "client/app/world_panels.hpp"
 #include "client/render/frame_contents.hpp"
@@ -18,8 +19,13 @@ class FrameScene {
  public:
   /// All must outlive the scene.
   FrameScene(const ClientSession& session, const Player& player, const EditTool& tool,
-             const ViewFollower& view, const WorldPanels& panels)
-      : session_(session), player_(player), tool_(tool), view_(view), panels_(panels) {}
+             const PreviewExchange& previews, const ViewFollower& view, const WorldPanels& panels)
+      : session_(session),
+        player_(player),
+        tool_(tool),
+        previews_(previews),
+        view_(view),
+        panels_(panels) {}
 
   /// `field_of_view` is vertical, in degrees; nullopt: that of pictures of scripts.
   Camera camera(std::optional<double> field_of_view) const;
@@ -37,6 +43,7 @@ class FrameScene {
   const ClientSession& session_;
   const Player& player_;
   const EditTool& tool_;
+  const PreviewExchange& previews_;
   const ViewFollower& view_;
   const WorldPanels& panels_;
 };

@@ -14,6 +14,8 @@ namespace {
 
 /// The log is divided into this many steps of `[` and `]`.
 constexpr Sequence kScrubSteps = 100;
+/// A stick of a gamepad that is wholly to the side turns as the mouse does by so many units a second.
+constexpr double kStickLook = 1'000;
 
 }  // namespace
 
@@ -52,6 +54,8 @@ void PlayerControls::take(const WindowInput& input, double seconds, const Client
 void PlayerControls::move(const WindowInput& input, double seconds,
                           const ClientSettings& settings) {
   WindowInput turned = input;
+  turned.look_dx += input.turn_x * kStickLook * seconds;
+  turned.look_dy += input.turn_y * kStickLook * seconds;
   turned.look_dx *= settings.sensitivity;
   turned.look_dy *= settings.sensitivity * (settings.invert_y ? -1 : 1);
   player_.turn(turned);

@@ -50,9 +50,9 @@ class ScriptActions final : public ScriptHost {
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {
     return session_.edit_wait_us(edit, now_us);
   }
-  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us,
-                                   TimeUs now_us) override {
-    return tool_.submit(edit, due_us, now_us);
+  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                   ActionPart part) override {
+    return tool_.submit(edit, due_us, now_us, part);
   }
   bool loaded() const override;
   bool durable() const override { return session_.replica().local_edits().all().empty(); }

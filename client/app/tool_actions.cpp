@@ -8,19 +8,17 @@ namespace {
 
 using KeyAnswer = Result<std::string, std::string>;
 
+KeyAnswer choose_tool(EditTool& tool, const std::string& name) {
+  static_cast<void>(tool.box().choose(name));
+  return "tool: " + name;
+}
+
 /// Chooses the tool so many places further in the list.
 KeyAnswer choose_from_here(EditTool& tool, std::size_t places) {
   ToolBox& box = tool.box();
   std::size_t i = 0;
   while (&box.tool() != box.tools()[i].get()) ++i;
-  const std::string name(box.tools()[(i + places) % box.tools().size()]->name());
-  static_cast<void>(box.choose(name));
-  return "tool: " + name;
-}
-
-KeyAnswer choose_tool(EditTool& tool, const char* name) {
-  static_cast<void>(tool.box().choose(name));
-  return std::string("tool: ") + name;
+  return choose_tool(tool, std::string(box.tools()[(i + places) % box.tools().size()]->name()));
 }
 
 KeyAnswer resize(EditTool& tool, int steps) {
@@ -60,6 +58,10 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
                                                             TimeUs now_us) {
   ToolBox& box = tool.box();
   const Replica& replica = tool.replica();
+  if (action >= Action::tool_1 && action <= Action::tool_10) {
+    const auto i = static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::tool_1);
+    return choose_tool(tool, std::string(box.tools()[i]->name()));
+  }
   switch (action) {
     case Action::next_tool:
       return choose_from_here(tool, 1);

@@ -16,6 +16,13 @@ constexpr double kTooNear = 2 * Camera{}.near;
 
 }  // namespace
 
+std::array<std::uint8_t, 3> player_colour(AuthorId author) {
+  const auto shade = [author](AuthorId channel) {
+    return static_cast<std::uint8_t>(96 + mix64(author + channel) % 160);
+  };
+  return {shade(0), shade(1), shade(2)};
+}
+
 std::optional<Body> player_body(AuthorId author, const Pose& pose, const WorldPos& eye) {
   const WorldPos& at = pose.at;
   const auto near = [](double v, double from, double to) {
@@ -25,17 +32,15 @@ std::optional<Body> player_body(AuthorId author, const Pose& pose, const WorldPo
   if (near(eye.x, at.x - kHalfWidth, at.x + kHalfWidth) && near(eye.y, feet, feet + kHeight) &&
       near(eye.z, at.z - kHalfWidth, at.z + kHalfWidth))
     return std::nullopt;
-  const auto shade = [author](AuthorId channel) {
-    return static_cast<std::uint8_t>(96 + mix64(author + channel) % 160);
-  };
+  const std::array<std::uint8_t, 3> colour = player_colour(author);
   return Body{at.x,
               feet,
               at.z,
               pose.yaw * (2 * std::numbers::pi / 65536),
               pose.pitch * (std::numbers::pi / 32768),
-              shade(0),
-              shade(1),
-              shade(2)};
+              colour[0],
+              colour[1],
+              colour[2]};
 }
 
 }  // namespace runstone

@@ -1,6 +1,7 @@
 // InputEvent: one event of keyboard, mouse or window. A window makes them, and so do scripts and
 // tests.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <variant>
 
@@ -38,7 +39,39 @@ struct FocusEvent {
   bool has_focus = false;
 };
 
-using InputEvent =
-    std::variant<KeyEvent, CharacterEvent, CursorEvent, ButtonEvent, WheelEvent, FocusEvent>;
+/// The buttons of a gamepad, in GLFW's order, and the two triggers as buttons.
+enum class GamepadButton : std::uint8_t {
+  a,
+  b,
+  x,
+  y,
+  left_bumper,
+  right_bumper,
+  back,
+  start,
+  guide,
+  left_stick,
+  right_stick,
+  up,
+  right,
+  down,
+  left,
+  left_trigger,
+  right_trigger,
+};
+inline constexpr std::size_t kGamepadButtonCount =
+    static_cast<std::size_t>(GamepadButton::right_trigger) + 1;
+struct GamepadButtonEvent {
+  GamepadButton button = GamepadButton::a;
+  bool is_pressed = false;
+};
+/// The sticks of a gamepad moved. Each is -1 to 1, to the right and downward.
+struct StickEvent {
+  double move_x = 0, move_y = 0, look_x = 0, look_y = 0;
+  friend bool operator==(const StickEvent&, const StickEvent&) = default;
+};
+
+using InputEvent = std::variant<KeyEvent, CharacterEvent, CursorEvent, ButtonEvent, WheelEvent,
+                                FocusEvent, GamepadButtonEvent, StickEvent>;
 
 }  // namespace runstone

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/input/gamepad.hpp"
+
 namespace runstone {
 namespace {
 
@@ -50,6 +52,10 @@ RoutedInput InputRouter::route(const UiFocus& focus) {
       take_cursor(*cursor, out);
     } else if (const auto* wheel = std::get_if<WheelEvent>(&event)) {
       take_wheel(*wheel, out);
+    } else if (const auto* pad = std::get_if<GamepadButtonEvent>(&event)) {
+      take_gamepad(*pad, focus, out);
+    } else if (const auto* sticks = std::get_if<StickEvent>(&event)) {
+      sticks_ = *sticks;
     } else if (std::holds_alternative<FocusEvent>(event)) {
       release_all();
     } else if (!is_captured_) {
@@ -110,8 +116,41 @@ void InputRouter::take_wheel(const WheelEvent& event, RoutedInput& out) const {
   out.player.scroll += event.steps > 0 ? 1 : event.steps < 0 ? -1 : 0;
 }
 
+void InputRouter::take_gamepad(const GamepadButtonEvent& event, const UiFocus& focus,
+                               RoutedInput& out) {
+  const bool is_free = !focus.has_window || event.button == GamepadButton::start;
+  if (event.is_pressed && !is_free) return;
+  pad_held_[static_cast<std::size_t>(event.button)] = event.is_pressed;
+  if (!event.is_pressed) return;
+  switch (event.button) {
+    case GamepadButton::right_trigger:
+      ++out.player.remove_clicks;
+      return;
+    case GamepadButton::left_trigger:
+      ++out.player.place_clicks;
+      return;
+    case GamepadButton::right_stick:
+      ++out.player.pick_clicks;
+      return;
+    case GamepadButton::left_bumper:
+      ++out.player.scroll;
+      return;
+    case GamepadButton::right_bumper:
+      --out.player.scroll;
+      return;
+    default:
+      break;
+  }
+  for (const GamepadBinding& binding : gamepad_table()) {
+    if (binding.button == event.button && binding.action && !info_of(*binding.action).is_held)
+      out.player.actions.push_back(*binding.action);
+  }
+}
+
 void InputRouter::release_all() {
   held_.fill(false);
+  pad_held_.fill(false);
+  sticks_ = {};
   remove_held_ = place_held_ = false;
 }
 
@@ -130,17 +169,24 @@ void InputRouter::set_windows(bool has_window, bool has_panel) {
 }
 
 void InputRouter::add_held(WindowInput& input) const {
-  input.forward = is_held(Action::move_forward);
-  input.back = is_held(Action::move_back);
-  input.left = is_held(Action::move_left);
-  input.right = is_held(Action::move_right);
-  input.up = is_held(Action::move_up);
-  input.down = is_held(Action::move_down);
-  input.fast = is_held(Action::move_fast);
+  // A stick that is so far from its middle counts as a key.
+  constexpr double kHeld = 0.1;
+  const auto is_pad_held = [this](GamepadButton button) {
+    return pad_held_[static_cast<std::size_t>(button)];
+  };
+  input.forward = is_held(Action::move_forward) || sticks_.move_y < -kHeld;
+  input.back = is_held(Action::move_back) || sticks_.move_y > kHeld;
+  input.left = is_held(Action::move_left) || sticks_.move_x < -kHeld;
+  input.right = is_held(Action::move_right) || sticks_.move_x > kHeld;
+  input.up = is_held(Action::move_up) || is_pad_held(GamepadButton::a);
+  input.down = is_held(Action::move_down) || is_pad_held(GamepadButton::b);
+  input.fast = is_held(Action::move_fast) || is_pad_held(GamepadButton::left_stick);
   input.shows_players = is_held(Action::show_players);
   input.resizes = is_held(Action::resize);
-  input.remove_held = remove_held_;
-  input.place_held = place_held_;
+  input.remove_held = remove_held_ || is_pad_held(GamepadButton::right_trigger);
+  input.place_held = place_held_ || is_pad_held(GamepadButton::left_trigger);
+  input.turn_x = sticks_.look_x;
+  input.turn_y = sticks_.look_y;
 }
 
 }  // namespace runstone

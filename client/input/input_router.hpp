@@ -3,6 +3,8 @@
 //   - While the mouse is free, the user interface gets it. A click beside its windows captures the
 //     mouse, unless a window waits for an answer. A window that is used beside playing, such as the
 //     map, frees the mouse when it opens.
+//   - The gamepad is the player's, also while the mouse is free. While a window needs the mouse, of
+//     its buttons only `start` acts.
 //   - While a text is typed, the user interface gets the keys. Only function keys and escape act.
 // One thread.
 #pragma once
@@ -52,6 +54,7 @@ class InputRouter {
  private:
   bool takes_key(const KeyEvent& event, const UiFocus& focus, RoutedInput& out);
   void take_button(const ButtonEvent& event, const UiFocus& focus, RoutedInput& out);
+  void take_gamepad(const GamepadButtonEvent& event, const UiFocus& focus, RoutedInput& out);
   void take_cursor(const CursorEvent& event, RoutedInput& out) const;
   void take_wheel(const WheelEvent& event, RoutedInput& out) const;
   void release_all();
@@ -62,6 +65,8 @@ class InputRouter {
   std::deque<InputEvent> events_;
   std::array<bool, kActionCount> held_{};
   bool remove_held_ = false, place_held_ = false;
+  std::array<bool, kGamepadButtonCount> pad_held_{};
+  StickEvent sticks_;
   bool is_captured_ = false;
   bool has_window_ = false, has_panel_ = false;
   // Whether the mouse is captured again when they close.

@@ -8,22 +8,35 @@ namespace {
 constexpr ActionGroup kGroups[] = {ActionGroup::moving, ActionGroup::building, ActionGroup::others,
                                    ActionGroup::time, ActionGroup::window};
 
-bool is_slot(Action action) {
-  return action >= Action::hold_slot_1 && action <= Action::hold_slot_9;
-}
+/// Actions that are one row of the table while they have their default keys.
+struct JoinedRow {
+  Action first, last;
+  const char* input;
+  const char* what;
+};
+constexpr JoinedRow kJoinedRows[] = {
+    {Action::hold_slot_1, Action::hold_slot_9, "1 to 9", "take the material of that slot"},
+    {Action::tool_1, Action::tool_10, "ctrl+1 to ctrl+9, ctrl+0", "choose that tool of the list"},
+};
 
-bool slots_are_digits(const KeyMap& keys) {
-  const KeyMap defaults;
-  return std::ranges::all_of(action_table(), [&](const ActionInfo& row) {
-    return !is_slot(row.action) || keys.keys_of(row.action) == defaults.keys_of(row.action);
-  });
+/// Returns the joined row that has this action, or null.
+const JoinedRow* joined_row(const KeyMap& keys, Action action) {
+  static const KeyMap defaults;
+  for (const JoinedRow& row : kJoinedRows) {
+    if (action < row.first || action > row.last) continue;
+    const bool are_default = std::ranges::all_of(action_table(), [&](const ActionInfo& info) {
+      return info.action < row.first || info.action > row.last ||
+             keys.keys_of(info.action) == defaults.keys_of(info.action);
+    });
+    return are_default ? &row : nullptr;
+  }
+  return nullptr;
 }
 
 }  // namespace
 
 std::vector<KeyRow> key_rows(const KeyMap& keys) {
   std::vector<KeyRow> rows;
-  const bool joins_slots = slots_are_digits(keys);
   for (const ActionGroup group : kGroups) {
     if (group == ActionGroup::building) {
       for (const MouseInfo& mouse : mouse_table())
@@ -31,10 +44,11 @@ std::vector<KeyRow> key_rows(const KeyMap& keys) {
     }
     for (const ActionInfo& row : action_table()) {
       if (row.group != group) continue;
-      if (!joins_slots || !is_slot(row.action)) {
+      const JoinedRow* const joined = joined_row(keys, row.action);
+      if (joined == nullptr) {
         rows.push_back({keys.keys_text(row.action), std::string(row.what), group});
-      } else if (row.action == Action::hold_slot_1) {
-        rows.push_back({"1 to 9", "take the material of that slot", group});
+      } else if (row.action == joined->first) {
+        rows.push_back({joined->input, joined->what, group});
       }
     }
   }

@@ -10,6 +10,7 @@ struct WindowInput {
   bool forward = false, back = false, left = false, right = false, up = false, down = false,
        fast = false;                // keys held down
   double look_dx = 0, look_dy = 0;  // how far the mouse moved while captured, y downward
+  double turn_x = 0, turn_y = 0;    // the stick by which the player turns, -1 to 1, y downward
   int remove_clicks = 0;            // left button presses
   int place_clicks = 0;             // right button presses
   int pick_clicks = 0;              // middle button presses

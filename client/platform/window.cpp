@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client/input/gamepad.hpp"
+
 namespace runstone {
 
 struct Window::State {
@@ -17,6 +19,22 @@ struct Window::State {
   bool captured = false;
   bool have_cursor = false;  // false until the first position after a capture, which is no movement
   double cursor_x = 0, cursor_y = 0;
+  GamepadReader gamepad;
+
+  /// Adds the events of the first gamepad that GLFW knows. Without focus it counts as released.
+  void read_gamepad() {
+    std::optional<GamepadSample> sample;
+    const bool has_focus = glfwGetWindowAttrib(window, GLFW_FOCUSED) == GLFW_TRUE;
+    for (int id = GLFW_JOYSTICK_1; has_focus && !sample && id <= GLFW_JOYSTICK_LAST; ++id) {
+      GLFWgamepadstate read{};
+      if (glfwGetGamepadState(id, &read) != GLFW_TRUE) continue;
+      sample.emplace();
+      std::ranges::transform(read.buttons, sample->buttons.begin(),
+                             [](unsigned char button) { return button == GLFW_PRESS; });
+      std::ranges::copy(read.axes, sample->axes.begin());
+    }
+    gamepad.read(sample, events);
+  }
 
   void add_cursor(double x, double y) {
     std::array<int, 2> size{}, pixels{};
@@ -190,6 +208,7 @@ Window::~Window() {
 WindowEvents Window::poll() {
   glfwPollEvents();
   WindowEvents out;
+  state_->read_gamepad();
   out.events = std::exchange(state_->events, {});
   out.close = glfwWindowShouldClose(state_->window) == GLFW_TRUE;
   return out;

@@ -1,8 +1,10 @@
 // GhostChunk: the preview of an edit in one chunk, as quads that are drawn translucent over the
 // world. The meshes are made by the tool that previews the edit; the renderer only draws them.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
@@ -15,6 +17,9 @@ struct GhostChunk {
   /// placed: the quads of voxels that the edit would set, drawn in the colours of their materials.
   /// removed: the quads of voxels that it would clear, drawn in red. Either may be null.
   std::shared_ptr<const ChunkMesh> placed, removed;
+  /// The colour of the player whose preview it is, r, g, b; nullopt: of this player. Ghosts of others
+  /// are drawn lighter, in their colour.
+  std::optional<std::array<std::uint8_t, 3>> tint = std::nullopt;
 };
 
 }  // namespace runstone

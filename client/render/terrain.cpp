@@ -423,6 +423,15 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
     quads_.draw(span);
   };
   for (const GhostChunk& ghost : ghosts) {
+    if (ghost.tint) {
+      const auto channel = [&](std::size_t i) {
+        return static_cast<float>((*ghost.tint)[i]) / 255;
+      };
+      const glm::vec4 tint{channel(0), channel(1), channel(2), 0.7F};
+      draw(ghost, ghost.removed, tint * glm::vec4{0.5F, 0.5F, 0.5F, 1.2F}, 0.22F);
+      draw(ghost, ghost.placed, tint, 0.30F);
+      continue;
+    }
     draw(ghost, ghost.removed, {0.80F, 0.02F, 0.02F, 0.85F}, 0.42F + pulse);
     draw(ghost, ghost.placed, {1, 1, 1, 0.08F}, 0.62F + pulse);
   }

@@ -8,12 +8,13 @@
 namespace runstone {
 
 Result<ClientSequence> LocalEdits::submit(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
-                                          TimeUs submitted_us) {
+                                          TimeUs submitted_us, ClientSequence action) {
   if (edits_.size() >= kLocalEditsMax) {
     return fail(ErrorCode::limit_exceeded, "too many local edits wait for the server");
   }
   LocalEdit local;
   local.edit = edit;
+  local.action = action == kBeginsAction ? last_ + 1 : action;
   local.chunks = std::move(chunks);
   local.submitted_us = submitted_us;
   bytes_ += bytes_of(local);

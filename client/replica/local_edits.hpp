@@ -39,10 +39,14 @@ enum class LocalEditState : std::uint8_t {
   unseen,
 };
 
+/// As the action of a new edit: the edit is the first one of an action.
+inline constexpr ClientSequence kBeginsAction = UINT64_MAX;
+
 struct LocalEdit {
   static constexpr TimeUs kNever = INT64_MIN;
 
   EditDescriptor edit;
+  ClientSequence action = 0;     // the first edit of its action; 0: it is an action by itself
   std::vector<ChunkKey> chunks;  // touched, in touched_chunks() order; empty without a replica
   TimeUs submitted_us = 0;       // this client's steady clock: the click, or the scheduled time
   TimeUs sent_us = kNever;       // last put on the wire
@@ -68,9 +72,10 @@ class LocalEdits {
  public:
   using Map = std::map<ClientSequence, LocalEdit>;
 
-  /// Adds a pending edit. Fails if kLocalEditsMax edits are kept.
+  /// Adds a pending edit. `action` is as LocalEdit::action, or kBeginsAction. Fails if
+  /// kLocalEditsMax edits are kept.
   Result<ClientSequence> submit(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
-                                TimeUs submitted_us);
+                                TimeUs submitted_us, ClientSequence action = 0);
   /// Notes that the edit was put on the wire. An edit that left already is ignored.
   void mark_sent(ClientSequence seq, TimeUs now_us);
 

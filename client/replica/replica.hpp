@@ -91,14 +91,15 @@ class Replica {
   const std::optional<View>& view() const { return views_.current(); }
 
   /// Shows a local edit at once and keeps it until it is durable. `submitted_us`: the click, or the
-  /// scheduled time. Fails
+  /// scheduled time. `action`: as in LocalEdits::submit(). Fails
   ///   - before open(), and while the past is shown;
   ///   - if the descriptor is invalid, has a material that the world lacks, or exceeds the heights or
   ///     the edit volume of the world;
   ///   - with not_permitted if the player may not make it, as far as this client knows (ground());
   ///   - if it touches an unavailable chunk or more than kTouchedChunksMax chunks;
   ///   - if kLocalEditsMax edits are kept.
-  Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
+  Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
+                                ClientSequence action = 0);
   void mark_sent(ClientSequence seq, TimeUs now_us) { local_edits_.mark_sent(seq, now_us); }
 
   /// Takes snapshots, and completes claimed chunks by the edits that they lack. Requests a chunk if

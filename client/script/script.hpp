@@ -11,7 +11,7 @@
 
 #include "client/render/inspection.hpp"
 #include "client/tools/aim.hpp"
-#include "client/tools/symmetry.hpp"
+#include "client/tools/tool_command.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
@@ -214,25 +214,22 @@ struct Select {
 };
 /// Changes the selection, or the voxels in it.
 struct SelectionEdit {
-  enum class Kind : std::uint8_t { copy, cut, clear, fill, replace, stack, move, grow, shift };
-  Kind kind = Kind::copy;
-  bool is_solid = false;                   // copy, cut
-  std::string material, other;             // fill; replace: the old and the new one
-  Direction direction = Direction::pos_y;  // stack, move, grow, shift
-  std::int32_t count = 1;                  // the same
-};
-/// Turns the tools' clipboard by quarter turns, or mirrors it along an axis.
-struct TurnClipboard {
-  int quarters = 0;
-  std::optional<Axis> mirror;
+  SelectionCommand command;     // its materials are not set
+  std::string material, other;  // the names for `command`; empty: none
 };
 struct SetSymmetry {
   SymmetryKind kind = SymmetryKind::none;
   ScriptPosition centre;  // its y does not count
 };
-/// Shows or hides the preview of the next click.
-struct ShowPreview {
-  bool is_shown = true;
+/// Gives the places of the chosen tool by their numbers.
+struct TypePlaces {
+  std::vector<ScriptPosition> places;  // none: by clicks again
+  ToolButton button = ToolButton::place;
+  Direction face = Direction::pos_y;
+};
+/// A command of the tools in which there is nothing to resolve.
+struct RunToolCommand {
+  ToolCommand command;
 };
 struct Quit {};
 
@@ -241,7 +238,7 @@ using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, S
                           Burst, Digests, HistoryRequest, Say, WaitChat, Command, PressKey, Type,
                           Click, ShowInterface, Inspect, ShowMap, ZoomMap, ShowTimeline, Rollback,
                           ChooseTool, SetParameter, AimAt, Hold, UseTool, Select, SelectionEdit,
-                          TurnClipboard, SetSymmetry, ShowPreview, Quit>;
+                          SetSymmetry, TypePlaces, RunToolCommand, Quit>;
 
 }  // namespace script
 

@@ -9,6 +9,7 @@
 #include "client/input/key.hpp"
 #include "client/render/inspection.hpp"
 #include "client/replica/ray_pick.hpp"
+#include "client/tools/action_part.hpp"
 #include "client/tools/tool_box.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
@@ -57,8 +58,8 @@ class ScriptHost {
   /// Returns how long this edit must wait for the player's edit budget. Requires a valid edit.
   virtual TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) = 0;
   /// Submits an edit that was due at `due_us`. Fails with the reason if the client refuses it.
-  virtual Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us,
-                                           TimeUs now_us) = 0;
+  virtual Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                           ActionPart part) = 0;
 
   /// Returns true if every chunk in the view around the player is here and, in a client that draws,
   /// drawn.

@@ -120,14 +120,14 @@ std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
   return Mask{mask.kind, *id};
 }
 
-ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit) {
+ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit, ActionPart part) {
   if (const auto ok = validate(edit); !ok)
     return give_up(std::string("not an edit: ") + ok.error().what);
   if (const TimeUs wait_us = host_.edit_wait_us(edit, now_us_); wait_us > 0) {
     due_us_ = now_us_ + wait_us;
     return Progress::waits;
   }
-  if (const auto ok = host_.submit(edit, now_us_, now_us_); !ok)
+  if (const auto ok = host_.submit(edit, now_us_, now_us_, part); !ok)
     fail("edit refused: " + ok.error());
   return Progress::done;
 }
@@ -302,7 +302,8 @@ ScriptRunner::Progress ScriptRunner::run(const script::Burst& c) {
     at.y += offset();
     at.z += offset();
     // A refused edit does not fail the script. The host counts it.
-    static_cast<void>(host_.submit({SetVoxel{at}, {}, *material}, due_us, now_us_));
+    static_cast<void>(
+        host_.submit({SetVoxel{at}, {}, *material}, due_us, now_us_, ActionPart::alone));
   }
   return Progress::done;
 }

@@ -90,23 +90,24 @@ class ScriptRunner {
   Progress run(const script::UseTool& c);
   Progress run(const script::Select& c);
   Progress run(const script::SelectionEdit& c);
-  Progress run(const script::TurnClipboard& c);
   Progress run(const script::SetSymmetry& c);
-  Progress run(const script::ShowPreview& c);
+  Progress run(const script::TypePlaces& c);
+  Progress run(const script::RunToolCommand& c);
   Progress run(const script::Quit& c);
 
   void run_commands();
   void fail(const std::string& what);
   /// Records a failure and ends the script.
   Progress give_up(const std::string& what);
-  Progress submit(const EditDescriptor& edit);
+  Progress submit(const EditDescriptor& edit, ActionPart part = ActionPart::alone);
   /// Starts a command of a tool with its edits. If the tool refuses, the command fails, and the
   /// script goes on.
   void start_edits(ToolEdits edits);
   /// Submits the edits of start_edits() that are left.
   Progress submit_edits();
   /// Returns the edits of a change of the selection. Requires its materials.
-  ToolEdits edits_of(const script::SelectionEdit& c, Material material, Material other);
+  /// Carries out a command of the tools.
+  ToolEdits carry_out(const ToolCommand& command);
   std::optional<WorldPos> resolve(const ScriptPosition& position);
   std::optional<VoxelPos> resolve_voxel(const ScriptPosition& position);
   std::optional<Material> resolve_material(const std::string& name);

@@ -31,7 +31,8 @@ void ScriptRunner::start_edits(ToolEdits edits) {
 
 ScriptRunner::Progress ScriptRunner::submit_edits() {
   for (; state_.count < edits_.size(); ++state_.count) {
-    const Progress progress = submit(edits_[state_.count]);
+    const Progress progress =
+        submit(edits_[state_.count], part_of_action(state_.count, edits_.size()));
     if (progress != Progress::done) return progress;
   }
   return Progress::done;
@@ -102,55 +103,41 @@ ScriptRunner::Progress ScriptRunner::run(const script::Select& c) {
   return Progress::done;
 }
 
-ToolEdits ScriptRunner::edits_of(const script::SelectionEdit& c, Material material,
-                                 Material other) {
-  using Kind = script::SelectionEdit::Kind;
-  ToolBox& box = host_.tool_box();
-  const auto without_edits = [](const Result<void, std::string>& done) -> ToolEdits {
-    if (!done) return failure(done.error());
-    return std::vector<EditDescriptor>{};
-  };
-  switch (c.kind) {
-    case Kind::copy:
-      return without_edits(box.copy(host_.replica(), c.is_solid));
-    case Kind::cut:
-      return box.cut(host_.replica(), c.is_solid);
-    case Kind::clear:
-      return box.fill(kEmpty);
-    case Kind::fill:
-      return box.fill(material);
-    case Kind::replace:
-      return box.replace(material, other);
-    case Kind::stack:
-      return box.stack(host_.replica(), c.direction, c.count);
-    case Kind::move:
-      return box.move(host_.replica(), c.direction, c.count);
-    case Kind::grow:
-      return without_edits(box.grow(c.direction, c.count));
-    case Kind::shift:
-      return without_edits(box.shift(c.direction, c.count));
-  }
-  return std::vector<EditDescriptor>{};
+ToolEdits ScriptRunner::carry_out(const ToolCommand& command) {
+  return runstone::carry_out(host_.tool_box(), host_.replica(), host_.aim().held, command);
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::SelectionEdit& c) {
   if (!started_) {
-    Material materials[2] = {kEmpty, kEmpty};
-    const std::string* const names[2] = {&c.material, &c.other};
-    for (int i = 0; i < 2; ++i) {
-      if (names[i]->empty()) continue;
-      const auto material = resolve_material(*names[i]);
+    SelectionCommand command = c.command;
+    const std::pair<const std::string*, Material*> materials[] = {{&c.material, &command.material},
+                                                                  {&c.other, &command.other}};
+    for (const auto& [name, id] : materials) {
+      if (name->empty()) continue;
+      const auto material = resolve_material(*name);
       if (!material) return Progress::stop;
-      materials[i] = *material;
+      *id = *material;
     }
-    start_edits(edits_of(c, materials[0], materials[1]));
+    start_edits(carry_out(command));
   }
   return submit_edits();
 }
 
-ScriptRunner::Progress ScriptRunner::run(const script::TurnClipboard& c) {
-  host_.tool_box().rotate(c.quarters);
-  if (c.mirror) host_.tool_box().mirror(*c.mirror);
+ScriptRunner::Progress ScriptRunner::run(const script::RunToolCommand& c) {
+  if (!started_) start_edits(carry_out(c.command));
+  return submit_edits();
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::TypePlaces& c) {
+  TypedPlaces typed{c.button, {}, c.face};
+  for (const ScriptPosition& place : c.places) {
+    const auto at = resolve_voxel(place);
+    if (!at) return Progress::stop;
+    typed.places.push_back(*at);
+  }
+  PlacesChange change;
+  if (!typed.places.empty()) change.typed = std::move(typed);
+  static_cast<void>(carry_out(std::move(change)));
   return Progress::done;
 }
 
@@ -164,11 +151,6 @@ ScriptRunner::Progress ScriptRunner::run(const script::SetSymmetry& c) {
   // A whole number is the middle of that voxel, and a half the border behind it.
   const auto twice = [](double v) { return static_cast<std::int32_t>(std::lround(2 * v)); };
   host_.tool_box().set_symmetry({c.kind, twice(at->x), twice(at->z)});
-  return Progress::done;
-}
-
-ScriptRunner::Progress ScriptRunner::run(const script::ShowPreview& c) {
-  host_.tool_box().show_preview(c.is_shown);
   return Progress::done;
 }
 

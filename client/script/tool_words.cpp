@@ -48,7 +48,7 @@ script::Step select_step(ScriptWords& words) {
 }
 
 script::Step selection_step(ScriptWords& words) {
-  using Kind = script::SelectionEdit::Kind;
+  using Kind = SelectionCommand::Kind;
   constexpr std::array<std::pair<std::string_view, Kind>, 9> kKinds = {{{"copy", Kind::copy},
                                                                         {"cut", Kind::cut},
                                                                         {"clear", Kind::clear},
@@ -60,18 +60,19 @@ script::Step selection_step(ScriptWords& words) {
                                                                         {"shift", Kind::shift}}};
   const std::string_view text = words.word("what to do with the selection");
   script::SelectionEdit edit;
+  SelectionCommand& command = edit.command;
   bool is_known = false;
   for (const auto& [name, kind] : kKinds) {
     if (text != name) continue;
-    edit.kind = kind;
+    command.kind = kind;
     is_known = true;
   }
   if (!is_known)
     throw LineError{"\"" + std::string(text) + "\" is nothing to do with the selection"};
-  switch (edit.kind) {
+  switch (command.kind) {
     case Kind::copy:
     case Kind::cut:
-      edit.is_solid = takes_word(words, "solid");
+      command.is_solid = takes_word(words, "solid");
       break;
     case Kind::clear:
       break;
@@ -86,11 +87,23 @@ script::Step selection_step(ScriptWords& words) {
     case Kind::move:
     case Kind::grow:
     case Kind::shift:
-      edit.direction = read_direction(words);
-      edit.count = read_number<std::int32_t>(words, "N", -kStepsMax, kStepsMax);
+      command.direction = read_direction(words);
+      command.count = read_number<std::int32_t>(words, "N", -kStepsMax, kStepsMax);
       break;
   }
   return edit;
+}
+
+script::Step places_step(ScriptWords& words) {
+  script::TypePlaces typed;
+  if (takes_word(words, "none")) return typed;
+  if (takes_word(words, "clear")) typed.button = ToolButton::clear;
+  if (takes_word(words, "face")) typed.face = read_direction(words);
+  do {
+    typed.places.push_back(read_position(words));
+  } while (words.more());
+  if (typed.places.size() > kStrokePointsMax) throw LineError{"there are more than 256 places"};
+  return typed;
 }
 
 script::Step symmetry_step(ScriptWords& words) {
@@ -128,10 +141,13 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
   if (verb == "select") return select_step(words);
   if (verb == "selection") return selection_step(words);
   if (verb == "rotate")
-    return script::TurnClipboard{read_number<int>(words, "QUARTERS", -3, 3), std::nullopt};
-  if (verb == "mirror") return script::TurnClipboard{0, read_axis(words)};
+    return script::RunToolCommand{
+        ClipboardTurn{read_number<int>(words, "QUARTERS", -3, 3), std::nullopt}};
+  if (verb == "mirror") return script::RunToolCommand{ClipboardTurn{0, read_axis(words)}};
   if (verb == "symmetry") return symmetry_step(words);
-  if (verb == "preview") return script::ShowPreview{read_on_off(words)};
+  if (verb == "preview") return script::RunToolCommand{PreviewChange{read_on_off(words)}};
+  if (verb == "places") return places_step(words);
+  if (verb == "apply") return script::RunToolCommand{TypedApply{}};
   return std::nullopt;
 }
 

@@ -31,6 +31,7 @@ void ClientSession::disconnected() {
   lookup_keys_.clear();
   lookups_stale_ += std::exchange(lookups_open_, 0);
   others_.clear();
+  previews_.reset();
   history_.clear();
   timeline_.disconnected();
   chat_.disconnected();
@@ -104,6 +105,9 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           on_restore_preview(std::move(m));
         } else if constexpr (std::is_same_v<T, ChatLines>) {
           chat_.receive(std::move(m));
+        } else if constexpr (std::is_same_v<T, PlayerPreview>) {
+          if (m.author != author())
+            previews_.receive(std::move(m), welcome()->chunk_edge, arrival.now_us);
         } else {
           connection_.fail_with(GoodbyeReason::unexpected_message, "message of a client");
         }
@@ -140,6 +144,7 @@ void ClientSession::tick(TimeUs now_us) {
   now_us_ = now_us;
   if (view_waiting_since_us_ && now_us - *view_waiting_since_us_ >= kCacheWaitUsMax) send_view();
   replica_->tick(now_us);
+  previews_.expire(now_us);
   connection_.request_chunks(replica_->take_requests());
   submit_lost_edits(now_us);
   send_waiting_edits(now_us);
@@ -160,11 +165,11 @@ void ClientSession::submit_lost_edits(TimeUs now_us) {
 }
 
 Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs submitted_us,
-                                             TimeUs now_us) {
+                                             TimeUs now_us, ClientSequence action) {
   // The edit is paid only once the replica has checked it.
   if (validate(edit) && allowance_.wait_us(edit, now_us) > 0)
     return fail(ErrorCode::limit_exceeded, "your edit budget is used up for now");
-  const auto seq = replica_->submit(edit, submitted_us, now_us);
+  const auto seq = replica_->submit(edit, submitted_us, now_us, action);
   if (seq) allowance_.pay(edit, now_us);
   if (seq && is_open()) {
     waiting_.push_back(*seq);
@@ -230,6 +235,12 @@ Result<void, std::string> ClientSession::chat(std::string_view line) {
   if (!text) return failure(text.error());
   connection_.send(ChatRequest{*std::move(text)});
   return {};
+}
+
+void ClientSession::share_preview(const std::vector<EditDescriptor>& edits, TimeUs now_us) {
+  if (!is_open() || (welcome()->features & kFeaturePreviews) == 0) return;
+  if (auto share = previews_.share(edits, welcome()->chunk_edge, now_us))
+    connection_.send(*std::move(share));
 }
 
 void ClientSession::on_command_output(CommandOutput output) {
@@ -332,7 +343,10 @@ bool ClientSession::loaded() const {
 void ClientSession::on_player_list(const PlayerList& list) {
   std::map<AuthorId, OtherPlayer> known = std::exchange(others_, {});
   if (list.is_change) std::swap(known, others_);
-  for (const AuthorId author : list.left) others_.erase(author);
+  for (const AuthorId author : list.left) {
+    others_.erase(author);
+    previews_.forget(author);
+  }
   for (const PlayerName& player : list.players) {
     if (player.author == author()) continue;
     OtherPlayer& other = others_[player.author];

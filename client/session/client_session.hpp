@@ -23,6 +23,7 @@
 #include "client/session/log_timeline.hpp"
 #include "client/session/lost_edits.hpp"
 #include "client/session/server_connection.hpp"
+#include "client/session/shared_previews.hpp"
 #include "common/core/result.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -72,9 +73,10 @@ class ClientSession {
   void close(GoodbyeReason reason, std::string text) { connection_.close(reason, std::move(text)); }
 
   /// Shows and sends an edit. `submitted_us`: the click or the scheduled time; latency is measured
-  /// from there. Fails as Replica::submit() does, and with limit_exceeded if edit_wait_us() is not
-  /// 0.
-  Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
+  /// from there. `action` is as in LocalEdits::submit(): the edits of an action are undone as one.
+  /// Fails as Replica::submit() does, and with limit_exceeded if edit_wait_us() is not 0.
+  Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
+                                ClientSequence action = 0);
   /// Returns why submit() has refused this edit with this error, for the player. If the player may
   /// not make the edit, the text names the protected box or the role.
   std::string refusal_text(const EditDescriptor& edit, const Error& error) const;
@@ -129,6 +131,14 @@ class ClientSession {
   Result<void, std::string> chat(std::string_view line);
   /// Returns the lines that arrived since the last call, ChatInbox::kLinesMax at most.
   std::vector<ChatLine> drain_chat() { return chat_.drain(); }
+
+  /// Shares what this player's next click would do; an empty list shares nothing any more. Sends a
+  /// message only if it is due and the server has the feature. Call it every turn.
+  void share_preview(const std::vector<EditDescriptor>& edits, TimeUs now_us);
+  /// Returns what the other players share.
+  const std::map<AuthorId, SharedPreviews::Shared>& others_previews() const {
+    return previews_.others();
+  }
 
   /// Returns the chunks to look up in the cache before the next view is sent, or nullopt if there
   /// are none. The view waits for receive_cache_result(), at most kCacheWaitUsMax.
@@ -202,6 +212,7 @@ class ClientSession {
   std::uint64_t timeline_serial_ = 0;
 
   ChatInbox chat_;
+  SharedPreviews previews_;
 
   bool is_server_read_only_ = false;
   EditAllowance allowance_;

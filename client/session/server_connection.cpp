@@ -164,8 +164,9 @@ TimeUs ServerConnection::tick_due_us(TimeUs ping_every_us) const {
 }
 
 void ServerConnection::send_edit(ClientSequence seq, const LocalEdit& local) {
-  outgoing_.push_back(
-      EditRequest{seq, clock_.to_server(local.submitted_us).value_or(0), local.edit});
+  EditRequest request{seq, clock_.to_server(local.submitted_us).value_or(0), local.edit};
+  request.action = local.action;
+  outgoing_.push_back(std::move(request));
 }
 
 void ServerConnection::request_chunks(const std::vector<ChunkKey>& keys) {

@@ -86,6 +86,8 @@ const std::map<std::pair<std::string, std::string>, SetField>& fields() {
         {{"hand", "sensitivity"}, number_field(&S::sensitivity, 0.1, 10)},
         {{"hand", "invert_y"}, switch_field(&S::invert_y)},
         {{"hand", "walks"}, switch_field(&S::walks)},
+        {{"others", "show_previews"}, switch_field(&S::shows_previews)},
+        {{"others", "share_previews"}, switch_field(&S::shares_previews)},
         {{"interface", "scale"}, number_field(&S::interface_scale, 0.5, 4)},
     };
   }();
@@ -93,7 +95,8 @@ const std::map<std::pair<std::string, std::string>, SetField>& fields() {
 }
 
 bool is_section(std::string_view name) {
-  return name == "view" || name == "hand" || name == "interface" || name == "keys";
+  return name == "view" || name == "hand" || name == "others" || name == "interface" ||
+         name == "keys";
 }
 
 /// Collects the warnings of one file.
@@ -185,7 +188,11 @@ std::string to_toml(const ClientSettings& settings) {
   out += "# true: moving the mouse up looks down.\n";
   out += fmt::format("invert_y = {}\n", s.invert_y);
   out += "# true: players begin on their feet. false: they begin flying.\n";
-  out += fmt::format("walks = {}\n\n[interface]\n", s.walks);
+  out += fmt::format("walks = {}\n\n[others]\n", s.walks);
+  out += "# true: ghosts show what other players are about to do.\n";
+  out += fmt::format("show_previews = {}\n", s.shows_previews);
+  out += "# true: other players see what you are about to do.\n";
+  out += fmt::format("share_previews = {}\n\n[interface]\n", s.shares_previews);
   out += "# Size of text and windows, 0.5 to 4.\n";
   out += "scale = " + toml_float(s.interface_scale) + "\n\n";
   out += "# Keys that are not the default ones, such as undo = \"ctrl+Z\". F1 shows all keys.\n";

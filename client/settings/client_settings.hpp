@@ -30,6 +30,8 @@ struct ClientSettings {
   bool invert_y = false;            // mouse up looks down
   double interface_scale = 1;       // of windows and text, 0.5 to 4
   bool walks = false;               // players begin on their feet; false: they fly
+  bool shows_previews = true;       // ghosts of what other players are about to do
+  bool shares_previews = true;      // others see what this player is about to do
   /// The keys that differ from the defaults, by the name of their action. A value has the names of
   /// keys with blanks between them, such as "W up", or is empty. Who uses them checks the names.
   std::map<std::string, std::string> keys;

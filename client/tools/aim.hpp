@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "client/replica/ray_pick.hpp"
 #include "common/core/coords.hpp"
@@ -25,6 +26,14 @@ struct FixedAim {
 
 /// The two mouse buttons. `clear` removes voxels, and `place` sets the held material.
 enum class ToolButton : std::uint8_t { clear, place };
+
+/// Places of a tool that are given by their numbers instead of by clicks.
+struct TypedPlaces {
+  ToolButton button = ToolButton::place;
+  std::vector<VoxelPos> places;
+  Direction face = Direction::pos_y;  // of the last place, for tools that work on a face
+  friend bool operator==(const TypedPlaces&, const TypedPlaces&) = default;
+};
 
 /// Returns the voxel on the ray at a distance from the eye. Requires a distance below 4096 and an
 /// eye inside the world.

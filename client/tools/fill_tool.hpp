@@ -6,7 +6,9 @@ namespace runstone {
 
 class FillTool final : public Tool {
  public:
-  FillTool() : Tool("fill", {{"voxels", "voxels", 1, 16384, 4096, {}}}) {}
+  FillTool()
+      : Tool("fill", "the connected surface of one material",
+             {{"voxels", "voxels", 1, 16384, 4096, {}}}) {}
   bool chooses_solid() const override { return true; }
   ToolEdits plan(const ToolInput& input) const override;
 };

@@ -6,7 +6,9 @@ namespace runstone {
 
 class PaintTool final : public Tool {
  public:
-  PaintTool() : Tool("paint", {{"radius", "voxels", 0, 12, 3, {}}}) {}
+  PaintTool()
+      : Tool("paint", "the surface around the aim, not the air",
+             {{"radius", "voxels", 0, 12, 3, {}}}) {}
   bool chooses_solid() const override { return true; }
   ToolEdits plan(const ToolInput& input) const override;
 };

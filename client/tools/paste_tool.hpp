@@ -7,7 +7,8 @@ namespace runstone {
 
 class PasteTool final : public Tool {
  public:
-  PasteTool() : Tool("paste", {mask_parameter()}) {}
+  PasteTool() : Tool("paste", "puts the clipboard down", {mask_parameter()}) {}
+  std::string_view place_name(std::size_t) const override { return "middle of the lowest layer"; }
   ToolEdits plan(const ToolInput& input) const override;
 };
 

@@ -8,8 +8,9 @@ namespace runstone {
 class ReplaceTool final : public Tool {
  public:
   ReplaceTool()
-      : Tool("replace", {{"where", "", 0, 2, 0, {"sphere", "cube", "selection"}},
-                         {"radius", "voxels", 1, 64, 8, {}}}) {}
+      : Tool("replace", "the material in sight by the one in the hand",
+             {{"where", "", 0, 2, 0, {"sphere", "cube", "selection"}},
+              {"radius", "voxels", 1, 64, 8, {}}}) {}
   bool chooses_solid() const override { return true; }
   ToolEdits plan(const ToolInput& input) const override;
 };

@@ -7,8 +7,13 @@ namespace runstone {
 
 class SphereTool final : public Tool {
  public:
-  SphereTool() : Tool("sphere", {{"radius", "voxels", 0, 64, 4, {}}, mask_parameter()}) {}
+  SphereTool()
+      : Tool("sphere", "a ball; with radius 0 a second click gives its size",
+             {{"radius", "voxels", 0, 64, 4, {}}, mask_parameter()}) {}
   std::size_t points_before() const override { return value("radius") == 0 ? 1 : 0; }
+  std::string_view place_name(std::size_t i) const override {
+    return i == 0 ? "centre" : "place on the surface";
+  }
   ToolEdits plan(const ToolInput& input) const override;
 };
 

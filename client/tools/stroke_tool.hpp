@@ -7,8 +7,11 @@ namespace runstone {
 
 class StrokeTool final : public Tool {
  public:
-  StrokeTool() : Tool("stroke", {{"radius", "voxels", 1, 32, 2, {}}, mask_parameter()}) {}
+  StrokeTool()
+      : Tool("stroke", "a line, as long as the button is held",
+             {{"radius", "voxels", 1, 32, 2, {}}, mask_parameter()}) {}
   bool is_drawn() const override { return true; }
+  std::string_view place_name(std::size_t) const override { return "place"; }
   ToolEdits plan(const ToolInput& input) const override;
 };
 

@@ -36,13 +36,15 @@ struct ToolInput {
 
 class Tool {
  public:
-  Tool(std::string_view name, std::vector<ToolParameter> parameters)
-      : name_(name), parameters_(std::move(parameters)) {}
+  Tool(std::string_view name, std::string_view what, std::vector<ToolParameter> parameters)
+      : name_(name), what_(what), parameters_(std::move(parameters)) {}
   virtual ~Tool() = default;
   Tool(const Tool&) = delete;
   Tool& operator=(const Tool&) = delete;
 
   std::string_view name() const { return name_; }
+  /// Returns what the tool does, in one line for the player.
+  std::string_view what() const { return what_; }
   std::span<const ToolParameter> parameters() const { return parameters_; }
   /// Sets a parameter by its name. Fails with words for the player if there is no such parameter or
   /// the value is out of its range.
@@ -58,6 +60,8 @@ class Tool {
   virtual bool chooses_solid() const { return false; }
   /// Returns true if the chosen places become the selection, and no edit is made.
   virtual bool selects() const { return false; }
+  /// Returns what the place with this number, from 0, is called for the player.
+  virtual std::string_view place_name(std::size_t) const { return "voxel"; }
   /// Returns the edits of the click that completes an action, in the order in which they are made.
   /// Fails with words for the player. The edits are valid, but the world's limits are not checked.
   virtual Result<std::vector<EditDescriptor>, std::string> plan(const ToolInput& input) const = 0;
@@ -74,7 +78,7 @@ class Tool {
   }
 
  private:
-  const std::string_view name_;
+  const std::string_view name_, what_;
   std::vector<ToolParameter> parameters_;
 };
 

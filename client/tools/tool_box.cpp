@@ -94,8 +94,8 @@ Result<VoxelPos, std::string> ToolBox::target_of(const Aim& aim, ToolButton butt
 }
 
 ToolEdits ToolBox::plan(const Replica& replica, const Aim& aim, ToolButton button,
-                        VoxelPos target) const {
-  auto edits = tool().plan({replica, aim, button, points_, target, selection_, clipboard_});
+                        std::span<const VoxelPos> points, VoxelPos target) const {
+  auto edits = tool().plan({replica, aim, button, points, target, selection_, clipboard_});
   if (!edits) return edits;
   for (const EditDescriptor& edit : *edits) {
     if (const auto ok = validate(edit); !ok) return failure(ok.error().what);
@@ -116,7 +116,7 @@ ToolEdits ToolBox::press(const Replica& replica, const Aim& aim, ToolButton butt
     points_.push_back(*target);
     return std::vector<EditDescriptor>{};
   }
-  auto edits = plan(replica, aim, button, *target);
+  auto edits = plan(replica, aim, button, points_, *target);
   if (tool().selects() && !points_.empty()) selection_ = box_between(points_.front(), *target);
   points_.clear();
   return edits;
@@ -138,8 +138,48 @@ ToolEdits ToolBox::release(const Replica& replica, const Aim& aim) {
   if (!tool().is_drawn() || points_.empty()) return std::vector<EditDescriptor>{};
   drag(aim);
   ++revision_;
-  auto edits = plan(replica, aim, button_, points_.back());
+  auto edits = plan(replica, aim, button_, points_, points_.back());
   points_.clear();
+  return edits;
+}
+
+void ToolBox::type_places(std::optional<TypedPlaces> typed) {
+  typed_ = std::move(typed);
+  ++revision_;
+}
+
+std::array<std::size_t, 2> ToolBox::typed_count() const {
+  if (tool().is_drawn()) return {1, kStrokePointsMax};
+  return {tool().points_before() + 1, tool().points_before() + 1};
+}
+
+ToolEdits ToolBox::plan_typed(const Replica& replica, Material held) const {
+  if (!typed_) return failure("no places are typed");
+  const std::span<const VoxelPos> places = typed_->places;
+  const auto [least, most] = typed_count();
+  if (places.size() < least || places.size() > most) {
+    return failure("the tool " + std::string(tool().name()) + " takes " + std::to_string(least) +
+                   (least == most ? "" : " to " + std::to_string(most)) +
+                   (most == 1 ? " place" : " places"));
+  }
+  const VoxelPos target = places.back();
+  Aim aim;
+  aim.held = held;
+  const auto material = replica.shown_at(target);
+  if (material) aim.hit = RayHit{target, *material, typed_->face, 0};
+  if (tool().chooses_solid() && !tool().selects()) {
+    if (!material) return failure("that place is not loaded");
+    if (*material == kEmpty) return failure("there is only air at that place");
+  }
+  const std::size_t before = tool().is_drawn() ? places.size() : places.size() - 1;
+  return plan(replica, aim, typed_->button, places.first(before), target);
+}
+
+ToolEdits ToolBox::apply_typed(const Replica& replica, Material held) {
+  auto edits = plan_typed(replica, held);
+  ++revision_;
+  if (edits && tool().selects())
+    selection_ = box_between(typed_->places.front(), typed_->places.back());
   return edits;
 }
 
@@ -283,9 +323,9 @@ std::string ToolBox::set_materials(const MaterialTable& materials) {
 
 bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max) {
   const ToolButton button = points_.empty() ? ToolButton::place : button_;
-  const auto target = target_of(aim, button);
+  const auto target = typed_ ? Result<VoxelPos, std::string>(VoxelPos{}) : target_of(aim, button);
   Previewed wanted{{}, {}, target ? *target : VoxelPos{}, kEmpty, aim.held, revision_};
-  if (aim.hit) {
+  if (aim.hit && !typed_) {
     wanted.voxel = aim.hit->voxel;
     wanted.face = aim.hit->face;
     wanted.seen = aim.hit->material;
@@ -295,8 +335,9 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
     preview_refusal_.clear();
     std::vector<EditDescriptor> edits;
     if (is_preview_shown_ && !tool().selects()) {
-      auto planned =
-          target ? plan(replica, aim, button, *target) : ToolEdits(failure(target.error()));
+      auto planned = typed_   ? plan_typed(replica, aim.held)
+                     : target ? plan(replica, aim, button, points_, *target)
+                              : ToolEdits(failure(target.error()));
       if (planned) {
         edits = *std::move(planned);
       } else {

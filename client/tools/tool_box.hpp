@@ -2,6 +2,7 @@
 // far, the selection, the clipboard, the symmetry and the preview. It answers clicks with edits,
 // which the caller submits in the given order. Pure: no clock, socket, window or OpenGL. One thread.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -42,6 +43,17 @@ class ToolBox {
   /// Forgets the places chosen so far. Returns false if there were none.
   bool cancel();
   std::span<const VoxelPos> points() const { return points_; }
+
+  /// Chooses places by their numbers, wherever the player looks; nullopt: by clicks again. The
+  /// preview then shows what apply_typed() does. Requires coordinates inside the world.
+  void type_places(std::optional<TypedPlaces> typed);
+  const std::optional<TypedPlaces>& typed_places() const { return typed_; }
+  /// Returns how many places apply_typed() takes with the chosen tool, at least and at most.
+  std::array<std::size_t, 2> typed_count() const;
+  /// Returns the edits of the typed places, as if each had been chosen by a click; a tool that
+  /// selects selects them. Fails with words for the player if none are typed, or too few or too
+  /// many. Requires an open replica.
+  ToolEdits apply_typed(const Replica& replica, Material held);
 
   const std::optional<VoxelBox>& selection() const { return selection_; }
   /// Selects a box; nullopt selects nothing. An empty box counts as nothing.
@@ -95,7 +107,9 @@ class ToolBox {
  private:
   /// Returns the voxel that a click chooses. Fails with words for the player.
   Result<VoxelPos, std::string> target_of(const Aim& aim, ToolButton button) const;
-  ToolEdits plan(const Replica& replica, const Aim& aim, ToolButton button, VoxelPos target) const;
+  ToolEdits plan(const Replica& replica, const Aim& aim, ToolButton button,
+                 std::span<const VoxelPos> points, VoxelPos target) const;
+  ToolEdits plan_typed(const Replica& replica, Material held) const;
   Result<VoxelBox, std::string> selected() const;
 
   /// The facts on which the present preview depends, besides the chunks.
@@ -112,6 +126,7 @@ class ToolBox {
   std::size_t chosen_ = 0;
   std::vector<VoxelPos> points_;
   ToolButton button_ = ToolButton::place;  // of the first point
+  std::optional<TypedPlaces> typed_;
   std::optional<VoxelBox> selection_;
   ToolClipboard clipboard_;
   std::vector<std::string> clipboard_names_;  // by palette entry of the clipboard

@@ -6,7 +6,7 @@ namespace runstone {
 
 class VoxelTool final : public Tool {
  public:
-  VoxelTool() : Tool("voxel", {}) {}
+  VoxelTool() : Tool("voxel", "one voxel; hold the button for more", {}) {}
   ToolEdits plan(const ToolInput& input) const override;
 };
 

@@ -31,6 +31,9 @@ bool Hud::act(Action action) {
     case Action::statistics:
       shows_statistics_ = !shows_statistics_;
       return true;
+    case Action::tools:
+      tools_.toggle();
+      return true;
     case Action::timeline:
       timeline_.toggle();
       return true;
@@ -50,8 +53,8 @@ bool Hud::act(Action action) {
 bool Hud::close_top() {
   if (chat_.is_open()) return chat_.close(), true;
   if (palette_.is_open()) return palette_.close(), true;
-  return std::exchange(shows_help_, false) || rollback_.close() || timeline_.close() ||
-         map_.close();
+  return std::exchange(shows_help_, false) || tools_.close() || rollback_.close() ||
+         timeline_.close() || map_.close();
 }
 
 bool Hud::takes_focus() const { return chat_.takes_focus() || palette_.takes_focus(); }
@@ -60,9 +63,10 @@ UiFocus Hud::focus() const {
   UiFocus out;
   out.has_window = chat_.is_open() || palette_.is_open();
   // ImGui still names a text field whose window was closed after the last frame.
-  out.types = out.has_window && (context_.types() || takes_focus());
+  out.types = (out.has_window || tools_.is_open()) && (context_.types() || takes_focus());
   out.over_window = context_.over_window();
-  out.has_panel = map_.is_open() || timeline_.is_open() || rollback_.is_open();
+  out.has_panel =
+      map_.is_open() || timeline_.is_open() || rollback_.is_open() || tools_.has_mouse();
   return out;
 }
 
@@ -115,6 +119,9 @@ void Hud::build(const HudState& state) {
   if (const auto moment = timeline_.build(state.timeline, scale)) actions_.emplace_back(*moment);
   map_.build(state.map, *state.materials, context_);
   if (auto order = rollback_.build(state.rollback, scale)) actions_.emplace_back(*std::move(order));
+  std::vector<ToolCommand> commands;
+  tools_.build(state, scale, commands);
+  for (ToolCommand& command : commands) actions_.emplace_back(std::move(command));
   if (shows_help_) build_help(key_rows(keys_), shows_help_);
   const Material held = state.slots[state.slot];
   if (const auto chosen = palette_.build(*state.materials, held, scale))

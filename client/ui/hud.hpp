@@ -17,6 +17,7 @@
 #include "client/ui/palette_window.hpp"
 #include "client/ui/rollback_window.hpp"
 #include "client/ui/timeline_window.hpp"
+#include "client/ui/tool_window.hpp"
 #include "client/ui/ui_action.hpp"
 #include "client/ui/ui_context.hpp"
 
@@ -64,6 +65,7 @@ class Hud {
   ChatWindow chat_;
   PaletteWindow palette_;
   TimelineWindow timeline_;
+  ToolWindow tools_{keys_};
   MapWindow map_;
   RollbackWindow rollback_;
   std::array<bool, 3> open_{};  // which panels were in the last frame

@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "client/render/inspection.hpp"
+#include "client/tools/tool_box.hpp"
 #include "client/ui/map_window.hpp"
 #include "client/ui/rollback_window.hpp"
 #include "client/ui/statistics_window.hpp"
+#include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/materials/material_table.hpp"
 #include "protocol/codec/log_mark_messages.hpp"
@@ -63,7 +65,10 @@ struct HudState {
   std::string place;                 // position, and how the player moves
   std::optional<Material> aimed_at;  // the voxel in sight
   std::string state;                 // for example that the past is shown; empty: nothing special
+  std::optional<VoxelPos> sight;     // its place
   std::string tool;                  // the chosen tool and its numbers; empty: the plain hand
+  const ToolBox* tools = nullptr;    // not null while the tool window is open
+  bool has_preview = false;          // `tools` has the preview of the next click
   bool shows_players = false;
   std::vector<ListedPlayer> players;
   std::vector<std::string> names;  // of the other players, for completion

@@ -52,6 +52,8 @@ SettingsForm::Result SettingsForm::build(double scale) {
   slider("mouse speed", s.sensitivity, 0.1, 10, "%.2f");
   ImGui::Checkbox("mouse up looks down", &s.invert_y);
   ImGui::Checkbox("begin on the feet, not flying", &s.walks);
+  ImGui::Checkbox("show what others are about to do", &s.shows_previews);
+  ImGui::Checkbox("let others see what you are about to do", &s.shares_previews);
   slider("size of text", s.interface_scale, 0.5, 4, "%.2f");
   ImGui::PopItemWidth();
   ImGui::Separator();

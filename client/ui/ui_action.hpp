@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "client/render/inspection.hpp"
+#include "client/tools/tool_command.hpp"
 #include "client/ui/rollback_window.hpp"
 #include "common/core/ids.hpp"
 
@@ -28,6 +29,7 @@ struct SetInspection {
   InspectionModes modes;
 };
 
-using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder>;
+using UiAction =
+    std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder, ToolCommand>;
 
 }  // namespace runstone

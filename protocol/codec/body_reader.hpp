@@ -1,7 +1,7 @@
 // BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier
 // cannot check. Internal to the message decoder. The readers are in session_bodies.cpp,
-// chunk_bodies.cpp, edit_bodies.cpp, rights_bodies.cpp, chat_bodies.cpp, key_transfer_bodies.cpp and
-// material_bodies.cpp.
+// chunk_bodies.cpp, edit_bodies.cpp, rights_bodies.cpp, chat_bodies.cpp, key_transfer_bodies.cpp,
+// material_bodies.cpp and preview_bodies.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -91,6 +91,10 @@ struct BodyReader {
 
   // ---- restore_preview_bodies.cpp
   Result<Message> read(const wire::RestorePreview& t) const;
+
+  // ---- preview_bodies.cpp
+  Result<Message> read(const wire::PreviewShare& t) const;
+  Result<Message> read(const wire::PlayerPreview& t) const;
 
   using TakeEdit = std::function<Result<void>()>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then

@@ -12,6 +12,8 @@ Result<Message> BodyReader::read(const wire::EditRequest& t) const {
   if (!is_time(m.submitted_us)) return bad("edit request time is out of range");
   if (m.client_seq == 0) return bad("client sequences start at 1");
   if (m.client_seq > kSequenceMax) return bad("client sequence exceeds 63 bits");
+  m.action = t.action();
+  if (m.action > m.client_seq) return bad("an action begins with a later edit");
   auto edit = decode_voxel_edit(view_of(t.edit()));
   if (edit) {
     m.edit = *std::move(edit);

@@ -19,7 +19,8 @@ using Bodies =
                wire::UniformChunks, wire::CachedChunks, wire::ChunksNotModified, wire::Permissions,
                wire::ProtectedGround, wire::ChatRequest, wire::ChatLines, wire::KeyRequest,
                wire::SealedKey, wire::KeyDeposit, wire::KeyDeposited, wire::MaterialsAdded,
-               wire::LogMarksRequest, wire::LogMarks, wire::RestorePreview>;
+               wire::LogMarksRequest, wire::LogMarks, wire::RestorePreview, wire::PreviewShare,
+               wire::PlayerPreview>;
 static_assert(std::tuple_size_v<Bodies> == kMessageKindCount);
 
 using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);

@@ -10,6 +10,7 @@
 #include "protocol/codec/key_list.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/preview_list.hpp"
 #include "protocol/codec/uniform_list.hpp"
 #include "protocol/schema/runstone_generated.h"
 
@@ -102,7 +103,7 @@ struct BodyBuilder {
   }
   Offset<wire::EditRequest> operator()(const EditRequest& m) {
     const Bytes edit = m.fault ? Bytes{} : encode(m.edit);
-    return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, edit));
+    return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, edit), m.action);
   }
   Offset<wire::Commit> operator()(const Commit& m) {
     const CommitEncoder encoder(m);
@@ -264,6 +265,18 @@ struct BodyBuilder {
     const auto preview = b.CreateString(m.preview);
     return wire::CreateRestorePreview(b, m.command, preview, m.voxels, m.chunks,
                                       b.CreateVector(edits), m.is_cut);
+  }
+
+  Offset<wire::PreviewShare> operator()(const PreviewShare& m) {
+    return wire::CreatePreviewShare(b, preview_list(m.edits));
+  }
+  Offset<wire::PlayerPreview> operator()(const PlayerPreview& m) {
+    return wire::CreatePlayerPreview(b, m.author, preview_list(m.edits));
+  }
+  Offset<flatbuffers::Vector<std::uint8_t>> preview_list(const std::vector<EditDescriptor>& edits) {
+    const Bytes list = encode_preview(edits);
+    RUNSTONE_ASSERT(edits.size() <= kPreviewEditsMax && list.size() <= kPreviewListBytesMax);
+    return bytes_of(b, list);
   }
 
   template <class Rows>

@@ -82,6 +82,8 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"LogMarksRequest", client, kControl, open, kFeatureLogMarks},
       {"LogMarks", server, kControl, open, kFeatureLogMarks},
       {"RestorePreview", server, kControl, open, kFeatureRestorePreview},
+      {"PreviewShare", client, kControl, open, kFeaturePreviews},
+      {"PlayerPreview", server, kControl, open, kFeaturePreviews},
   }};
 }();
 

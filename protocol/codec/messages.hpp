@@ -31,6 +31,7 @@
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/key_transfer_messages.hpp"
 #include "protocol/codec/log_mark_messages.hpp"
+#include "protocol/codec/preview_messages.hpp"
 #include "protocol/codec/restore_preview_messages.hpp"
 #include "protocol/codec/rights_messages.hpp"
 #include "protocol/limits.hpp"
@@ -260,11 +261,14 @@ struct EditRequest {
   /// request is answered with Reject bad_edit. It does not end the session, or a client that offers
   /// its pending edits again would never get in.
   std::optional<Error> fault = std::nullopt;
+  /// The first edit of the action to which this one belongs, at most client_seq. 0: the edit is an
+  /// action by itself.
+  ClientSequence action = 0;
   /// Two requests with faults are equal whatever the faults are: encode_message() does not keep the
   /// bytes.
   friend bool operator==(const EditRequest& a, const EditRequest& b) {
     return a.client_seq == b.client_seq && a.submitted_us == b.submitted_us && a.edit == b.edit &&
-           a.fault.has_value() == b.fault.has_value();
+           a.fault.has_value() == b.fault.has_value() && a.action == b.action;
   }
 };
 struct OrderedEdit {
@@ -275,7 +279,9 @@ struct OrderedEdit {
   EditDescriptor edit;
   /// Of each touched chunk, the sequence before this edit. In touched_chunks() order.
   std::vector<Sequence> previous;
-  Sequence subject = 0;  // the earlier edit that a rollback, undo or redo answers; 0: none
+  /// The earlier edit that a rollback, undo or redo answers, or the first edit of the player's action;
+  /// 0: none.
+  Sequence subject = 0;
   friend bool operator==(const OrderedEdit&, const OrderedEdit&) = default;
 };
 /// Edits that were ordered together, or those of them that a session gets.
@@ -429,7 +435,7 @@ using Message =
                  CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified,
                  Permissions, ProtectedGround, ChatRequest, ChatLines, KeyRequest, SealedKey,
                  KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest, LogMarks,
-                 RestorePreview>;
+                 RestorePreview, PreviewShare, PlayerPreview>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

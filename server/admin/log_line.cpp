@@ -43,7 +43,8 @@ std::string log_line(const EditRecord& record, const std::string& author,
   std::string line =
       std::to_string(record.version.seq) + " " + utc_text(record.time_us) + " " + author + " ";
   line += name_of(record.cause);
-  if (record.subject != 0) line += " of " + std::to_string(record.subject);
+  if (record.subject != 0)
+    line += (restores(record.cause) ? " of " : " with ") + std::to_string(record.subject);
   if (const RightsChange* change = rights_change_of(record.edit))
     return line + " " + rights_change_text(*change);
   if (const AddedMaterials* added = added_materials_of(record.edit))

@@ -65,7 +65,10 @@ StoreResult<std::vector<PlayerEdit>> player_edits(WorldReader& reader, AuthorId 
       width = (last - first + 1) / 2;
       continue;
     }
-    for (const PlayerEdit& edit : window) actions += edit.record.cause == Cause::player ? 1 : 0;
+    for (const PlayerEdit& edit : window) {
+      const PlayerRecord& record = edit.record;
+      actions += record.cause == Cause::player && record.subject == 0 ? 1 : 0;
+    }
     touches += window_touches;
     std::move(newest.begin(), newest.end(), std::back_inserter(window));
     newest = std::move(window);

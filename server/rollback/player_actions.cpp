@@ -11,9 +11,12 @@ PlayerActions::PlayerActions(std::span<const PlayerRecord> records) {
   std::map<Sequence, PlayerAction> by_edit;
   for (const PlayerRecord& record : records) {
     if (record.cause == Cause::player) {
-      PlayerAction& action = by_edit[record.seq];
-      action.seq = record.seq;
+      const Sequence first = record.subject != 0 ? record.subject : record.seq;
       last_action_ = record.seq;
+      if (first != record.seq && !by_edit.contains(first)) continue;
+      PlayerAction& action = by_edit[first];
+      action.seq = first;
+      action.edits.push_back(record.seq);
       continue;
     }
     if (record.cause != Cause::undo && record.cause != Cause::redo) continue;
@@ -63,7 +66,7 @@ const PlayerAction& PlayerActions::find(Sequence action) const {
 void PlayerActions::others(Sequence but, std::vector<Sequence>& out) const {
   for (const PlayerAction& action : actions_) {
     if (action.seq == but) continue;
-    if (action.is_undone()) out.push_back(action.seq);
+    if (action.is_undone()) out.insert(out.end(), action.edits.begin(), action.edits.end());
     out.insert(out.end(), action.toggles.begin(), action.toggles.end());
   }
   std::sort(out.begin(), out.end());
@@ -71,8 +74,9 @@ void PlayerActions::others(Sequence but, std::vector<Sequence>& out) const {
 
 std::vector<Sequence> PlayerActions::undo_core(Sequence action) const {
   const PlayerAction& mine = find(action);
-  std::vector<Sequence> out = {mine.seq};
+  std::vector<Sequence> out = mine.edits;
   out.insert(out.end(), mine.toggles.begin(), mine.toggles.end());
+  std::sort(out.begin(), out.end());
   return out;
 }
 

@@ -1,5 +1,6 @@
-// PlayerActions: what one player did, undid and redid. The log is the only state. An *action* is an
-// edit with cause player. A *toggle* is an undo or redo: records of the player with that cause
+// PlayerActions: what one player did, undid and redid. The log is the only state. An *action* is one
+// or more edits with cause player: those after the first one have it as their subject. It is undone
+// and redone as a whole. A *toggle* is an undo or redo: records of the player with that cause
 // whose subject is the action, one for each chunk. An action is undone if its last toggle is an
 // undo. Undo takes the newest action that is not undone. Redo takes the action that was undone
 // last, unless the player has done a new action since. Both select edits of the player, and
@@ -28,7 +29,8 @@ struct PlayerRecord {
 };
 
 struct PlayerAction {
-  Sequence seq = 0;               // of the edit
+  Sequence seq = 0;               // of its first edit
+  std::vector<Sequence> edits;    // all of them, ascending
   std::vector<Sequence> toggles;  // ascending
   // The toggles of the undo in force; empty unless the action is undone.
   std::vector<Sequence> last_undo;
@@ -38,8 +40,8 @@ struct PlayerAction {
 class PlayerActions {
  public:
   /// Takes the player's records, ascending. Other causes are ignored. The records may begin
-  /// anywhere in the log: a toggle is ignored if its subject is not among them. Such a subject is
-  /// an older action, or a rollback that the player undid as operator.
+  /// anywhere in the log: an edit or a toggle is ignored if its subject is not among them. Such a
+  /// subject is an older action, or a rollback that the player undid as operator.
   explicit PlayerActions(std::span<const PlayerRecord> records);
 
   /// Returns the actions that may be undone, newest first.
@@ -51,7 +53,7 @@ class PlayerActions {
   std::vector<Sequence> to_undo(Sequence action) const;
   /// Returns the edits that redo of an action selects, ascending. Requires an action of redoable().
   std::vector<Sequence> to_redo(Sequence action) const;
-  /// Return the records of the action itself in to_undo() and to_redo(). All changes lie in the
+  /// Return the records of the action itself, ascending, in to_undo() and to_redo(). All changes lie in the
   /// chunks that they touch.
   std::vector<Sequence> undo_core(Sequence action) const;
   std::vector<Sequence> redo_core(Sequence action) const;

@@ -59,7 +59,10 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
     ordered.submitted_us = offer.submitted_us;
     ordered.ordered_us = now.steady_us;
     ordered.edit = offer.edit;
-    ordered.subject = offer.subject;
+    ordered.subject = offer.cause == Cause::player
+                          ? actions_.order(offer.op, offer.action, version.seq)
+                          : offer.subject;
+    const Sequence subject = ordered.subject;
     std::vector<ChunkKey>& touched = batch.touched.emplace_back();
     for (const ChunkCoord at : touched_chunks(offer.edit, limits_.chunk_edge))
       touched.push_back({0, at});
@@ -69,7 +72,7 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
       ordered.previous.push_back(chunks_.push(key, version, offer.edit, stacked));
     batch.all_touched.insert(batch.all_touched.end(), touched.begin(), touched.end());
     batch.commit.edits.push_back(std::move(ordered));
-    batch.records.push_back({version, offer.op, time_us, offer.cause, offer.edit, offer.subject});
+    batch.records.push_back({version, offer.op, time_us, offer.cause, offer.edit, subject});
   }
   std::vector<ChunkKey>& all = batch.all_touched;
   std::sort(all.begin(), all.end());

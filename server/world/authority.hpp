@@ -18,6 +18,7 @@
 #include "server/world/clocks.hpp"
 #include "server/world/edit_queue.hpp"
 #include "server/world/log_clock.hpp"
+#include "server/world/open_actions.hpp"
 #include "server/world/operation_watermarks.hpp"
 #include "server/world/world_chunks.hpp"
 
@@ -84,6 +85,7 @@ class Authority {
   WorldChunks chunks_;
   OperationWatermarks resolved_;
   EditQueue queue_;
+  OpenActions actions_;
 };
 
 }  // namespace runstone

@@ -25,6 +25,8 @@ struct EditOffer {
   TimeUs submitted_us = 0;
   EditDescriptor edit;
   Sequence subject = 0;  // the edit that this rollback, undo or redo is about; 0: none
+  /// Of a player's edit: the first edit of its action, as EditRequest::action.
+  ClientSequence action = 0;
 };
 
 /// Returns the work of an edit: an upper bound of its bytes in a commit message, in which its chunks

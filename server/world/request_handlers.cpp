@@ -103,7 +103,8 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     detail = *std::move(why);
     world.authority.reject(op, *refusal);
   } else {
-    refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0});
+    refusal = world.authority.submit(
+        {op, Cause::player, request.submitted_us, request.edit, 0, request.action});
   }
   if (!refusal) return;
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);

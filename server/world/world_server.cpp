@@ -20,6 +20,7 @@
 #include "server/world/material_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
+#include "server/world/preview_handlers.hpp"
 #include "server/world/protected_ground.hpp"
 #include "server/world/request_handlers.hpp"
 #include "server/world/rights_handlers.hpp"
@@ -52,6 +53,8 @@ void on_open_message(WorldState& world, SessionId session, const Message& messag
   }
   if (const auto* chat = std::get_if<ChatRequest>(&message))
     return on_chat(world, session, *chat, now);
+  if (const auto* share = std::get_if<PreviewShare>(&message))
+    return on_preview_share(world, session, *share, now);
 }
 
 void close_silent_sessions(WorldState& world, const Clocks& now) {

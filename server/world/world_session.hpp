@@ -32,6 +32,10 @@ inline constexpr std::uint64_t kCommandsPerSecond = 10, kCommandBurst = 20;
 /// A session gets so many lines that say why its own lines are not passed on.
 inline constexpr std::uint64_t kChatAnswersPerSecond = 1, kChatAnswerBurst = 3;
 
+/// Previews that a session may send, and that it is sent, each second.
+inline constexpr std::uint64_t kPreviewsPerSecond = 6, kPreviewBurst = 12;
+inline constexpr std::uint64_t kPreviewsReadPerSecond = 20, kPreviewsReadBurst = 40;
+
 /// A session's view of the past.
 struct HistoryView {
   HistoryNumber number{};
@@ -81,6 +85,10 @@ struct WorldSession {
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};
   std::optional<std::uint32_t> command;  // id of the command under way
   TokenBucket chat_answers{kChatAnswersPerSecond, kChatAnswerBurst};
+  // Previews (preview_handlers.hpp).
+  TokenBucket previews{kPreviewsPerSecond, kPreviewBurst};                // that it sends
+  TokenBucket previews_read{kPreviewsReadPerSecond, kPreviewsReadBurst};  // that it is sent
+  std::vector<SessionId> preview_readers;  // sessions that show its last preview, ascending
   // Views (view_scheduler.hpp).
   std::uint32_t view_number = 0;          // of the newest view that the client sent
   std::optional<View> next_view;          // the newest view, until it takes effect

@@ -455,6 +455,15 @@ RestorePreview any_restore_preview(SplitMix64& rng) {
 
 }  // namespace
 
+std::vector<EditDescriptor> any_preview(SplitMix64& rng) {
+  std::vector<EditDescriptor> edits;
+  for (std::uint32_t count = rng.below(kPreviewEditsMax + 1); count > 0; --count)
+    edits.push_back({SetVoxel{{rng.between(-99, 99), rng.between(-99, 99), rng.between(-99, 99)}},
+                     {},
+                     static_cast<Material>(rng.below(9))});
+  return edits;
+}
+
 EditRequest any_edit_request(SplitMix64& rng) {
   EditRequest request{1 + (any64(rng) >> 1), any_time(rng), {}};
   if (rng.below(8) == 0) {
@@ -462,6 +471,7 @@ EditRequest any_edit_request(SplitMix64& rng) {
   } else {
     request.edit = any_edit(rng);
   }
+  if (rng.below(2) == 0) request.action = 1 + any64(rng) % request.client_seq;
   return request;
 }
 
@@ -547,9 +557,13 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_log_marks_request(rng);
     case kKindOf<LogMarks>:
       return any_log_marks(rng);
-    default:
-      RUNSTONE_ASSERT(kind == kKindOf<RestorePreview>);
+    case kKindOf<RestorePreview>:
       return any_restore_preview(rng);
+    case kKindOf<PreviewShare>:
+      return PreviewShare{any_preview(rng)};
+    default:
+      RUNSTONE_ASSERT(kind == kKindOf<PlayerPreview>);
+      return PlayerPreview{rng.below(1000), any_preview(rng)};
   }
 }
 

@@ -20,7 +20,10 @@ constexpr int kWaitMsMax = 3'000, kFloodAgainMs = 20;
 /// Sets the numbers that depend on the messages before.
 void set_number(runstone::Message& message, std::uint64_t number) {
   const auto low = static_cast<std::uint32_t>(number);
-  if (auto* edit = std::get_if<EditRequest>(&message)) edit->client_seq = number;
+  if (auto* edit = std::get_if<EditRequest>(&message)) {
+    edit->client_seq = number;
+    edit->action = 0;
+  }
   if (auto* request = std::get_if<HistoryRequest>(&message)) request->request = low;
   if (auto* command = std::get_if<CommandRequest>(&message)) command->id = low;
   // More bytes than the server has sent would be a broken rule.

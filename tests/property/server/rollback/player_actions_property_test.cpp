@@ -33,8 +33,11 @@ class ChunkLog {
   const DenseChunk& now() const { return now_; }
   const RunChunk& start() const { return start_; }
 
-  void act(AuthorId author, const EditDescriptor& edit) {
-    append({author, Cause::player, 0, {edit}});
+  /// Adds an edit to the action that begins with `first`; 0: an action by itself. Returns its
+  /// sequence.
+  Sequence act(AuthorId author, const EditDescriptor& edit, Sequence first = 0) {
+    append({author, Cause::player, first, {edit}});
+    return log_.size();
   }
 
   /// Returns the action, or nullopt if there is none left. `skipped` is the number of actions
@@ -130,7 +133,9 @@ TEST_CASE("undo and redo of a player alone step through a stack of states",
       CAPTURE(Catch::rngSeed(), round, step);
       const auto dice = rng.below(10);
       if (dice < 4) {
-        log.act(kMe, random_edit_near(rng, kOrigin, Extent::cube(8)));
+        const Sequence first = log.act(kMe, random_edit_near(rng, kOrigin, Extent::cube(8)));
+        for (auto more = rng.below(3); more > 0; --more)
+          log.act(kMe, random_edit_near(rng, kOrigin, Extent::cube(8)), first);
         states.erase(states.begin() + static_cast<std::ptrdiff_t>(at + 1),
                      states.end());  // after a new action there is nothing to redo
         if (!(log.now() == states[at])) {

@@ -183,3 +183,23 @@ TEST_CASE_METHOD(Fixture, "a tool previews its next click, and nothing in the pa
   receive(past);
   CHECK(tool.ghosts().empty());
 }
+
+TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next action is another one",
+                 "[client_app]") {
+  const std::vector<EditDescriptor> two = {{SetVoxel{{1, 2, 3}}, {}, 1},
+                                           {SetVoxel{{4, 2, 3}}, {}, 1}};
+  session.receive(Pong{kNow - 200, kNow}, {kNow, kNow, kNow});
+  REQUIRE(tool.submit(ToolEdits(two), kNow).has_value());
+  REQUIRE(submit({9, 9, 9}).has_value());
+  REQUIRE(tool.submit(ToolEdits(two), kNow).has_value());
+  std::vector<ClientSequence> actions;
+  for (const auto& [seq, local] : session.replica().local_edits().all())
+    actions.push_back(local.action);
+  CHECK(actions == std::vector<ClientSequence>{1, 1, 0, 4, 4});
+  actions.clear();
+  for (const Message& message : session.take_outgoing()) {
+    if (const auto* request = std::get_if<EditRequest>(&message))
+      actions.push_back(request->action);
+  }
+  CHECK(actions == std::vector<ClientSequence>{1, 1, 0, 4, 4});
+}

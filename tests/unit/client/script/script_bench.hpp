@@ -20,6 +20,7 @@ struct FakeScriptHost final : ScriptHost {
   struct Submitted {
     EditDescriptor edit;
     TimeUs due_us, now_us;
+    ActionPart part;
   };
   bool open = true, is_loaded = true, is_durable = true, draws = true, takes = true;
   std::optional<bool> picture = true;
@@ -95,9 +96,9 @@ struct FakeScriptHost final : ScriptHost {
   TimeUs edit_wait_us(const EditDescriptor& /*edit*/, TimeUs now_us) override {
     return std::max<TimeUs>(0, budget_from_us - now_us);
   }
-  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us,
-                                   TimeUs now_us) override {
-    edits.push_back({edit, due_us, now_us});
+  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                   ActionPart part) override {
+    edits.push_back({edit, due_us, now_us, part});
     if (!takes) return failure("the past cannot be edited");
     return {};
   }

@@ -76,6 +76,17 @@ TEST_CASE_METHOD(ToolScript, "a script sets symmetry and previews", "[bots]") {
   CHECK(runner->failures()[0] == "s.txt:9: edit refused: nothing is in reach");
 }
 
+TEST_CASE_METHOD(ToolScript, "a script gives the places of a tool by numbers", "[bots]") {
+  run("tool box\nhold sand\nplaces 1 2 3 4 5 6\napply\nplaces clear 1 2 3 1 2 3\napply\n"
+      "tool extrude\nparam voxels 1\nplaces face +y 3 3 3\napply\nplaces none\napply");
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0] == "s.txt:12: edit refused: no places are typed");
+  REQUIRE(host.edits.size() == 3);
+  CHECK(host.edits[0].edit == EditDescriptor{FillBox{{{1, 2, 3}, {5, 6, 7}}}, {}, 2});
+  CHECK(host.edits[1].edit == EditDescriptor{FillBox{{{1, 2, 3}, {2, 3, 4}}}, {}, kEmpty});
+  CHECK(kind_of(host.edits[2].edit) == EditKind::paste);
+}
+
 TEST_CASE_METHOD(ToolScript, "the edits of a tool wait for the edit budget, and are made once",
                  "[bots]") {
   host.budget_from_us = 1'500'000;
@@ -91,6 +102,8 @@ TEST_CASE_METHOD(ToolScript, "wrong commands of the tools are found", "[bots]") 
   CHECK(error_of("aim 1 2 3 up").find("none of -x, +x") != std::string::npos);
   CHECK(error_of("selection eat").find("nothing to do with the selection") != std::string::npos);
   CHECK(error_of("symmetry y 1 2 3").find("none of none, x, z") != std::string::npos);
+  CHECK(error_of("places 1 2").find("expected Z") != std::string::npos);
+  CHECK(error_of("places face up 1 2 3").find("none of -x, +x") != std::string::npos);
   CHECK(error_of("preview maybe").find("none of on, off") != std::string::npos);
   CHECK(error_of("rotate 4").find("QUARTERS") != std::string::npos);
   for (const char* line : {"tool saw", "param radius 3", "tool sphere\nparam radius 99",

@@ -17,6 +17,8 @@ ClientSettings unusual_settings() {
   out.invert_y = true;
   out.interface_scale = 2;
   out.walks = true;
+  out.shows_previews = false;
+  out.shares_previews = false;
   out.keys = {{"undo", "ctrl+Z \\"}, {"live", ""}, {"odd name", "\""}};
   return out;
 }

@@ -220,4 +220,19 @@ TEST_CASE("a commit without a list is refused", "[protocol]") {
   CHECK_FALSE(passes<Commit>([](auto& b) { return wire::CreateCommit(b, 1); }));
 }
 
+TEST_CASE("an action of a request begins with this edit or an earlier one", "[protocol]") {
+  const auto with_action = [](std::uint64_t action) {
+    return [action](FlatBufferBuilder& b) {
+      const Bytes edit = encode(kValidEdit);
+      return wire::CreateEditRequest(b, 7, 0, b.CreateVector(edit), action);
+    };
+  };
+  for (const std::uint64_t action : {0, 1, 7}) {
+    const auto message = received<EditRequest>(with_action(action));
+    REQUIRE(message.has_value());
+    CHECK(std::get<EditRequest>(*message).action == action);
+  }
+  CHECK_FALSE(passes<EditRequest>(with_action(8)));
+}
+
 }  // namespace runstone::test

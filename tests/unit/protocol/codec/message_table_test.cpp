@@ -35,6 +35,7 @@ const char* text_of_feature(std::uint64_t feature) {
   if (feature == kFeatureMaterials) return "materials";
   if (feature == kFeatureLogMarks) return "log marks";
   if (feature == kFeatureRestorePreview) return "restore preview";
+  if (feature == kFeaturePreviews) return "previews";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 
@@ -90,7 +91,7 @@ TEST_CASE("an encoded message has its kind, and the kind decides the class", "[p
   }
   CHECK(kKindOf<Hello> == 0);
   CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
-  CHECK(kKindOf<RestorePreview> == kMessageKindCount - 1);
+  CHECK(kKindOf<PlayerPreview> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {

@@ -100,6 +100,17 @@ class RollbackBench : public RollbackService::Workers {
     bench.server.commit(bench.now());
     bench.answer_loads();
   }
+  /// Edits as one action.
+  void edit_as_one(SessionId session, const std::vector<EditDescriptor>& edits) {
+    const ClientSequence action = client_seq[session] + 1;
+    for (const EditDescriptor& edit : edits) {
+      EditRequest request{++client_seq[session], 0, edit};
+      request.action = action;
+      bench.server.received(session, request, bench.now());
+      bench.server.commit(bench.now());
+      bench.answer_loads();
+    }
+  }
   void fill(SessionId session, VoxelBox box, Material material) {
     edit(session, FillBox{box}, material);
   }

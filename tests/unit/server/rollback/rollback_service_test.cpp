@@ -298,6 +298,46 @@ TEST_CASE("players undo and redo their own edits, and nobody else's", "[rollback
   CHECK(bench.answer().text == "nothing to redo");
 }
 
+TEST_CASE("an action of several edits is undone and redone as one", "[rollback][undo]") {
+  RollbackBench bench;
+  const AuthorId ana = bench.join(kBuilder);
+  bench.join(kGriefer);
+  const auto run = [&](Cause cause) {
+    if (cause == Cause::undo) bench.service.undo(ana, bench.bench.now(), bench.reply());
+    if (cause == Cause::redo) bench.service.redo(ana, bench.bench.now(), bench.reply());
+    bench.run_all();
+    return bench.answer().is_ok;
+  };
+  bench.set(kBuilder, {9, 9, 9}, 4);
+  // A move: the wall is cleared, and set again in another chunk. Its two places overlap nowhere.
+  bench.fill(kBuilder, {{0, 0, 0}, {2, 2, 2}}, 1);
+  bench.edit_as_one(kBuilder, {{FillBox{{{0, 0, 0}, {2, 2, 2}}}, {}, kEmpty},
+                               {FillBox{{{20, 0, 0}, {22, 2, 2}}}, {}, 1},
+                               {FillBox{{{1, 0, 0}, {3, 1, 1}}}, {}, 3}});
+  bench.set(kGriefer, {20, 0, 0}, 2);
+  CHECK(run(Cause::undo));
+  CHECK(bench.at({0, 0, 0}) == 1);
+  CHECK(bench.at({1, 0, 0}) == 1);
+  CHECK(bench.at({2, 0, 0}) == kEmpty);
+  CHECK(bench.at({21, 0, 0}) == kEmpty);
+  CHECK(bench.at({20, 0, 0}) == 2);  // of another player
+  for (const EditRecord& record : bench.bench.environment.records) {
+    if (record.cause == Cause::undo) CHECK(record.subject == 3);
+  }
+  CHECK(run(Cause::redo));
+  CHECK(bench.at({0, 0, 0}) == kEmpty);
+  CHECK(bench.at({1, 0, 0}) == 3);
+  CHECK(bench.at({21, 0, 0}) == 1);
+  CHECK_FALSE(run(Cause::redo));
+  CHECK(run(Cause::undo));
+  CHECK(run(Cause::undo));  // the wall
+  CHECK(bench.at({0, 0, 0}) == kEmpty);
+  CHECK(bench.at({9, 9, 9}) == 4);
+  CHECK(run(Cause::undo));
+  CHECK(bench.at({9, 9, 9}) == kEmpty);
+  CHECK_FALSE(run(Cause::undo));
+}
+
 TEST_CASE("an undo skips an edit that others have built over entirely", "[rollback][undo]") {
   RollbackBench bench;
   const AuthorId ana = bench.join(kBuilder);

@@ -42,6 +42,32 @@ constexpr ChunkKey kOrigin{0, {0, 0, 0}};
 constexpr ChunkKey kEast{0, {1, 0, 0}};
 constexpr Clocks kNow{1000, 5000};
 
+TEST_CASE("edits of one action name its first edit in commit and record", "[world][undo]") {
+  Authority authority(limits(), {3, 40, 0});
+  const auto submit = [&](ClientSequence seq, ClientSequence action) {
+    EditOffer o = offer(seq, box(0, 4), 1);
+    o.action = action;
+    return authority.submit(o);
+  };
+  CHECK_FALSE(submit(1, 1).has_value());
+  CHECK_FALSE(authority.submit(offer(1, box(0, 4), 2, 2)).has_value());
+  CHECK_FALSE(submit(2, 1).has_value());
+  auto batch = authority.commit(kNow);
+  REQUIRE(batch.has_value());
+  REQUIRE(batch->records.size() == 3);
+  Sequence first = 0, second = 0;
+  for (const EditRecord& record : batch->records) {
+    if (record.op.author == 1) (record.op.seq == 1 ? first : second) = record.version.seq;
+    CHECK(record.subject == (record.op == OperationId{1, 77, 2} ? first : 0));
+  }
+  CHECK_FALSE(submit(3, 1).has_value());  // in the next commit
+  batch = authority.commit(kNow);
+  REQUIRE(batch.has_value());
+  CHECK(batch->records[0].subject == first);
+  CHECK(batch->commit.edits[0].subject == first);
+  CHECK(second > first);
+}
+
 TEST_CASE("queued edits get consecutive sequences, and the previous sequence of each touched chunk",
           "[world]") {
   Authority authority(limits(), {3, 40, 0});

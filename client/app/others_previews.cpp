@@ -1,0 +1,52 @@
+#include "client/app/others_previews.hpp"
+
+#include "client/display/player_body.hpp"
+#include "common/mesh/visibility.hpp"
+
+namespace runstone {
+
+void OthersPreviews::set_materials(const MaterialTable& materials) {
+  materials_ = materials;
+  const VisibilityTable visibility(visibilities(materials_));
+  for (auto& [author, preview] : previews_) preview.set_visibility(visibility);
+}
+
+bool OthersPreviews::step(const Replica& replica,
+                          const std::map<AuthorId, SharedPreviews::Shared>& shared) {
+  bool has_changed = std::erase_if(previews_, [&](const auto& entry) {
+                       return !shared.contains(entry.first);
+                     }) != 0;
+  for (const auto& [author, other] : shared) {
+    if (previews_.size() >= kShownMax && !previews_.contains(author)) continue;
+    const auto [it, is_new] = previews_.try_emplace(author);
+    if (is_new) it->second.set_visibility(VisibilityTable(visibilities(materials_)));
+    it->second.set(other.edits);
+  }
+  std::size_t left = kChunksPerStep;
+  for (auto& [author, preview] : previews_) {
+    // A preview that is complete costs a look at its chunks only.
+    if (left == 0) break;
+    const std::size_t part = preview.is_complete() ? kChunksPerStep : left;
+    const bool was_complete = preview.is_complete() && !preview.is_outdated(replica);
+    has_changed = preview.step(replica, part) || has_changed;
+    if (!was_complete) left = 0;
+  }
+  return has_changed;
+}
+
+bool OthersPreviews::clear() {
+  const bool had_any = !previews_.empty();
+  previews_.clear();
+  return had_any;
+}
+
+void OthersPreviews::append_ghosts(std::vector<GhostChunk>& out) const {
+  for (const auto& [author, preview] : previews_) {
+    for (GhostChunk ghost : preview.ghosts()) {
+      ghost.tint = player_colour(author);
+      out.push_back(std::move(ghost));
+    }
+  }
+}
+
+}  // namespace runstone

@@ -1,0 +1,37 @@
+#include "client/session/shared_previews.hpp"
+
+namespace runstone {
+
+void SharedPreviews::receive(PlayerPreview preview, std::int32_t chunk_edge, TimeUs now_us) {
+  if (preview.edits.empty() || !may_be_shared(preview.edits, chunk_edge))
+    return forget(preview.author);
+  if (others_.size() >= kAuthorsMax && !others_.contains(preview.author)) return;
+  others_[preview.author] = {std::move(preview.edits), now_us};
+}
+
+void SharedPreviews::reset() {
+  others_.clear();
+  sent_.clear();
+  sent_us_.reset();
+}
+
+void SharedPreviews::expire(TimeUs now_us) {
+  std::erase_if(others_, [now_us](const auto& entry) {
+    return now_us - entry.second.received_us >= kShownUs;
+  });
+}
+
+std::optional<PreviewShare> SharedPreviews::share(const std::vector<EditDescriptor>& edits,
+                                                  std::int32_t chunk_edge, TimeUs now_us) {
+  if (sent_us_ && now_us - *sent_us_ < kEveryUs) return std::nullopt;
+  if (edits.empty() && sent_.empty()) return std::nullopt;
+  const bool is_shared = may_be_shared(edits, chunk_edge);
+  const std::vector<EditDescriptor> wanted = is_shared ? edits : std::vector<EditDescriptor>{};
+  const bool is_due = !wanted.empty() && (!sent_us_ || now_us - *sent_us_ >= kRepeatUs);
+  if (wanted == sent_ && !is_due) return std::nullopt;
+  sent_ = wanted;
+  sent_us_ = now_us;
+  return PreviewShare{wanted};
+}
+
+}  // namespace runstone

@@ -1,0 +1,51 @@
+// SharedPreviews: what the other players are about to do, as they share it, and when this player's
+// own preview is to be sent. Time is an argument. One thread.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "protocol/codec/preview_messages.hpp"
+
+namespace runstone {
+
+class SharedPreviews {
+ public:
+  /// Players whose previews are kept. Beyond it, previews of further players are dropped.
+  static constexpr std::size_t kAuthorsMax = 64;
+  /// A preview is sent at most this often, and again after kRepeatUs while it stays the same.
+  static constexpr TimeUs kEveryUs = 200'000, kRepeatUs = 2'000'000;
+  /// A preview vanishes when no other one has come for so long.
+  static constexpr TimeUs kShownUs = 5'000'000;
+
+  struct Shared {
+    std::vector<EditDescriptor> edits;  // at least one
+    TimeUs received_us = 0;
+    friend bool operator==(const Shared&, const Shared&) = default;
+  };
+
+  /// Takes the preview of another player. One that may not be shared (may_be_shared()) counts as none.
+  void receive(PlayerPreview preview, std::int32_t chunk_edge, TimeUs now_us);
+  /// Forgets the preview of a player who left.
+  void forget(AuthorId author) { others_.erase(author); }
+  /// Forgets everything, for a new connection.
+  void reset();
+  /// Forgets previews that are too old.
+  void expire(TimeUs now_us);
+  const std::map<AuthorId, Shared>& others() const { return others_; }
+
+  /// Takes this player's preview. Returns the message to send now, or nullopt if there is none yet.
+  /// A preview that may not be shared counts as none. Call it often. Cost: O(1) between two messages.
+  std::optional<PreviewShare> share(const std::vector<EditDescriptor>& edits,
+                                    std::int32_t chunk_edge, TimeUs now_us);
+
+ private:
+  std::map<AuthorId, Shared> others_;
+  std::vector<EditDescriptor> sent_;
+  std::optional<TimeUs> sent_us_;  // nullopt: nothing was sent on this connection
+};
+
+}  // namespace runstone

@@ -1,0 +1,62 @@
+// ToolCommand: something that a player does with the tools besides clicking. Keys, the tool window
+// and scripts give the same commands, and carry_out() carries them out. One thread.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "client/tools/tool_box.hpp"
+
+namespace runstone {
+
+struct ToolChoice {
+  std::string name;
+};
+/// Sets a parameter of the chosen tool.
+struct ParameterChange {
+  std::string name;
+  std::int32_t value = 0;
+};
+/// Gives the places of the chosen tool by their numbers; nullopt: by clicks again.
+struct PlacesChange {
+  std::optional<TypedPlaces> typed;
+};
+/// Makes the edits of the typed places.
+struct TypedApply {};
+/// Selects a box; nullopt selects nothing.
+struct SelectionChange {
+  std::optional<VoxelBox> box;
+};
+/// Changes the selection, or the voxels in it.
+struct SelectionCommand {
+  enum class Kind : std::uint8_t { copy, cut, clear, fill, replace, stack, move, grow, shift };
+  Kind kind = Kind::copy;
+  bool is_solid = false;                   // copy, cut: a paste leaves alone what was empty
+  Material material = kEmpty;              // fill: the new one; replace: the old one
+  Material other = kEmpty;                 // replace: the new one
+  Direction direction = Direction::pos_y;  // stack, move, grow, shift
+  std::int32_t count = 1;                  // the same
+};
+/// Turns the clipboard by quarter turns, and then mirrors it.
+struct ClipboardTurn {
+  int quarters = 0;
+  std::optional<Axis> mirror;
+};
+struct SymmetryChange {
+  Symmetry symmetry;
+};
+struct PreviewChange {
+  bool is_shown = true;
+};
+
+using ToolCommand =
+    std::variant<ToolChoice, ParameterChange, PlacesChange, TypedApply, SelectionChange,
+                 SelectionCommand, ClipboardTurn, SymmetryChange, PreviewChange>;
+
+/// Carries out a command. Returns the edits to submit, which may be none. Fails with words for the
+/// player, for example if there is no world yet. `held` is the material in the hand.
+ToolEdits carry_out(ToolBox& box, const Replica& replica, Material held,
+                    const ToolCommand& command);
+
+}  // namespace runstone

@@ -1,0 +1,58 @@
+// ToolWindow: the building tools with their numbers, what the next click would do, places by numbers,
+// the symmetry, the selection and the clipboard. It changes nothing itself: it returns commands. One
+// thread.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "client/input/key_map.hpp"
+#include "client/tools/tool_command.hpp"
+#include "client/ui/hud_state.hpp"
+
+namespace runstone {
+
+class ToolWindow {
+ public:
+  /// `keys` must outlive the window.
+  explicit ToolWindow(const KeyMap& keys) : keys_(keys) {}
+
+  /// Opens the window, or closes it. An open window without the mouse takes it first.
+  void toggle();
+  /// Closes the window. Returns false if it was closed.
+  bool close();
+  bool is_open() const { return is_open_; }
+  /// Returns true if the window needs the mouse: from its opening until a click beside it captures
+  /// the mouse.
+  bool has_mouse() const { return is_open_ && has_mouse_; }
+
+  /// Makes the window with ImGui, and appends what the user did in it. Requires HudState::tools if
+  /// the window is open.
+  void build(const HudState& state, double scale, std::vector<ToolCommand>& out);
+
+ private:
+  void build_tools(const ToolBox& box, std::vector<ToolCommand>& out) const;
+  void build_places(const HudState& state, std::vector<ToolCommand>& out);
+  void build_symmetry(const HudState& state, std::vector<ToolCommand>& out);
+  void build_selection(const HudState& state, double scale, std::vector<ToolCommand>& out);
+  void build_steps(std::vector<ToolCommand>& out);
+  void build_clipboard(const ToolBox& box, std::vector<ToolCommand>& out);
+  TypedPlaces typed_places() const;
+
+  using Numbers = std::array<int, 3>;  // x, y, z
+
+  const KeyMap& keys_;
+  bool is_open_ = false, has_mouse_ = false;
+  bool was_captured_ = false;    // the mouse, in the last frame
+  bool types_places_ = false;    // the places of the window count
+  std::vector<Numbers> places_;  // of the chosen tool
+  bool clears_ = false;
+  int face_ = 3, direction_ = 3;  // of Direction; 3 is upward
+  int count_ = 1;
+  bool keeps_air_ = false;
+  std::string replaced_;  // the name of the material to be replaced, as typed
+};
+
+}  // namespace runstone

@@ -1,0 +1,60 @@
+#include <cstdint>
+#include <utility>
+
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "protocol/codec/body_reader.hpp"
+#include "protocol/codec/preview_list.hpp"
+
+namespace runstone {
+namespace {
+
+Result<std::vector<EditDescriptor>> read_list(ByteView bytes) {
+  std::vector<EditDescriptor> edits;
+  if (bytes.size() > kPreviewListBytesMax) return bad("preview: its edits are too long");
+  ByteReader in(bytes);
+  while (!in.at_end()) {
+    if (edits.size() == kPreviewEditsMax) return bad("preview: too many edits");
+    const std::uint64_t length = in.varint_max(kPreviewBytesMax, "preview: an edit is too long");
+    const ByteView descriptor = in.bytes(static_cast<std::size_t>(length));
+    if (!in.ok()) return Unexpected<Error>{in.error()};
+    auto edit = decode_voxel_edit(descriptor);
+    if (!edit) return Unexpected<Error>{edit.error()};
+    edits.push_back(*std::move(edit));
+  }
+  return edits;
+}
+
+}  // namespace
+
+Bytes encode_preview(const std::vector<EditDescriptor>& edits) {
+  Bytes bytes;
+  ByteWriter out(bytes);
+  for (const EditDescriptor& edit : edits) {
+    const Bytes descriptor = encode(edit);
+    out.varint(descriptor.size());
+    out.bytes(descriptor);
+  }
+  return bytes;
+}
+
+bool may_be_shared(const std::vector<EditDescriptor>& edits, std::int32_t chunk_edge) {
+  if (edits.size() > kPreviewEditsMax) return false;
+  for (const EditDescriptor& edit : edits) {
+    if (!validate(edit) || touched_chunks_bound(edit, chunk_edge) > kPreviewChunksMax) return false;
+  }
+  return encode_preview(edits).size() <= kPreviewListBytesMax;
+}
+
+Result<Message> BodyReader::read(const wire::PreviewShare& t) const {
+  auto edits = read_list(view_of(t.edits()));
+  if (!edits) return Unexpected<Error>{edits.error()};
+  return Message{PreviewShare{*std::move(edits)}};
+}
+
+Result<Message> BodyReader::read(const wire::PlayerPreview& t) const {
+  auto edits = read_list(view_of(t.edits()));
+  if (!edits) return Unexpected<Error>{edits.error()};
+  return Message{PlayerPreview{t.author(), *std::move(edits)}};
+}
+
+}  // namespace runstone

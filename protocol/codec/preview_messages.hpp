@@ -1,0 +1,30 @@
+// Preview messages: what a player is about to do, for the others to see. They are no part of the
+// world: they are in no log, and nothing depends on them.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/core/ids.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+
+namespace runstone {
+
+/// The edits that the sender's next click would make. 0 .. kPreviewEditsMax edits with voxels, with
+/// kPreviewBytesMax bytes together; none: nothing is previewed any more.
+struct PreviewShare {
+  std::vector<EditDescriptor> edits;
+  friend bool operator==(const PreviewShare&, const PreviewShare&) = default;
+};
+
+/// The same of another player.
+struct PlayerPreview {
+  AuthorId author = 0;
+  std::vector<EditDescriptor> edits;
+  friend bool operator==(const PlayerPreview&, const PlayerPreview&) = default;
+};
+
+/// Returns true if these edits may be shared: few, short, and each touches few chunks. Cost: that of
+/// encoding them.
+bool may_be_shared(const std::vector<EditDescriptor>& edits, std::int32_t chunk_edge);
+
+}  // namespace runstone

@@ -1,0 +1,177 @@
+#include "client/ui/tool_window.hpp"
+
+#include <catch2/catch.hpp>
+#include <optional>
+
+#include "client/ui/hud.hpp"
+
+using namespace runstone;
+
+namespace {
+
+constexpr std::array<int, 2> kToolsSize = {1280, 720};
+
+/// A display with its tool window open, and a tool box that obeys it.
+struct ToolWindowBench {
+  ToolWindowBench() {
+    state.materials = &default_material_table();
+    state.slots = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+    state.is_connected = true;
+    state.tools = &box;
+    state.sight = VoxelPos{4, 5, 6};
+    state.aimed_at = 1;
+    hud.act(Action::tools);
+    frames();
+  }
+  void frames() {
+    for (int i = 0; i < 4; ++i) frame();
+  }
+  void frame() {
+    static_cast<void>(hud.make_frame(state, kToolsSize, 0.016));
+    for (UiAction& action : hud.take_actions()) {
+      REQUIRE(std::holds_alternative<ToolCommand>(action));
+      commands.push_back(std::get<ToolCommand>(std::move(action)));
+      // Edits and copies need a world, which is not here.
+      static_cast<void>(carry_out(box, replica, 1, commands.back()));
+    }
+  }
+  void click(double x, double y) {
+    for (const bool is_pressed : {true, false}) {
+      hud.feed({CursorEvent{x, y, 0, 0}, ButtonEvent{MouseButton::left, is_pressed}});
+      frames();
+    }
+  }
+  void type(std::string_view text) {
+    std::vector<InputEvent> events;
+    for (const char c : text) events.emplace_back(CharacterEvent{static_cast<char32_t>(c)});
+    hud.feed(events);
+    frames();
+  }
+  /// Clicks from above to below until a command of this type comes. Returns the command and keeps
+  /// its place.
+  template <class T>
+  std::optional<T> find(double x, double from_y, double to_y = 640) {
+    for (found_y = from_y; found_y < to_y; found_y += 5) {
+      commands.clear();
+      click(x, found_y);
+      for (const ToolCommand& command : commands) {
+        if (const auto* wanted = std::get_if<T>(&command)) return *wanted;
+      }
+    }
+    return std::nullopt;
+  }
+
+  Hud hud{KeyMap{}};
+  ToolBox box;
+  Replica replica;
+  HudState state;
+  std::vector<ToolCommand> commands;
+  double found_y = 0;
+};
+
+constexpr double kLeft = 870;  // a column of the window in which every row has something to click
+
+}  // namespace
+
+TEST_CASE_METHOD(ToolWindowBench, "the tool window lists all tools, and a click chooses one",
+                 "[client_ui]") {
+  std::vector<std::string> names;
+  for (double y = 30; names.size() < box.tools().size();) {
+    const auto chosen = find<ToolChoice>(kLeft, y);
+    REQUIRE(chosen);
+    if (names.empty() || names.back() != chosen->name) names.push_back(chosen->name);
+    y = found_y + 5;
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) CHECK(names[i] == box.tools()[i]->name());
+  CHECK(box.tool().name() == "paste");
+}
+
+TEST_CASE_METHOD(ToolWindowBench, "a slider sets the number of a tool, within its range",
+                 "[client_ui]") {
+  REQUIRE(box.choose("sphere").has_value());
+  frames();
+  const auto changed = find<ParameterChange>(1000, 250);
+  REQUIRE(changed);
+  CHECK(changed->name == "radius");
+  CHECK(changed->value > 20);
+  CHECK(changed->value < 64);
+  click(864, found_y);  // the left end
+  CHECK(box.tool().parameters()[0].value <= 4);
+  const auto mask = find<ParameterChange>(960, found_y + 15);
+  REQUIRE(mask);
+  CHECK(mask->name == "mask");
+}
+
+TEST_CASE_METHOD(ToolWindowBench, "places are typed as numbers while their part is open",
+                 "[client_ui]") {
+  REQUIRE(box.choose("box").has_value());
+  frames();
+  REQUIRE(find<PlacesChange>(kLeft, 310));
+  const double header_y = found_y;
+  REQUIRE(box.typed_places());
+  CHECK(box.typed_places()->places == std::vector<VoxelPos>{{4, 5, 6}, {4, 5, 6}});
+  // A double click chooses the text of the first number.
+  const double row_y = header_y + 24;
+  hud.feed({CursorEvent{kLeft, row_y, 0, 0}, ButtonEvent{MouseButton::left, true},
+            ButtonEvent{MouseButton::left, false}, ButtonEvent{MouseButton::left, true},
+            ButtonEvent{MouseButton::left, false}});
+  frames();
+  CHECK(hud.focus().types);
+  type("-17");
+  CHECK(box.typed_places()->places[0] == VoxelPos{-17, 5, 6});
+  REQUIRE(find<TypedApply>(1015, row_y + 40));
+  click(kLeft, header_y);  // closes the part
+  CHECK_FALSE(box.typed_places());
+}
+
+TEST_CASE_METHOD(ToolWindowBench, "the tool window keeps the mouse until a click beside it",
+                 "[client_ui]") {
+  CHECK(hud.focus().has_panel);
+  CHECK_FALSE(hud.focus().has_window);
+  InputRouter router;
+  router.capture();
+  router.set_windows(false, true);
+  CHECK_FALSE(router.is_captured());
+  router.push({ButtonEvent{MouseButton::left, true}, ButtonEvent{MouseButton::left, false}});
+  hud.feed(router.route(hud.focus()).for_ui);
+  CHECK(router.is_captured());
+  state.is_captured = true;
+  frames();
+  CHECK_FALSE(hud.focus().has_panel);
+  router.set_windows(false, hud.focus().has_panel);
+  CHECK(router.is_captured());
+  // The key gives the mouse to the window again, and then closes the window.
+  hud.act(Action::tools);
+  CHECK(hud.focus().has_panel);
+  state.is_captured = false;
+  frames();
+  hud.act(Action::tools);
+  CHECK_FALSE(hud.focus().has_panel);
+}
+
+TEST_CASE_METHOD(ToolWindowBench, "places are not typed any more once the player builds by clicks",
+                 "[client_ui]") {
+  REQUIRE(box.choose("box").has_value());
+  frames();
+  REQUIRE(find<PlacesChange>(kLeft, 310));
+  REQUIRE(box.typed_places());
+  SECTION("the window is closed") { hud.act(Action::release); }
+  SECTION("the mouse is captured") { state.is_captured = true; }
+  frames();
+  CHECK_FALSE(box.typed_places());
+}
+
+TEST_CASE_METHOD(ToolWindowBench, "symmetry and selection are changed by their fields",
+                 "[client_ui]") {
+  box.select(VoxelBox{{1, 2, 3}, {4, 5, 6}});
+  frames();
+  // The last header is that of the selection. Its buttons follow.
+  std::optional<SelectionCommand> copied;
+  for (double y = 560; y > 250 && !copied; y -= 5) {
+    click(kLeft, y);
+    copied = find<SelectionCommand>(kLeft, y + 60, y + 90);
+  }
+  REQUIRE(copied);
+  CHECK(copied->kind == SelectionCommand::Kind::copy);
+  CHECK(copied->is_solid);
+}
