@@ -104,7 +104,7 @@ FrameOrder ClientRig::order() const {
   out.camera.x = 0.5;
   out.camera.y = ground.value_or(0) + kEyeHeight;
   out.camera.z = 0.5;
-  out.camera.pitch = -0.35;
+  out.camera.pitch = -0.9;
   out.camera.far = (kRadius + 1.5) * kEdge;
   out.width = options_.width;
   out.height = options_.height;
@@ -118,7 +118,10 @@ void ClientRig::turn() {
     mesh_us_ += steady_now_us() - start_us;
   };
   pipeline_.take(replica_.drain_changes(), ClockOffset{}, steady_now_us());
+  const std::uint64_t presented = pipeline_.frames_presented();
   pipeline_.take_drawn();
+  // What was meshed while the frame before was in progress delays no frame.
+  if (pipeline_.frames_presented() != presented) mesh_us_ = 0;
   mesh();  // a client flushes twice a turn
   mesh();
   const TimeUs now_us = steady_now_us();

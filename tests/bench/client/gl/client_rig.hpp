@@ -18,7 +18,7 @@ namespace runstone::bench {
 
 /// What delayed one frame, in microseconds.
 struct FrameCost {
-  TimeUs mesh_us = 0;    // on the main thread, since the order of the frame before
+  TimeUs mesh_us = 0;    // on the main thread, between the frame before and the order
   TimeUs upload_us = 0;  // on the draw thread, since the frame before
   TimeUs draw_us = 0;    // not counted as added
   std::size_t uploads = 0, carried = 0;
@@ -76,7 +76,7 @@ class ClientRig {
   WakeUp wake_;
   std::unique_ptr<DrawThread> draw_thread_;
   MeshPipeline pipeline_;
-  TimeUs mesh_us_ = 0;          // since the last order
+  TimeUs mesh_us_ = 0;          // since the last frame was presented
   TimeUs ordered_mesh_us_ = 0;  // before the last order
 };
 
