@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client/render/material_look.hpp"
+#include "common/materials/default_look.hpp"
 
 namespace runstone {
 namespace {
@@ -18,7 +18,7 @@ LightPass light_pass(const MaterialInfo& material) {
 }  // namespace
 
 LightCode light_code(const MaterialInfo& material) {
-  const float emission = std::clamp(material_look(material).emission, 0.0F, 1.0F);
+  const float emission = static_cast<float>(look_of(material).emission) / kLookShareMax;
   const auto linear = [&](std::size_t channel) {
     return std::pow(static_cast<float>(material.colour[channel]) / 255.0F, 2.2F);
   };

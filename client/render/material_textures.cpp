@@ -3,15 +3,21 @@
 #include <cmath>
 #include <vector>
 
-#include "client/render/material_look.hpp"
+#include "client/render/surface_glsl.hpp"
+#include "common/materials/default_look.hpp"
 
 namespace runstone {
 namespace {
 
 float linear_from_srgb(std::uint8_t v) { return std::pow(static_cast<float>(v) / 255.0F, 2.2F); }
 
-float pattern_code(MaterialPattern pattern) {
-  return pattern == MaterialPattern::liquid ? 1.0F : 0.25F * static_cast<float>(pattern);
+float share_of(std::uint8_t percent) { return static_cast<float>(percent) / kLookShareMax; }
+
+/// Returns the pattern and, as its fraction, the roughness. surface_glsl.hpp takes them apart.
+float surface_code(const MaterialLook& look, MaterialBody body) {
+  const float pattern =
+      body == MaterialBody::liquid ? kLiquidSurface : static_cast<float>(look.pattern);
+  return pattern + kRoughnessScale * share_of(look.roughness);
 }
 
 void fill(GLuint texture, const std::vector<float>& texels) {
@@ -34,11 +40,11 @@ void MaterialTextures::set(const MaterialTable& materials) {
     // Light is added in linear space, so the palette is stored in linear space.
     for (std::size_t c = 0; c < 3; ++c) palette[id * 4 + c] = linear_from_srgb(row.colour[c]);
     palette[id * 4 + 3] = static_cast<float>(row.colour[3]) / 255.0F;
-    const MaterialLook look = material_look(row);
-    looks[id * 4] = look.variation;
-    looks[id * 4 + 1] = look.grain;
-    looks[id * 4 + 2] = look.emission;
-    looks[id * 4 + 3] = pattern_code(look.pattern);
+    const MaterialLook look = look_of(row);
+    looks[id * 4] = share_of(look.variation);
+    looks[id * 4 + 1] = share_of(look.grain);
+    looks[id * 4 + 2] = share_of(look.emission);
+    looks[id * 4 + 3] = surface_code(look, row.body);
   }
   fill(palette_.get(), palette);
   fill(looks_.get(), looks);

@@ -16,7 +16,7 @@ class MaterialTextures {
 
  private:
   GlTexture palette_;  // linear colour, alpha
-  GlTexture looks_;    // variation, grain, emission, pattern / 4, where 1 is a liquid
+  GlTexture looks_;    // variation, grain, emission, surface (surface_glsl.hpp)
 };
 
 }  // namespace runstone

@@ -6,6 +6,7 @@
 #include "client/render/light_texture.hpp"
 #include "client/render/quad_glsl.hpp"
 #include "client/render/shadow_maps.hpp"
+#include "client/render/surface_glsl.hpp"
 
 namespace runstone {
 
@@ -48,7 +49,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "in vec3 voxel;\n"
     "flat in vec3 normal;\n"
     "flat in vec4 colour;\n"
-    "flat in vec4 look;\n"  // variation, grain, emission, pattern
+    "flat in vec4 look;\n"  // variation, grain, emission, surface
     "#ifdef RUNSTONE_SHADOWS\n"
     "in vec3 in_shadow;\n"
     "#endif\n"
@@ -57,17 +58,8 @@ inline constexpr const char* kTerrainFragmentShader =
     "  uint h = uint(p.x) * 73856093u ^ uint(p.y) * 19349663u ^ uint(p.z) * 83492791u;\n"
     "  h = (h ^ (h >> 13)) * 1274126177u;\n"
     "  return float((h >> 16) & 255u) / 255.0 - 0.5;\n"
-    "}\n"
-    "#ifdef RUNSTONE_FINE\n"
-    // Planks and bricks have dark joints. Each row of bricks is shifted by half a brick.
-    "float joint(vec2 st) {\n"
-    "  float bricks = step(1.5, look.a * 4.0);\n"
-    "  float row = st.y * 4.0;\n"
-    "  float along = st.x * 2.0 + 0.5 * bricks * floor(mod(row, 2.0));\n"
-    "  float between_rows = step(abs(fract(row) - 0.5), 0.42);\n"
-    "  float between_bricks = mix(1.0, step(abs(fract(along) - 0.5), 0.46), bricks);\n"
-    "  return 1.0 - between_rows * between_bricks;\n"
-    "}\n"
+    "}\n" RUNSTONE_SURFACE_PARTS_GLSL RUNSTONE_GLOSS_GLSL
+    "#ifdef RUNSTONE_FINE\n" RUNSTONE_PATTERN_GLSL
     "#endif\n"
     "void main() {\n"
     // Each voxel has a slightly different tint, so that merged faces still look like voxels. The
@@ -82,21 +74,24 @@ inline constexpr const char* kTerrainFragmentShader =
     "#ifdef RUNSTONE_FINE\n"
     "  float fine = clamp(1.5 - 24.0 * pixel, 0.0, 1.0);\n"
     "  tint += fine * look.g * hash(ivec3(floor(voxel * 8.0)));\n"
-    "  tint *= 1.0 - 0.35 * fine * step(0.1, look.a) * step(look.a, 0.9) * joint(st);\n"
+    "  tint *= mix(1.0, shade(st, face.y), fine);\n"
     "#endif\n"
     "  float sun = max(dot(normal, sun_direction), 0.0);\n"
     "#ifdef RUNSTONE_SHADOWS\n"
     "  sun *= sunlit(in_shadow);\n"
     "#endif\n"
+    "  float open = 1.0;\n"
     "#ifdef RUNSTONE_FIELD\n"
     // The light in front of the face. Far away the place lies farther from the face, where the dark
     // corners are wider than they are deep; otherwise they would flicker.
     "  vec4 around = field_light(relative + normal * (0.5 + min(pixel, 1.0)));\n"
-    "  vec3 light = sun_colour * (sun * (0.5 + 0.5 * around.a)) + field_lit(around, normal);\n"
+    "  open = around.a;\n"
+    "  vec3 light = sun_colour * (sun * (0.5 + 0.5 * open)) + field_lit(around, normal);\n"
     "#else\n"
     "  vec3 light = sun_colour * sun + field_lit(vec4(0.0, 0.0, 0.0, 1.0), normal);\n"
     "#endif\n"
     "  vec3 lit = colour.rgb * tint * (light + look.b * lamps * 1.1);\n"
+    "  lit = gloss(lit, colour.rgb, normal, relative, sun, open);\n"
     "#ifdef RUNSTONE_FOG\n"
     "  lit = in_fog(lit, relative);\n"
     "#endif\n"
@@ -117,7 +112,8 @@ inline constexpr const char* kTransparentFragmentShader =
     "#ifdef RUNSTONE_SHADOWS\n"
     "in vec3 in_shadow;\n"
     "#endif\n"
-    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL RUNSTONE_SHADOW_GLSL
+    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL
+        RUNSTONE_SHADOW_GLSL RUNSTONE_SURFACE_PARTS_GLSL
     "float distance_of(float depth) {\n"
     "  float z = 2.0 * depth - 1.0;\n"
     "  return 2.0 * depth_range.x * depth_range.y /\n"
@@ -131,7 +127,7 @@ inline constexpr const char* kTransparentFragmentShader =
     "  float far = length(relative);\n"
     "  vec3 sight = relative / far;\n"
     "  vec3 n = dot(normal, sight) > 0.0 ? -normal : normal;\n"
-    "  float liquid = step(0.9, look.a);\n"
+    "  float liquid = is_liquid() ? 1.0 : 0.0;\n"
     "  vec3 wave = n;\n"
     "  vec2 p = voxel.xz;\n"
     "  float calm = 1.0 / (1.0 + 0.02 * far);\n"
@@ -170,7 +166,7 @@ inline constexpr const char* kTransparentFragmentShader =
     "  deep = mix(deep, mix(0.35, 0.96, absorbed), liquid);\n"
     "  body = mix(body, body * mix(1.25, 0.55, absorbed), liquid);\n"
     "#endif\n"
-    "  vec3 c = mix(body, reflection, fresnel * mix(0.5, 1.0, liquid));\n"
+    "  vec3 c = mix(body, reflection, fresnel * mix(0.53 * (1.0 - roughness()), 1.0, liquid));\n"
     "  float fog = smoothstep(fog_range.x, fog_range.y, far);\n"
     "  fragment = vec4(display(mix(c + colour.rgb * look.b * lamps * 1.1, sky(sight), fog)),\n"
     "                  max(mix(deep, 1.0, fresnel), fog));\n"

@@ -22,6 +22,7 @@ std::string kind_words(EditKind kind) {
     case EditKind::rights:
       return "change of rights";
     case EditKind::materials:
+    case EditKind::materials_with_looks:
       return "new materials";
   }
   return "edit";  // a kind that this client does not know

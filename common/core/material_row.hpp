@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "common/core/material_look.hpp"
 #include "common/core/result.hpp"
 #include "common/core/visibility.hpp"
 
@@ -28,14 +30,16 @@ struct MaterialRow {
   MaterialColour colour{0, 0, 0, 255};
   Visibility visibility = Visibility::opaque;
   MaterialBody body = MaterialBody::solid;
+  std::optional<MaterialLook> look = std::nullopt;  // if none is given, readers take default_look()
   friend bool operator==(const MaterialRow&, const MaterialRow&) = default;
 };
 
 inline constexpr std::size_t kMaterialNameBytesMax = 64;
 
-/// Fails (bad_value) for a bad name, for an opaque material with alpha below 255, and for a body that
-/// is unknown or that an empty material has.
+/// Fails (bad_value) for a bad name, for an opaque material with alpha below 255, for a body that is
+/// unknown or that an empty material has, and for a bad look (validate_look()).
 Result<void> validate_material(std::string_view name, const MaterialColour& colour,
-                               Visibility visibility, MaterialBody body);
+                               Visibility visibility, MaterialBody body,
+                               const std::optional<MaterialLook>& look);
 
 }  // namespace runstone

@@ -8,6 +8,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/formats/luanti_block.hpp"
+#include "common/materials/default_look.hpp"
 
 namespace runstone {
 namespace {
@@ -299,6 +300,8 @@ MaterialInfo material_of_luanti_node(std::string_view name, bool keep_all) {
   }
   // Luanti's games name the two nodes of a liquid so.
   if (name.ends_with("_source") || name.ends_with("_flowing")) out.body = MaterialBody::liquid;
+  // It is stored, so that every client draws the world alike.
+  out.look = default_look(name, out.body);
   return out;
 }
 

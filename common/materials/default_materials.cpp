@@ -5,51 +5,56 @@
 namespace runstone {
 namespace {
 
+using enum MaterialPattern;
+
 struct PaletteRow {
   const char* name;
   std::uint32_t rgba;
+  MaterialLook look;  // variation, grain, roughness, emission, pattern
   Visibility visibility = Visibility::opaque;
   MaterialBody body = MaterialBody::solid;
 };
 
+constexpr MaterialLook kWool{3, 12, 100, 0, weave};
+
 constexpr PaletteRow kPalette[] = {
     // Terrain. The first four have generation rules.
-    {"grass", 0x6a9f3dff},
-    {"sand", 0xe2cf98ff},
-    {"dirt", 0x7d5a3cff},
-    {"stone", 0x8b8d90ff},
-    {"water", 0x2f74b5a8, Visibility::transparent, MaterialBody::liquid},
-    {"snow", 0xf2f6faff},
-    {"gravel", 0x87807aff},
-    {"clay", 0xa7a9b6ff},
+    {"grass", 0x6a9f3dff, {16, 26, 100, 0, none}},
+    {"sand", 0xe2cf98ff, {7, 13, 100, 0, none}},
+    {"dirt", 0x7d5a3cff, {12, 22, 100, 0, none}},
+    {"stone", 0x8b8d90ff, {10, 16, 95, 0, none}},
+    {"water", 0x2f74b5a8, {4, 4, 5, 0, none}, Visibility::transparent, MaterialBody::liquid},
+    {"snow", 0xf2f6faff, {3, 5, 80, 0, none}},
+    {"gravel", 0x87807aff, {16, 32, 100, 0, none}},
+    {"clay", 0xa7a9b6ff, {5, 8, 90, 0, none}},
     // Building.
-    {"glass", 0xcfe8f048, Visibility::transparent},
-    {"planks", 0xb88a54ff},
-    {"log", 0x5e4529ff},
-    {"leaves", 0x3f7a2eff},
-    {"brick", 0xa4503eff},
-    {"cobble", 0x76777aff},
-    {"stone_brick", 0x9c9c98ff},
-    {"sandstone", 0xd3b97bff},
-    {"slate", 0x4a5058ff},
-    {"marble", 0xe4e1daff},
-    {"thatch", 0xc2a24aff},
-    {"copper", 0x56a08cff},
-    {"gold", 0xf0c244ff},
-    {"lamp", 0xffe7a3ff},
+    {"glass", 0xcfe8f048, {0, 0, 5, 0, none}, Visibility::transparent},
+    {"planks", 0xb88a54ff, {8, 10, 75, 0, planks}},
+    {"log", 0x5e4529ff, {10, 16, 95, 0, bark}},
+    {"leaves", 0x3f7a2eff, {24, 45, 100, 0, none}},
+    {"brick", 0xa4503eff, {8, 10, 85, 0, bricks}},
+    {"cobble", 0x76777aff, {10, 16, 95, 0, cobble}},
+    {"stone_brick", 0x9c9c98ff, {7, 10, 80, 0, bricks}},
+    {"sandstone", 0xd3b97bff, {6, 12, 90, 0, none}},
+    {"slate", 0x4a5058ff, {8, 10, 50, 0, tiles}},
+    {"marble", 0xe4e1daff, {4, 6, 20, 0, tiles}},
+    {"thatch", 0xc2a24aff, {10, 26, 100, 0, weave}},
+    {"copper", 0x56a08cff, {5, 6, 35, 0, tiles}},
+    {"gold", 0xf0c244ff, {4, 4, 20, 0, tiles}},
+    {"lamp", 0xffe7a3ff, {2, 6, 60, 100, none}},
     // Wool: a small, even circle of colours.
-    {"wool_white", 0xeeeae2ff},
-    {"wool_grey", 0x7c7f86ff},
-    {"wool_black", 0x26262bff},
-    {"wool_red", 0xb8322fff},
-    {"wool_orange", 0xe07f2bff},
-    {"wool_yellow", 0xf1cb3bff},
-    {"wool_green", 0x5b8c32ff},
-    {"wool_cyan", 0x2f97a0ff},
-    {"wool_blue", 0x3558a8ff},
-    {"wool_violet", 0x7c3f9eff},
-    {"wool_pink", 0xe58fb0ff},
-    {"wool_brown", 0x6d4a2fff},
+    {"wool_white", 0xeeeae2ff, kWool},
+    {"wool_grey", 0x7c7f86ff, kWool},
+    {"wool_black", 0x26262bff, kWool},
+    {"wool_red", 0xb8322fff, kWool},
+    {"wool_orange", 0xe07f2bff, kWool},
+    {"wool_yellow", 0xf1cb3bff, kWool},
+    {"wool_green", 0x5b8c32ff, kWool},
+    {"wool_cyan", 0x2f97a0ff, kWool},
+    {"wool_blue", 0x3558a8ff, kWool},
+    {"wool_violet", 0x7c3f9eff, kWool},
+    {"wool_pink", 0xe58fb0ff, kWool},
+    {"wool_brown", 0x6d4a2fff, kWool},
 };
 
 /// The rows of figure 7.21 in the thesis' order. The order decides which material covers which.
@@ -67,7 +72,8 @@ MaterialTable make_default_table() {
     const std::array<std::uint8_t, 4> colour = {
         static_cast<std::uint8_t>(row.rgba >> 24), static_cast<std::uint8_t>(row.rgba >> 16),
         static_cast<std::uint8_t>(row.rgba >> 8), static_cast<std::uint8_t>(row.rgba)};
-    const auto id = table.add({row.name, colour, row.visibility, thesis_rule(row.name), row.body});
+    const auto id =
+        table.add({row.name, colour, row.visibility, thesis_rule(row.name), row.body, row.look});
     RUNSTONE_ASSERT(id.has_value());
   }
   return table;

@@ -23,6 +23,10 @@ const char* broken_rule(const SurfaceRule& rule) {
 
 }  // namespace
 
+MaterialRow row_of(const MaterialInfo& info) {
+  return {info.name, info.colour, info.visibility, info.body, info.look};
+}
+
 MaterialTable::MaterialTable() {
   rows_.push_back({"air", {0, 0, 0, 0}, Visibility::empty, std::nullopt});
   ids_.emplace("air", kEmpty);
@@ -36,7 +40,8 @@ std::optional<Material> MaterialTable::find(std::string_view name) const {
 
 Result<Material> MaterialTable::add(MaterialInfo info) {
   if (rows_.size() >= kMaterialCountMax) return fail(ErrorCode::limit_exceeded, kTableIsFull);
-  if (const auto sound = validate_material(info.name, info.colour, info.visibility, info.body);
+  if (const auto sound =
+          validate_material(info.name, info.colour, info.visibility, info.body, info.look);
       !sound)
     return Unexpected<Error>{sound.error()};
   if (info.generation) {
@@ -59,7 +64,8 @@ Result<void> MaterialTable::check_rows(std::span<const MaterialRow> rows) const 
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const MaterialRow& row = rows[i];
-    if (const auto sound = validate_material(row.name, row.colour, row.visibility, row.body);
+    if (const auto sound =
+            validate_material(row.name, row.colour, row.visibility, row.body, row.look);
         !sound)
       return fail(sound.error().code, sound.error().what, i);
     if (find(row.name) || !names.insert(row.name).second)
@@ -73,7 +79,8 @@ Result<void> MaterialTable::append(Material first, std::span<const MaterialRow> 
     return fail(ErrorCode::broken_invariant, "materials do not continue the table");
   if (auto sound = check_rows(rows); !sound) return sound;
   for (const MaterialRow& row : rows) {
-    const auto added = add({row.name, row.colour, row.visibility, std::nullopt, row.body});
+    const auto added =
+        add({row.name, row.colour, row.visibility, std::nullopt, row.body, row.look});
     RUNSTONE_ASSERT(added.has_value());
   }
   return {};

@@ -42,8 +42,12 @@ struct MaterialInfo {
   Visibility visibility = Visibility::opaque;
   std::optional<GenerationRule> generation;
   MaterialBody body = MaterialBody::solid;
+  std::optional<MaterialLook> look = std::nullopt;  // as that of a MaterialRow
   friend bool operator==(const MaterialInfo&, const MaterialInfo&) = default;
 };
+
+/// Returns the row without the rule of generation.
+MaterialRow row_of(const MaterialInfo& info);
 
 /// An error in a text file: file, line and key.
 struct TextError {
@@ -68,7 +72,7 @@ class MaterialTable {
 
   /// Appends a row and returns its id. Fails with limit_exceeded if the table is full, and with
   /// bad_value for a bad or duplicate name, an opaque material with alpha below 255, or a number
-  /// outside its range. Cost: O(log size).
+  /// or a look outside its range. Cost: O(log size).
   Result<Material> add(MaterialInfo info);
   /// Fails if the rows cannot be appended together: with limit_exceeded if the table has no room for
   /// all of them, and with bad_value for a bad row, or a name that is taken, by the table or by an

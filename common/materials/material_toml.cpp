@@ -1,4 +1,4 @@
-// The text form of a material table, both ways. The only file of this module that includes a TOML
+// Reads the text form of a material table. The only file of this module that includes a TOML
 // library.
 #include <toml++/toml.h>
 
@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "common/materials/material_names.hpp"
 #include "common/materials/material_table.hpp"
 
 namespace runstone {
@@ -19,9 +20,6 @@ std::string TextError::message() const {
 }
 
 namespace {
-
-constexpr const char* kVisibilityNames[] = {"empty", "opaque", "transparent"};
-constexpr const char* kBodyNames[] = {"solid", "liquid", "passable"};
 
 /// The first error is kept. The results of later reads are not used.
 class TableReader {
@@ -109,6 +107,48 @@ class TableReader {
     return MaterialBody::solid;
   }
 
+  std::uint8_t share(const toml::table& table, const std::string& path, std::string_view key,
+                     std::uint8_t otherwise) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return otherwise;
+    const auto* value = node->as_integer();
+    if (value != nullptr && value->get() >= 0 && value->get() <= kLookShareMax)
+      return static_cast<std::uint8_t>(value->get());
+    reject(*node, path + "." + std::string(key), "must be an integer of 0 .. 100 (percent)");
+    return otherwise;
+  }
+
+  MaterialPattern pattern(const toml::table& table, const std::string& path) {
+    const auto written = text(table, path, "pattern");
+    if (!written) return MaterialPattern::none;
+    std::string names;
+    for (std::uint8_t i = 0; i < kMaterialPatterns; ++i) {
+      if (*written == kPatternNames[i]) return static_cast<MaterialPattern>(i);
+      names += (i == 0 ? "" : ", ") + std::string(kPatternNames[i]);
+    }
+    reject(*table.get("pattern"), path + ".pattern", "must be one of " + names);
+    return MaterialPattern::none;
+  }
+
+  std::optional<MaterialLook> look(const toml::table& table, const std::string& path) {
+    const toml::node* node = table.get("look");
+    if (node == nullptr) return std::nullopt;
+    const std::string here = path + ".look";
+    const toml::table* keys = node->as_table();
+    if (keys == nullptr) {
+      reject(*node, here, "must be a table");
+      return std::nullopt;
+    }
+    only_keys(*keys, here, {"variation", "grain", "roughness", "emission", "pattern"});
+    MaterialLook out;
+    out.variation = share(*keys, here, "variation", out.variation);
+    out.grain = share(*keys, here, "grain", out.grain);
+    out.roughness = share(*keys, here, "roughness", out.roughness);
+    out.emission = share(*keys, here, "emission", out.emission);
+    out.pattern = pattern(*keys, here);
+    return out;
+  }
+
   std::optional<SurfaceRule> surface(const toml::table& table, const std::string& path,
                                      std::string_view key) {
     const toml::node* node = table.get(key);
@@ -162,7 +202,7 @@ class TableReader {
 
 /// Reads a row without the checks of MaterialTable::add().
 MaterialInfo read_info(TableReader& in, const toml::table& row, const std::string& path) {
-  in.only_keys(row, path, {"name", "colour", "visibility", "body", "generate"});
+  in.only_keys(row, path, {"name", "colour", "visibility", "body", "look", "generate"});
   const auto name = in.text(row, path, "name");
   if (!name) in.reject(row, path + ".name", "is missing");
   MaterialInfo info;
@@ -174,6 +214,7 @@ MaterialInfo read_info(TableReader& in, const toml::table& row, const std::strin
   } else {
     info.colour = {0, 0, 0, 0};
   }
+  info.look = in.look(row, path);
   info.generation = in.generation(row, path);
   if (name) info.name = *name;
   return info;
@@ -222,43 +263,6 @@ void for_each_row(TableReader& in, std::string_view text, Act act) {
   }
 }
 
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
-
-/// Returns the shortest decimal that reads back to the same double, always in a form that TOML
-/// reads as a float.
-std::string decimal(double value) {
-  char buffer[32];
-  const auto [end, status] = std::to_chars(buffer, buffer + sizeof buffer, value);
-  RUNSTONE_ASSERT(status == std::errc{});
-  std::string out(buffer, end);
-  if (out.find_first_of(".e") == std::string::npos) out += ".0";
-  return out;
-}
-
-std::string surface_text(const SurfaceRule& rule) {
-  return "{ seed = " + std::to_string(rule.seed) + ", elevation = " + decimal(rule.elevation) +
-         ", distance = " + decimal(rule.distance) + ", frequency = " + decimal(rule.frequency) +
-         " }";
-}
-
-std::string colour_text(const std::array<std::uint8_t, 4>& colour) {
-  constexpr char kHex[] = "0123456789abcdef";
-  std::string out = "#";
-  const std::size_t count = colour[3] == 255 ? 3 : 4;
-  for (std::size_t i = 0; i < count; ++i) {
-    out += kHex[colour[i] >> 4];
-    out += kHex[colour[i] & 15];
-  }
-  return out;
-}
-
 }  // namespace
 
 Result<MaterialTable, TextError> parse_material_table(std::string_view toml,
@@ -283,29 +287,10 @@ Result<std::vector<MaterialFileRow>, TextError> parse_material_rows(std::string_
     if (const toml::node* rule = row.get("generate"))
       in.reject(*rule, path + ".generate", "a material that is added later cannot be terrain");
     if (in.failed()) return;
-    out.push_back({{info.name, info.colour, info.visibility, info.body},
-                   static_cast<std::uint32_t>(row.source().begin.line)});
+    out.push_back({row_of(info), static_cast<std::uint32_t>(row.source().begin.line)});
     if (const auto id = own.add(std::move(info)); !id) in.reject(row, path, id.error().what);
   });
   if (in.failed()) return in.error();
-  return out;
-}
-
-std::string to_toml(const MaterialTable& table) {
-  std::string out;
-  for (const MaterialInfo& row : table.rows()) {
-    if (!out.empty()) out += '\n';
-    out += "[[material]]\nname = " + quoted(row.name) + "\n";
-    out += "colour = " + quoted(colour_text(row.colour)) + "\n";
-    out += std::string("visibility = \"") +
-           kVisibilityNames[static_cast<std::size_t>(row.visibility)] + "\"\n";
-    if (row.body != MaterialBody::solid)
-      out += std::string("body = \"") + kBodyNames[static_cast<std::size_t>(row.body)] + "\"\n";
-    if (!row.generation) continue;
-    out += "[material.generate]\nsurface = " + surface_text(row.generation->surface) + "\n";
-    if (row.generation->reversed)
-      out += "reversed = " + surface_text(*row.generation->reversed) + "\n";
-  }
   return out;
 }
 

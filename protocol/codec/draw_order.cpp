@@ -228,7 +228,7 @@ Result<void> DrawOrderReader::open_frame() {
     return fail(ErrorCode::unknown_kind, "draw order: unknown kind", frame_at_);
   }
   if (body_bytes_ > kDrawBodyBytesMax) {
-    return fail(ErrorCode::limit_exceeded, "draw order: longer than 16 MiB", frame_at_);
+    return fail(ErrorCode::limit_exceeded, "draw order: longer than 24 MiB", frame_at_);
   }
   if ((kind == Kind::world) != (edge_ == 0)) {
     return fail(ErrorCode::broken_invariant, "draw order: the world comes first, and once",

@@ -1,7 +1,7 @@
 // Draw orders: a program without OpenGL writes them to the standard input of a child process,
 // `runstone-client --draw`, which draws pictures of a world (docs/client.md). Little-endian:
 //   frame   u32 body bytes | u8 kind | body
-//   world   1: u8 version (1) | u8 chunk edge | material table as TOML, without generation. First,
+//   world   1: u8 version (2) | u8 chunk edge | material table as TOML, without generation. First,
 //           and once
 //   chunk   2: u8 lod (0) | i32 x, y, z | chunk bytes in any encoding (chunk_codec.hpp). Stored
 //           from now on
@@ -28,9 +28,11 @@
 
 namespace runstone {
 
-inline constexpr std::uint8_t kDrawVersion = 1;
+inline constexpr std::uint8_t kDrawVersion = 2;
 inline constexpr std::size_t kDrawHeaderBytes = 5;
-inline constexpr std::size_t kDrawBodyBytesMax = kServerChunkBytesMax;
+// A full table of materials, with the longest names and looks, fits. So does the largest chunk.
+inline constexpr std::size_t kDrawBodyBytesMax = std::size_t{24} << 20;
+static_assert(kDrawBodyBytesMax >= kServerChunkBytesMax);
 inline constexpr std::size_t kDrawFileBytesMax = 4096;
 inline constexpr std::uint16_t kDrawSideMin = 16, kDrawSideMax = 8192;    // pixels
 inline constexpr double kDrawDistanceMin = 0.01, kDrawDistanceMax = 1e6;  // voxels, of near and far

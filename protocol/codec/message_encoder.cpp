@@ -289,9 +289,12 @@ struct BodyBuilder {
       std::uint32_t rgba = 0;
       for (unsigned i = 0; i < 4; ++i) rgba |= static_cast<std::uint32_t>(c[i]) << (8 * i);
       const auto name = b.CreateString(row.name);
-      rows.push_back(wire::CreateMaterialRow(b, name, rgba,
-                                             static_cast<std::uint8_t>(row.visibility),
-                                             static_cast<std::uint8_t>(row.body)));
+      const MaterialLook given = row.look.value_or(MaterialLook{});
+      const wire::MaterialLook look(given.variation, given.grain, given.roughness, given.emission,
+                                    static_cast<std::uint8_t>(given.pattern));
+      rows.push_back(
+          wire::CreateMaterialRow(b, name, rgba, static_cast<std::uint8_t>(row.visibility),
+                                  static_cast<std::uint8_t>(row.body), row.look ? &look : nullptr));
     }
     return b.CreateVector(rows);
   }

@@ -13,6 +13,7 @@ Result<void> take_materials(const wire::Welcome& t, MaterialTable& table) {
     MaterialInfo info;
     if (!take_material(*rows->Get(i), info)) return bad("bad row in welcome.materials");
     if (i == 0) {
+      info.look.reset();  // air is not drawn, and a look is never a reason to refuse a row
       if (info != table[kEmpty]) return bad("row 0 of welcome.materials is not air");
     } else if (const auto id = table.add(std::move(info)); !id) {
       return Unexpected<Error>{id.error()};

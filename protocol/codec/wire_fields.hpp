@@ -64,8 +64,8 @@ inline bool take_pose(const wire::Pose* from, Pose& to) {
   return true;
 }
 
-/// Reads name, colour, visibility and body of a MaterialRow or MaterialInfo. MaterialTable checks
-/// the rest.
+/// Reads a MaterialRow or MaterialInfo. MaterialTable checks the rest. A look is never a reason to
+/// refuse a row: it is taken for the nearest valid one.
 template <class Row>
 bool take_material(const wire::MaterialRow& row, Row& info) {
   if (!take_text(row.name(), 1, kMaterialNameBytesMax, info.name)) return false;
@@ -75,6 +75,11 @@ bool take_material(const wire::MaterialRow& row, Row& info) {
   info.visibility = static_cast<Visibility>(row.visibility());
   if (row.body() > static_cast<std::uint8_t>(MaterialBody::passable)) return false;
   info.body = static_cast<MaterialBody>(row.body());
+  if (const wire::MaterialLook* look = row.look()) {
+    info.look =
+        nearest_valid_look({look->variation(), look->grain(), look->roughness(), look->emission(),
+                            static_cast<MaterialPattern>(look->pattern())});
+  }
   return true;
 }
 

@@ -25,6 +25,7 @@ const char* name_of(EditKind kind) {
     case EditKind::rights:
       return "rights";
     case EditKind::materials:
+    case EditKind::materials_with_looks:
       return "materials";
   }
   return "?";

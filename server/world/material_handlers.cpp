@@ -17,8 +17,7 @@ MaterialsAdded rows_from(const MaterialTable& table, std::size_t first) {
   const auto rows = table.rows().subspan(first, std::min(table.size() - first, kAddedMaterialsMax));
   MaterialsAdded message;
   message.first = static_cast<Material>(first);
-  for (const MaterialInfo& info : rows)
-    message.rows.push_back({info.name, info.colour, info.visibility, info.body});
+  for (const MaterialInfo& info : rows) message.rows.push_back(row_of(info));
   return message;
 }
 

@@ -7,6 +7,7 @@
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
+#include "tests/support/random_look.hpp"
 
 namespace runstone::test {
 namespace {
@@ -105,6 +106,7 @@ MaterialTable any_materials(SplitMix64& rng) {
     info.visibility = static_cast<Visibility>(rng.below(3));
     if (info.visibility == Visibility::opaque) info.colour[3] = 255;
     if (info.visibility != Visibility::empty) info.body = static_cast<MaterialBody>(rng.below(3));
+    if (rng.below(2) == 0) info.look = random_look(rng);
     RUNSTONE_ASSERT(table.add(std::move(info)).has_value());
   }
   return table;

@@ -13,6 +13,7 @@
 #include "server/store/store.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
+#include "tests/support/random_look.hpp"
 
 namespace runstone::test {
 
@@ -94,6 +95,7 @@ inline EditDescriptor sample_materials_edit(SplitMix64& rng) {
     row.visibility = static_cast<Visibility>(rng.below(3));
     for (std::uint8_t& channel : row.colour) channel = static_cast<std::uint8_t>(rng.next());
     if (row.visibility == Visibility::opaque) row.colour[3] = 255;
+    if (rng.below(2) == 0) row.look = random_look(rng);
     added.rows.push_back(row);
   }
   return materials_edit(std::move(added));

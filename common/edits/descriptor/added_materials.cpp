@@ -4,6 +4,27 @@
 #include <string_view>
 
 namespace runstone {
+namespace {
+
+/// The bit of a row's visibility and body that says that a look follows.
+constexpr std::uint8_t kHasLook = 16;
+
+void write_look(ByteWriter& w, const MaterialLook& look) {
+  for (const std::uint8_t byte : {look.variation, look.grain, look.roughness, look.emission,
+                                  static_cast<std::uint8_t>(look.pattern)}) {
+    w.u8(byte);
+  }
+}
+
+MaterialLook read_look(ByteReader& r) {
+  MaterialLook look;
+  for (std::uint8_t* share : {&look.variation, &look.grain, &look.roughness, &look.emission})
+    *share = r.u8();
+  look.pattern = static_cast<MaterialPattern>(r.u8());
+  return look;
+}
+
+}  // namespace
 
 Result<void> validate(const AddedMaterials& added) {
   if (added.rows.empty()) return fail(ErrorCode::bad_value, "no materials are added");
@@ -16,7 +37,8 @@ Result<void> validate(const AddedMaterials& added) {
   for (const MaterialRow& row : added.rows) {
     if (row.visibility > Visibility::transparent)
       return fail(ErrorCode::bad_value, "unknown visibility");
-    if (auto sound = validate_material(row.name, row.colour, row.visibility, row.body); !sound)
+    if (auto sound = validate_material(row.name, row.colour, row.visibility, row.body, row.look);
+        !sound)
       return sound;
     names.push_back(row.name);
   }
@@ -24,6 +46,11 @@ Result<void> validate(const AddedMaterials& added) {
   if (std::adjacent_find(names.begin(), names.end()) != names.end())
     return fail(ErrorCode::bad_value, "two added materials have one name");
   return {};
+}
+
+bool has_looks(const AddedMaterials& added) {
+  return std::any_of(added.rows.begin(), added.rows.end(),
+                     [](const MaterialRow& row) { return row.look.has_value(); });
 }
 
 void write_added_materials(ByteWriter& w, const AddedMaterials& added) {
@@ -34,11 +61,13 @@ void write_added_materials(ByteWriter& w, const AddedMaterials& added) {
     w.bytes({reinterpret_cast<const std::uint8_t*>(row.name.data()), row.name.size()});
     w.bytes(row.colour);
     w.u8(static_cast<std::uint8_t>(static_cast<unsigned>(row.visibility) |
-                                   static_cast<unsigned>(row.body) << 2));
+                                   static_cast<unsigned>(row.body) << 2 |
+                                   (row.look ? kHasLook : 0U)));
+    if (row.look) write_look(w, *row.look);
   }
 }
 
-AddedMaterials read_added_materials(ByteReader& r) {
+AddedMaterials read_added_materials(ByteReader& r, bool with_looks) {
   AddedMaterials added;
   added.first = static_cast<Material>(r.varint_max(0xffff, "material id exceeds 16 bits"));
   const std::uint64_t count =
@@ -50,11 +79,17 @@ AddedMaterials read_added_materials(ByteReader& r) {
     row.name.assign(name.begin(), name.end());
     const ByteView colour = r.bytes(row.colour.size());
     std::copy(colour.begin(), colour.end(), row.colour.begin());
-    const std::uint8_t kind = r.u8();
+    std::uint8_t kind = r.u8();
+    if (with_looks && (kind & kHasLook) != 0) {
+      kind ^= kHasLook;
+      row.look = read_look(r);
+    }
     row.visibility = static_cast<Visibility>(kind & 3);
     row.body = static_cast<MaterialBody>(kind >> 2);
     added.rows.push_back(std::move(row));
   }
+  if (r.ok() && with_looks && !has_looks(added))
+    r.reject(ErrorCode::not_canonical, "no look in the kind of materials with looks");
   return added;
 }
 

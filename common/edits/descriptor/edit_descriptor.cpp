@@ -207,6 +207,7 @@ bool is_kind(std::uint8_t tag) {
     case EditKind::paste:
     case EditKind::rights:
     case EditKind::materials:
+    case EditKind::materials_with_looks:
       return true;
   }
   return false;
@@ -238,7 +239,9 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
     case EditKind::rights:
       return RightsEdit{std::make_shared<const RightsChange>(read_rights_change(r))};
     case EditKind::materials:
-      return MaterialsEdit{std::make_shared<const AddedMaterials>(read_added_materials(r))};
+      return MaterialsEdit{std::make_shared<const AddedMaterials>(read_added_materials(r, false))};
+    case EditKind::materials_with_looks:
+      return MaterialsEdit{std::make_shared<const AddedMaterials>(read_added_materials(r, true))};
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
@@ -249,6 +252,8 @@ EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
       EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
       EditKind::paste,     EditKind::rights,   EditKind::materials};
+  const AddedMaterials* added = added_materials_of(edit);
+  if (added != nullptr && has_looks(*added)) return EditKind::materials_with_looks;
   return kKinds[edit.shape.index()];
 }
 

@@ -30,7 +30,8 @@ enum class EditKind : std::uint8_t {
   fill_stroke = 4,
   paste = 6,
   rights = 7,
-  materials = 8
+  materials = 8,
+  materials_with_looks = 9  // of which at least one has a look
 };
 
 /// The condition on the present voxels of the geometry that an edit may write. The values are
@@ -117,7 +118,7 @@ struct MaterialsEdit {
   }
 };
 
-// The order is that of EditKind.
+// The order is that of EditKind. Both kinds of new materials are MaterialsEdit.
 using EditShape =
     std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit, MaterialsEdit>;
 
@@ -163,11 +164,13 @@ constexpr std::size_t descriptor_bytes_max(EditKind kind) {
   if (kind == EditKind::paste) return 64 + kClipboardBytesMax;
   if (kind == EditKind::rights) return 64 + kRightsChangeBytesMax;
   if (kind == EditKind::materials) return 64 + kAddedMaterialsBytesMax;
+  if (kind == EditKind::materials_with_looks)
+    return 64 + kAddedMaterialsBytesMax + kAddedLooksBytesMax;
   return kind == EditKind::fill_stroke ? 1600 : 64;
 }
 // Maximum over all kinds.
 inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::paste);
-static_assert(descriptor_bytes_max(EditKind::materials) <= kDescriptorBytesMax);
+static_assert(descriptor_bytes_max(EditKind::materials_with_looks) <= kDescriptorBytesMax);
 
 /// Fails with the first field outside its range: a position beyond the world, an empty or oversized
 /// box, a radius, the points of a stroke, a paste without a clipboard. A clipboard is always valid.

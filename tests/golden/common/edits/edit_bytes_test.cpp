@@ -97,6 +97,18 @@ TEST_CASE("descriptor bytes of new materials are pinned", "[edits][golden]") {
                0xa9, 0xcf, 0xe8, 0xf0, 0x48, 0x02});  // colour, transparent
 }
 
+TEST_CASE("descriptor bytes of new materials with looks are pinned", "[edits][golden]") {
+  AddedMaterials added = kWoolAndIce;
+  added.rows[1].look = MaterialLook{3, 4, 10, 0, MaterialPattern::tiles};
+  check_bytes(materials_edit(added), {0x09, 0x00, 0x00,  // with looks, no mask, no material
+                                      0xac, 0x02, 0x01,  // the first is 300, and there are two
+                                      0x04, 'w',  'o',  'o',  'l',   //
+                                      0xb8, 0x32, 0x2f, 0xff, 0x01,  // colour, opaque, no look
+                                      0x06, 'i',  'c',  'e',  ' ',  0xc3, 0xa9,  //
+                                      0xcf, 0xe8, 0xf0, 0x48, 0x12,  // colour, transparent, a look
+                                      0x03, 0x04, 0x0a, 0x00, 0x03});
+}
+
 TEST_CASE("record bytes of new materials are pinned", "[edits][golden]") {
   EditRecord record;
   record.version = {2, 300};

@@ -42,7 +42,8 @@ TEST_CASE("one adds materials, two build with them, and nobody is disturbed",
   const std::string world = folder / "world", file = folder / "wool.toml";
   std::ofstream(file) << "[[material]]\nname = \"lime\"\ncolour = \"#80ff20\"\n"
                          "[[material]]\nname = \"ice\"\ncolour = \"#a0c0ff80\"\n"
-                         "visibility = \"transparent\"\n";
+                         "visibility = \"transparent\"\n"
+                         "look = { roughness = 5, pattern = \"tiles\" }\n";
   auto server = start_server(quiet_config(world), flat_creation());
   LiveSession ann(server->port(), kWoolView), bob(server->port(), kWoolView);
   ann.catch_up();
@@ -68,6 +69,8 @@ TEST_CASE("one adds materials, two build with them, and nobody is disturbed",
   bob.until([&] { return shown_at(bob, {6, 70, 2}) == kLime + 1; });
   CHECK(shown_at(bob, {2, 70, 2}) == kLime);
   CHECK(bob.session().welcome()->materials == ann.session().welcome()->materials);
+  const MaterialLook ice{10, 8, 5, 0, MaterialPattern::tiles};
+  CHECK(bob.session().welcome()->materials[kLime + 1].look == ice);
   const std::vector<UnitFace> faces = faces_of(bob);
   CHECK(faces.size() == 6 * 4 * 4 + 5);  // the cube of lime, seen through the ice, and the ice
   CHECK(faces == faces_of(ann));
@@ -84,6 +87,10 @@ TEST_CASE("one adds materials, two build with them, and nobody is disturbed",
   CHECK_FALSE(again.is_ok);
   CHECK(again.text == "materials add: " + file + ":1: material[0]: name is already taken\n");
   server->stop();
+  server = start_server(quiet_config(world), flat_creation());  // the look is in the log
+  LiveSession after(server->port(), kWoolView);
+  after.catch_up();
+  CHECK(after.session().welcome()->materials[kLime + 1].look == ice);
 }
 
 }  // namespace runstone::test

@@ -6,6 +6,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
+#include "tests/support/random_look.hpp"
 
 namespace runstone::test {
 namespace {
@@ -18,6 +19,10 @@ MaterialRow any_row(SplitMix64& rng) {
   row.visibility = static_cast<Visibility>(rng.below(3));
   for (std::uint8_t& channel : row.colour) channel = static_cast<std::uint8_t>(rng.next());
   if (row.visibility == Visibility::opaque && rng.below(200) != 0) row.colour[3] = 255;
+  if (rng.below(3) == 0) row.look = random_look(rng);
+  if (row.look && rng.below(100) == 0) row.look->grain = 101;
+  if (row.look && rng.below(100) == 0)
+    row.look->pattern = static_cast<MaterialPattern>(kMaterialPatterns);
   return row;
 }
 
@@ -29,7 +34,10 @@ std::size_t first_bad(const std::vector<MaterialRow>& table, const std::vector<M
     const bool is_known = std::any_of(all.begin(), all.end(),
                                       [&](const MaterialRow& old) { return old.name == row.name; });
     const bool is_see_through = row.visibility == Visibility::opaque && row.colour[3] != 255;
-    if (is_known || is_see_through || row.name.empty() || row.name.size() > 64) return i;
+    const bool is_silly =
+        row.look && (row.look->grain > 100 || static_cast<int>(row.look->pattern) > 6);
+    if (is_known || is_see_through || is_silly || row.name.empty() || row.name.size() > 64)
+      return i;
     all.push_back(row);
   }
   return rows.size();
@@ -60,7 +68,8 @@ TEST_CASE("a table takes all rows that fit together, or none", "[materials][prop
       REQUIRE(table.size() == oracle.size());
       for (std::size_t id = 0; id < oracle.size(); ++id) {
         const MaterialInfo& info = table[static_cast<Material>(id)];
-        REQUIRE(MaterialRow{info.name, info.colour, info.visibility} == oracle[id]);
+        REQUIRE(MaterialRow{info.name, info.colour, info.visibility, info.body, info.look} ==
+                oracle[id]);
         REQUIRE(table.find(info.name) == static_cast<Material>(id));
         REQUIRE_FALSE(info.generation.has_value());
       }

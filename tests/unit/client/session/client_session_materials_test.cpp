@@ -7,7 +7,9 @@ using namespace session_bench;
 
 namespace {
 
-const std::vector<MaterialRow> kLime = {{"lime", {1, 2, 3, 255}, Visibility::opaque}};
+constexpr MaterialLook kLook{1, 2, 3, 4, MaterialPattern::weave};
+const std::vector<MaterialRow> kLime = {
+    {"lime", {1, 2, 3, 255}, Visibility::opaque, MaterialBody::solid, kLook}};
 const auto kFirst = static_cast<Material>(default_material_table().size());
 
 struct MaterialSession : SessionBench {
@@ -34,6 +36,7 @@ TEST_CASE_METHOD(MaterialSession, "an edit with a new material is predicted as s
   receive(MaterialsAdded{kFirst, kLime});
   CHECK(session.is_open());
   CHECK(session.welcome()->materials.find("lime") == kFirst);
+  CHECK(session.welcome()->materials[kFirst].look == kLook);
   CHECK(session.submit(set({1, 1, 1}, kFirst), now, now).has_value());
   CHECK_FALSE(session.submit(set({1, 1, 1}, kFirst + 1), now, now).has_value());
   pong();

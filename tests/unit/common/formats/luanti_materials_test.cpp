@@ -49,6 +49,19 @@ TEST_CASE("stairs and walls have the colour of their material", "[formats]") {
   CHECK(colour("walls:mossycobble") == colour("default:mossycobble"));
 }
 
+TEST_CASE("nodes have the look that belongs to their name", "[formats]") {
+  const auto look = [](std::string_view name) {
+    const auto given = material_of_luanti_node(name, true).look;
+    REQUIRE(given.has_value());
+    return *given;
+  };
+  CHECK(look("default:acacia_wood").pattern == MaterialPattern::planks);
+  CHECK(look("default:meselamp").emission == 100);
+  CHECK(look("default:torch").emission == 100);
+  CHECK(look("default:lava_source").emission > 0);
+  CHECK(look("default:ice").roughness < look("default:stone").roughness);
+}
+
 TEST_CASE("unknown names get a shade of the colour of their kind", "[formats]") {
   const auto a = material_of_luanti_node("mod:oak_leaves", false),
              b = material_of_luanti_node("mod:fir_leaves", false);

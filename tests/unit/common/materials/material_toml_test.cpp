@@ -2,6 +2,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/materials/material_table.hpp"
+#include "tests/support/random_look.hpp"
 
 using namespace runstone;
 
@@ -33,6 +34,7 @@ MaterialTable random_table(SplitMix64& random) {
     if (info.visibility == Visibility::opaque) info.colour[3] = 255;
     if (info.visibility != Visibility::empty)
       info.body = static_cast<MaterialBody>(random.below(3));
+    if (random.below(2) == 0) info.look = test::random_look(random);
     if (random.below(2) == 0) info.generation = GenerationRule{surface(), std::nullopt};
     if (info.generation && random.below(2) == 0) info.generation->reversed = surface();
     REQUIRE(table.add(info).has_value());
@@ -58,10 +60,20 @@ reversed = { elevation = 4.0 }
 name = "mist"
 colour = "#01020304"
 visibility = "transparent"
+look = { emission = 100 }
+[[material]]
+name = "hedge"
+colour = "#102030"
+[material.look]
+variation = 0
+grain = 1
+roughness = 99
+emission = 3
+pattern = "bark"
 )",
                                           "m.toml");
   REQUIRE(table.has_value());
-  REQUIRE(table->size() == 3);
+  REQUIRE(table->size() == 4);
   const MaterialInfo& rock = (*table)[1];
   CHECK(rock.name == "rock");
   CHECK(rock.colour == std::array<std::uint8_t, 4>{10, 11, 255, 255});
@@ -69,7 +81,12 @@ visibility = "transparent"
   REQUIRE(rock.generation.has_value());
   CHECK(rock.generation->surface == SurfaceRule{-3, 12, 1.5, 0.25});
   CHECK(rock.generation->reversed == SurfaceRule{1, 4, 0, 0.007});
+  CHECK_FALSE(rock.look.has_value());
   CHECK((*table)[2].colour == std::array<std::uint8_t, 4>{1, 2, 3, 4});
+  MaterialLook bright;  // keys that are not given have their defaults
+  bright.emission = 100;
+  CHECK((*table)[2].look == bright);
+  CHECK((*table)[3].look == MaterialLook{0, 1, 99, 3, MaterialPattern::bark});
 }
 
 TEST_CASE("a table round trips through text", "[materials]") {
@@ -140,6 +157,19 @@ TEST_CASE("every mistake in a row is reported at its key", "[materials]") {
        "material[1].generate.upper"},
       {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { frequency = nan }\n",
        4, "material[1]"},
+      {"name = \"r\"\ncolour = \"#102030\"\nlook = \"shiny\"\n", 7, "material[1].look"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.look]\nglow = 1\n", 8,
+       "material[1].look.glow"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.look]\nemission = 101\n", 8,
+       "material[1].look.emission"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.look]\nvariation = -1\n", 8,
+       "material[1].look.variation"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.look]\nroughness = 0.5\n", 8,
+       "material[1].look.roughness"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.look]\npattern = \"stripes\"\n", 8,
+       "material[1].look.pattern"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.look]\npattern = 1\n", 8,
+       "material[1].look.pattern"},
   };
   for (const Case& c : cases) {
     CAPTURE(c.row);
@@ -173,13 +203,19 @@ TEST_CASE("the first material is air", "[materials]") {
 TEST_CASE("a file of added materials has rows with their lines, without air", "[materials]") {
   const auto rows = parse_material_rows(
       "# wool\n[[material]]\nname = \"lime\"\ncolour = \"#80ff20\"\n\n"
-      "[[material]]\nname = \"ice\"\ncolour = \"#a0c0ff80\"\nvisibility = \"transparent\"\n",
+      "[[material]]\nname = \"ice\"\ncolour = \"#a0c0ff80\"\nvisibility = \"transparent\"\n"
+      "look = { roughness = 9 }\n",
       "wool.toml");
   REQUIRE(rows.has_value());
   REQUIRE(rows->size() == 2);
   CHECK((*rows)[0].row == MaterialRow{"lime", {0x80, 0xff, 0x20, 0xff}, Visibility::opaque});
   CHECK((*rows)[0].line == 2);
-  CHECK((*rows)[1].row == MaterialRow{"ice", {0xa0, 0xc0, 0xff, 0x80}, Visibility::transparent});
+  const MaterialRow ice{"ice",
+                        {0xa0, 0xc0, 0xff, 0x80},
+                        Visibility::transparent,
+                        MaterialBody::solid,
+                        MaterialLook{10, 8, 9, 0, MaterialPattern::none}};
+  CHECK((*rows)[1].row == ice);
   CHECK((*rows)[1].line == 6);
 }
 

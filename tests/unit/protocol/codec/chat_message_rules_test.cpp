@@ -1,4 +1,5 @@
 // Which values are refused of chat lines, keys for another device and added materials.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,10 +39,12 @@ struct AddedMaterialFields {
   std::vector<std::string> names = {"lamp", "ice"};
   std::uint32_t rgba = 0xff00'0000;
   std::uint8_t visibility = 1;
+  std::optional<wire::MaterialLook> look;
   Offset<wire::MaterialsAdded> operator()(FlatBufferBuilder& b) const {
     std::vector<Offset<wire::MaterialRow>> rows;
     for (const std::string& name : names)
-      rows.push_back(wire::CreateMaterialRow(b, b.CreateString(name), rgba, visibility));
+      rows.push_back(wire::CreateMaterialRow(b, b.CreateString(name), rgba, visibility, 0,
+                                             look ? &*look : nullptr));
     return wire::CreateMaterialsAdded(b, first, b.CreateVector(rows));
   }
 };
@@ -93,6 +96,21 @@ TEST_CASE("added materials are refused outside the table, unnamed, twice or half
   AddedMaterialFields last;
   last.first = kMaterialCountMax - 2;
   CHECK(passes<MaterialsAdded>(last));
+}
+
+TEST_CASE("a silly look of a material is taken for the nearest valid one", "[protocol]") {
+  const auto look_from = [](const std::optional<wire::MaterialLook>& look) {
+    AddedMaterialFields fields;
+    fields.look = look;
+    const auto message = received<MaterialsAdded>(fields);
+    REQUIRE(message.has_value());
+    return std::get<MaterialsAdded>(*message).rows.at(1).look;
+  };
+  CHECK(look_from(std::nullopt) == std::nullopt);
+  CHECK(look_from(wire::MaterialLook(1, 2, 3, 100, 6)) ==
+        MaterialLook{1, 2, 3, 100, MaterialPattern::weave});
+  CHECK(look_from(wire::MaterialLook(101, 255, 200, 255, 7)) ==
+        MaterialLook{100, 100, 100, 100, MaterialPattern::none});
 }
 
 }  // namespace runstone::test

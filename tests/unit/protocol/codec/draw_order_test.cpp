@@ -19,7 +19,14 @@ MaterialTable two_materials() {
   MaterialTable table;
   GenerationRule rule;
   REQUIRE(table.add({"red", {220, 30, 30, 255}, Visibility::opaque, rule}).has_value());
-  REQUIRE(table.add({"gl\"ass", {40, 80, 255, 128}, Visibility::transparent, {}}).has_value());
+  REQUIRE(table
+              .add({"gl\"ass",
+                    {40, 80, 255, 128},
+                    Visibility::transparent,
+                    {},
+                    MaterialBody::solid,
+                    MaterialLook{1, 2, 3, 4, MaterialPattern::weave}})
+              .has_value());
   return table;
 }
 
@@ -118,6 +125,24 @@ TEST_CASE("draw orders come back unchanged, however the stream is cut", "[protoc
   CHECK(picture.file == sample_picture().file);
 }
 
+TEST_CASE("a full table with the longest names and looks fits a draw order", "[protocol]") {
+  MaterialTable table;
+  for (unsigned i = 1; i < kMaterialCountMax; ++i) {
+    const std::string digits = std::to_string(i);
+    // Quotation marks take two bytes each in the text of the table.
+    MaterialInfo info{std::string(kMaterialNameBytesMax - digits.size(), '"') + digits,
+                      {1, 2, 3, 4},
+                      Visibility::transparent,
+                      GenerationRule{},
+                      MaterialBody::passable,
+                      MaterialLook{99, 99, 99, 99, MaterialPattern::planks}};
+    REQUIRE(table.add(std::move(info)).has_value());
+  }
+  Bytes out;
+  append_draw_world(kEdge, table, out);
+  CHECK(out.size() <= kDrawHeaderBytes + kDrawBodyBytesMax);
+}
+
 TEST_CASE("the bytes of draw orders are pinned", "[protocol]") {
   Bytes out;
   append_draw_forget(kKey, out);
@@ -147,7 +172,7 @@ TEST_CASE("the bytes of draw orders are pinned", "[protocol]") {
         "612e706e67"
         "0000000005");
   const Bytes head = world();
-  CHECK(to_hex(ByteView(head).subspan(4, 3)) == "010110");
+  CHECK(to_hex(ByteView(head).subspan(4, 3)) == "010210");
 }
 
 TEST_CASE("a truncated stream of orders is an error, and no incomplete order is delivered",
@@ -185,7 +210,7 @@ TEST_CASE("frames with an invalid header are refused, with the offset of their f
           "[protocol]") {
   CHECK(error_after_world(from_hex("0000000000")).code == ErrorCode::unknown_kind);
   CHECK(error_after_world(from_hex("0000000006")).code == ErrorCode::unknown_kind);
-  CHECK(error_after_world(from_hex("0100000102")).code == ErrorCode::limit_exceeded);
+  CHECK(error_after_world(from_hex("0100800102")).code == ErrorCode::limit_exceeded);
   CHECK(error_after_world(from_hex("ffffffff02")).code == ErrorCode::limit_exceeded);
   CHECK(error_after_world(world()).code == ErrorCode::broken_invariant);
   CHECK(error_after_world(from_hex("01000000 05 00")).code == ErrorCode::trailing_bytes);
@@ -208,7 +233,7 @@ TEST_CASE("frames with an invalid header are refused, with the offset of their f
 TEST_CASE("a world of another version, edge or material table is refused", "[protocol]") {
   const Bytes good = world();
   for (const auto& [at, value, code] :
-       {std::tuple{5, 2, ErrorCode::bad_version}, std::tuple{6, 24, ErrorCode::bad_value},
+       {std::tuple{5, 1, ErrorCode::bad_version}, std::tuple{6, 24, ErrorCode::bad_value},
         std::tuple{6, 0, ErrorCode::bad_value}, std::tuple{7, int{'@'}, ErrorCode::bad_value}}) {
     Bytes bad = good;
     bad[static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(value);

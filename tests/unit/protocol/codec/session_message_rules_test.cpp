@@ -1,6 +1,7 @@
 #include "tests/unit/protocol/codec/built_message.hpp"
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,14 +34,15 @@ struct WelcomeFields {
     std::uint32_t rgba;
     std::uint8_t visibility;
     std::uint8_t body = 0;
+    std::optional<wire::MaterialLook> look = std::nullopt;
   };
   std::vector<Row> rows = {{"air", 0, 0}, {"stone", 0xff808080, 1}};
   bool has_spawn = true;
   Offset<wire::Welcome> operator()(FlatBufferBuilder& b) const {
     std::vector<Offset<wire::MaterialRow>> table;
     for (const Row& row : rows) {
-      table.push_back(
-          wire::CreateMaterialRow(b, b.CreateString(row.name), row.rgba, row.visibility, row.body));
+      table.push_back(wire::CreateMaterialRow(b, b.CreateString(row.name), row.rgba, row.visibility,
+                                              row.body, row.look ? &*row.look : nullptr));
     }
     const auto materials = b.CreateVector(table);
     const auto w = filled(b, world_id), k = filled(b, server_key), c = filled(b, challenge),
@@ -121,7 +123,17 @@ TEST_CASE("welcome is refused with a field of the wrong size or range", "[protoc
                                    [](auto& w) { w.rows[1].rgba = 0x7f000000; }});
 }
 
-TEST_CASE("a table of all 65,536 materials fits welcome", "[protocol]") {
+TEST_CASE("no look of a material refuses welcome", "[protocol]") {
+  WelcomeFields silly;
+  for (WelcomeFields::Row& row : silly.rows) row.look = wire::MaterialLook(255, 255, 255, 255, 255);
+  const auto message = received<Welcome>(silly);
+  REQUIRE(message.has_value());
+  const MaterialTable& table = std::get<Welcome>(*message).materials;
+  CHECK_FALSE(table[kEmpty].look.has_value());
+  CHECK(table[1].look == MaterialLook{100, 100, 100, 100, MaterialPattern::none});
+}
+
+TEST_CASE("a table of all 65,536 materials with looks fits welcome", "[protocol]") {
   Welcome welcome;
   welcome.epoch = 1;
   for (unsigned i = 1; i < kMaterialCountMax; ++i) {
@@ -129,7 +141,9 @@ TEST_CASE("a table of all 65,536 materials fits welcome", "[protocol]") {
     REQUIRE(welcome.materials.add({std::string(kMaterialNameBytesMax - digits.size(), 'm') + digits,
                                    {1, 2, 3, 255},
                                    Visibility::opaque,
-                                   std::nullopt}));
+                                   std::nullopt,
+                                   MaterialBody::solid,
+                                   MaterialLook{1, 2, 3, 4, MaterialPattern::cobble}}));
   }
   const EncodedMessage encoded = encode_message(welcome);
   CHECK(encoded.bytes->size() <= kServerControlBytesMax);

@@ -53,7 +53,7 @@ TEST_CASE("an imported world has the builders' palette, unless the request says 
   const MaterialTable& materials = (*store)->meta().materials;
   REQUIRE(materials.size() >= source->materials.size());
   for (std::size_t id = 0; id < source->materials.size(); ++id)
-    CHECK(materials.rows()[id].name == source->materials.rows()[id].name);
+    CHECK(materials.rows()[id] == source->materials.rows()[id]);  // with their looks
   if (!request.palette) {
     CHECK(materials.size() == source->materials.size());
     CHECK(out.str().find("the builders' palette adds 0, ") != std::string::npos);

@@ -12,7 +12,11 @@ namespace {
 
 const std::vector<MaterialRow> kLimeAndIce = {
     {"lime", {1, 2, 3, 255}, Visibility::opaque, MaterialBody::passable},
-    {"ice", {9, 9, 9, 90}, Visibility::transparent}};
+    {"ice",
+     {9, 9, 9, 90},
+     Visibility::transparent,
+     MaterialBody::solid,
+     MaterialLook{1, 2, 3, 4, MaterialPattern::tiles}}};
 constexpr Material kLime = 5, kIce = 6;  // the bench has air and four others
 
 struct MaterialBench : WorldBench {

@@ -24,6 +24,11 @@ std::vector<MaterialRow> long_rows(std::size_t count) {
   return rows;
 }
 
+MaterialRow with_look(MaterialRow row, const MaterialLook& look) {
+  row.look = look;
+  return row;
+}
+
 ErrorCode fault_of(const AddedMaterials& added) {
   const auto valid = validate(added);
   REQUIRE_FALSE(valid.has_value());
@@ -58,6 +63,8 @@ TEST_CASE("new materials at the limits are valid, one step beyond they are not",
   }
   CHECK(fault_of({1, {row_of("a", Visibility::opaque, 254)}}) == ErrorCode::bad_value);
   CHECK(fault_of({1, {row_of("a", static_cast<Visibility>(3))}}) == ErrorCode::bad_value);
+  CHECK(validate({1, {with_look(row_of("a"), {100, 100, 100, 100})}}).has_value());
+  CHECK(fault_of({1, {with_look(row_of("a"), {101, 0, 0, 0})}}) == ErrorCode::bad_value);
 }
 
 TEST_CASE("the largest addition of materials fits its bound, and the record's", "[edits]") {
@@ -67,6 +74,13 @@ TEST_CASE("the largest addition of materials fits its bound, and the record's", 
   const Bytes descriptor = encode(materials_edit(largest));
   CHECK(descriptor.size() <= descriptor_bytes_max(EditKind::materials));
   CHECK(decode_descriptor(descriptor).has_value());
+
+  AddedMaterials with_looks = largest;
+  for (MaterialRow& row : with_looks.rows) row.look = MaterialLook{};
+  CHECK(bytes_of_added(with_looks).size() == kAddedMaterialsBytesMax + kAddedLooksBytesMax);
+  const Bytes longer = encode(materials_edit(with_looks));
+  CHECK(longer.size() <= descriptor_bytes_max(EditKind::materials_with_looks));
+  CHECK(decode_descriptor(longer).has_value());
 }
 
 TEST_CASE("bytes of new materials that are cut, too long or not canonical are refused", "[edits]") {
@@ -96,6 +110,36 @@ TEST_CASE("bytes of new materials that are cut, too long or not canonical are re
   Bytes twice = {0x08, 0x00, 0x00, 0x05, 0x01};
   for (int i = 0; i < 2; ++i) twice.insert(twice.end(), {0x01, 'a', 1, 2, 3, 0xff, 0x01});
   CHECK_FALSE(decode_descriptor(twice).has_value());
+}
+
+TEST_CASE("the kind of new materials says if a row has a look", "[edits]") {
+  const MaterialRow plain = row_of("wool"), other = row_of("oil"),
+                    shiny = with_look(row_of("ice"), {1, 2, 3, 4});
+  CHECK(kind_of(materials_edit({300, {plain, other}})) == EditKind::materials);
+  const EditDescriptor edit = materials_edit({300, {plain, shiny}});
+  CHECK(kind_of(edit) == EditKind::materials_with_looks);
+  const Bytes good = encode(edit);
+  REQUIRE(decode_descriptor(good).has_value());
+  CHECK(*decode_descriptor(good) == edit);
+  CHECK_FALSE(decode_voxel_edit(good).has_value());
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    const Bytes cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
+    CHECK_FALSE(decode_descriptor(cut).has_value());
+  }
+  const auto refused = [&](std::size_t at, std::uint8_t byte) {
+    Bytes bytes = good;
+    bytes.at(at) = byte;
+    return !decode_descriptor(bytes).has_value();
+  };
+  CHECK(refused(0, 0x08));                // the kind without looks
+  CHECK(refused(good.size() - 5, 101));   // variation
+  CHECK(refused(good.size() - 2, 101));   // emission
+  CHECK(refused(good.size() - 1, 7));     // a pattern of a later version
+  CHECK(refused(good.size() - 6, 0x01));  // a row without a look, and bytes behind it
+  CHECK(refused(good.size() - 6, 0x21));  // an unused bit
+  Bytes without = encode(materials_edit({300, {plain, other}}));
+  without[0] = 0x09;
+  CHECK(decode_descriptor(without).error().code == ErrorCode::not_canonical);
 }
 
 }  // namespace runstone::test

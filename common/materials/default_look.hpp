@@ -1,0 +1,19 @@
+// The look of a material whose row gives none: worlds of earlier versions and of other programs have
+// names and colours only. Client, server and imports take it from here.
+#pragma once
+#include <string_view>
+
+#include "common/core/material_look.hpp"
+#include "common/core/material_row.hpp"
+#include "common/materials/material_table.hpp"
+
+namespace runstone {
+
+/// Returns the look for a name such as "oak_planks" or "default:meselamp": that of the first known
+/// word in it, otherwise MaterialLook{}. A liquid gets no pattern. Cost: O(length of the name).
+MaterialLook default_look(std::string_view name, MaterialBody body);
+
+/// Returns the look of a row: the given one, otherwise default_look().
+MaterialLook look_of(const MaterialInfo& material);
+
+}  // namespace runstone
