@@ -1,6 +1,7 @@
 #include "client/app/hotbar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "common/materials/material_lookup.hpp"
@@ -8,10 +9,13 @@
 namespace runstone {
 namespace {
 
-constexpr std::string_view kFirstNames[] = {
-    "stone", "grass", "dirt", "planks", "brick", "stone_brick", "glass", "log", "lamp",
-    // Names of Luanti's default game.
-    "dirt_with_grass", "wood", "stonebrick", "cobble", "tree", "meselamp", "sandstone"};
+/// What builders use most, a slot each. Of several names, the first one that the world has counts.
+/// Names of Luanti's default game precede those of the built-in table, which an imported world gets
+/// beside its own materials.
+constexpr std::array<std::string_view, 2> kFirst[] = {
+    {"stone"},           {"dirt_with_grass", "grass"},  {"dirt"},  {"wood", "planks"},
+    {"brick"},           {"stonebrick", "stone_brick"}, {"glass"}, {"tree", "log"},
+    {"meselamp", "lamp"}};
 
 bool is_block(const MaterialInfo& material) {
   return material.visibility != Visibility::empty && material.body == MaterialBody::solid;
@@ -26,9 +30,13 @@ void Hotbar::fill(const MaterialTable& materials) {
     const auto is_there = std::find(slots_.begin(), slots_.end(), material) != slots_.end();
     if (filled < kSlotCount && !is_there) slots_[filled++] = material;
   };
-  for (const std::string_view name : kFirstNames) {
-    const auto found = find_material(materials, name);
-    if (found && is_block(materials[*found])) add(*found);
+  for (const auto& names : kFirst) {
+    for (const std::string_view name : names) {
+      const auto found = find_material(materials, name);
+      if (!found || !is_block(materials[*found])) continue;
+      add(*found);
+      break;
+    }
   }
   // Full blocks hide what is behind them, unlike plants and fences.
   for (const Visibility visibility : {Visibility::opaque, Visibility::transparent}) {

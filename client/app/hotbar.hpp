@@ -12,8 +12,8 @@ namespace runstone {
 class Hotbar {
  public:
   /// Fills the slots for a world: first with what builders use most, as far as the world has it
-  /// under that name and as a full block, and then with other full blocks in the order of the
-  /// table. So a world whose table begins with plants begins with blocks here, too.
+  /// under one of their names and as a full block, and then with other full blocks in the order of
+  /// the table. So a world whose table begins with plants begins with blocks here, too.
   void fill(const MaterialTable& materials);
   /// Chooses a slot, 0 to kSlotCount - 1.
   void choose(std::size_t slot) { slot_ = slot; }

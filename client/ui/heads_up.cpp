@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "client/ui/block_icon.hpp"
 #include "client/ui/ui_draw.hpp"
+#include "common/materials/readable_name.hpp"
 
 namespace runstone {
 namespace {
@@ -45,8 +47,8 @@ float hotbar(ImDrawList& list, const HudState& state, float scale) {
     const Material material = state.slots[i];
     if (material != kEmpty && state.materials->knows(material)) {
       const float inset = 6 * scale;
-      swatch(list, {from.x + inset, from.y + inset}, {to.x - inset, to.y - inset},
-             (*state.materials)[material].colour);
+      block_icon(list, {from.x + inset, from.y + inset}, {to.x - inset, to.y - inset},
+                 (*state.materials)[material]);
     }
     const bool is_chosen = i == state.slot;
     list.AddRect(from, to, is_chosen ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 255, 255, 60),
@@ -76,7 +78,7 @@ void corner_lines(ImDrawList& list, const HudState& state, float scale) {
   if (state.aimed_at && state.materials->knows(*state.aimed_at)) {
     y += line;
     shadowed_text(list, {x, y}, kDim,
-                  "in sight: " + short_name((*state.materials)[*state.aimed_at].name));
+                  "in sight: " + readable_name((*state.materials)[*state.aimed_at].name));
   }
   if (!state.tool.empty()) {
     y += line;
@@ -102,7 +104,7 @@ double build_heads_up(const HudState& state, double name_seconds, double scale_v
   if (name_seconds < kSlotNameSeconds && held != kEmpty && state.materials->knows(held)) {
     const double alpha =
         std::clamp((kSlotNameSeconds - name_seconds) / kSlotNameFadeSeconds, 0.0, 1.0);
-    centred(list, top - line - 2 * scale, kBright, short_name((*state.materials)[held].name),
+    centred(list, top - line - 2 * scale, kBright, readable_name((*state.materials)[held].name),
             alpha);
   }
   if (!state.is_connected) {

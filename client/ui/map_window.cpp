@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "client/ui/ui_draw.hpp"
+#include "common/materials/readable_name.hpp"
 
 namespace runstone {
 namespace {
@@ -144,7 +145,7 @@ std::string MapWindow::text_at(const Canvas& canvas, const MapState& state,
   const auto top = state.map->top(x, z);
   if (!top) return fmt::format("{} ? {}", x, z);
   const std::string name =
-      materials.knows(top->material) ? short_name(materials[top->material].name) : "unknown";
+      materials.knows(top->material) ? readable_name(materials[top->material].name) : "unknown";
   return fmt::format("{} {} {}  {}", x, top->y, z, name);
 }
 

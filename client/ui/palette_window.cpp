@@ -1,11 +1,15 @@
 #include "client/ui/palette_window.hpp"
 
+#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
+#include <utility>
 
-#include "client/ui/ui_draw.hpp"
+#include "client/ui/block_icon.hpp"
+#include "common/materials/readable_name.hpp"
 
 namespace runstone {
 namespace {
@@ -29,16 +33,22 @@ bool has_all_words(const std::string& name, std::string_view words) {
 
 std::vector<Material> matching_materials(const MaterialTable& table, const std::string& text) {
   const std::string wanted = lower_case(text);
-  std::vector<Material> first, rest;
+  // Names that begin with the text, names of which a later word does, and the others.
+  std::array<std::vector<Material>, 3> ranks;
   for (std::size_t id = 1; id < table.size(); ++id) {
     const auto material = static_cast<Material>(id);
     if (table[material].visibility == Visibility::empty) continue;
-    const std::string shown = lower_case(short_name(table[material].name));
+    const std::string shown = lower_case(readable_name(table[material].name));
     if (!has_all_words(shown + " " + lower_case(table[material].name), wanted)) continue;
-    (shown.starts_with(wanted) ? first : rest).push_back(material);
+    const std::size_t rank = shown.starts_with(wanted)                               ? 0
+                             : (" " + shown).find(" " + wanted) != std::string::npos ? 1
+                                                                                     : 2;
+    ranks[rank].push_back(material);
   }
-  first.insert(first.end(), rest.begin(), rest.end());
-  return first;
+  std::vector<Material> out = std::move(ranks[0]);
+  for (const std::size_t rank : {1U, 2U})
+    out.insert(out.end(), ranks[rank].begin(), ranks[rank].end());
+  return out;
 }
 
 void PaletteWindow::open() {
@@ -101,9 +111,9 @@ std::optional<Material> PaletteWindow::build_grid(const MaterialTable& table, Ma
       ImDrawList& list = *ImGui::GetWindowDrawList();
       const auto inset = static_cast<float>(3 * scale);
       const float side = cell.y - 2 * inset;
-      swatch(list, {from.x + inset, from.y + inset}, {from.x + inset + side, from.y + inset + side},
-             info.colour);
-      const std::string name = short_name(info.name);
+      block_icon(list, {from.x + inset, from.y + inset},
+                 {from.x + inset + side, from.y + inset + side}, info);
+      const std::string name = readable_name(info.name);
       const float text_top = from.y + (cell.y - ImGui::GetTextLineHeight()) / 2;
       list.PushClipRect(from, {from.x + cell.x, from.y + cell.y}, true);
       list.AddText({from.x + side + 4 * inset, text_top}, ImGui::GetColorU32(ImGuiCol_Text),

@@ -11,9 +11,10 @@
 
 namespace runstone {
 
-/// Returns the materials that can be placed and whose name has all words of the text, in any case
-/// of letters. Those whose short name begins with the text come first, otherwise the order is that
-/// of the table. Cost: O(bytes of all names).
+/// Returns the materials that can be placed and whose name, that for people or that of the table, has
+/// all words of the text or parts of words, in any case of letters. Names for people that begin with
+/// the text come first, then those of which another word does. Otherwise the order is that of the
+/// table. Cost: O(bytes of all names).
 std::vector<Material> matching_materials(const MaterialTable& table, const std::string& text);
 
 class PaletteWindow {

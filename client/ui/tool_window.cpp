@@ -11,6 +11,7 @@
 
 #include "client/ui/palette_window.hpp"
 #include "client/ui/ui_draw.hpp"
+#include "common/materials/readable_name.hpp"
 
 namespace runstone {
 namespace {
@@ -109,7 +110,7 @@ bool button_beside(const char* label, bool is_first = false) {
 
 std::string name_of(const HudState& state, Material material) {
   if (material == kEmpty || !state.materials->knows(material)) return "nothing";
-  return short_name((*state.materials)[material].name);
+  return readable_name((*state.materials)[material].name);
 }
 
 }  // namespace

@@ -7,15 +7,6 @@ namespace {
 
 constexpr double kGroundShade = 205;  // behind transparent materials
 
-ImU32 mix(const MaterialColour& colour, double factor) {
-  const double alpha = colour[3] / 255.0;
-  const auto channel = [&](std::size_t i) {
-    const double shade = colour[i] * alpha + kGroundShade * (1 - alpha);
-    return static_cast<int>(std::clamp(shade * factor, 0.0, 255.0));
-  };
-  return IM_COL32(channel(0), channel(1), channel(2), 255);
-}
-
 ImU32 with_alpha(ImU32 colour, double alpha) {
   const auto old_alpha = static_cast<double>(colour >> IM_COL32_A_SHIFT & 0xFF);
   const auto new_alpha = static_cast<ImU32>(std::clamp(old_alpha * alpha, 0.0, 255.0));
@@ -36,19 +27,13 @@ float width_of(std::string_view text) {
   return ImGui::CalcTextSize(text.data(), text.data() + text.size()).x;
 }
 
-ImU32 opaque_colour(const MaterialColour& colour) { return mix(colour, 1); }
-
-void swatch(ImDrawList& list, ImVec2 from, ImVec2 to, const MaterialColour& colour) {
-  const ImU32 above = mix(colour, 1.12), below = mix(colour, 0.82);
-  list.AddRectFilledMultiColor(from, to, above, above, below, below);
-  list.AddRect(from, to, IM_COL32(0, 0, 0, 110));
-}
-
-std::string short_name(std::string_view name) {
-  const std::size_t colon = name.rfind(':');
-  std::string out(colon == std::string_view::npos ? name : name.substr(colon + 1));
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
+ImU32 shaded_colour(const MaterialColour& colour, double factor) {
+  const double alpha = colour[3] / 255.0;
+  const auto channel = [&](std::size_t i) {
+    const double shade = colour[i] * alpha + kGroundShade * (1 - alpha);
+    return static_cast<int>(std::clamp(shade * factor, 0.0, 255.0));
+  };
+  return IM_COL32(channel(0), channel(1), channel(2), 255);
 }
 
 }  // namespace runstone

@@ -2,7 +2,6 @@
 #pragma once
 #include <imgui.h>
 
-#include <string>
 #include <string_view>
 
 #include "common/core/material_row.hpp"
@@ -20,12 +19,8 @@ void shadowed_text(ImDrawList& list, ImVec2 at, ImU32 colour, std::string_view t
                    double alpha = 1);
 /// Returns the width of a text in pixels.
 float width_of(std::string_view text);
-/// Returns an opaque colour of a material, in ImGui's form.
-ImU32 opaque_colour(const MaterialColour& colour);
-/// Draws a swatch of a material: its colour, lighter above and darker below. A transparent material
-/// shows a light ground through it.
-void swatch(ImDrawList& list, ImVec2 from, ImVec2 to, const MaterialColour& colour);
-/// Returns the name for people: without the part before a colon, with blanks for underscores.
-std::string short_name(std::string_view name);
+/// Returns an opaque colour of a material in ImGui's form, with its brightness multiplied by
+/// `factor`. A transparent material shows a light ground through it.
+ImU32 shaded_colour(const MaterialColour& colour, double factor);
 
 }  // namespace runstone

@@ -2,8 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "common/materials/material_lookup.hpp"
+#include "common/materials/palette.hpp"
 
 using namespace runstone;
 
@@ -43,6 +46,23 @@ TEST_CASE("the hotbar of an imported world begins with blocks, not with plants",
   CHECK(bar.slots()[1] == obsidian);
   CHECK(bar.slots()[2] == 1);       // the leaves, which are solid, come last
   CHECK(bar.slots()[3] == kEmpty);  // neither plants nor water
+}
+
+TEST_CASE(
+    "the hotbar of an imported world has the world's own materials, and built-in ones that it lacks",
+    "[client_app]") {
+  MaterialTable table;
+  for (const char* name : {"default:acacia_wood", "default:dirt", "default:dirt_with_grass",
+                           "default:stone", "default:tree", "default:wood"})
+    add(table, name, Visibility::opaque, MaterialBody::solid);
+  REQUIRE(append_palette(table, default_material_table()).has_value());
+  Hotbar bar;
+  bar.fill(table);
+  std::vector<std::string> names;
+  for (const Material material : bar.slots()) names.push_back(table[material].name);
+  CHECK(names == std::vector<std::string>{"default:stone", "default:dirt_with_grass",
+                                          "default:dirt", "default:wood", "brick", "stone_brick",
+                                          "glass", "default:tree", "lamp"});
 }
 
 TEST_CASE("the wheel goes round the slots, and a material takes the chosen slot once",

@@ -168,6 +168,15 @@ TEST_CASE("materials match by all words of a search, and a name that begins with
   CHECK(table[stones[2]].name == "sandstone");
   CHECK(matching_materials(table, "BRICK stone").size() == 1);
   CHECK(matching_materials(table, "bedrock").empty());
+  CHECK(table[matching_materials(table, "ool whi").at(0)].name == "wool_white");  // parts of words
+  // Names that begin with the text, then those of which another word does, then the others.
+  const auto names = [&](const std::string& text) {
+    std::vector<std::string> out;
+    for (const Material id : matching_materials(table, text)) out.push_back(table[id].name);
+    return out;
+  };
+  CHECK(names("gr") == std::vector<std::string>{"grass", "gravel", "wool_grey", "wool_green"});
+  CHECK(names("bri") == std::vector<std::string>{"brick", "stone_brick"});
 }
 
 TEST_CASE_METHOD(HudBench, "help opens and closes by its key and by escape", "[client_ui]") {
