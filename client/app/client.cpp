@@ -306,6 +306,8 @@ HudScene Client::hud_scene() const {
   const std::string lost = opened_us_ ? lost_text(network_, steady_now_us()) : std::string();
   if (!lost.empty()) scene.state = lost;
   if (scene.state.empty()) scene.state = memory_text(budget_);
+  if (scene.state.empty() && player_.is_waiting_for_ground())
+    scene.state = "the ground here has not arrived yet";
   scene.tool = tool_.text();
   if (hud_.shows_statistics()) {
     scene.net = network_.net_counts();
@@ -371,7 +373,7 @@ std::optional<ClientEnd> Client::end_of_play(TimeUs now_us) {
   if (benchmark_ && benchmark_->finished() && !runner_) return ClientEnd{kExitOk};
   const bool has_goodbye = session_.end() && session_.end()->by_server;
   if (end_requested_ || (has_goodbye && options_.exit_on_goodbye))
-    return ClientEnd{drift_found() ? kExitFailed : kExitOk, is_left_};
+    return ClientEnd{drift_found() ? kExitFailed : kExitOk, is_left_, {}, leaving_words(network_)};
   if (const auto timeout = network_.timeout(now_us))
     return ClientEnd{kExitNoStart, false, *timeout, failure_words(network_)};
   return std::nullopt;

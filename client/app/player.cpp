@@ -10,7 +10,9 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kPitchMax = kPi / 2 - 0.01;  // looking straight up has no forward direction
 constexpr double kRadiansPerPixel = 0.0025;
-constexpr double kSpeed = 12, kSpeedFast = 60;  // voxels a second
+constexpr double kSpeed = 12;  // voxels a second, of flight at first
+constexpr double kFastFactor = 5;
+constexpr int kSpeedStepMin = -3, kSpeedStepMax = 3;
 
 /// Returns the direction over the ground of the keys that are pressed, of length 1 at most.
 WalkInput over_ground(const WindowInput& input, double yaw) {
@@ -28,6 +30,7 @@ WalkInput over_ground(const WindowInput& input, double yaw) {
 }  // namespace
 
 void Player::enter(const WorldId& world, const WorldPos& spawn) {
+  spawn_ = spawn;
   if (world_ == world) return;
   world_ = world;
   move_to(spawn);
@@ -95,7 +98,7 @@ void Player::turn(const WindowInput& input) {
 
 void Player::fly(const WindowInput& input, double seconds) {
   const WalkInput way = over_ground(input, yaw_);
-  const double distance = (input.fast ? kSpeedFast : kSpeed) * seconds;
+  const double distance = flying_speed() * (input.fast ? kFastFactor : 1) * seconds;
   eye_.x += way.x * distance;
   eye_.z += way.z * distance;
   eye_.y += ((input.up ? 1 : 0) - (input.down ? 1 : 0)) * distance;
@@ -109,6 +112,16 @@ void Player::walk(const WindowInput& input, double seconds, const VoxelSpace& sp
   way.fast = input.fast;
   walker_.advance(space, materials, way, seconds);
   eye_ = walker_.eye();
+  if (walker_.fallen() < kFallMax) return;
+  move_to(spawn_);
+  set_walking(false);
+  has_fallen_out_ = true;
+}
+
+double Player::flying_speed() const { return std::ldexp(kSpeed, speed_step_); }
+
+void Player::change_flying_speed(int steps) {
+  speed_step_ = std::clamp(speed_step_ + steps, kSpeedStepMin, kSpeedStepMax);
 }
 
 }  // namespace runstone

@@ -2,6 +2,7 @@
 // the selected material.
 #pragma once
 #include <optional>
+#include <utility>
 
 #include "client/body/walker.hpp"
 #include "client/input/window_input.hpp"
@@ -12,6 +13,9 @@
 
 namespace runstone {
 
+/// A player who has fallen this far, in voxels, has left the world through a hole in its ground, or
+/// began in a world without ground.
+inline constexpr double kFallMax = 600;
 inline constexpr double kReach = 64;  // voxels from the eye to the voxel that a click changes
 
 class Player {
@@ -43,18 +47,31 @@ class Player {
   bool is_in(VoxelPos voxel) const;
   /// Turns the player as the mouse moved.
   void turn(const WindowInput& input);
-  /// Applies the keys of the last `seconds` to a player that flies. Requires !is_walking().
+  /// Applies the keys of the last `seconds` to a player that flies, at the flying speed, or five
+  /// times as fast with the key for it. Requires !is_walking().
   void fly(const WindowInput& input, double seconds);
   /// Applies the keys of the last `seconds` to a player that walks. Requires is_walking(). Cost:
   /// Walker::advance().
   void walk(const WindowInput& input, double seconds, const VoxelSpace& space,
             const BodyMaterials& materials);
+  /// Returns true if the player walks and rests, because the ground there is not here yet.
+  bool is_waiting_for_ground() const { return is_walking_ && walker_.is_waiting(); }
+  /// Returns true once after a walking player fell for kFallMax voxels without meeting anything. The
+  /// player is then at the spawn of the world, and flies.
+  bool take_fallen_out() { return std::exchange(has_fallen_out_, false); }
+
+  /// Returns the speed of flight in voxels a second.
+  double flying_speed() const;
+  /// Doubles the flying speed `steps` times, or halves it for negative steps, between 1.5 and 96.
+  void change_flying_speed(int steps);
 
  private:
   std::optional<WorldId> world_;  // of the last enter()
+  WorldPos spawn_;                // of that world
   WorldPos eye_;
   double yaw_ = 0, pitch_ = 0;
-  bool is_walking_ = false;
+  int speed_step_ = 0;  // each one doubles the flying speed
+  bool is_walking_ = false, has_fallen_out_ = false;
   Walker walker_;  // valid while the player walks
   Material held_ = 1;
 };

@@ -43,6 +43,9 @@ void PlayerControls::take(const WindowInput& input, double seconds, const Client
   if (input.scroll != 0) {
     if (input.resizes) {
       tool_.box().change_size(input.scroll);
+    } else if (input.fast && !player_.is_walking()) {
+      player_.change_flying_speed(input.scroll);
+      hud_.notify(fmt::format("flying speed: {} voxels a second", player_.flying_speed()));
     } else {
       hud_.scroll(input.scroll);
     }
@@ -63,6 +66,8 @@ void PlayerControls::move(const WindowInput& input, double seconds,
   const Replica& replica = session_.replica();
   if (!replica.opened()) return;
   player_.walk(input, seconds, ShownSpace(replica), body_materials_);
+  if (player_.take_fallen_out())
+    hud_.notify("you fell out of the world: you are at its spawn, and fly", NoticeKind::warning);
 }
 
 void PlayerControls::edit(const WindowInput& input, TimeUs now_us) {

@@ -94,7 +94,7 @@ constexpr std::array<MouseInfo, 5> kMouse = {{
     {"left button", "remove with the tool; held down, again and again by the voxel tool"},
     {"right button", "place with the tool; held down, again and again by the voxel tool"},
     {"middle button", "take the material of the voxel in sight"},
-    {"wheel", "choose the slot"},
+    {"wheel", "choose the slot; while you fly faster, change the speed of flight"},
 }};
 
 }  // namespace

@@ -79,6 +79,45 @@ TEST_CASE("a player who walks is where the body's eye is, and flies on from ther
   CHECK(player.eye().z > 4);
 }
 
+TEST_CASE("a player who falls out of the world is back at its spawn, and flies", "[client_app]") {
+  class Void final : public VoxelSpace {
+   public:
+    Void() : VoxelSpace(16) {}
+    const RunChunk* chunk(ChunkCoord) const override { return &empty_; }
+
+   private:
+    RunChunk empty_ = uniform_chunk(Extent::cube(16), kEmpty);
+  };
+  const Void space;
+  const BodyMaterials materials = body_materials(default_material_table());
+  Player player;
+  player.enter(WorldId{1}, {10, 20, 30});
+  player.set_walking(true);
+  for (int i = 0; i < 100 && player.is_walking(); ++i) {
+    CHECK_FALSE(player.take_fallen_out());
+    player.walk({}, 0.2, space, materials);
+  }
+  CHECK_FALSE(player.is_walking());
+  CHECK(player.eye() == WorldPos{10, 20, 30});
+  CHECK(player.take_fallen_out());
+  CHECK_FALSE(player.take_fallen_out());
+}
+
+TEST_CASE("the flying speed doubles and halves between its limits", "[client_app]") {
+  Player player;
+  const double usual = player.flying_speed();
+  player.change_flying_speed(1);
+  CHECK(player.flying_speed() == 2 * usual);
+  WindowInput input;
+  input.forward = true;
+  player.fly(input, 1);
+  CHECK(player.eye().z == Approx(2 * usual));
+  player.change_flying_speed(100);
+  CHECK(player.flying_speed() == 96);
+  player.change_flying_speed(-100);
+  CHECK(player.flying_speed() == 1.5);
+}
+
 TEST_CASE("the chunk of the eye is found by floor division", "[client_app]") {
   Player player;
   player.move_to({-0.5, 15.9, 16});

@@ -1,5 +1,6 @@
 #include "client/body/walker.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -173,14 +174,96 @@ TEST_CASE("in water a walker sinks slowly and rises to its surface", "[body]") {
   CHECK(walker.feet().x > 6);  // out of the water, onto the ground
 }
 
+TEST_CASE("a walker steps down one voxel without falling, and its eye follows smoothly", "[body]") {
+  Ground ground;
+  ground.set_box({{-3, 0, -3}, {2, 2, 4}}, kStone);  // two voxels high, then one, then none
+  ground.set_box({{2, 0, -3}, {4, 1, 4}}, kStone);
+  Walker walker = standing_at(ground, 0.5, 2, 0.5);
+  double eye_before = walker.eye().y, steepest = 0;
+  for (int i = 0; i < 240; ++i) {
+    walker.advance(ground, materials(), kEast, kWalkStepS);
+    CHECK(walker.is_on_ground());
+    steepest = std::max(steepest, eye_before - walker.eye().y);
+    eye_before = walker.eye().y;
+  }
+  CHECK(std::abs(walker.feet().y) < kTouchDepth);
+  CHECK(walker.eye().y == Approx(kEyeHeight).margin(0.01));
+  CHECK(steepest < 0.12);  // of a voxel in a step of time
+}
+
+TEST_CASE("a walker falls from an edge that is higher than a step", "[body]") {
+  Ground ground;
+  ground.set_box({{-3, 0, -3}, {2, 2, 4}}, kStone);
+  Walker walker = standing_at(ground, 0.5, 2, 0.5);
+  bool has_fallen = false;
+  for (int i = 0; i < 120; ++i) {
+    walker.advance(ground, materials(), kEast, kWalkStepS);
+    has_fallen = has_fallen || walker.fallen() > 1;
+  }
+  CHECK(has_fallen);
+  CHECK(walker.is_on_ground());
+  CHECK(walker.fallen() == 0);
+}
+
+TEST_CASE("a walker wades in water of one voxel and jumps there", "[body]") {
+  Ground ground;
+  ground.set_box({{-4, 0, -4}, {20, 1, 5}}, kWater);
+  Walker walker = standing_at(ground, 0.5, 0, 0.5);
+  advance(walker, ground, kEast, 2);
+  CHECK(walker.is_in_liquid());
+  CHECK(walker.is_on_ground());
+  CHECK(walker.feet().x > 0.5 + 2 * 3);
+  CHECK(walker.feet().x < 0.5 + 2 * 4.5 - 0.5);  // slower than on land
+  double highest = 0;
+  for (int i = 0; i < 60; ++i) {
+    walker.advance(ground, materials(), {0, 0, true, false, false}, kWalkStepS);
+    highest = std::max(highest, walker.feet().y);
+  }
+  CHECK(highest > 1.1);
+}
+
+TEST_CASE("a swimmer floats at the surface and climbs onto a bank above it", "[body]") {
+  Ground ground;
+  ground.set_box({{-4, -8, -4}, {5, 0, 5}}, kWater);
+  ground.set_box({{5, 0, -4}, {40, 1, 5}}, kStone);  // the bank, one voxel above the water
+  Walker walker;
+  walker.place({0.5, -3, 0.5});
+  constexpr WalkInput kUp{0, 0, true, false, false};
+  advance(walker, ground, kUp, 3);
+  double lowest = walker.feet().y, highest = lowest;
+  for (int i = 0; i < 240; ++i) {
+    walker.advance(ground, materials(), kUp, kWalkStepS);
+    lowest = std::min(lowest, walker.feet().y);
+    highest = std::max(highest, walker.feet().y);
+  }
+  CHECK(highest - lowest < 0.05);  // it does not bob
+  CHECK(highest < -0.3);           // the body is in the water
+  CHECK(walker.eye().y > 0.2);     // and the eye above it
+  advance(walker, ground, {1, 0, true, false, false}, 4);
+  advance(walker, ground, {}, 1);
+  CHECK(walker.feet().x > 5);
+  CHECK(walker.feet().y == Approx(1));
+}
+
+TEST_CASE("a body that begins deep in the ground is put above it at once", "[body]") {
+  const Ground ground;
+  Walker walker;
+  walker.place({0.5, -40.25, 0.5});
+  advance(walker, ground, {}, 0.1);
+  CHECK(std::abs(walker.feet().y) < 0.2);
+  CHECK_FALSE(walker.is_waiting());
+}
+
 TEST_CASE("a body that is built into rises, and one in an unknown place rests", "[body]") {
   Ground ground;
   Walker walker = standing_at(ground, 0.5, 0, 0.5);
   ground.set_box({{0, 0, 0}, {1, 3, 1}}, kStone);
   advance(walker, ground, {}, 3);
   CHECK(walker.feet().y == Approx(3));
+  CHECK_FALSE(walker.is_waiting());
   ground.forget_all();
   advance(walker, ground, kEast, 1);
+  CHECK(walker.is_waiting());
   CHECK(walker.feet().x == 0.5);
   CHECK(walker.feet().y == Approx(3));
 }
