@@ -3,8 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace runstone {
+namespace {
+
+std::string unconfirmed_text(std::size_t edits) {
+  return fmt::format("{} of your edits {} not confirmed, and may be lost.", edits,
+                     edits == 1 ? "was" : "were");
+}
+
+}  // namespace
 
 ConnectingState connecting_state(const ThreadedSession& network, bool was_open, bool is_encrypted,
                                  TimeUs now_us) {
@@ -58,8 +67,15 @@ FailureWords failure_words(const ThreadedSession& network) {
   const std::size_t waiting = network.session().replica().local_edits().pending_count();
   if (waiting == 0) return words;
   if (!words.detail.empty()) words.detail += "\n";
-  words.detail += fmt::format("{} of your edits were not confirmed, and may be lost.", waiting);
+  words.detail += unconfirmed_text(waiting);
   return words;
+}
+
+FailureWords leaving_words(const ThreadedSession& network) {
+  const std::size_t waiting = network.session().replica().local_edits().pending_count();
+  // A connected server gets the edits before the goodbye.
+  if (waiting == 0 || network.is_connected()) return {};
+  return {"You left while the server was gone", unconfirmed_text(waiting)};
 }
 
 }  // namespace runstone

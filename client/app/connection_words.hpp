@@ -18,5 +18,8 @@ PauseState pause_state(const ClientSession& session);
 std::string lost_text(const ThreadedSession& network, TimeUs now_us);
 /// Returns the words for a failure, with the number of edits that no server confirmed.
 FailureWords failure_words(const ThreadedSession& network);
+/// Returns words for a player who leaves while edits wait for a server that is gone, otherwise empty
+/// ones.
+FailureWords leaving_words(const ThreadedSession& network);
 
 }  // namespace runstone

@@ -297,6 +297,10 @@ void Shell::take_end(const ClientEnd& end) {
     spdlog::warn("{}: {}", end.words.headline, end.words.detail);
     return;
   }
+  if (!end.words.headline.empty()) {
+    title_.failure = {end.words.headline, end.words.detail};
+    spdlog::warn("{}: {}", end.words.headline, end.words.detail);
+  }
   quits_ = quits_ || !end.is_left;
 }
 

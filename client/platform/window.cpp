@@ -153,7 +153,9 @@ class WindowContext final : public GlContext {
 
 Window::Window(int width, int height, const std::string& title)
     : state_(std::make_unique<State>()) {
-  if (glfwInit() != GLFW_TRUE) throw std::runtime_error("no window: " + glfw_error_text());
+  if (glfwInit() != GLFW_TRUE)
+    throw std::runtime_error("no window: no display is reached (" + glfw_error_text() +
+                             "); --headless needs none");
   constexpr std::array<std::array<int, 2>, 2> kVersions = {{{4, 5}, {3, 3}}};
   for (const auto& [major, minor] : kVersions) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, major);
@@ -165,7 +167,8 @@ Window::Window(int width, int height, const std::string& title)
   if (state_->window == nullptr) {
     const std::string text = glfw_error_text();
     glfwTerminate();
-    throw std::runtime_error("no window: " + text);
+    throw std::runtime_error("no window: OpenGL 3.3 is needed, and this display has none (" + text +
+                             ")");
   }
   glfwSetWindowUserPointer(state_->window, state_.get());
   glfwSetMouseButtonCallback(state_->window, [](GLFWwindow* w, int button, int action, int) {

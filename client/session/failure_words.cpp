@@ -47,6 +47,9 @@ FailureWords words_of_link(std::string_view why, const std::string& address) {
     return {"No answer from " + address, detail};
   }
   if (why.starts_with("cannot connect")) return {"No connection to " + address, detail};
+  if (has(why, "does not speak TLS"))
+    return {"The server at " + address + " does not encrypt, or is no Runstone server", detail};
+  if (why.starts_with("TLS: ")) return {"No encrypted connection to " + address, detail};
   if (why.starts_with("bad bytes")) return {"This is no Runstone server, or it is broken", detail};
   return {"The connection to " + address + " is lost", detail};
 }

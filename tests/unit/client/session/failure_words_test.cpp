@@ -34,6 +34,9 @@ TEST_CASE("a connection that cannot be made has words for the player", "[client_
   CHECK(headline("cannot connect: Operation canceled") == "No answer from a:1");
   CHECK(headline("cannot connect: Permission denied") == "No connection to a:1");
   CHECK(headline("bad bytes from the server: x") == "This is no Runstone server, or it is broken");
+  CHECK(headline("the server does not speak TLS: does it run with --insecure?") ==
+        "The server at a:1 does not encrypt, or is no Runstone server");
+  CHECK(headline("TLS: certificate verify failed") == "No encrypted connection to a:1");
   CHECK(headline("End of file") == "The connection to a:1 is lost");
   CHECK(headline("") == "No answer yet from a:1");
   CHECK(words_of_link("End of file", "a:1").detail == "End of file");

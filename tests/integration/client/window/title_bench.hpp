@@ -1,0 +1,89 @@
+// TitleBench: the real client program in a window of its own display, one at a time. Tests press its
+// keys and read its log.
+#pragma once
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/integration/client/window/child_process.hpp"
+#include "tests/integration/client/window/virtual_display.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace runstone::test {
+
+inline constexpr std::chrono::seconds kWait{
+    60};  // for a step on a machine that has much else to do
+
+/// Returns false and warns if the programs for a display are not installed.
+inline bool has_display_programs() {
+  if (find_program("Xvfb") && find_program("xdotool")) return true;
+  WARN("skipped: not installed: Xvfb or xdotool");
+  return false;
+}
+
+inline std::string text_in(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A display with one client program at a time.
+struct TitleBench {
+  /// Starts a client. Its log is empty at first.
+  void start(std::vector<std::string> arguments) {
+    client.reset();
+    std::filesystem::remove(log);
+    arguments.insert(arguments.begin(), RUNSTONE_CLIENT_PROGRAM);
+    for (const char* word : {"--size", "640x480", "--view", "2", "--no-cache"})
+      arguments.emplace_back(word);
+    auto environment = display.environment();
+    environment.push_back(std::string("RUNSTONE_SERVER=") + RUNSTONE_SERVER_PROGRAM);
+    client.emplace(std::move(arguments), log, environment);
+    REQUIRE(wait_for(kWait, [&] {
+      return display.hand({"search", "--onlyvisible", "--name", "^Runstone", "windowfocus"});
+    }));
+  }
+  bool logs(const std::string& part, std::size_t times = 1) {
+    const bool found = wait_for(kWait, [&] {
+      const std::string text = text_in(log);
+      std::size_t count = 0;
+      for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++count;
+      return count >= times;
+    });
+    UNSCOPED_INFO("log: " << text_in(log));
+    return found;
+  }
+  /// Presses keys, one after another.
+  void press(std::vector<std::string> keys) {
+    keys.insert(keys.begin(), {"key", "--delay", "200"});
+    REQUIRE(display.hand(std::move(keys)));
+  }
+  /// Presses the first button of the title screen until the log says that it worked: the window may
+  /// not be drawn yet when it has the focus.
+  void press_first_button(std::size_t worlds_before) {
+    const std::string opened = "world open";
+    REQUIRE(wait_for(kWait, [&] {
+      press({"space"});
+      return wait_for(std::chrono::seconds(3), [&] {
+        const std::string text = text_in(log);
+        std::size_t count = 0;
+        for (std::size_t at = text.find(opened); at != std::string::npos;
+             at = text.find(opened, at + 1))
+          ++count;
+        return count > worlds_before;
+      });
+    }));
+  }
+
+  TempFolder folder;
+  VirtualDisplay display{folder / ".", 800, 600};
+  const std::string log = folder / "client.log";
+  std::optional<ChildProcess> client;
+};
+
+}  // namespace runstone::test
