@@ -18,7 +18,7 @@ using test::ChildProcess;
 using test::control;
 using test::flat_creation;
 using test::has_display_programs;
-using test::kStepTime;
+using test::kWait;
 using test::quiet_config;
 using test::start_server;
 using test::text_in;
@@ -45,7 +45,7 @@ struct Evening : TitleBench {
   /// Waits for a new newest edit in the log whose line contains `part`.
   void expect_edit(const std::string& part) {
     std::string line;
-    const bool found = wait_for(kStepTime, [&] {
+    const bool found = wait_for(kWait, [&] {
       line = control(world, {"log", "limit", "1"}).text;
       return line != newest && line.find(part) != std::string::npos;
     });
@@ -80,13 +80,13 @@ TEST_CASE("an evening: a local world, every tool, copy and paste, undo, a guest 
   // The player walks: it falls to the ground, and moves on.
   evening.press({"f"});
   std::array<int, 3> before{};
-  REQUIRE(wait_for(kStepTime, [&] {  // it lies still when it stands
+  REQUIRE(wait_for(kWait, [&] {  // it lies still when it stands
     const auto now = evening.place_of("ana");
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     before = evening.place_of("ana");
     return now == before;
   }));
-  REQUIRE(wait_for(kStepTime, [&] {
+  REQUIRE(wait_for(kWait, [&] {
     evening.hold("w", std::chrono::milliseconds(400));
     const auto now = evening.place_of("ana");
     return std::abs(now[0] - before[0]) + std::abs(now[2] - before[2]) > 1;
@@ -94,7 +94,7 @@ TEST_CASE("an evening: a local world, every tool, copy and paste, undo, a guest 
 
   // It flies up, and looks down at the ground some voxels ahead.
   evening.press({"f"});
-  REQUIRE(wait_for(kStepTime, [&] {
+  REQUIRE(wait_for(kWait, [&] {
     evening.hold("space", std::chrono::milliseconds(200));
     return evening.place_of("ana")[1] > before[1] + 6;
   }));
@@ -142,10 +142,10 @@ TEST_CASE("an evening: a local world, every tool, copy and paste, undo, a guest 
   const std::string address = "127.0.0.1:" + port[1].str();
   ChildProcess guest({RUNSTONE_CLIENT_PROGRAM, "--connect", address, "--name", "bea", "--key",
                       evening.folder / "bea.key", "--size", "320x240", "--view", "1", "--no-cache"},
-                     guest_log, evening.environment());
+                     guest_log, evening.client_environment());
   const auto guest_reads = [&](const std::string& part) {
     const bool found =
-        wait_for(kStepTime, [&] { return text_in(guest_log).find(part) != std::string::npos; });
+        wait_for(kWait, [&] { return text_in(guest_log).find(part) != std::string::npos; });
     INFO("log of the guest: " << text_in(guest_log));
     return found;
   };
@@ -162,7 +162,7 @@ TEST_CASE("an evening: a local world, every tool, copy and paste, undo, a guest 
   REQUIRE(guest_reads("<ana> welcome bea"));
 
   evening.press({"F2"});
-  REQUIRE(wait_for(kStepTime, [&] {
+  REQUIRE(wait_for(kWait, [&] {
     for (const auto& entry : std::filesystem::directory_iterator(evening.folder / "."))
       if (entry.path().extension() == ".png" &&
           text_in(entry.path().string()).find("IEND") != std::string::npos)
@@ -170,7 +170,7 @@ TEST_CASE("an evening: a local world, every tool, copy and paste, undo, a guest 
     return false;
   }));
   evening.press({"Escape", "Down", "Down", "Down", "space"});  // quit
-  CHECK(evening.client->wait(kStepTime) == 0);
+  CHECK(evening.client->wait(kWait) == 0);
 }
 
 TEST_CASE("edits in a window while the server restarts arrive when it is back", "[integration]") {

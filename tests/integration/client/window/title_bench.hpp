@@ -16,8 +16,8 @@
 
 namespace runstone::test {
 
-inline constexpr std::chrono::seconds kWait{
-    60};  // for a step on a machine that has much else to do
+/// The time for a step on a machine that has much else to do.
+inline constexpr std::chrono::seconds kWait{60};
 
 /// Returns false and warns if the programs for a display are not installed.
 inline bool has_display_programs() {
@@ -40,12 +40,15 @@ struct TitleBench {
     arguments.insert(arguments.begin(), RUNSTONE_CLIENT_PROGRAM);
     for (const char* word : {"--size", "640x480", "--view", "2", "--no-cache"})
       arguments.emplace_back(word);
-    auto environment = display.environment();
-    environment.push_back(std::string("RUNSTONE_SERVER=") + RUNSTONE_SERVER_PROGRAM);
-    client.emplace(std::move(arguments), log, environment);
+    client.emplace(std::move(arguments), log, client_environment());
     REQUIRE(wait_for(kWait, [&] {
       return display.hand({"search", "--onlyvisible", "--name", "^Runstone", "windowfocus"});
     }));
+  }
+  std::vector<std::string> client_environment() const {
+    auto out = display.environment();
+    out.push_back(std::string("RUNSTONE_SERVER=") + RUNSTONE_SERVER_PROGRAM);
+    return out;
   }
   bool logs(const std::string& part, std::size_t times = 1) {
     const bool found = wait_for(kWait, [&] {

@@ -29,7 +29,7 @@ using Order = std::vector<std::int32_t>;
 }  // namespace
 
 TEST_CASE(
-    "edits of this client come first, then those of others, then terrain; each from near to far",
+    "edits of this client come first, then those of others, then terrain, each from near to far",
     "[client_app]") {
   UploadQueue queue;
   queue.put(row_chunk(1), upload_of(Urgency::terrain));
