@@ -9,7 +9,7 @@
 namespace runstone {
 namespace {
 
-/// What builders use most, a slot each. Of several names, the first one that the world has counts.
+/// The materials that builders use most, one for each slot: the first name that the world has.
 /// Names of Luanti's default game precede those of the built-in table, which an imported world gets
 /// beside its own materials.
 constexpr std::array<std::string_view, 2> kFirst[] = {

@@ -5,7 +5,7 @@
 //         one frame order; bounded by the number of chunks
 //   out   completed uploads and frames, in order; bounded by the number of orders since the last
 //         take_done()
-// What a frame shows:
+// The content of a frame:
 //   - It shows every removal and all materials that were queued before its order.
 //   - While no frame is ordered, meshes are uploaded one by one, in the order of UploadQueue. Once a
 //     frame is ordered, uploads go on until the UploadBudget is spent, but at least one is made. The
@@ -46,7 +46,7 @@ struct FrameOrder {
   std::vector<std::string> screenshots;         // PNG files to write of this frame
 };
 
-/// What uploads may cost a frame. Either bound ends them.
+/// The bounds of the uploads before one frame. Either bound ends them.
 struct UploadBudget {
   TimeUs time_us = 4'000;
   /// The time that a GPU takes to copy is not in the measured time.

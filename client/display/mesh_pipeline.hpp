@@ -56,7 +56,7 @@ class MeshPipeline {
   /// The look of all frames.
   LookControl& look() { return look_; }
   const LookControl& look() const { return look_; }
-  /// What frames show of the way chunks are stored and meshed.
+  /// The modes in which frames show how chunks are stored and meshed.
   const InspectionControl& inspection() const { return inspection_; }
   void inspect(const InspectionModes& modes) {
     inspection_.set(modes);

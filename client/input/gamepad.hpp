@@ -12,7 +12,7 @@
 
 namespace runstone {
 
-/// What a gamepad reports at one moment, in GLFW's order (the layout of an Xbox gamepad).
+/// The state of a gamepad at one moment, in GLFW's order (the layout of an Xbox gamepad).
 struct GamepadSample {
   std::array<bool, 15> buttons{};  // as GamepadButton::a .. GamepadButton::left
   /// Left stick x, y, right stick x, y (-1 to 1, y downward), left and right trigger (-1 released,

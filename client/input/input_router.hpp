@@ -69,7 +69,7 @@ class InputRouter {
   StickEvent sticks_;
   bool is_captured_ = false;
   bool has_window_ = false, has_panel_ = false;
-  // Whether the mouse is captured again when they close.
+  // True: the mouse is captured again when they close.
   bool captures_after_window_ = false, captures_after_panel_ = false;
 };
 

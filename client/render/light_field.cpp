@@ -193,7 +193,7 @@ void LightField::move_to(VoxelPos eye) {
   if (kept.empty()) {
     entered.push_back(box_);
   } else {
-    // What is new is a slab at each side that moved, without what an earlier slab has.
+    // The new part is a slab at each side that moved, without the voxels of an earlier slab.
     VoxelBox rest = box_;
     const auto cut = [&](std::int32_t VoxelPos::* axis) {
       VoxelBox low = rest, high = rest;

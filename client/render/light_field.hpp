@@ -25,7 +25,7 @@ namespace runstone {
 
 class LightField {
  public:
-  /// The box moves in steps of this many voxels, as soon as the eye is farther than that from its middle.
+  /// The box moves by this many voxels as soon as the eye is farther than that from its middle.
   static constexpr std::int32_t kStep = 16;
 
   /// A box of `width` x `height` x `width` voxels. Requires multiples of 2 * kStep.

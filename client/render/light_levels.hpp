@@ -13,13 +13,13 @@ namespace runstone {
 using LightLevels = std::uint32_t;
 
 inline constexpr std::uint32_t kLightMax = 120;
-/// What a step takes: over a face, and over an edge between two voxels. 11 / 8 is nearly the square
-/// root of 2, so light spreads almost in spheres.
+/// The loss of light in a step: over a face, and over an edge between two voxels. 11 / 8 is nearly
+/// the square root of 2, so light spreads almost in spheres.
 inline constexpr std::uint32_t kFaceStep = 8, kEdgeStep = 11;
 /// Light reaches this many voxels.
 inline constexpr int kLightReach = kLightMax / kFaceStep;
 
-/// What a voxel takes from light that comes into it, besides the step. Requires that it is not
+/// The loss of light that comes into a voxel, besides that of the step. Requires that it is not
 /// opaque.
 constexpr std::uint32_t loss_of(LightPass pass) {
   return pass == LightPass::liquid ? 4 : pass == LightPass::leaves ? 14 : 0;

@@ -11,7 +11,7 @@
 namespace runstone {
 
 /// A corner of a triangle. x and y are pixels from the upper left corner of the frame. u and v are
-/// places in the atlas or image, 0 to 1. The colour is sRGB, red in the lowest byte and alpha in the highest.
+/// places in the atlas or image, 0 to 1. The colour is sRGB; red is the lowest byte, alpha the highest.
 struct OverlayVertex {
   float x = 0, y = 0;
   float u = 0, v = 0;

@@ -48,7 +48,7 @@ std::uint32_t TexelStore::add(const void* texels, std::uint32_t count) {
 
 void TexelStore::write(std::uint32_t first, const void* texels, std::uint32_t count) {
   write_to(buffer_, first, texels, count);
-  // What lies beyond the texels that were moved is copied later.
+  // The texels beyond those that were moved are copied later.
   if (next_ && first < moved_) write_to(next_, first, texels, count);
 }
 

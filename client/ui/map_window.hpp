@@ -18,7 +18,7 @@ struct MapPlayer {
   double yaw = 0;       // radians; 0 looks along +z, and it grows towards +x
 };
 
-/// What the map shows besides its tiles.
+/// The content of the map besides its tiles.
 struct MapState {
   const WorldMap* map = nullptr;  // null: there is no world yet
   MapPlayer me;

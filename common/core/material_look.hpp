@@ -7,7 +7,7 @@
 
 namespace runstone {
 
-/// What is drawn on each face of a voxel. Values are frozen: tables, records and messages hold them.
+/// The pattern on each face of a voxel. Values are frozen: tables, records and messages hold them.
 enum class MaterialPattern : std::uint8_t {
   none = 0,
   planks = 1,  // four boards, with dark joints

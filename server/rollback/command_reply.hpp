@@ -15,7 +15,7 @@ struct CommandAnswer {
   std::string text;
   bool is_done = true;
   bool is_ok = true;  // of the last answer
-  /// Of the last answer to a preview of a rollback: what a client shows of it.
+  /// The last answer to a preview of a rollback, as far as a client shows it.
   std::shared_ptr<const RestorePreview> restore = nullptr;
 };
 using CommandReply = std::function<void(const CommandAnswer&)>;

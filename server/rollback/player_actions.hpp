@@ -53,8 +53,8 @@ class PlayerActions {
   std::vector<Sequence> to_undo(Sequence action) const;
   /// Returns the edits that redo of an action selects, ascending. Requires an action of redoable().
   std::vector<Sequence> to_redo(Sequence action) const;
-  /// Return the records of the action itself, ascending, in to_undo() and to_redo(). All changes lie in the
-  /// chunks that they touch.
+  /// Return the records of the action itself, ascending, in to_undo() and to_redo(). All changes lie
+  /// in the chunks that they touch.
   std::vector<Sequence> undo_core(Sequence action) const;
   std::vector<Sequence> redo_core(Sequence action) const;
 

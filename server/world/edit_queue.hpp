@@ -25,7 +25,7 @@ struct EditOffer {
   TimeUs submitted_us = 0;
   EditDescriptor edit;
   Sequence subject = 0;  // the edit that this rollback, undo or redo is about; 0: none
-  /// Of a player's edit: the first edit of its action, as EditRequest::action.
+  /// For an edit of a player: the first edit of its action, as EditRequest::action.
   ClientSequence action = 0;
 };
 

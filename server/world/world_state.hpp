@@ -44,7 +44,7 @@ inline constexpr const char* kTooManyGuesses =
     "too many wrong passwords or codes came from your network: wait a minute";
 inline constexpr const char* kMemoryIsFull = "the server's memory is full (memory_mib)";
 
-/// What the player list says of a player besides the key.
+/// The facts in the player list about a player, besides the key.
 struct ListedEntry {
   std::string name, role;
   friend bool operator==(const ListedEntry&, const ListedEntry&) = default;

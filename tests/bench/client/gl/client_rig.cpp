@@ -120,7 +120,7 @@ void ClientRig::turn() {
   pipeline_.take(replica_.drain_changes(), ClockOffset{}, steady_now_us());
   const std::uint64_t presented = pipeline_.frames_presented();
   pipeline_.take_drawn();
-  // What was meshed while the frame before was in progress delays no frame.
+  // A mesh made while the frame before was in progress delays no frame.
   if (pipeline_.frames_presented() != presented) mesh_us_ = 0;
   mesh();  // a client flushes twice a turn
   mesh();
@@ -135,7 +135,7 @@ FrameCost ClientRig::frame() {
   const std::uint64_t presented = pipeline_.frames_presented();
   while (pipeline_.frames_presented() == presented) {
     pipeline_.moved();
-    // What the turn meshes after it took the frame belongs to the next one.
+    // A mesh made after this turn took the frame belongs to the next frame.
     const TimeUs before_us = ordered_mesh_us_;
     turn();
     if (pipeline_.frames_presented() != presented) {

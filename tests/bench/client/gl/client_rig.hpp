@@ -16,7 +16,7 @@
 
 namespace runstone::bench {
 
-/// What delayed one frame, in microseconds.
+/// The delays of one frame, in microseconds.
 struct FrameCost {
   TimeUs mesh_us = 0;    // on the main thread, between the frame before and the order
   TimeUs upload_us = 0;  // on the draw thread, since the frame before

@@ -1,4 +1,4 @@
-// What the client's effects cost in a frame, with RDM quads and with culled faces of the same chunks.
+// The cost of the client's effects in a frame, with RDM quads and with culled faces.
 #pragma once
 #include <iosfwd>
 #include <string>
