@@ -131,7 +131,7 @@ void ToolWindow::build(const HudState& state, double scale, std::vector<ToolComm
   }
   if (!is_open_) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const auto width = static_cast<float>(430 * scale);
+  const auto width = static_cast<float>(460 * scale);
   ImGui::SetNextWindowPos({size.x - static_cast<float>(10 * scale), static_cast<float>(10 * scale)},
                           ImGuiCond_Appearing, {1, 0});
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, size.y * 0.86F});
