@@ -46,6 +46,7 @@ std::vector<AuthorId> band_authors(const std::vector<LogMark>& marks, std::size_
   std::map<AuthorId, std::size_t> counts;
   for (const LogMark& mark : marks) ++counts[mark.author];
   std::vector<AuthorId> out;
+  out.reserve(counts.size());
   for (const auto& [author, count] : counts) out.push_back(author);
   std::stable_sort(out.begin(), out.end(),
                    [&](AuthorId a, AuthorId b) { return counts[a] > counts[b]; });

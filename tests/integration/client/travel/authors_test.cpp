@@ -9,7 +9,7 @@
 namespace runstone::test {
 namespace {
 
-constexpr View kView{1, {0, 0, 0}, 2, 1};
+constexpr View kNearView{1, {0, 0, 0}, 2, 1};
 
 EditDescriptor sphere(VoxelPos at, Material material) { return {FillSphere{at, 3}, {}, material}; }
 
@@ -18,7 +18,7 @@ EditDescriptor sphere(VoxelPos at, Material material) { return {FillSphere{at, 3
 TEST_CASE("a timeline has the authors of the log, by name", "[travel]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());
-  LiveSession one(server->port(), kView), two(server->port(), kView);
+  LiveSession one(server->port(), kNearView), two(server->port(), kNearView);
   one.catch_up();
   two.catch_up();
   for (int i = 0; i < 6; ++i) {
@@ -50,7 +50,7 @@ TEST_CASE("a timeline has the authors of the log, by name", "[travel]") {
 TEST_CASE("a client sees what a rollback would change, applies it, and takes it back", "[travel]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());
-  LiveSession griefer(server->port(), kView), host(server->port(), kView);
+  LiveSession griefer(server->port(), kNearView), host(server->port(), kNearView);
   griefer.catch_up();
   host.catch_up();
   RollbackControl rollback(host.session());

@@ -59,6 +59,8 @@ class ChildProcess {
       ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // also when the test itself is killed
       ::dup2(out, STDOUT_FILENO);
       ::dup2(out, STDERR_FILENO);
+      // A listening socket of the test that stayed open in the child would keep its port in use.
+      ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
       if (kept >= 0) ::fcntl(kept, F_SETFD, 0);
       for (std::string& variable : environment) ::putenv(variable.data());
       ::execv(arguments[0], arguments.data());

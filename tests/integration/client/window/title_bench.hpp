@@ -63,7 +63,7 @@ struct TitleBench {
   }
   /// Presses keys, one after another.
   void press(std::vector<std::string> keys) {
-    keys.insert(keys.begin(), {"key", "--delay", "200"});
+    keys.insert(keys.begin(), {"key", "--delay", "400"});
     REQUIRE(display.hand(std::move(keys)));
   }
   /// Presses the first button of the title screen until the log says that it worked: the window may
@@ -81,6 +81,17 @@ struct TitleBench {
         return count > worlds_before;
       });
     }));
+  }
+
+  /// Quits by the last button of the pause menu, and returns the exit code. On a busy machine a key
+  /// may come before the menu is drawn, so it tries again.
+  std::optional<int> quit() {
+    std::optional<int> code;
+    for (int attempt = 0; attempt < 5 && !code; ++attempt) {
+      press({"Escape", "Down", "Down", "Down", "space"});
+      code = client->wait(std::chrono::seconds(8));
+    }
+    return code;
   }
 
   TempFolder folder;

@@ -36,17 +36,18 @@ TEST_CASE("without arguments the client builds in a local world, leaves it and c
     REQUIRE(bench.display.hand({"mousemove_relative", "--", "0", "80"}));
   const std::string server_log = bench.folder / "data/runstone/worlds/home/server.log";
   REQUIRE(bench.display.hand({"click", "1"}));
-  bench.press({"Escape", "Down", "Down", "space"});  // save and leave
-  REQUIRE(wait_for(kWait,
-                   [&] { return text_in(server_log).find("stopped seq=") != std::string::npos; }));
+  REQUIRE(wait_for(kWait, [&] {  // save and leave
+    bench.press({"Escape", "Down", "Down", "space"});
+    return wait_for(std::chrono::seconds(8),
+                    [&] { return text_in(server_log).find("stopped seq=") != std::string::npos; });
+  }));
   INFO(text_in(server_log));
   CHECK(text_in(server_log).find("stopped seq=1 ") != std::string::npos);
   bench.press_first_button(1);
   CHECK(bench.logs("head=1 durable=1"));
   REQUIRE(bench.logs("ground in view", 2));
   REQUIRE(bench.display.hand({"mousemove", "320", "150", "click", "1"}));
-  bench.press({"Escape", "Down", "Down", "Down", "space"});  // quit
-  CHECK(bench.client->wait(kWait) == 0);
+  CHECK(bench.quit() == 0);
 }
 
 TEST_CASE("the client says in words why it is not on a server, and goes on", "[integration]") {
