@@ -192,17 +192,17 @@ TEST_CASE("a child that ends, stays silent or answers nonsense is an error with 
                               .should_continue = [] { return false; }}),
                  "is not wanted any more"));
   // The first script draws once and ends. The second one stays and gives a wrong answer.
-  auto child = DrawChild::start({script(folder, "echo ready 1 X; head -c 20 >/dev/null; exit 5")});
+  auto child = DrawChild::start({script(folder, "echo ready 2 X; head -c 20 >/dev/null; exit 5")});
   REQUIRE(child.has_value());
   CHECK(child->renderer() == "X");
   REQUIRE(child->world(kEdge, red_and_green()));
   CHECK(contains(child->draw(above(), kSize, "a.png").error(), "ended with exit code 5"));
   child = DrawChild::start(
-      {script(folder, "echo ready 1 X; echo 'drawn quads=1 chunks=1 us=1 b.png'; cat >/dev/null")});
+      {script(folder, "echo ready 2 X; echo 'drawn quads=1 chunks=1 us=1 b.png'; cat >/dev/null")});
   REQUIRE(child.has_value());
   CHECK(contains(child->draw(above(), kSize, "a.png").error(), "sent an answer to another order"));
   // A child that does not read is killed when the sockets are full.
-  child = DrawChild::start({script(folder, "echo ready 1 X; exec sleep 60"), 300ms});
+  child = DrawChild::start({script(folder, "echo ready 2 X; exec sleep 60"), 300ms});
   REQUIRE(child.has_value());
   RunChunk speckled = uniform_chunk(Extent::cube(kEdge), 1);
   for (VoxelIndex i = 0; i < speckled.volume(); i += 2)
@@ -218,7 +218,7 @@ TEST_CASE("the destructor ends the child", "[integration][draw]") {
   pid_t pid = 0;
   {
     const auto child = DrawChild::start(
-        {script(folder, "echo $$ > " + mark + "; echo ready 1 X; exec sleep 600")});
+        {script(folder, "echo $$ > " + mark + "; echo ready 2 X; exec sleep 600")});
     REQUIRE(child.has_value());
     std::ifstream(mark) >> pid;
     REQUIRE(pid > 1);
@@ -232,7 +232,7 @@ TEST_CASE("a child inherits no other descriptor", "[integration][draw]") {
   const std::string list = folder / "list";
   std::ofstream held(folder / "held");  // std::ofstream opens without close-on-exec
   const auto child = DrawChild::start(
-      {script(folder, "ls -l /proc/$$/fd > " + list + "; echo ready 1 X; cat >/dev/null")});
+      {script(folder, "ls -l /proc/$$/fd > " + list + "; echo ready 2 X; cat >/dev/null")});
   REQUIRE(child.has_value());
   std::ifstream in(list);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
