@@ -34,7 +34,7 @@ enum class RollbackPhase : std::uint8_t {
   undoing,
 };
 
-/// What the window shows.
+/// The content of the window.
 struct RollbackState {
   bool is_allowed = false;                                // the player's role has the right
   std::vector<std::pair<AuthorId, std::string>> authors;  // to choose from
@@ -46,7 +46,7 @@ struct RollbackState {
   bool is_cut = false;                    // there are more changes than ghosts
 };
 
-/// What the user did.
+/// An order of the user.
 struct PreviewRollback {
   RollbackChoice choice;
 };

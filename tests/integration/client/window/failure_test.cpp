@@ -1,4 +1,4 @@
-// What a player reads if a server or the display fails, and that no edit is lost without a word. The
+// The words for a player if a server or the display fails; no edit is lost without a word. The
 // real client program runs in a window.
 #include <arpa/inet.h>
 #include <netinet/in.h>
