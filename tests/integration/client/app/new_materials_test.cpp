@@ -86,7 +86,7 @@ TEST_CASE("one adds materials, two build with them, and nobody is disturbed",
   const Answer again = control(world, {"materials", "add", file});
   CHECK_FALSE(again.is_ok);
   CHECK(again.text == "materials add: " + file + ":1: material[0]: name is already taken\n");
-  server->stop();
+  server.reset();  // the world is free for the next server
   server = start_server(quiet_config(world), flat_creation());  // the look is in the log
   LiveSession after(server->port(), kWoolView);
   after.catch_up();

@@ -1,5 +1,8 @@
 #include "client/ui/tool_window.hpp"
 
+#include <imgui.h>
+#include <imgui_internal.h>
+
 #include <catch2/catch.hpp>
 #include <optional>
 
@@ -47,6 +50,8 @@ struct ToolWindowBench {
     hud.feed(events);
     frames();
   }
+  /// Returns the abscissa of a place in the window, `offset` pixels right of its left border.
+  static double x(double offset) { return ImGui::FindWindowByName("Tools")->Pos.x + offset; }
   /// Clicks from above to below until a command of this type comes. Returns the command and keeps
   /// its place.
   template <class T>
@@ -69,7 +74,8 @@ struct ToolWindowBench {
   double found_y = 0;
 };
 
-constexpr double kLeft = 870;  // a column of the window in which every row has something to click
+// Distances from the left border of the window. In the first every row has something to click.
+constexpr double kRow = 30, kSliderLow = 11, kSliderMiddle = 110, kSecondChoice = 120, kApply = 175;
 
 }  // namespace
 
@@ -77,7 +83,7 @@ TEST_CASE_METHOD(ToolWindowBench, "the tool window lists all tools, and a click 
                  "[client_ui]") {
   std::vector<std::string> names;
   for (double y = 30; names.size() < box.tools().size();) {
-    const auto chosen = find<ToolChoice>(kLeft, y);
+    const auto chosen = find<ToolChoice>(x(kRow), y);
     REQUIRE(chosen);
     if (names.empty() || names.back() != chosen->name) names.push_back(chosen->name);
     y = found_y + 5;
@@ -90,14 +96,14 @@ TEST_CASE_METHOD(ToolWindowBench, "a slider sets the number of a tool, within it
                  "[client_ui]") {
   REQUIRE(box.choose("sphere").has_value());
   frames();
-  const auto changed = find<ParameterChange>(1000, 250);
+  const auto changed = find<ParameterChange>(x(kSliderMiddle), 250);
   REQUIRE(changed);
   CHECK(changed->name == "radius");
   CHECK(changed->value > 20);
   CHECK(changed->value < 64);
-  click(864, found_y);  // the left end
-  CHECK(box.tool().parameters()[0].value <= 4);
-  const auto mask = find<ParameterChange>(960, found_y + 15);
+  click(x(kSliderLow), found_y);
+  CHECK(box.tool().parameters()[0].value == box.tool().parameters()[0].low);
+  const auto mask = find<ParameterChange>(x(kSecondChoice), found_y + 15);
   REQUIRE(mask);
   CHECK(mask->name == "mask");
 }
@@ -106,21 +112,21 @@ TEST_CASE_METHOD(ToolWindowBench, "places are typed as numbers while their part 
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(kLeft, 310));
+  REQUIRE(find<PlacesChange>(x(kRow), 310));
   const double header_y = found_y;
   REQUIRE(box.typed_places());
   CHECK(box.typed_places()->places == std::vector<VoxelPos>{{4, 5, 6}, {4, 5, 6}});
   // A double click chooses the text of the first number.
   const double row_y = header_y + 24;
-  hud.feed({CursorEvent{kLeft, row_y, 0, 0}, ButtonEvent{MouseButton::left, true},
+  hud.feed({CursorEvent{x(kRow), row_y, 0, 0}, ButtonEvent{MouseButton::left, true},
             ButtonEvent{MouseButton::left, false}, ButtonEvent{MouseButton::left, true},
             ButtonEvent{MouseButton::left, false}});
   frames();
   CHECK(hud.focus().types);
   type("-17");
   CHECK(box.typed_places()->places[0] == VoxelPos{-17, 5, 6});
-  REQUIRE(find<TypedApply>(1015, row_y + 40));
-  click(kLeft, header_y);  // closes the part
+  REQUIRE(find<TypedApply>(x(kApply), row_y + 40));
+  click(x(kRow), header_y);  // closes the part
   CHECK_FALSE(box.typed_places());
 }
 
@@ -153,7 +159,7 @@ TEST_CASE_METHOD(ToolWindowBench, "places are not typed any more once the player
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(kLeft, 310));
+  REQUIRE(find<PlacesChange>(x(kRow), 310));
   REQUIRE(box.typed_places());
   SECTION("the window is closed") { hud.act(Action::release); }
   SECTION("the mouse is captured") { state.is_captured = true; }
@@ -168,8 +174,8 @@ TEST_CASE_METHOD(ToolWindowBench, "symmetry and selection are changed by their f
   // The last header is that of the selection. Its buttons follow.
   std::optional<SelectionCommand> copied;
   for (double y = 560; y > 250 && !copied; y -= 5) {
-    click(kLeft, y);
-    copied = find<SelectionCommand>(kLeft, y + 60, y + 90);
+    click(x(kRow), y);
+    copied = find<SelectionCommand>(x(kRow), y + 60, y + 90);
   }
   REQUIRE(copied);
   CHECK(copied->kind == SelectionCommand::Kind::copy);
