@@ -102,12 +102,23 @@ auto by_ground(HeightMap map, Formula formula) {
 const MaterialTable& seeded_materials() {
   static const MaterialTable table = [] {
     MaterialTable t;
-    for (const char* name : {"stone", "dirt", "grass", "sand", "water", "glass", "wood", "brick",
-                             "leaves", "ore", "tiles"}) {
+    constexpr std::uint8_t kOpaque = 255, kClear = 150;
+    for (const auto& [name, colour] : std::initializer_list<std::pair<const char*, MaterialColour>>{
+             {"stone", {128, 128, 128, kOpaque}},
+             {"dirt", {121, 85, 58, kOpaque}},
+             {"grass", {95, 159, 53, kOpaque}},
+             {"sand", {219, 207, 163, kOpaque}},
+             {"water", {63, 118, 228, kClear}},
+             {"glass", {200, 220, 230, kClear}},
+             {"wood", {155, 118, 74, kOpaque}},
+             {"brick", {150, 75, 60, kOpaque}},
+             {"leaves", {58, 110, 38, kOpaque}},
+             {"ore", {200, 160, 60, kOpaque}},
+             {"tiles", {170, 170, 180, kOpaque}}}) {
       MaterialInfo info;
       info.name = name;
-      const bool clear = info.name == "water" || info.name == "glass";
-      info.visibility = clear ? Visibility::transparent : Visibility::opaque;
+      info.colour = colour;
+      info.visibility = colour[3] == kClear ? Visibility::transparent : Visibility::opaque;
       RUNSTONE_ASSERT(t.add(info).has_value());
     }
     return t;
