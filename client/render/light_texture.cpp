@@ -35,10 +35,10 @@ void LightTexture::copy(const LightField& field, std::span<const VoxelBox> chang
     bytes_ = field.ring().size() * sizeof(LightLevels);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, width, height, width, 0, GL_RGBA, kTexelType,
                  field.ring().data());
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-      glTexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-      glTexParameteri(GL_TEXTURE_3D, wrap, GL_REPEAT);
+    for (const int filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      glTexParameteri(GL_TEXTURE_3D, static_cast<GLenum>(filter), GL_LINEAR);
+    for (const int wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+      glTexParameteri(GL_TEXTURE_3D, static_cast<GLenum>(wrap), GL_REPEAT);
     return;
   }
   glPixelStorei(GL_UNPACK_ROW_LENGTH, width);

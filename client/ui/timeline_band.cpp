@@ -48,8 +48,9 @@ std::vector<AuthorId> band_authors(const std::vector<LogMark>& marks, std::size_
   std::vector<AuthorId> out;
   out.reserve(counts.size());
   for (const auto& [author, count] : counts) out.push_back(author);
-  std::stable_sort(out.begin(), out.end(),
-                   [&](AuthorId a, AuthorId b) { return counts[a] > counts[b]; });
+  std::sort(out.begin(), out.end(), [&](AuthorId a, AuthorId b) {
+    return counts[a] != counts[b] ? counts[a] > counts[b] : a < b;
+  });
   if (out.size() > count_max) out.resize(count_max);
   return out;
 }

@@ -19,6 +19,7 @@ void PreviewEdits::add(const RestorePlan& plan) {
   const ChunkCoord at = plan.key.at;
   if (plan.key.lod != 0 || plan.differences.empty() || !view_.contains(at)) return;
   Part part;
+  part.at = at;
   part.distance = squared(std::int64_t{at.x} - view_.centre.x) +
                   squared(std::int64_t{at.y} - view_.centre.y) +
                   squared(std::int64_t{at.z} - view_.centre.z);
@@ -40,8 +41,9 @@ void PreviewEdits::add(const RestorePlan& plan) {
 }
 
 void PreviewEdits::take(RestorePreview& out) {
-  std::stable_sort(parts_.begin(), parts_.end(),
-                   [](const Part& a, const Part& b) { return a.distance < b.distance; });
+  std::sort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.at < b.at;
+  });
   out.is_cut = is_cut_;
   for (Part& part : parts_)
     out.edits.insert(out.edits.end(), std::make_move_iterator(part.edits.begin()),

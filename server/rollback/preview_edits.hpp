@@ -23,6 +23,7 @@ class PreviewEdits {
 
  private:
   struct Part {
+    ChunkCoord at;
     std::int64_t distance = 0;  // of the chunk from the centre, squared
     std::size_t bytes = 0;
     std::vector<EditDescriptor> edits;
