@@ -210,7 +210,7 @@ void Client::handle_input(TimeUs now_us) {
   const RoutedInput routed = input_.route(hud_.focus());
   // By escape. Beside a window it only frees the mouse.
   const bool is_freed = was_captured && !input_.is_captured();
-  if (menu_ != nullptr && is_freed && !hud_.focus().has_panel) menu_->pause();
+  if (menu_ != nullptr && is_freed && hud_.focus().panels == 0) menu_->pause();
   controls_.take(routed.player, std::min(seconds, 0.1), settings(), now_us);
   if (controls_.take_release()) {
     if (menu_ != nullptr) {
@@ -225,7 +225,7 @@ void Client::handle_input(TimeUs now_us) {
     static_cast<void>(hud_.make_frame(hud_scene(), now_us));
   }
   const UiFocus focus = hud_.focus();
-  input_.set_windows(focus.has_window, focus.has_panel);
+  input_.set_windows(focus.has_window, focus.panels);
   if (window_) window_->set_captured(input_.is_captured());
   if (!routed.for_ui.empty()) pipeline_.moved();
 }

@@ -154,17 +154,20 @@ void InputRouter::release_all() {
   remove_held_ = place_held_ = false;
 }
 
-void InputRouter::set_windows(bool has_window, bool has_panel) {
+void InputRouter::set_windows(bool has_window, unsigned panels) {
   const bool had_window = std::exchange(has_window_, has_window);
-  const bool had_panel = std::exchange(has_panel_, has_panel);
-  if (had_window == has_window && had_panel == has_panel) return;
+  const unsigned had_panels = std::exchange(panels_, panels);
+  if (had_window == has_window && had_panels == panels) return;
   release_all();
-  if (had_panel && !has_panel) {
+  if (had_panels != 0 && panels == 0) {
     bool& captures = has_window ? captures_after_window_ : is_captured_;
     captures = captures || captures_after_panel_;
   }
   if (had_window && !has_window) is_captured_ = is_captured_ || captures_after_window_;
-  if (!had_panel && has_panel) captures_after_panel_ = std::exchange(is_captured_, false);
+  if (panels > had_panels) {
+    const bool was_captured = std::exchange(is_captured_, false);
+    captures_after_panel_ = was_captured || (had_panels != 0 && captures_after_panel_);
+  }
   if (!had_window && has_window) captures_after_window_ = std::exchange(is_captured_, false);
 }
 

@@ -23,7 +23,7 @@ struct UiFocus {
   bool types = false;        // a text field has the keyboard
   bool has_window = false;   // a window is open that needs the mouse, such as the palette
   bool over_window = false;  // the cursor is over some window
-  bool has_panel = false;    // a window is open that is used beside playing, such as the map
+  unsigned panels = 0;       // open windows that are used beside playing, such as the map
 };
 
 struct RoutedInput {
@@ -47,9 +47,9 @@ class InputRouter {
   bool is_captured() const { return is_captured_; }
   /// Captures the mouse, as a click beside all windows does.
   void capture() { is_captured_ = true; }
-  /// Frees the mouse while a window needs it, and when a panel opens. When they close, the mouse is
-  /// captured again if it was captured before.
-  void set_windows(bool has_window, bool has_panel);
+  /// Frees the mouse while a window needs it, and when one more panel opens. When all of them are
+  /// closed, the mouse is captured again if it was captured before.
+  void set_windows(bool has_window, unsigned panels);
 
  private:
   bool takes_key(const KeyEvent& event, const UiFocus& focus, RoutedInput& out);
@@ -68,7 +68,8 @@ class InputRouter {
   std::array<bool, kGamepadButtonCount> pad_held_{};
   StickEvent sticks_;
   bool is_captured_ = false;
-  bool has_window_ = false, has_panel_ = false;
+  bool has_window_ = false;
+  unsigned panels_ = 0;
   // True: the mouse is captured again when they close.
   bool captures_after_window_ = false, captures_after_panel_ = false;
 };

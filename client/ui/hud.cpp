@@ -65,8 +65,9 @@ UiFocus Hud::focus() const {
   // ImGui still names a text field whose window was closed after the last frame.
   out.types = (out.has_window || tools_.is_open()) && (context_.types() || takes_focus());
   out.over_window = context_.over_window();
-  out.has_panel =
-      map_.is_open() || timeline_.is_open() || rollback_.is_open() || tools_.has_mouse();
+  for (const bool is_open :
+       {map_.is_open(), timeline_.is_open(), rollback_.is_open(), tools_.has_mouse()})
+    out.panels += is_open ? 1 : 0;
   return out;
 }
 

@@ -71,11 +71,11 @@ TEST_CASE("a window frees the mouse, and closing it captures the mouse again", "
   InputRouter router;
   capture(router);
   turn(router, {key(Key::w, true)});
-  router.set_windows(true, false);
+  router.set_windows(true, 0);
   CHECK_FALSE(router.is_captured());
   CHECK_FALSE(turn(router, {}).player.forward);  // a key that was held moves nobody any more
-  router.set_windows(true, false);
-  router.set_windows(false, false);
+  router.set_windows(true, 0);
+  router.set_windows(false, 0);
   CHECK(router.is_captured());
 }
 
@@ -83,34 +83,47 @@ TEST_CASE("a panel frees the mouse when it opens, and a click beside it captures
           "[client_input]") {
   InputRouter router;
   capture(router);
-  router.set_windows(false, true);
+  router.set_windows(false, 1);
   CHECK_FALSE(router.is_captured());
   UiFocus focus;
-  focus.has_panel = focus.over_window = true;
+  focus.panels = 1;
+  focus.over_window = true;
   turn(router, {button(MouseButton::left, true), button(MouseButton::left, false)}, focus);
   CHECK_FALSE(router.is_captured());
   focus.over_window = false;
   turn(router, {button(MouseButton::left, true), button(MouseButton::left, false)}, focus);
   CHECK(router.is_captured());
-  router.set_windows(true, true);  // such as the chat
+  router.set_windows(true, 1);  // such as the chat
   CHECK_FALSE(router.is_captured());
-  router.set_windows(false, true);
+  router.set_windows(false, 1);
   CHECK(router.is_captured());
-  router.set_windows(false, false);
+  router.set_windows(false, 0);
+  CHECK(router.is_captured());
+}
+
+TEST_CASE("a second panel frees the mouse too, until both are closed", "[client_input]") {
+  InputRouter router;
+  router.set_windows(false, 1);
+  capture(router);
+  router.set_windows(false, 2);
+  CHECK_FALSE(router.is_captured());
+  router.set_windows(false, 1);
+  CHECK_FALSE(router.is_captured());
+  router.set_windows(false, 0);
   CHECK(router.is_captured());
 }
 
 TEST_CASE("closing a panel captures the mouse only if it was captured before", "[client_input]") {
   InputRouter router;
-  router.set_windows(false, true);
-  router.set_windows(false, false);
+  router.set_windows(false, 1);
+  router.set_windows(false, 0);
   CHECK_FALSE(router.is_captured());
   capture(router);
-  router.set_windows(false, true);
-  router.set_windows(true, true);
-  router.set_windows(true, false);  // the panel closes under the window
+  router.set_windows(false, 1);
+  router.set_windows(true, 1);
+  router.set_windows(true, 0);  // the panel closes under the window
   CHECK_FALSE(router.is_captured());
-  router.set_windows(false, false);
+  router.set_windows(false, 0);
   CHECK(router.is_captured());
 }
 

@@ -42,7 +42,7 @@ struct HudBench {
       }
       hud.feed(routed.for_ui);
       frame();
-      router.set_windows(hud.focus().has_window, hud.focus().has_panel);
+      router.set_windows(hud.focus().has_window, hud.focus().panels);
     } while (router.has_events());
     return left;
   }

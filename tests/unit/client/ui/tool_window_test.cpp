@@ -132,27 +132,27 @@ TEST_CASE_METHOD(ToolWindowBench, "places are typed as numbers while their part 
 
 TEST_CASE_METHOD(ToolWindowBench, "the tool window keeps the mouse until a click beside it",
                  "[client_ui]") {
-  CHECK(hud.focus().has_panel);
+  CHECK(hud.focus().panels == 1);
   CHECK_FALSE(hud.focus().has_window);
   InputRouter router;
   router.capture();
-  router.set_windows(false, true);
+  router.set_windows(false, 1);
   CHECK_FALSE(router.is_captured());
   router.push({ButtonEvent{MouseButton::left, true}, ButtonEvent{MouseButton::left, false}});
   hud.feed(router.route(hud.focus()).for_ui);
   CHECK(router.is_captured());
   state.is_captured = true;
   frames();
-  CHECK_FALSE(hud.focus().has_panel);
-  router.set_windows(false, hud.focus().has_panel);
+  CHECK(hud.focus().panels == 0);
+  router.set_windows(false, hud.focus().panels);
   CHECK(router.is_captured());
   // The key gives the mouse to the window again, and then closes the window.
   hud.act(Action::tools);
-  CHECK(hud.focus().has_panel);
+  CHECK(hud.focus().panels == 1);
   state.is_captured = false;
   frames();
   hud.act(Action::tools);
-  CHECK_FALSE(hud.focus().has_panel);
+  CHECK(hud.focus().panels == 0);
 }
 
 TEST_CASE_METHOD(ToolWindowBench, "places are not typed any more once the player builds by clicks",
