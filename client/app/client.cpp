@@ -68,7 +68,6 @@ InputRouter router_of(const ClientSettings& settings) {
 
 Client::Client(ClientOptions options, const Script* script, ClientDisplay& display, GameMenu* menu)
     : options_(std::move(options)),
-      display_(display),
       wake_(display.wake),
       network_(options_, [this] { wake_.notify(); }),
       session_(network_.session()),

@@ -93,11 +93,10 @@ class Client {
   bool drift_found() const { return session_.replica().counters().drifted != 0; }
 
   const ClientOptions options_;
-  ClientDisplay& display_;
-  WakeUp& wake_;  // of display_
+  WakeUp& wake_;  // of the display
   ThreadedSession network_;
   ClientSession& session_;  // of network_
-  Window* const window_;    // of display_; null off screen
+  Window* const window_;    // of the display; null off screen
   GameMenu* const menu_;    // may be null
   MeshPipeline pipeline_;
   Player player_;
