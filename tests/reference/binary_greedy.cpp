@@ -29,11 +29,16 @@ struct Shape {
 
 /// One pass over the faces of one visibility class. kOne means that all its voxels have one
 /// material, so that nothing has to be compared.
-template <bool kTransparent, bool kOne>
+template <class Grid, bool kTransparent, bool kOne>
 class Pass {
  public:
-  Pass(const DenseGrid& grid, const OccupancyMask& mask, BinaryScratch& scratch, QuadLayers& out)
+  using Voxel = typename Grid::Voxel;
+
+  /// `materials` are those of the palette, if the grid holds palette ids.
+  Pass(const Grid& grid, const Material* materials, const OccupancyMask& mask,
+       BinaryScratch& scratch, QuadLayers& out)
       : grid_(grid),
+        materials_(materials),
         mask_(mask),
         e_(grid.sides()),
         axes_(axes_of(grid.order())),
@@ -79,7 +84,7 @@ class Pass {
     const Word shown = own_[word] & ~hiding(other);
     if constexpr (!kTransparent || kOne) return shown;
     if ((shown & own_[other]) == 0) return shown;
-    const Material* const line = grid_.line(m, s);
+    const Voxel* const line = grid_.line(m, s);
     return shown & (~own_[other] | differing_bits(line, line + voxel_step, e_.f));
   }
 
@@ -176,26 +181,31 @@ class Pass {
     if constexpr (!kTransparent || kOne) return shown;
     const Word beside = moved(own_[word], (ends & 4) != 0);
     if ((shown & beside) == 0) return shown;
-    const Material* const line = grid_.line(m, s);
+    const Voxel* const line = grid_.line(m, s);
     return shown & (~beside | differing_bits(line, line + (positive ? 1 : -1), e_.f));
   }
 
-  /// Returns how many of `count` materials from `at` on equal `material`, before the first that
-  /// differs.
+  Material material_of(Voxel voxel) const {
+    if constexpr (kOne) return one_material_;
+    if constexpr (sizeof(Voxel) == 1) return materials_[voxel];
+    return voxel;
+  }
+
+  /// Returns how many of `count` voxels from `at` on equal `voxel`, before the first that differs.
   template <bool kContiguous>
-  static std::uint32_t equal_run(const Material* at, std::ptrdiff_t stride, std::uint32_t count,
-                                 Material material) {
+  static std::uint32_t equal_run(const Voxel* at, std::ptrdiff_t stride, std::uint32_t count,
+                                 Voxel voxel) {
     if constexpr (kOne) return count;
-    if constexpr (kContiguous) return equal_prefix(at, count, material);
+    if constexpr (kContiguous) return equal_prefix(at, count, voxel);
     std::uint32_t i = 0;
-    while (i < count && at[i * stride] == material) ++i;
+    while (i < count && at[i * stride] == voxel) ++i;
     return i;
   }
 
   /// Covers the set bits of a plane with rectangles, and clears the plane's later words. `at` is
   /// the voxel of bit 0 of word 0.
   template <bool kContiguous>
-  void merge(Word* plane, std::uint32_t words, const Material* at, std::ptrdiff_t bit_stride,
+  void merge(Word* plane, std::uint32_t words, const Voxel* at, std::ptrdiff_t bit_stride,
              std::ptrdiff_t word_stride, const Shape& shape, std::uint32_t layer) {
     Quad* out = scratch_.quads.data() + count_;
     const std::uint64_t base = shape.base | std::uint64_t{layer} << shape.layer_shift;
@@ -203,22 +213,23 @@ class Pass {
       Word bits = plane[w];
       while (bits != 0) {
         const auto from = static_cast<std::uint32_t>(std::countr_zero(bits));
-        const Material* const voxel = at + from * bit_stride;
-        const Material material = kOne ? one_material_ : *voxel;
+        const Voxel* const first = at + from * bit_stride;
+        const Voxel voxel = kOne ? Voxel{} : *first;
         const std::uint32_t length = equal_run<kContiguous>(
-            voxel, bit_stride, static_cast<std::uint32_t>(std::countr_one(bits >> from)), material);
+            first, bit_stride, static_cast<std::uint32_t>(std::countr_one(bits >> from)), voxel);
         const Word run = low_bits(length) << from;
         bits ^= run;
-        const Material* above = voxel + word_stride;
+        const Voxel* above = first + word_stride;
         std::uint32_t end = w + 1;
         for (; end < words && (plane[end] & run) == run; ++end, above += word_stride) {
-          if (equal_run<kContiguous>(above, bit_stride, length, material) != length) break;
+          if (equal_run<kContiguous>(above, bit_stride, length, voxel) != length) break;
           plane[end] ^= run;
         }
         *out++ = {base | std::uint64_t{from} << shape.bit_shift |
                   std::uint64_t{w} << shape.word_shift |
                   std::uint64_t{length - 1} << shape.bits_shift |
-                  std::uint64_t{end - w - 1} << shape.words_shift | std::uint64_t{material} << 38};
+                  std::uint64_t{end - w - 1} << shape.words_shift |
+                  std::uint64_t{material_of(voxel)} << 38};
       }
     }
     count_ = static_cast<std::uint32_t>(out - scratch_.quads.data());
@@ -236,7 +247,8 @@ class Pass {
     std::fill(first + layers, first + kSideMax, count_);
   }
 
-  const DenseGrid& grid_;
+  const Grid& grid_;
+  const Material* materials_;
   const OccupancyMask& mask_;
   OrderedExtent e_;
   std::array<Axis, 3> axes_;
@@ -248,27 +260,38 @@ class Pass {
   std::uint32_t count_ = 0;
 };
 
-template <bool kTransparent>
-void run_pass(const DenseGrid& grid, const OccupancyMask& mask, bool any, bool one,
-              BinaryScratch& scratch, QuadLayers& out) {
+template <bool kTransparent, class Grid>
+void run_pass(const Grid& grid, const Material* materials, const OccupancyMask& mask, bool any,
+              bool one, BinaryScratch& scratch, QuadLayers& out) {
   if (!any) {
     out.clear();
   } else if (one) {
-    Pass<kTransparent, true>(grid, mask, scratch, out).run();
+    Pass<Grid, kTransparent, true>(grid, materials, mask, scratch, out).run();
   } else {
-    Pass<kTransparent, false>(grid, mask, scratch, out).run();
+    Pass<Grid, kTransparent, false>(grid, materials, mask, scratch, out).run();
   }
+}
+
+template <class Grid>
+void mesh(const Grid& grid, const Material* materials, const OccupancyMask& mask,
+          BinaryScratch& scratch, ChunkMesh& out) {
+  const OrderedExtent e = grid.sides();
+  RUNSTONE_ASSERT(e.f <= kBinarySideMax && e.m <= kBinarySideMax && e.s <= kBinarySideMax);
+  RUNSTONE_ASSERT(mask.opaque.size() == std::size_t{e.m + 2} * (e.s + 2));
+  run_pass<false>(grid, materials, mask, mask.any_opaque, mask.one_opaque, scratch, out.opaque);
+  run_pass<true>(grid, materials, mask, mask.any_transparent, mask.one_transparent, scratch,
+                 out.transparent);
 }
 
 }  // namespace
 
 void mesh_binary_greedy(const DenseGrid& grid, const OccupancyMask& mask, BinaryScratch& scratch,
                         ChunkMesh& out) {
-  const OrderedExtent e = grid.sides();
-  RUNSTONE_ASSERT(e.f <= kBinarySideMax && e.m <= kBinarySideMax && e.s <= kBinarySideMax);
-  RUNSTONE_ASSERT(mask.opaque.size() == std::size_t{e.m + 2} * (e.s + 2));
-  run_pass<false>(grid, mask, mask.any_opaque, mask.one_opaque, scratch, out.opaque);
-  run_pass<true>(grid, mask, mask.any_transparent, mask.one_transparent, scratch, out.transparent);
+  mesh(grid, nullptr, mask, scratch, out);
+}
+
+void mesh_binary_greedy(const PaletteVolume& volume, BinaryScratch& scratch, ChunkMesh& out) {
+  mesh(volume.grid, volume.palette.materials().data(), volume.mask, scratch, out);
 }
 
 void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility,
@@ -279,9 +302,10 @@ void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility
 
 void mesh_binary_greedy(const RunChunk& chunk, const GridNeighbours& neighbours,
                         const VisibilityTable& visibility, BinaryScratch& scratch, ChunkMesh& out) {
-  decode(chunk, neighbours, scratch.layer, scratch.grid);
-  occupancy_of_decoded(chunk, neighbours, scratch.grid, visibility, scratch.mask);
-  mesh_binary_greedy(scratch.grid, scratch.mask, scratch, out);
+  if (decode_palette(chunk, neighbours, visibility, scratch.volume))
+    return mesh_binary_greedy(scratch.volume, scratch, out);
+  decode(chunk, neighbours, scratch.volume.layer, scratch.grid);
+  mesh_binary_greedy(scratch.grid, visibility, scratch, out);
 }
 
 }  // namespace runstone::reference

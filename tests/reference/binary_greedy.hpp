@@ -11,14 +11,15 @@
 #include "common/mesh/visibility.hpp"
 #include "tests/reference/dense_grid.hpp"
 #include "tests/reference/occupancy_mask.hpp"
+#include "tests/reference/palette_decode.hpp"
 
 namespace runstone::reference {
 
 /// Buffers that are reused between calls, so that a steady state allocates nothing. Thread: one.
 struct BinaryScratch {
-  OccupancyMask mask;                 // of the functions that make their mask
-  DenseGrid grid;                     // of the function that decodes
-  std::vector<Material> layer;        // one border layer, of the same function
+  PaletteVolume volume;               // of the functions that decode
+  OccupancyMask mask;                 // of those that make their mask from a grid of materials
+  DenseGrid grid;                     // of a chunk with too many materials for a palette
   std::vector<std::uint64_t> planes;  // faces across the words' axis, a plane of words a layer
   std::vector<Quad> quads;
 };
@@ -29,12 +30,16 @@ struct BinaryScratch {
 void mesh_binary_greedy(const DenseGrid& grid, const OccupancyMask& mask, BinaryScratch& scratch,
                         ChunkMesh& out);
 
+/// Does the same with palette ids.
+void mesh_binary_greedy(const PaletteVolume& volume, BinaryScratch& scratch, ChunkMesh& out);
+
 /// Does the same from a grid alone: builds the mask first.
 void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility,
                         BinaryScratch& scratch, ChunkMesh& out);
 
-/// Does the same from runs: decodes a grid, makes its mask from the runs as well, and meshes. This
-/// is "decode + binary greedy" wherever meshers are compared. Counts a dense expansion.
+/// Does the same from runs: decodes palette ids and mask in one pass, and meshes. This is "decode +
+/// binary greedy" wherever meshers are compared. A chunk with too many materials for a palette is
+/// decoded to a grid of materials. Counts a dense expansion.
 void mesh_binary_greedy(const RunChunk& chunk, const GridNeighbours& neighbours,
                         const VisibilityTable& visibility, BinaryScratch& scratch, ChunkMesh& out);
 

@@ -90,22 +90,6 @@ void decode_border(const RunChunk* neighbour, Direction direction, std::vector<M
 
 }  // namespace
 
-void DenseGrid::reset(Extent extent, AxisOrder order) {
-  RUNSTONE_ASSERT(extent.valid());
-  extent_ = extent;
-  order_ = order;
-  sides_ = ordered(extent, order);
-  line_stride_ = static_cast<std::ptrdiff_t>(sides_.f) + 2;
-  layer_stride_ = line_stride_ * (static_cast<std::ptrdiff_t>(sides_.m) + 2);
-  volume_ = static_cast<std::size_t>(layer_stride_) * (sides_.s + 2);
-  if (voxels_.size() < volume_ + kSlack) voxels_.resize(volume_ + kSlack);
-}
-
-std::ptrdiff_t DenseGrid::stride(Axis axis) const {
-  const std::array<Axis, 3> axes = axes_of(order_);
-  return axis == axes[0] ? 1 : axis == axes[1] ? line_stride_ : layer_stride_;
-}
-
 void decode(const RunChunk& chunk, const GridNeighbours& neighbours, std::vector<Material>& layer,
             DenseGrid& grid) {
   count_dense_expansion();

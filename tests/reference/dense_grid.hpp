@@ -1,13 +1,14 @@
-// DenseGrid: one material per voxel of a chunk and of the one voxel around it, the input of the
-// dense reference meshers. It is a type of its own, so that nothing dense gets into the product:
-// only this folder, benchmarks and tests use it. It is flattened in an axis order like a chunk, so
-// that runs of the same order decode by plain fills.
+// PaddedGrid: a value for each voxel of a chunk and of the one voxel around it, the input of the
+// dense reference meshers. DenseGrid holds materials. It is a type of its own, so that nothing dense
+// gets into the product: only this folder, benchmarks and tests use it. It is flattened in an axis
+// order like a chunk, so that runs of the same order decode by plain fills.
 #pragma once
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "common/core/assert.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/runs/axis_order.hpp"
@@ -19,11 +20,23 @@ namespace runstone::reference {
 /// touch. A null chunk counts as empty.
 using GridNeighbours = std::array<const RunChunk*, kDirectionCount>;
 
-class DenseGrid {
+template <class VoxelType>
+class PaddedGrid {
  public:
+  using Voxel = VoxelType;
+
   /// Sets the shape; the voxels are unspecified afterwards. Allocates only to grow. Requires a
   /// valid extent.
-  void reset(Extent extent, AxisOrder order);
+  void reset(Extent extent, AxisOrder order) {
+    RUNSTONE_ASSERT(extent.valid());
+    extent_ = extent;
+    order_ = order;
+    sides_ = ordered(extent, order);
+    line_stride_ = static_cast<std::ptrdiff_t>(sides_.f) + 2;
+    layer_stride_ = line_stride_ * (static_cast<std::ptrdiff_t>(sides_.m) + 2);
+    volume_ = static_cast<std::size_t>(layer_stride_) * (sides_.s + 2);
+    if (voxels_.size() < volume_ + kSlack) voxels_.resize(volume_ + kSlack);
+  }
 
   Extent extent() const { return extent_; }
   AxisOrder order() const { return order_; }
@@ -34,23 +47,26 @@ class DenseGrid {
   std::ptrdiff_t line_stride() const { return line_stride_; }
   std::ptrdiff_t layer_stride() const { return layer_stride_; }
   /// Returns the distance in voxels from a voxel to the next one along an axis.
-  std::ptrdiff_t stride(Axis axis) const;
+  std::ptrdiff_t stride(Axis axis) const {
+    const std::array<Axis, 3> axes = axes_of(order_);
+    return axis == axes[0] ? 1 : axis == axes[1] ? line_stride_ : layer_stride_;
+  }
   /// Returns the bytes of the voxels of grid and border.
-  std::size_t byte_size() const { return volume_ * sizeof(Material); }
+  std::size_t byte_size() const { return volume_ * sizeof(Voxel); }
 
   /// Returns the first voxel of line m of slow layer s. Requires -1 <= m, s <= their side. [-1] and
   /// [side] of a line are its border. The twelve edges of the border belong to no face: decode()
   /// and the octree may write any value there.
-  const Material* line(std::ptrdiff_t m, std::ptrdiff_t s) const {
+  const Voxel* line(std::ptrdiff_t m, std::ptrdiff_t s) const {
     return voxels_.data() + offset(m, s);
   }
-  Material* line(std::ptrdiff_t m, std::ptrdiff_t s) { return voxels_.data() + offset(m, s); }
+  Voxel* line(std::ptrdiff_t m, std::ptrdiff_t s) { return voxels_.data() + offset(m, s); }
   /// Returns the voxel at 0 0 0. Others lie at multiples of stride().
-  const Material* origin() const { return line(0, 0); }
+  const Voxel* origin() const { return line(0, 0); }
 
-  /// The number of materials behind the last voxel that may be overwritten, so that fills need not
-  /// stop exactly.
-  static constexpr std::size_t kSlack = 32;
+  /// The number of values behind the last voxel that may be read and overwritten, so that fills and
+  /// comparisons need not stop exactly.
+  static constexpr std::size_t kSlack = 64;
 
  private:
   std::ptrdiff_t offset(std::ptrdiff_t m, std::ptrdiff_t s) const {
@@ -60,9 +76,11 @@ class DenseGrid {
   AxisOrder order_ = AxisOrder::xyz;
   OrderedExtent sides_{};
   std::ptrdiff_t line_stride_ = 0, layer_stride_ = 0;
-  std::size_t volume_ = 0;        // border included
-  std::vector<Material> voxels_;  // volume_ + kSlack or more
+  std::size_t volume_ = 0;     // border included
+  std::vector<Voxel> voxels_;  // volume_ + kSlack or more
 };
+
+using DenseGrid = PaddedGrid<Material>;
 
 /// Decodes a chunk and the adjoining layers of its neighbours into a grid of the chunk's axis
 /// order, as a dense mesher of a world of runs must do first. Counts a dense expansion. `layer` is

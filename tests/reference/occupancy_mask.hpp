@@ -33,10 +33,4 @@ struct OccupancyMask {
 /// sides up to kBinarySideMax. Cost: O(volume / 8).
 void occupancy_of(const DenseGrid& grid, const VisibilityTable& visibility, OccupancyMask& mask);
 
-/// Does the same for a grid that was decoded from `chunk` and `neighbours`. The words inside are
-/// made from the runs. Cost: O(runs + lines).
-void occupancy_of_decoded(const RunChunk& chunk, const GridNeighbours& neighbours,
-                          const DenseGrid& grid, const VisibilityTable& visibility,
-                          OccupancyMask& mask);
-
 }  // namespace runstone::reference

@@ -1,5 +1,5 @@
-// Comparison of adjacent materials, up to 64 in a word of 64 bits. SSE2 is part of every x86-64; on
-// other machines a loop makes the same words.
+// Comparison of adjacent voxels, up to 64 in a word of 64 bits: of materials, and of palette ids,
+// which are bytes. SSE2 is part of every x86-64; on other machines a loop makes the same words.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ constexpr std::uint64_t low_bits(std::uint32_t count) {
   return ~std::uint64_t{0} >> ((64 - count) & 63);
 }
 
-/// The number of materials that differing_bits() may read beyond the last one that it compares.
+/// The number of voxels that a comparison may read beyond the last one that it compares.
 inline constexpr std::size_t kCompareSlack = 16;
 
 /// Returns a word with bit i set if a[i] != b[i], for i < count. Requires 0 < count <= 64 and
@@ -60,6 +60,42 @@ inline std::uint32_t equal_prefix(const Material* row, std::uint32_t count, Mate
   return i < count ? i : count;
 #else
   while (i < count && row[i] == material) ++i;
+  return i;
+#endif
+}
+
+/// The same for palette ids.
+inline std::uint64_t differing_bits(const std::uint8_t* a, const std::uint8_t* b,
+                                    std::uint32_t count) {
+  std::uint64_t equal = 0;
+#if defined(__SSE2__)
+  for (std::uint32_t i = 0; i < count; i += 16) {
+    const __m128i same = _mm_cmpeq_epi8(_mm_loadu_si128(reinterpret_cast<const __m128i*>(a + i)),
+                                        _mm_loadu_si128(reinterpret_cast<const __m128i*>(b + i)));
+    equal |= std::uint64_t{static_cast<std::uint32_t>(_mm_movemask_epi8(same))} << i;
+  }
+#else
+  for (std::uint32_t i = 0; i < count; ++i) equal |= std::uint64_t{a[i] == b[i]} << i;
+#endif
+  return ~equal & low_bits(count);
+}
+
+inline std::uint32_t equal_prefix(const std::uint8_t* row, std::uint32_t count, std::uint8_t id) {
+  std::uint32_t i = 0;
+#if defined(__SSE2__)
+  const __m128i wanted = _mm_set1_epi8(static_cast<char>(id));
+  for (; i < count; i += 16) {
+    const __m128i here = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + i));
+    const auto other =
+        static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(here, wanted))) ^ 0xffffu;
+    if (other != 0) {
+      i += static_cast<std::uint32_t>(__builtin_ctz(other));
+      break;
+    }
+  }
+  return i < count ? i : count;
+#else
+  while (i < count && row[i] == id) ++i;
   return i;
 #endif
 }

@@ -14,6 +14,7 @@
 #include "tests/reference/binary_greedy.hpp"
 #include "tests/reference/culled_mesher.hpp"
 #include "tests/reference/material_octree.hpp"
+#include "tests/reference/palette_decode.hpp"
 #include "tests/reference/rle_rdm.hpp"
 
 namespace runstone::bench {
@@ -21,10 +22,11 @@ namespace {
 
 using namespace reference;
 
-constexpr std::array<std::string_view, 17> kNames = {"rdm",
+constexpr std::array<std::string_view, 18> kNames = {"rdm",
                                                      "rdm_kept",
                                                      "rdm_plain",
                                                      "decode_binary",
+                                                     "padded_binary",
                                                      "grid_binary",
                                                      "mask_binary",
                                                      "culled",
@@ -77,44 +79,73 @@ MesherCase rdm(std::string_view name, const Volume& volume, const VisibilityTabl
   return out;
 }
 
-MesherCase binary(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
+MesherCase binary_from_runs(std::string_view name, const Volume& volume,
+                            const VisibilityTable& visibility) {
   struct State {
     GridNeighbours neighbours;
-    std::vector<Material> layer;
-    DenseGrid grid;
-    OccupancyMask mask;
+    PaddedRuns padded;
     BinaryScratch scratch;
     ChunkMesh mesh;
   };
   auto state = std::make_shared<State>();
   state->neighbours = volume.scene.pointers();
   const RunChunk& chunk = volume.scene.chunk;
-  decode(chunk, state->neighbours, state->layer, state->grid);
-  occupancy_of(state->grid, visibility, state->mask);
-  MesherCase out = case_over(state, state->grid.byte_size());
-  if (name == "mask_binary") {
-    out.storage_bytes += (state->mask.opaque.size() + state->mask.transparent.size()) * 8;
-    out.mesh = [state](PhaseTimes&) {
-      mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
-    };
-  } else if (name == "grid_binary") {
+  MesherCase out = case_over(state, chunk.runs.byte_size());
+  if (name == "padded_binary") {
+    auto padded = padded_runs(chunk, state->neighbours);
+    RUNSTONE_ASSERT(padded);
+    state->padded = *std::move(padded);
+    out.storage_bytes = state->padded.ends.size() * (sizeof(std::uint32_t) + sizeof(PaletteId));
     out.mesh = [state, &visibility](PhaseTimes& phases) {
       const std::uint64_t start = now_ns();
-      occupancy_of(state->grid, visibility, state->mask);
-      add_time(phases, Phase::mask, start);
-      mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
+      decode_palette(state->padded, visibility, state->scratch.volume);
+      add_time(phases, Phase::decode, start);
+      mesh_binary_greedy(state->scratch.volume, state->scratch, state->mesh);
     };
-  } else {
-    out.storage_bytes = chunk.runs.byte_size();
-    out.mesh = [state, &chunk, &visibility](PhaseTimes& phases) {
-      std::uint64_t time = now_ns();
-      decode(chunk, state->neighbours, state->layer, state->grid);
-      time = add_time(phases, Phase::decode, time);
-      occupancy_of_decoded(chunk, state->neighbours, state->grid, visibility, state->mask);
-      add_time(phases, Phase::mask, time);
-      mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
-    };
+    return out;
   }
+  out.mesh = [state, &chunk, &visibility](PhaseTimes& phases) {
+    const std::uint64_t start = now_ns();
+    const bool fits = decode_palette(chunk, state->neighbours, visibility, state->scratch.volume);
+    add_time(phases, Phase::decode, start);
+    if (!fits)
+      return mesh_binary_greedy(chunk, state->neighbours, visibility, state->scratch, state->mesh);
+    mesh_binary_greedy(state->scratch.volume, state->scratch, state->mesh);
+  };
+  return out;
+}
+
+MesherCase binary(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
+  if (name != "mask_binary" && name != "grid_binary")
+    return binary_from_runs(name, volume, visibility);
+  struct State {
+    DenseGrid grid;
+    OccupancyMask mask;
+    BinaryScratch scratch;
+    ChunkMesh mesh;
+  };
+  auto state = std::make_shared<State>();
+  const bool fits = decode_palette(volume.scene.chunk, volume.scene.pointers(), visibility,
+                                   state->scratch.volume);
+  RUNSTONE_ASSERT(fits);
+  if (name == "mask_binary") {
+    const PaletteVolume& ready = state->scratch.volume;
+    MesherCase out = case_over(
+        state, ready.grid.byte_size() + (ready.mask.opaque.size() + ready.mask.transparent.size()) *
+                                            sizeof(std::uint64_t));
+    out.mesh = [state](PhaseTimes&) {
+      mesh_binary_greedy(state->scratch.volume, state->scratch, state->mesh);
+    };
+    return out;
+  }
+  decode(volume.scene.chunk, volume.scene.pointers(), state->scratch.volume.layer, state->grid);
+  MesherCase out = case_over(state, state->grid.byte_size());
+  out.mesh = [state, &visibility](PhaseTimes& phases) {
+    const std::uint64_t start = now_ns();
+    occupancy_of(state->grid, visibility, state->mask);
+    add_time(phases, Phase::mask, start);
+    mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
+  };
   return out;
 }
 
@@ -183,6 +214,7 @@ std::optional<MesherCase> make_mesher_case(std::string_view name, const Volume& 
   const auto known = std::find(kNames.begin(), kNames.end(), name);
   RUNSTONE_ASSERT(known != kNames.end());
   if (name.ends_with("_binary") && volume.edge > kBinarySideMax) return std::nullopt;
+  if (name == "padded_binary" && volume.edge > kPaddedSideMax) return std::nullopt;
   MesherCase out = of_name(name, volume, visibility);
   out.name = *known;
   return out;

@@ -4,9 +4,10 @@
 //   rdm_kept          the same with the borders of all neighbours kept (ChunkBorders); those of the
 //                     chunk itself are made inside the time
 //   rdm_plain         rdm without vector instructions
-//   decode_binary     binary greedy from runs: decode, mask (from the runs), mesh
-//   grid_binary       binary greedy with the dense grid ready: mask, mesh
-//   mask_binary       binary greedy with grid and occupancy mask ready: mesh
+//   decode_binary     binary greedy from runs: palette ids and mask in one pass, mesh
+//   padded_binary     the same from a list of runs with the border that was made for it; sides up to 62
+//   grid_binary       binary greedy with the dense grid of materials ready: mask, mesh
+//   mask_binary       binary greedy with palette ids and occupancy mask ready: mesh
 //   culled            culled faces over samples of an octree: octree, mesh
 //   simple            six quads a voxel, dense grid ready: mesh
 //   greedy            greedy meshing, dense grid ready: mesh
@@ -54,7 +55,7 @@ struct MesherCase {
 std::span<const std::string_view> mesher_case_names();
 
 /// Returns a mesher case, or nullopt if the mesher cannot take the volume: binary greedy requires
-/// sides of at most 64. `volume` and `visibility` must outlive it. Aborts on an unknown name.
+/// sides of at most 64, with padded runs 62. `volume` and `visibility` must outlive it. Aborts on an unknown name.
 std::optional<MesherCase> make_mesher_case(std::string_view name, const Volume& volume,
                                            const VisibilityTable& visibility);
 

@@ -4,12 +4,14 @@
 
 #include "common/runs/dense.hpp"
 #include "common/runs/reorder.hpp"
+#include "common/runs/run_builder.hpp"
 #include "tests/reference/binary_greedy.hpp"
 #include "tests/reference/bit_matrix.hpp"
 #include "tests/reference/culled_mesher.hpp"
 #include "tests/reference/grid_rdm.hpp"
 #include "tests/reference/rle_rdm.hpp"
 #include "tests/reference/row_compare.hpp"
+#include "tests/reference/palette_decode.hpp"
 #include "tests/reference/simple_mesher.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/random_chunk.hpp"
@@ -142,47 +144,48 @@ TEST_CASE("binary greedy makes the same mesh from runs, from a grid and with its
   SplitMix64 rng(5);
   BinaryScratch scratch;
   OccupancyMask mask;
-  ChunkMesh ready, from_grid, from_runs;
-  const auto same = [](const QuadLayers& a, const QuadLayers& b) {
-    return a.quads == b.quads && a.first == b.first;
+  PaletteVolume volume;
+  ChunkMesh ready, from_grid, from_runs, from_padded;
+  const auto same = [](const ChunkMesh& a, const ChunkMesh& b) {
+    return a.opaque.quads == b.opaque.quads && a.opaque.first == b.opaque.first &&
+           a.transparent.quads == b.transparent.quads && a.transparent.first == b.transparent.first;
   };
-  for (int round = 0; round < 100; ++round) {
-    const MeshScene scene = random_scene(rng, 20);
+  std::size_t compared = 0;
+  for (int round = 0; round < 400; ++round) {
+    const MeshScene scene = random_scene(rng, round % 4 == 0 ? kBinarySideMax : kPaddedSideMax);
     const DenseGrid grid = grid_of(scene);
     occupancy_of(grid, mesh_visibility(), mask);
     mesh_binary_greedy(grid, mask, scratch, ready);
     mesh_binary_greedy(grid, mesh_visibility(), scratch, from_grid);
     mesh_binary_greedy(scene.chunk, scene.pointers(), mesh_visibility(), scratch, from_runs);
-    REQUIRE(same(ready.opaque, from_grid.opaque));
-    REQUIRE(same(ready.transparent, from_grid.transparent));
-    REQUIRE(same(ready.opaque, from_runs.opaque));
-    REQUIRE(same(ready.transparent, from_runs.transparent));
+    REQUIRE(same(ready, from_grid));
+    REQUIRE(same(ready, from_runs));
+    if (!scratch.volume.mask.one_transparent) ++compared;
+    const OrderedExtent e = grid.sides();
+    if (std::max({e.f, e.m, e.s}) > kPaddedSideMax) continue;
+    const auto padded = padded_runs(scene.chunk, scene.pointers());
+    REQUIRE(padded);
+    decode_palette(*padded, mesh_visibility(), volume);
+    mesh_binary_greedy(volume, scratch, from_padded);
+    REQUIRE(same(ready, from_padded));
   }
+  CHECK(compared > 50);
 }
 
-TEST_CASE("a mask made from runs is the mask of the decoded grid", "[mesh][reference]") {
-  SplitMix64 rng(8);
-  OccupancyMask from_runs, from_grid;
-  int run_dense = 0;
-  for (int round = 0; round < 1000; ++round) {
-    MeshScene scene = random_scene(rng, 64);
-    // the voxels beyond the lines' ends are then known without reading the grid
-    if (rng.below(2) == 0) {
-      const auto fast = 2 * static_cast<std::size_t>(axes_of(scene.chunk.order)[0]);
-      for (const std::size_t d : {fast, fast + 1}) {
-        if (scene.neighbours[d])
-          scene.neighbours[d] = uniform_chunk(scene.neighbours[d]->extent, kGlass);
-      }
-    }
-    const DenseGrid grid = grid_of(scene);
-    occupancy_of(grid, mesh_visibility(), from_grid);
-    occupancy_of_decoded(scene.chunk, scene.pointers(), grid, mesh_visibility(), from_runs);
-    CAPTURE(round);
-    REQUIRE(from_runs == from_grid);
-    const OrderedExtent e = grid.sides();
-    run_dense += scene.chunk.runs.size() > std::size_t{6} * e.m * e.s ? 1 : 0;
-  }
-  CHECK(run_dense > 0);
+TEST_CASE("a chunk with more materials than a palette has ids is meshed as well",
+          "[mesh][reference]") {
+  constexpr Extent kWide{16, 16, 8};
+  RunBuilder builder(kWide, AxisOrder::xyz);
+  for (std::uint32_t i = 0; i < kWide.volume(); ++i)
+    builder.append(1, static_cast<Material>(1000 + i % 700));
+  const MeshScene scene{builder.finish(), {}};
+  CHECK_FALSE(padded_runs(scene.chunk, scene.pointers()));
+  const auto before = dense_expansions();
+  BinaryScratch scratch;
+  ChunkMesh mesh;
+  mesh_binary_greedy(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
+  CHECK(dense_expansions() > before);
+  CHECK(mesh.opaque.quads.size() == 2 * (16 * 16 + 16 * 8 + 16 * 8));
 }
 
 TEST_CASE("decoding counts as a dense expansion, and so does sampling an octree",
