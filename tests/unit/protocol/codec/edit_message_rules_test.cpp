@@ -227,7 +227,7 @@ TEST_CASE("an action of a request begins with this edit or an earlier one", "[pr
       return wire::CreateEditRequest(b, 7, 0, b.CreateVector(edit), action);
     };
   };
-  for (const std::uint64_t action : {0, 1, 7}) {
+  for (const std::uint64_t action : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{7}}) {
     const auto message = received<EditRequest>(with_action(action));
     REQUIRE(message.has_value());
     CHECK(std::get<EditRequest>(*message).action == action);
