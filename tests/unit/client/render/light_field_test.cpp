@@ -14,6 +14,11 @@ using namespace runstone;
 namespace {
 
 constexpr std::int32_t kLightEdge = 16;
+#ifdef RUNSTONE_SANITIZED
+constexpr int kLightSteps = 3;
+#else
+constexpr int kLightSteps = 12;
+#endif
 constexpr Material kLightStone = 1, kLightWater = 2, kLightLeaves = 3, kLightLamp = 4,
                    kLightRed = 5;
 
@@ -62,11 +67,13 @@ class DenseLight {
     }
   }
 
-  /// Relaxes every voxel with its 18 neighbours until nothing changes.
+  /// Relaxes every voxel with its 18 neighbours until nothing changes. A voxel whose light is as it
+  /// was when it was last relaxed is left out.
   void light() {
     const std::size_t volume = std::size_t{kSide} * kSide * kSide;
     code_.assign(volume, 0);
     levels_.assign(volume, {});
+    is_pending_.assign(volume, true);
     for (const auto& [at, chunk] : chunks_) {
       const VoxelPos origin = origin_of(at, kLightEdge);
       for (VoxelIndex i = 0; i < chunk.volume(); ++i) {
@@ -118,6 +125,8 @@ class DenseLight {
     return has_changed;
   }
   bool spread(VoxelPos at) {
+    if (!is_pending_[place(at)]) return false;
+    is_pending_[place(at)] = false;
     const std::array<int, 4> from = levels_[place(at)];
     if (*std::max_element(from.begin(), from.end()) <= 8) return false;
     bool has_changed = false;
@@ -140,6 +149,7 @@ class DenseLight {
             int& before = levels_[place(to)][c];
             if (level <= before) continue;
             before = level;
+            is_pending_[place(to)] = true;
             has_changed = true;
           }
         }
@@ -152,6 +162,7 @@ class DenseLight {
   std::map<ChunkCoord, RunChunk> chunks_;
   std::vector<LightCode> code_;
   std::vector<std::array<int, 4>> levels_;
+  std::vector<bool> is_pending_;
 };
 
 std::array<int, 4> bytes_of(LightLevels levels) {
@@ -221,7 +232,7 @@ TEST_CASE("light spreads as the dense oracle says, after edits and while the box
   REQUIRE(differences(field, world) == 0);
 
   SplitMix64 rng(11);
-  for (int step = 0; step < 12; ++step) {
+  for (int step = 0; step < kLightSteps; ++step) {
     const auto at = [&rng] { return static_cast<std::int32_t>(rng.below(28)) - 6; };
     const VoxelPos min{at(), at() - 6, at()};
     const auto size = [&rng] { return static_cast<std::int32_t>(1 + rng.below(6)); };
