@@ -32,6 +32,7 @@ TEST_CASE("the field over the 37 scenarios: triangles, vertices, T-junctions, th
       {"monotone", {518132, 974513, 15884, 3897}},
       {"naive_greedy", {503018, 1006036, 55232, 776}},
       {"optimal_greedy", {500396, 1000792, 52855, 722}},
+      {"padded_binary", {502022, 1004044, 54087, 752}},
       {"poly2tri", {518132, 974513, 15884, 672}},
       {"rdm", {504844, 1009688, 53569, 830}},
       {"rdm_kept", {504844, 1009688, 53569, 830}},
