@@ -106,6 +106,7 @@ inline constexpr std::size_t kActionEditsMax = 256;  // edits that are undone as
 inline constexpr std::size_t kPreviewEditsMax = 4;         // of one player
 inline constexpr std::size_t kPreviewBytesMax = 2 * 1024;  // of their descriptors together
 inline constexpr std::uint64_t kPreviewChunksMax = 64;     // that an edit's bounds touch
+inline constexpr std::uint32_t kPreviewTurnedVoxelsMax = 64 * 1024;  // of a paste that is turned
 
 // Chat.
 inline constexpr std::size_t kChatBytesMax = 512;  // one line

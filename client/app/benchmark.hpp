@@ -21,8 +21,8 @@ class Benchmark {
   /// view at the first place is complete and meshed.
   void step(Player& player, MeshPipeline& pipeline, const ViewFollower& view);
   bool finished() const { return frame_ == path_.frames(); }
-  /// Returns one line with the percentiles of the time that frames took, in ms, and the way in which
-  /// they were drawn. Requires finished().
+  /// Returns one line with the percentiles of the time that frames took, in ms, and the renderer
+  /// and quality that drew them. Requires finished().
   std::string table(const std::string& renderer, const std::string& quality) const;
 
  private:

@@ -1,5 +1,5 @@
-// ChangeNotices: tells the player, and writes to the log, what the server said about chunks, edits,
-// the past and its disk. Thread: the main thread.
+// ChangeNotices: shows to the player, and writes to the log, what the server sent about chunks,
+// edits, the past and its disk. Thread: the main thread.
 #pragma once
 #include <string>
 
@@ -24,7 +24,7 @@ class ChangeNotices {
   const ClientSession& session_;
   ClientHud& hud_;
   std::string told_refusal_;     // of the newest request to see the past
-  bool told_read_only_ = false;  // the state of the server that was told last
+  bool told_read_only_ = false;  // the state of the server that was shown last
 };
 
 }  // namespace runstone

@@ -82,7 +82,8 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
       view_(session_, player_, budget_.radii()),
       chat_(session_, terminal_of(script)),
       panels_(session_, player_, tool_.box()),
-      hud_(session_, player_, pipeline_, chat_, panels_, tool_, options_.name, input_.keys()),
+      hud_(session_, player_, pipeline_, chat_, panels_, tool_, options_.name, input_.keys(),
+           options_.settings.interface_scale),
       actions_(session_, player_, pipeline_, tool_, view_, chat_, input_, hud_, panels_,
                options_.screenshot_dir),
       controls_(session_, player_, tool_, pipeline_, hud_, chat_, actions_,
@@ -213,6 +214,7 @@ void Client::handle_input(TimeUs now_us) {
   controls_.take(routed.player, std::min(seconds, 0.1), settings(), now_us);
   if (controls_.take_release()) {
     if (menu_ != nullptr) {
+      input_.release();
       menu_->pause();
     } else {
       end_requested_ = true;
@@ -342,6 +344,7 @@ void Client::draw(TimeUs now_us) {
 
 bool Client::feed_menu(const WindowEvents& events) {
   if (menu_ == nullptr || !menu_->is_open()) return false;
+  input_.release_all();  // the menu sees the releases of the keys that were held
   menu_->feed(events.events);
   pipeline_.moved();
   return true;

@@ -1,6 +1,6 @@
-// ClientDisplay: the window, the draw thread and the tools of runstone-client. They outlive a server:
-// the player leaves one and joins another in the same window, with the same clipboard. Thread: the
-// main thread.
+// ClientDisplay: the window, the draw thread and the tools of runstone-client. They outlive a
+// server: the player leaves one and joins another in the same window, with the same clipboard.
+// Thread: the main thread.
 #pragma once
 #include <memory>
 
@@ -13,8 +13,8 @@
 namespace runstone {
 
 struct ClientDisplay {
-  /// Makes what the options ask for. Throws std::runtime_error if there is no display or OpenGL is
-  /// missing.
+  /// Makes the window and the draw thread that the options require. Throws std::runtime_error if
+  /// there is no display or OpenGL is missing.
   explicit ClientDisplay(const ClientOptions& options);
 
   WakeUp wake;                              // of the main thread, from all other threads

@@ -12,7 +12,8 @@ struct ClientEnd {
   bool is_left = false;
   /// The reason of a failure, a line for the player. Empty: none.
   std::string failure = {};
-  /// The same for the title screen. A player who left may have words without a failure.
+  /// The failure in plain words for the title screen. If the player left, there may be words
+  /// without a failure.
   FailureWords words = {};
   bool lacks_password = false;  // the failure is that the world has a password, and none was given
 };

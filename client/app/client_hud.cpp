@@ -45,7 +45,7 @@ std::optional<InspectionMode> mode_of(Action action) {
 
 ClientHud::ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline,
                      TerminalChat& chat, WorldPanels& panels, EditTool& tool, std::string name,
-                     const KeyMap& keys)
+                     const KeyMap& keys, double scale)
     : session_(session),
       player_(player),
       pipeline_(pipeline),
@@ -53,7 +53,7 @@ ClientHud::ClientHud(ClientSession& session, Player& player, MeshPipeline& pipel
       panels_(panels),
       tool_(tool),
       name_(std::move(name)),
-      hud_(keys) {}
+      hud_(keys, scale) {}
 
 void ClientHud::enter(const MaterialTable& materials) {
   hotbar_.fill(materials);
@@ -196,11 +196,11 @@ double ClientHud::plate_alpha(const WorldPos& head, double distance) const {
 TimelineState ClientHud::timeline() const {
   TimelineState out;
   const Replica& replica = session_.replica();
-  out.newest = out.shown = replica.newest();
+  out.newest = out.shown = std::min(replica.newest(), kSequenceShownMax);
   out.is_loading = session_.loading_history();
   if (const auto& past = replica.past()) {
     out.is_past = true;
-    out.shown = past->seq;
+    out.shown = std::min(past->seq, kSequenceShownMax);
     const std::time_t seconds = past->utc_us / 1'000'000;
     if (past->utc_us != 0)
       out.moment = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(seconds));

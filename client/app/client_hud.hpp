@@ -1,5 +1,5 @@
-// ClientHud: the heads-up display of runstone-client. It fills the state that the display shows from
-// the session and the player, and carries out what the user does in the display. One thread.
+// ClientHud: the heads-up display of runstone-client. It fills the state that the display shows
+// from the session and the player, and carries out what the user does in the display. One thread.
 #pragma once
 #include <array>
 #include <memory>
@@ -35,13 +35,14 @@ class ClientHud {
  public:
   /// All but `keys` and the player's `name` must outlive this object.
   ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline, TerminalChat& chat,
-            WorldPanels& panels, EditTool& tool, std::string name, const KeyMap& keys);
+            WorldPanels& panels, EditTool& tool, std::string name, const KeyMap& keys,
+            double scale);
 
   /// Fills the hotbar for a world. Call it when a world opens for the first time, or another one.
   void enter(const MaterialTable& materials);
   /// Takes the lines of chat that were printed. Returns true if there were any.
   bool take_chat();
-  /// Carries out an action of a key. Returns false if the display has nothing to do with it.
+  /// Carries out an action of a key. Returns false if it is no action of the display.
   bool act(Action action);
   /// Chooses another slot by the wheel.
   void scroll(int steps);
@@ -69,7 +70,8 @@ class ClientHud {
   HudState state(const HudScene& scene) const;
   void add_players(HudState& state) const;
   void add_plates(const HudScene& scene, HudState& state) const;
-  /// Returns how much of a name plate is seen: it fades with the distance, and is dim behind walls.
+  /// Returns the opacity of a name plate, 0 to 1. It fades with the distance, and is low behind
+  /// walls.
   double plate_alpha(const WorldPos& head, double distance) const;
   TimelineState timeline() const;
   StatisticsState statistics(const HudScene& scene, TimeUs now_us);

@@ -1,5 +1,6 @@
-// DisplayPace: lets a window draw often while something moves, and seldom otherwise. A window without
-// focus leaves the processor to the window in use. Thread: the main thread.
+// DisplayPace: lets a window draw often while something moves, and seldom otherwise. A window
+// without focus draws at most every kBackgroundFrameUs, so that the window in use has the
+// processor. Thread: the main thread.
 #pragma once
 #include "client/display/mesh_pipeline.hpp"
 #include "common/core/ids.hpp"
@@ -9,8 +10,7 @@ namespace runstone {
 class DisplayPace {
  public:
   /// Sets the pace of the frames. `has_focus`: the window has the keyboard. `pose` is that of the
-  /// player. `is_moving`: the next frame shows another picture of somebody, or the interface fades
-  /// something.
+  /// player. `is_moving`: another player has moved, or the interface fades something.
   void step(MeshPipeline& pipeline, bool has_focus, const Pose& pose, bool is_moving,
             TimeUs now_us);
   /// Call it when a frame was ordered.
@@ -18,7 +18,8 @@ class DisplayPace {
 
   /// The time between two frames in which nothing has moved.
   static constexpr TimeUs kStillFrameUs = 1'000'000;
-  /// The same while waves or the ghost of a preview are in sight. They go on slowly.
+  /// The same while waves or the ghosts of a preview are in sight. They move slowly, so that few
+  /// frames suffice.
   static constexpr TimeUs kAnimatedFrameUs = 200'000;
   /// The least time between two frames of a window without focus.
   static constexpr TimeUs kBackgroundFrameUs = 100'000;

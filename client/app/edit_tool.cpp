@@ -8,8 +8,8 @@
 namespace runstone {
 namespace {
 
-/// The chunks that a preview compares and meshes in one turn. A paste of 64 voxels a side touches 27
-/// chunks of edge 32 at most, and takes two steps for each of them.
+/// The chunks that a preview compares and meshes in one turn. A paste of 64 voxels a side touches
+/// 27 chunks of edge 32 at most, and takes two steps for each of them.
 constexpr std::size_t kPreviewChunks = 64;
 
 const char* name_of(SymmetryKind kind) {
@@ -50,8 +50,11 @@ Result<void, std::string> EditTool::press(ToolButton button, TimeUs now_us) {
 }
 
 Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs now_us) {
-  return submit_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command),
-                       now_us);
+  const auto selected = box_.selection();
+  auto done =
+      submit_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command), now_us);
+  if (!done && box_.selection() != selected) box_.select(selected);  // it did not move
+  return done;
 }
 
 Result<void, std::string> EditTool::submit_beside(const ToolEdits& edits, TimeUs now_us) {

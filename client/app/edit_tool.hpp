@@ -1,5 +1,5 @@
-// EditTool: gives clicks to the tool box, submits the edits of clicks and scripts to the session, and
-// records when each was submitted. One thread.
+// EditTool: gives clicks to the tool box, submits the edits of clicks and scripts to the session,
+// and records when each was submitted. One thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -52,8 +52,8 @@ class EditTool {
 
   /// Makes the preview of the next click for a bounded time. Returns true if the ghosts changed.
   bool step_preview();
-  /// Returns the ghosts to draw. There are none while the past is shown, and none of the plain voxel
-  /// tool: the outline of the voxel in sight says enough.
+  /// Returns the ghosts to draw. There are none while the past is shown, and none of the plain
+  /// voxel tool, for which the outline of the voxel in sight suffices.
   std::span<const GhostChunk> ghosts() const;
   /// Returns true if the next click has a preview. A click of the plain voxel tool has none unless
   /// its place is typed.

@@ -1,7 +1,7 @@
-// FlightPath: the way of a camera through a world, for measurements. A line of the file is a place:
-// `X Y Z YAW PITCH FRAMES`, in voxels and degrees as in scripts; FRAMES is the number of frames from
-// the place before to this one. `#` starts a comment. Between two places the camera moves and turns
-// evenly. Pure.
+// FlightPath: the path of a camera through a world, for measurements. A line of the file is a
+// place: `X Y Z YAW PITCH FRAMES`, in voxels and degrees as in scripts; FRAMES is the number of
+// frames from the place before to this one. `#` starts a comment. Between two places the camera
+// moves and turns evenly. Pure.
 #pragma once
 #include <cstdint>
 #include <string_view>

@@ -11,8 +11,8 @@
 namespace runstone {
 namespace {
 
-/// Returns the outline of a box, `gap` voxels outside of it, so that it is drawn before the faces of
-/// the box.
+/// Returns the outline of a box, `gap` voxels outside of it, so that it is drawn before the faces
+/// of the box.
 Marker outline_of(const VoxelBox& box, double gap, std::uint8_t r, std::uint8_t g, std::uint8_t b) {
   return {box.min.x - gap,
           box.min.y - gap,

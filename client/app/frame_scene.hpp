@@ -27,9 +27,9 @@ class FrameScene {
         view_(view),
         panels_(panels) {}
 
-  /// `field_of_view` is vertical, in degrees; nullopt: that of pictures of scripts.
+  /// `field_of_view` is vertical, in degrees; nullopt: that of screenshots of scripts.
   Camera camera(std::optional<double> field_of_view) const;
-  /// `outlines_aim`: the voxel in sight is outlined. `shows_ground`: protected boxes are.
+  /// `outlines_aim`: the voxel in sight is outlined. `shows_ground`: protected boxes are outlined.
   FrameContents contents(bool outlines_aim, bool shows_ground) const;
 
  private:

@@ -19,6 +19,8 @@ void GameMenu::pause() {
 
 void GameMenu::feed(const std::vector<InputEvent>& events) {
   const bool has_escape = std::ranges::any_of(events, [](const InputEvent& event) {
+    if (const auto* const pad = std::get_if<GamepadButtonEvent>(&event))
+      return pad->is_pressed && pad->button == GamepadButton::start;
     const auto* const key = std::get_if<KeyEvent>(&event);
     return key != nullptr && key->is_pressed && !key->is_repeat && key->place == Key::escape;
   });

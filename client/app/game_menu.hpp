@@ -31,7 +31,7 @@ class GameMenu {
   void set_joined() { is_connecting_ = false; }
   bool is_open() const { return is_connecting_ || is_paused_; }
   void pause();
-  /// Takes input while is_open(). Escape ends the pause.
+  /// Takes input while is_open(). Escape, or `start` of the gamepad, ends the pause.
   void feed(const std::vector<InputEvent>& events);
   /// Makes the overlay of a frame. Requires is_open(). The fields `to` and `where` are filled in.
   std::shared_ptr<const OverlayFrame> make_frame(ConnectingState connecting, PauseState pause,

@@ -10,8 +10,8 @@ class HeldButton {
   static constexpr TimeUs kRepeatUs = 150'000;  // between two repetitions
 
   /// Returns how often the button acts now: once for each press since the last call, or once if a
-  /// repetition is due. After a late call no repetition is made up for. A press that does not count,
-  /// such as the one that captures the mouse, begins no repetition.
+  /// repetition is due. Repetitions that a late call missed are skipped. A press that does not
+  /// count, such as the one that captures the mouse, begins no repetition.
   int acts(int presses, bool is_held, TimeUs now_us) {
     if (presses > 0) {
       is_repeating_ = true;

@@ -13,7 +13,7 @@ class Hotbar {
  public:
   /// Fills the slots for a world: first with what builders use most, as far as the world has it
   /// under one of their names and as a full block, and then with other full blocks in the order of
-  /// the table. So a world whose table begins with plants begins with blocks here, too.
+  /// the table. So the slots have blocks even if the table begins with plants.
   void fill(const MaterialTable& materials);
   /// Chooses a slot, 0 to kSlotCount - 1.
   void choose(std::size_t slot) { slot_ = slot; }

@@ -19,7 +19,8 @@ Result<LocalServerConfig, std::string> local_server_config(const std::string& na
                                                            const std::string& key_file);
 
 /// Starts the server of options.local_world, waits until it listens, and sets the address and the
-/// key file in the options. Fails with a line of text if the server ends before, or on `stop`.
+/// key file in the options. Fails with a line of text if the server ends before it listens, or on
+/// `stop`.
 Result<std::unique_ptr<LocalServer>, std::string> start_local_world(
     ClientOptions& options, const volatile std::sig_atomic_t& stop);
 

@@ -67,8 +67,10 @@ void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
         if (name.empty() || name.size() > kPlayerNameBytesMax) return "a name has 1 to 32 bytes";
         return is_plain_name(name) ? "" : "a name has no quotes, backslashes or unseen characters";
       });
-  app.add_option("--key", out.key_file,
-                 "file of the identity; created if missing. Default: a new identity each time");
+  app.add_option(
+      "--key", out.key_file,
+      "file of the identity; created if missing. Default: the kept identity with a window or "
+      "--local, otherwise a new one");
   app.add_option("--password-file", raw.password_file,
                  "join with the world's password, the first line of this file, if the server asks "
                  "for one; default: ask for it")

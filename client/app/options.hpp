@@ -19,7 +19,7 @@ struct ClientOptions {
   bool has_server = true;        // false: the player chooses one on the title screen
   std::string local_world;       // name of a world on this computer to start and join; empty: none
   NewLocalWorld local_creation;  // of local_world, if there is none of this name
-  ClientSettings settings;       // mouse, keys and field of view; the options above win over it
+  ClientSettings settings;       // of a client with a window; `given` says what overrides them
   /// The options that the command line has set. The settings give the others to a client with a
   /// window.
   struct {
@@ -31,7 +31,7 @@ struct ClientOptions {
   std::string ticket;              // an invite token from the link; empty: none
   std::string password;            // of the world; empty: none was given
   bool asks_at_terminal = true;    // for the password, if there is a terminal
-  std::string servers_file;        // gets the servers that were joined; empty: none does
+  std::string servers_file;        // the list of servers that were joined; empty: no list is kept
   std::uint8_t view_radius = 6;    // chunks, horizontal
   std::uint8_t view_radius_v = 3;  // chunks, vertical
   bool headless = false;           // off screen, no display needed

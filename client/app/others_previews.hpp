@@ -1,5 +1,6 @@
-// OthersPreviews: ghosts of what other players are about to do. Each preview is made by EditPreview on
-// this client's shown runs, as this player's own one. Work is divided over turns. One thread.
+// OthersPreviews: ghosts of what other players are about to do. Each preview is made by EditPreview
+// on this client's shown runs, as the preview of this player. Work is divided over turns. One
+// thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -13,8 +13,8 @@
 
 namespace runstone {
 
-/// A player who has fallen this far, in voxels, has left the world through a hole in its ground, or
-/// began in a world without ground.
+/// A walking player who has fallen this far, in voxels, without meeting anything is moved to the
+/// spawn: the ground has a hole, or the world has no ground.
 inline constexpr double kFallMax = 600;
 inline constexpr double kReach = 64;  // voxels from the eye to the voxel that a click changes
 
@@ -34,8 +34,8 @@ class Player {
   Pose pose() const;
   /// `view_voxels` is the distance to the far plane; the camera uses 64 at least.
   Camera camera(double view_voxels) const;
-  /// Returns the voxel that the eye is in, or the nearest one inside the world. A coordinate that is
-  /// not a number counts as 0.
+  /// Returns the voxel that the eye is in, or the nearest one inside the world. A coordinate that
+  /// is not a number counts as 0.
   VoxelPos voxel() const;
   /// Returns the chunk of voxel(). `edge` is the edge of a chunk in voxels.
   ChunkCoord chunk(std::int32_t edge) const { return chunk_of(voxel(), edge); }
@@ -56,8 +56,8 @@ class Player {
             const BodyMaterials& materials);
   /// Returns true if the player walks and rests, because the ground there is not here yet.
   bool is_waiting_for_ground() const { return is_walking_ && walker_.is_waiting(); }
-  /// Returns true once after a walking player fell for kFallMax voxels without meeting anything. The
-  /// player is then at the spawn of the world, and flies.
+  /// Returns true once after a walking player fell for kFallMax voxels without meeting anything.
+  /// The player is then at the spawn of the world, and flies.
   bool take_fallen_out() { return std::exchange(has_fallen_out_, false); }
 
   /// Returns the speed of flight in voxels a second.

@@ -14,7 +14,8 @@ namespace {
 
 /// The log is divided into this many steps of `[` and `]`.
 constexpr Sequence kScrubSteps = 100;
-/// A stick of a gamepad that is wholly to the side turns as the mouse does by so many units a second.
+/// A stick of a gamepad that is wholly to the side turns as the mouse does by so many units a
+/// second.
 constexpr double kStickLook = 1'000;
 
 }  // namespace
@@ -129,7 +130,7 @@ void PlayerControls::take_picture() {
 }
 
 void PlayerControls::scrub(int steps) {
-  const Sequence newest = session_.replica().newest();
+  const Sequence newest = std::min(session_.replica().newest(), kSequenceShownMax);
   Sequence from = newest;
   if (session_.loading_history()) {
     const HistoryRequest& under_way = session_.history_request();
@@ -139,7 +140,7 @@ void PlayerControls::scrub(int steps) {
   }
   const auto step = static_cast<std::int64_t>(std::max<Sequence>(1, newest / kScrubSteps));
   const auto to = static_cast<Sequence>(
-      std::max<std::int64_t>(0, static_cast<std::int64_t>(from) + steps * step));
+      std::max<std::int64_t>(0, static_cast<std::int64_t>(std::min(from, newest)) + steps * step));
   HistoryRequest request;  // the live world
   if (to < newest) {
     request.to = HistoryTarget::sequence;

@@ -1,6 +1,6 @@
 // PlayerControls: carries out what the player does with mouse and keys: moving, editing, choosing,
-// looking at the past, taking pictures. The input was routed already, so what the interface takes is
-// not in it. Thread: the main thread.
+// looking at the past, taking pictures. InputRouter has routed the input, so it has no events of
+// the interface. Thread: the main thread.
 #pragma once
 #include <cstdint>
 #include <utility>

@@ -1,5 +1,5 @@
-// Player defaults: what the settings file and the kept identity give to a client whose command line
-// does not say it.
+// Player defaults: the options that the settings file and the kept identity give to a client if its
+// command line does not set them.
 #pragma once
 #include <string>
 #include <vector>

@@ -9,7 +9,7 @@
 
 namespace runstone {
 
-/// Nothing is logged while more players are present: a crowd would fill the log.
+/// While more players are present, nothing is logged, because the log would become too long.
 inline constexpr std::size_t kPlayersLoggedMax = 64;
 
 class PlayerLog {

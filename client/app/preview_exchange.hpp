@@ -16,8 +16,9 @@ class PreviewExchange {
   PreviewExchange(ClientSession& session, const EditTool& tool) : session_(session), tool_(tool) {}
 
   void set_materials(const MaterialTable& materials) { others_.set_materials(materials); }
-  /// Shares and shows as the settings say, while previews are shown at all. Returns true if the
-  /// ghosts changed. Call it every turn. Cost: that of OthersPreviews::step().
+  /// Shares this player's preview and makes the ghosts of the others, if the settings allow it and
+  /// the tool box shows previews. Returns true if the ghosts changed. Call it every turn. Cost:
+  /// that of OthersPreviews::step().
   bool step(const ClientSettings& settings, TimeUs now_us);
   void append_ghosts(std::vector<GhostChunk>& out) const { others_.append_ghosts(out); }
 

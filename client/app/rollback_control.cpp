@@ -64,8 +64,19 @@ std::string RollbackControl::give(RollbackPhase phase, const std::string& comman
 }
 
 std::string RollbackControl::preview(const std::string& filters) {
+  return ask("rollback preview " + filters);
+}
+
+std::string RollbackControl::ask(const std::string& command) {
+  std::string refusal = give(RollbackPhase::previewing, command);
+  if (refusal.empty()) preview_.clear();
+  return refusal;
+}
+
+void RollbackControl::forget() {
   preview_.clear();
-  return give(RollbackPhase::previewing, "rollback preview " + filters);
+  phase_ = RollbackPhase::idle;
+  ghosts_.set({});
 }
 
 std::string RollbackControl::carry_out(const RollbackOrder& order, const WorldPos& eye,
@@ -73,16 +84,16 @@ std::string RollbackControl::carry_out(const RollbackOrder& order, const WorldPo
   if (const auto* chosen = std::get_if<PreviewRollback>(&order)) {
     if (chosen->choice.area == RollbackArea::selection && !selection)
       return refuse("nothing is selected");
-    preview_.clear();
-    return give(RollbackPhase::previewing, preview_command(chosen->choice, eye, selection));
+    return ask(preview_command(chosen->choice, eye, selection));
   }
   if (preview_.empty()) return refuse("there is no preview of a rollback");
   if (std::holds_alternative<ApplyRollback>(order))
     return give(RollbackPhase::applying, "rollback apply " + preview_);
   if (std::holds_alternative<UndoRollback>(order))
     return give(RollbackPhase::undoing, "rollback undo " + preview_);
-  const std::string forgotten = std::exchange(preview_, {});
-  return give(RollbackPhase::idle, "rollback cancel " + forgotten);
+  std::string refusal = give(RollbackPhase::idle, "rollback cancel " + preview_);
+  if (refusal.empty()) preview_.clear();
+  return refusal;
 }
 
 void RollbackControl::show(const RestorePreview& preview) {
@@ -114,6 +125,11 @@ bool RollbackControl::step() {
   bool has_changed = false;
   if (is_waiting_ && !session_.commanding()) {
     take_answer();
+    has_changed = true;
+  }
+  // Another run of the server gives the ids of previews anew.
+  if (std::exchange(connections_, session_.connect_count()) != session_.connect_count()) {
+    forget();
     has_changed = true;
   }
   // A preview whose command was typed into the chat.

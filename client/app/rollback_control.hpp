@@ -1,5 +1,5 @@
-// RollbackControl: takes edits of others back from within the client, by the server's commands. It
-// shows what a rollback would change as ghosts before it is applied, also if the command was typed
+// RollbackControl: takes edits of others back by commands that the client sends to the server.
+// Before a rollback is applied, ghosts show what it would change, also if the command was typed
 // into the chat. Thread: the main thread.
 #pragma once
 #include <optional>
@@ -51,6 +51,8 @@ class RollbackControl {
 
  private:
   std::string give(RollbackPhase phase, const std::string& command);
+  std::string ask(const std::string& command);
+  void forget();
   std::string refuse(std::string why);
   void take_answer();
   void show(const RestorePreview& preview);
@@ -60,7 +62,8 @@ class RollbackControl {
   RollbackPhase phase_ = RollbackPhase::idle;
   bool is_waiting_ = false;  // for the answer to a command
   bool has_succeeded_ = false;
-  std::string preview_;  // id of the last one; empty: none
+  std::uint64_t connections_ = 0;  // when the state was made
+  std::string preview_;            // id of the last one; empty: none
   std::uint64_t voxels_ = 0, chunks_ = 0;
   bool is_cut_ = false;
   std::vector<std::string> answer_;

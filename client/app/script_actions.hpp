@@ -93,7 +93,7 @@ class ScriptActions final : public ScriptHost {
     return write_digests(file, session_).has_value();
   }
 
-  /// The longest time for which loaded() waits for a moment without unfinished meshes once all
+  /// The longest time for which loaded() waits for a moment without unfinished meshes after all
   /// chunks in view have arrived. While others edit all the time there may be no such moment.
   static constexpr TimeUs kMeshWaitUsMax = 10'000'000;
 

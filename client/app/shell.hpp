@@ -1,6 +1,6 @@
-// Shell: runstone-client with a window, around the play on servers. It shows the title screen, starts
-// servers of local worlds, plays, and comes back to the title screen with the reason if the play
-// failed. One window and one OpenGL context serve all of it. Thread: the main thread.
+// Shell: runstone-client with a window, around the play on servers. It shows the title screen,
+// starts servers of local worlds, plays, and comes back to the title screen with the reason if the
+// play failed. One window and one OpenGL context serve all of it. Thread: the main thread.
 #pragma once
 #include <csignal>
 #include <functional>
@@ -20,17 +20,17 @@ namespace runstone {
 class Shell {
  public:
   /// `display` has a window and must outlive the shell. The shell begins with the server or local
-  /// world of the options, and otherwise with the title screen.
-  /// The title screen shows the warnings of `loaded`.
+  /// world of the options, and otherwise with the title screen. The title screen shows the warnings
+  /// of `loaded`.
   Shell(ClientOptions options, LoadedSettings loaded, std::string settings_file,
         ClientDisplay& display);
 
-  /// Runs until the user or `stop` (set by a signal) ends the program. Returns the exit code. Throws
-  /// std::runtime_error if drawing fails.
+  /// Runs until the user or `stop` (set by a signal) ends the program. Returns the exit code.
+  /// Throws std::runtime_error if drawing fails.
   int run(const volatile std::sig_atomic_t& stop);
 
  private:
-  /// Where to play.
+  /// A server or local world to play on.
   struct Destination {
     ClientOptions options;
     std::string shown;                       // for the player
@@ -52,7 +52,7 @@ class Shell {
   bool start_local(Destination& to, const volatile std::sig_atomic_t& stop);
   void play(Destination to, const volatile std::sig_atomic_t& stop);
   void take_end(const ClientEnd& end);
-  /// Looks whether the server of the local world that was left has ended.
+  /// Checks if the server of the local world that was left has ended.
   void step_saving();
   /// Ends the server of the local world, and shows that it saves.
   void save_local();

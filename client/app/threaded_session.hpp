@@ -1,7 +1,6 @@
 // ThreadedSession: the session of runstone-client with the threads that serve it: the network
 // thread, which carries its messages, and the cache thread, which keeps chunks on disk between
-// runs.
-// Thread: the main thread only. No call waits for a peer or for the disk, except finish().
+// runs. Thread: the main thread only. No call waits for a peer or for the disk, except finish().
 #pragma once
 #include <cstdint>
 #include <deque>

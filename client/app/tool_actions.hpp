@@ -1,4 +1,4 @@
-// Tool actions: what the keys of building do with the tool box.
+// Tool actions: carries out the actions of the building keys on the tool box.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace runstone {
 
-/// Carries out an action of a key. Returns nullopt if the action is none of the tools. Otherwise
-/// returns a line for the player, which is also the value of a failure.
+/// Carries out an action of a key. Returns nullopt if it is no action of the tools. Otherwise
+/// returns a line for the player, as the value or as the failure.
 std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Action action,
                                                             TimeUs now_us);
 

@@ -28,8 +28,8 @@ class ViewFollower {
   bool is_complete() const { return has_followed() && session_.loaded(); }
   /// Updates complete_since_us(). Call it once per turn of the main loop.
   void update_completeness(TimeUs now_us);
-  /// Returns the time since when is_complete() held at each update, or nullopt if it did not hold
-  /// at the last.
+  /// Returns the time of the first update since which is_complete() held at every update, or
+  /// nullopt if it did not hold at the last one.
   std::optional<TimeUs> complete_since_us() const { return complete_since_us_; }
 
  private:

@@ -1,4 +1,4 @@
-// WorldPanels: what the client shows of the world and its players besides the picture: where the
+// WorldPanels: what the client shows of the world and its players besides the chunks: where the
 // others are, the map from above, who edited when, and what a rollback would change. Thread: the
 // main thread.
 #pragma once
@@ -45,7 +45,7 @@ class WorldPanels {
   std::string carry_out(const RollbackOrder& order) {
     return rollback_.carry_out(order, player_.eye(), tools_.selection());
   }
-  /// Returns true until the open windows have what they show.
+  /// Returns true while the contents of an open window are missing.
   bool is_loading(const ShownPanels& shown) const;
 
  private:

@@ -29,7 +29,8 @@ bool is_stopped(const Slide& slide, Direction direction) {
 
 double length_over_ground(const WorldPos& way) { return std::hypot(way.x, way.z); }
 
-/// Returns the slab of the body at this height above the feet, which is a hundredth of a voxel thick.
+/// Returns the slab of the body at this height above the feet, which is a hundredth of a voxel
+/// thick.
 BodyBox slab_at(const WorldPos& feet, double height) {
   BodyBox slab = body_at(feet);
   slab.min.y = feet.y + height;

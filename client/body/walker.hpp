@@ -1,6 +1,6 @@
 // Walker: the body of a player that walks, jumps, steps up and down, wades and swims among voxels.
-// Time passes in steps of kWalkStepS, so that the same input gives the same path at every frame rate.
-// Pure: voxels, input and time are arguments. One thread.
+// Time passes in steps of kWalkStepS, so that the same input gives the same path at every frame
+// rate. Pure: voxels, input and time are arguments. One thread.
 #pragma once
 #include "client/body/body_materials.hpp"
 #include "common/collision/sweep.hpp"
@@ -38,15 +38,16 @@ class Walker {
   void place_eye(const WorldPos& eye) { place({eye.x, eye.y - kEyeHeight, eye.z}); }
   bool is_on_ground() const { return is_on_ground_; }
   bool is_in_liquid() const { return is_in_liquid_; }
-  /// Returns true if the last step found the body where the voxels are not known, so that it rested.
+  /// Returns true if the last step found the body where the voxels are not known, so that it
+  /// rested.
   bool is_waiting() const { return is_waiting_; }
   /// Returns by how many voxels the body has fallen since it last stood or touched a liquid.
   double fallen() const { return fallen_; }
   /// Puts the body somewhere, at rest.
   void place(WorldPos feet);
   /// Lets `seconds` pass. More than a quarter of a second counts as a quarter. A body rests where
-  /// the voxels are not known. A body inside a solid voxel rises until it is free, and at once if it
-  /// is deep inside, for example at a spawn in a hill.
+  /// the voxels are not known. A body inside a solid voxel rises until it is free, and at once if
+  /// it is deep inside, for example at a spawn in a hill.
   /// Cost: some sweeps for each step of kWalkStepS.
   void advance(const VoxelSpace& space, const BodyMaterials& materials, const WalkInput& input,
                double seconds);

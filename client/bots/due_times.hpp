@@ -1,7 +1,7 @@
 // DueTimes: when the edits of all bots of this process were due, on its steady clock. A bot that
 // receives an edit of another bot looks the due time up here, so that no clock offset is estimated.
-// Bound: the newest kLocalEditsMax edits per client instance, as many as may be without an answer.
-// One thread.
+// Bound: the newest kLocalEditsMax edits per client instance, because more cannot wait for an
+// answer. One thread.
 #pragma once
 #include <deque>
 #include <optional>

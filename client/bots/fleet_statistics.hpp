@@ -13,7 +13,7 @@
 
 namespace runstone {
 
-/// Seconds of which the slowest edit is kept.
+/// The number of seconds for each of which the slowest edit is recorded.
 inline constexpr std::size_t kWorstSecondsMax = 3'600;
 
 class FleetStatistics {

@@ -1,4 +1,4 @@
-// CacheDatabase: the database of the chunk cache. The first failure sticks: after it, every call
+// CacheDatabase: the database of the chunk cache. The first failure is final: after it, every call
 // fails and does nothing. A caller may therefore write a whole batch and call ok() once.
 // Threads: one.
 #pragma once

@@ -216,7 +216,9 @@ std::size_t DrawThread::upload_for(const FrameOrder& order, Screen& screen) {
         changes.set_eye(chunk_of_eye(order.camera, edge_));
         changes.frame_passed();
       }
-      const bool is_spent = bytes >= budget_.bytes || steady_now_us() >= until_us;
+      // A chunk behind new materials may use them, so it waits for the next frame.
+      const bool is_spent =
+          work_.materials || bytes >= budget_.bytes || steady_now_us() >= until_us;
       if (is_first || !is_spent) next = changes.take_upload();
       carried = changes.upload_count();
     }

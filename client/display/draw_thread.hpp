@@ -7,10 +7,10 @@
 //         take_done()
 // The content of a frame:
 //   - It shows every removal and all materials that were queued before its order.
-//   - While no frame is ordered, meshes are uploaded one by one, in the order of UploadQueue. Once a
-//     frame is ordered, uploads go on until the UploadBudget is spent, but at least one is made. The
-//     rest is carried over to the next frames. So a burst of edits delays no frame by more than the
-//     budget and one upload.
+//   - While no frame is ordered, meshes are uploaded one by one, in the order of UploadQueue. Once
+//     a frame is ordered, uploads go on until the UploadBudget is spent, but at least one is made.
+//     The rest is carried over to the next frames. So a burst of edits delays no frame by more than
+//     the budget and one upload.
 //   - A frame with FrameOrder::shows_all shows every change that was queued before its order,
 //     however long the uploads take.
 //   - A frame shows exactly the uploads that are reported as done before it.

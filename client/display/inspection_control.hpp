@@ -1,5 +1,5 @@
-// InspectionControl: the modes of inspection that frames show, and the layers that were meshed again
-// a moment ago. Costs nothing while no mode is on. Pure: times are arguments. One thread.
+// InspectionControl: the modes of inspection that frames show, and the layers that were meshed
+// again a moment ago. It costs nothing while no mode is on. Pure: times are arguments. One thread.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -25,11 +25,11 @@ class InspectionControl {
 
   /// Call it for each mesh that will be drawn.
   void meshed(const MeshResult& result, TimeUs now_us);
-  /// Returns true if a frame now differs from a later one, although nothing else changes.
+  /// Returns true if a later frame differs from one of now although nothing else changes.
   bool is_fading(TimeUs now_us) const;
-  /// Returns what a frame shows that is seen from the chunk `eye`. With `exact`, layers do not fade:
-  /// the picture shows those that were meshed in the last kFlashUs before the newest mesh. Cost:
-  /// O(chunks in view) if runs or orders are shown.
+  /// Returns what a frame shows that is seen from the chunk `eye`. With `exact`, layers do not
+  /// fade: the picture shows those that were meshed in the last kFlashUs before the newest mesh.
+  /// Cost: O(chunks in view) if runs or orders are shown.
   Inspection inspection(const Replica& replica, ChunkCoord eye, bool exact, TimeUs now_us) const;
 
  private:

@@ -1,11 +1,12 @@
 // LookControl: chooses the look of the next frame. The automatic quality measures how long frames
 // take and takes the highest level whose frames are short enough. Pure: durations are arguments.
-//   - The levels are those of Quality, and below `low` two that draw the world in a lower resolution.
-//   - A level is left downwards if the median of kFrames frames is above the target, or sooner, after
-//     kSlowFrames frames that took more than twice the target.
-//   - It is left upwards if the median is below kUpShare of the target. If the higher level then
-//     turns out too slow, the next attempt waits twice as many frames, so that the level does not
-//     change to and fro.
+//   - The levels are those of Quality, and below `low` two that draw the world in a lower
+//     resolution.
+//   - A lower level is taken if the median of kFrames frames is above the target, or earlier, after
+//     kSlowFrames frames one after another that took more than twice the target.
+//   - A higher level is taken if the median is below kUpShare of the target. If it turns out too
+//     slow, the next attempt waits twice as many frames, so that the level does not change to and
+//     fro.
 // Thread: one.
 #pragma once
 #include <array>
@@ -29,7 +30,7 @@ class LookControl {
   void set_exact(bool exact) { exact_ = exact; }
   void set_time_of_day(double share) { look_.time_of_day = share; }
   double time_of_day() const { return look_.time_of_day; }
-  /// nullopt: automatic.
+  /// Sets the quality. nullopt: automatic.
   void set_quality(std::optional<Quality> quality);
   std::optional<Quality> quality() const { return fixed_; }
 
@@ -41,7 +42,7 @@ class LookControl {
   /// Call it for each frame, with the time that drawing took.
   void frame_took(TimeUs us);
 
-  /// Where automatic quality may be, from the least effort on.
+  /// A level of the automatic quality. kLevels begins with the level of least effort.
   struct Level {
     Quality quality;
     double scale;  // as FrameLook::scale
@@ -68,7 +69,7 @@ class LookControl {
   std::size_t level_ = 3;  // automatic, of kLevels
   std::array<TimeUs, kFrames> took_{};
   std::size_t count_ = 0;         // of took_
-  std::size_t slow_ = 0;          // the last frames, if each took more than twice the target
+  std::size_t slow_ = 0;          // how many of the last frames in a row took over twice the target
   unsigned waited_ = 0;           // frames since the last step
   unsigned patience_ = 120;       // frames before a step upwards
   bool came_from_below_ = false;  // the last step was upwards

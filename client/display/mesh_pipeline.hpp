@@ -28,9 +28,9 @@ namespace runstone {
 
 class MeshPipeline {
  public:
-  /// `replica` and `draw_thread` must outlive the pipeline. Requires that `draw_thread` shows nothing
-  /// of another world (DrawThread::clear()). It may be null; then the last stage of an edit is
-  /// `meshed`. `watched` is true if frames go to a window. `wake` is called from mesh threads.
+  /// `replica` and `draw_thread` must outlive the pipeline. Requires that `draw_thread` shows
+  /// nothing of another world (DrawThread::clear()). It may be null; then the last stage of an edit
+  /// is `meshed`. `watched` is true if frames go to a window. `wake` is called from mesh threads.
   MeshPipeline(const Replica& replica, DrawThread* draw_thread, bool watched, unsigned workers,
                std::function<void()> wake);
 
@@ -53,10 +53,10 @@ class MeshPipeline {
   std::size_t mesh_bytes() const { return planner_.kept_bytes(); }
   /// Returns the memory of the chunks that were queued for upload and not removed since.
   std::size_t gpu_bytes() const { return gpu_bytes_.total(); }
-  /// The look of all frames.
+  /// Returns the control of the look of all frames.
   LookControl& look() { return look_; }
   const LookControl& look() const { return look_; }
-  /// The modes in which frames show how chunks are stored and meshed.
+  /// Returns the modes in which frames show how chunks are stored and meshed.
   const InspectionControl& inspection() const { return inspection_; }
   void inspect(const InspectionModes& modes) {
     inspection_.set(modes);
@@ -96,8 +96,8 @@ class MeshPipeline {
     return planner_.dirty_count() == 0 && is_idle() && tracker_.empty();
   }
   /// Returns true if every edit that was meshed before the first call has been presented. That
-  /// takes a bounded number of frames, whatever other players edit meanwhile (UploadQueue::kPatience).
-  /// Call it when the program wants to end.
+  /// takes a bounded number of frames, whatever other players edit meanwhile
+  /// (UploadQueue::kPatience). Call it when the program wants to end.
   bool has_caught_up();
   /// Returns the last kRecentFramesMax frames that were presented; the newest one is the last.
   const std::deque<FrameDone>& recent_frames() const { return recent_frames_; }
@@ -115,8 +115,7 @@ class MeshPipeline {
   /// Sets the counts of meshes and frames.
   void add_to(ClientReport& report) const;
 
-  /// The default of set_frame_interval(). The swap decides the exact time of a
-  /// frame.
+  /// The default of set_frame_interval(). The swap decides the exact time of a frame.
   static constexpr TimeUs kFrameUs = 16'000;
   /// The time per turn that mesh() spends on meshes of changed layers. The workers make the other
   /// meshes.
@@ -157,8 +156,8 @@ class MeshPipeline {
   InspectionControl inspection_;
   bool is_unpaced_ = false;
   TimeUs last_frame_us_ = 0;
-  // The next flag is set by events since the last frame was ordered.
-  bool changed_ = true;  // the camera, a marker or the look changed
+  // True if the camera, a marker or the look has changed since the last frame was ordered.
+  bool changed_ = true;
   struct {
     bool in_progress = false, screenshots = false;
   } frame_;                                // the frame in progress

@@ -16,8 +16,8 @@ class SmoothPlayers {
   void update(const std::map<AuthorId, OtherPlayer>& others, TimeUs now_us);
   /// Returns the poses of those whose pose is known, by author.
   std::map<AuthorId, Pose> at(TimeUs now_us) const;
-  /// Returns true if the next frame shows another picture of somebody than the frame at the call
-  /// before: somebody moves, came or left. Players who stand still cost no frames.
+  /// Returns true if the next frame shows other poses than the frame at the call before, because a
+  /// player moves, came or left. Players who stand still cost no frames.
   bool take_moved(TimeUs now_us);
 
  private:

@@ -1,5 +1,5 @@
-// UploadQueue: the changes of chunks that wait for the draw thread, the newest one of each chunk, in
-// the order in which they should be on the screen:
+// UploadQueue: the changes of chunks that wait for the draw thread, the newest one of each chunk,
+// in the order in which they should be on the screen:
 //   1. chunks with an edit of this client;
 //   2. chunks that have waited for kPatience frames, so that nothing waits for ever;
 //   3. chunks with edits of others;

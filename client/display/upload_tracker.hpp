@@ -1,6 +1,6 @@
 // UploadTracker: which meshes are on their way to the screen: queued for upload, or uploaded and in
-// no frame yet. Pure. One thread. Cost: O(log chunks) per call. Memory: a number for each mesh with an
-// edit since the newest upload of its chunk.
+// no frame yet. Pure. One thread. Cost: O(log chunks) per call. Memory: a number for each mesh with
+// an edit since the newest upload of its chunk.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -30,7 +30,7 @@ constexpr std::array<ActionInfo, kActionCount> kTable = {{
     {Action::hold_slot_8, "hold_slot_8", "take the material of slot 8", building, "8"},
     {Action::hold_slot_9, "hold_slot_9", "take the material of slot 9", building, "9"},
     {Action::palette, "palette", "choose a material for the slot from all of them", building, "E"},
-    {Action::undo, "undo", "undo your newest edit", building, "ctrl+Z"},
+    {Action::undo, "undo", "undo your newest action", building, "ctrl+Z"},
     {Action::redo, "redo", "redo it", building, "ctrl+Y ctrl+shift+Z"},
     {Action::tools, "tools", "show or hide the tools with their numbers", building, "Q"},
     {Action::tool_1, "tool_1", "choose tool 1 of the list", building, "ctrl+1"},

@@ -22,7 +22,7 @@ struct GamepadSample {
 
 class GamepadReader {
  public:
-  /// The part of a stick's way in which it counts as released.
+  /// A stick that is nearer to its middle than this share of its range counts as released.
   static constexpr double kDeadZone = 0.2;
 
   /// Appends the events by which the sample differs from the last one. nullopt is a gamepad that is

@@ -8,6 +8,7 @@
 namespace runstone {
 namespace {
 
+bool is_modifier(Key key) { return key >= Key::left_shift && key <= Key::right_alt; }
 bool is_function_key(Key key) { return key >= Key::f1 && key <= Key::f12; }
 
 /// Returns true for a press of a button if the cursor has moved over the interface in this turn.
@@ -38,6 +39,8 @@ RoutedInput InputRouter::route(const UiFocus& focus) {
     events_.pop_front();
     if (const auto* key = std::get_if<KeyEvent>(&event)) {
       if (takes_key(*key, focus, out)) {
+        // The interface knows which of these keys are held, for a click with control.
+        if (!is_captured_ && is_modifier(key->key)) out.for_ui.push_back(event);
         // The character of this key belongs to no text.
         while (!events_.empty() && std::holds_alternative<CharacterEvent>(events_.front()))
           events_.pop_front();
@@ -145,6 +148,11 @@ void InputRouter::take_gamepad(const GamepadButtonEvent& event, const UiFocus& f
     if (binding.button == event.button && binding.action && !info_of(*binding.action).is_held)
       out.player.actions.push_back(*binding.action);
   }
+}
+
+void InputRouter::release() {
+  is_captured_ = false;
+  release_all();
 }
 
 void InputRouter::release_all() {

@@ -47,6 +47,10 @@ class InputRouter {
   bool is_captured() const { return is_captured_; }
   /// Captures the mouse, as a click beside all windows does.
   void capture() { is_captured_ = true; }
+  /// Frees the mouse, and forgets what is held down.
+  void release();
+  /// Forgets which keys and buttons are held down. Call it while other code takes the events.
+  void release_all();
   /// Frees the mouse while a window needs it, and when one more panel opens. When all of them are
   /// closed, the mouse is captured again if it was captured before.
   void set_windows(bool has_window, unsigned panels);
@@ -57,7 +61,6 @@ class InputRouter {
   void take_gamepad(const GamepadButtonEvent& event, const UiFocus& focus, RoutedInput& out);
   void take_cursor(const CursorEvent& event, RoutedInput& out) const;
   void take_wheel(const WheelEvent& event, RoutedInput& out) const;
-  void release_all();
   void add_held(WindowInput& input) const;
   bool is_held(Action action) const { return held_[static_cast<std::size_t>(action)]; }
 

@@ -14,8 +14,8 @@ struct KeyRow {
   ActionGroup group{};
 };
 
-/// Returns the rows in the order of the groups, with the mouse among `building`. The keys of the slots
-/// are one row if they are the digits.
+/// Returns the rows in the order of the groups, with the mouse among `building`. The keys of the
+/// slots are one row while they are the default keys, and so are the keys of the tools.
 std::vector<KeyRow> key_rows(const KeyMap& keys);
 
 }  // namespace runstone

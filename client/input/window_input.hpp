@@ -1,4 +1,4 @@
-// WindowInput: what keyboard and mouse want of the player since the last turn.
+// WindowInput: the input for the player from keyboard, mouse and gamepad since the last turn.
 #pragma once
 #include <vector>
 

@@ -1,6 +1,6 @@
 // LocalServer: a runstone-server on this computer that runs a world of the player while the client
-// plays in it. It listens on the loopback address alone. It ends in order when the client closes its
-// standard input, which the system does too if the client is killed.
+// plays in it. It listens on the loopback address alone. It ends in order when the client closes
+// its standard input, which the system does too if the client is killed.
 // Thread: one. No call waits, except stop() and the destructor.
 #pragma once
 #include <sys/types.h>
@@ -30,8 +30,8 @@ struct LocalServerConfig {
   std::string program;                    // empty: local_server_program()
 };
 
-/// Returns the environment variable RUNSTONE_SERVER if it is set, otherwise `runstone-server` beside
-/// this program if it is there, otherwise the bare name, which is searched on PATH.
+/// Returns the environment variable RUNSTONE_SERVER if it is set, otherwise `runstone-server`
+/// beside this program if it is there, otherwise the bare name, which is searched on PATH.
 std::string local_server_program();
 
 class LocalServer {
@@ -39,8 +39,8 @@ class LocalServer {
   enum class State : std::uint8_t { starting, running, ended };
 
   /// Starts the server. The standard output and error of the server go to the file `server.log` in
-  /// the folder of the world. Fails with a line of text if the folder holds no world and none may be
-  /// made, or if the program cannot be started.
+  /// the folder of the world. Fails with a line of text if the folder holds no world and none may
+  /// be made, or if the program cannot be started.
   static Result<std::unique_ptr<LocalServer>, std::string> start(const LocalServerConfig& config);
   /// Does the same as stop().
   ~LocalServer();

@@ -23,8 +23,8 @@ std::string local_worlds_folder();
 /// digits, blanks, hyphens and underscores, and a blank neither first nor last.
 Result<void, std::string> check_world_name(const std::string& name);
 
-/// Returns the worlds in `folder`, the one that changed last first. Folders without a world are left
-/// out. Returns none if the folder is missing.
+/// Returns the worlds in `folder`, the one that changed last first. Folders without a world are
+/// left out. Returns none if the folder is missing.
 std::vector<LocalWorld> list_local_worlds(const std::string& folder);
 /// Returns true if the folder holds a world.
 bool holds_world(const std::string& folder);

@@ -1,4 +1,4 @@
-// MapMaterials: what the map from above needs of a world's materials.
+// MapMaterials: the facts about a world's materials that the map from above needs.
 #pragma once
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace runstone {
 
 struct MapMaterials {
   ShowingMaterials showing;             // every material that is drawn
-  ShowingMaterials ground;              // those through which nothing is seen
+  ShowingMaterials ground;              // every opaque material
   std::vector<MaterialColour> colours;  // by id
 
   /// Returns the colour of a material; magenta if the table lacks it.
@@ -19,6 +19,7 @@ struct MapMaterials {
   }
 };
 
+/// Returns the facts about the materials of a table. Cost: O(materials).
 MapMaterials map_materials(const MaterialTable& table);
 
 }  // namespace runstone

@@ -49,6 +49,14 @@ Colour column_colour(const ColumnTop& surface, const ColumnTop& ground,
   return out;
 }
 
+/// Returns true if a chunk of one material shows nothing from above.
+bool is_invisible(const RunChunk& chunk, const MapMaterials& materials) {
+  if (!chunk.is_uniform()) return false;
+  const std::size_t material = chunk.runs.material(0);
+  return material < materials.showing.size() && !materials.showing[material] &&
+         material < materials.ground.size() && !materials.ground[material];
+}
+
 std::vector<std::int32_t> border_heights(const MapTile* tile) {
   std::vector<std::int32_t> out;
   if (tile == nullptr) return out;
@@ -73,7 +81,11 @@ MapTile make_map_tile(std::span<const StackedChunk> chunks, std::int32_t edge,
   std::size_t surface_open = columns, ground_open = columns;
   for (const StackedChunk& chunk : chunks) {
     if (ground_open == 0) break;
-    work += chunk.voxels->is_uniform() ? 1 : chunk.voxels->runs.size() + columns;
+    if (is_invisible(*chunk.voxels, materials)) {
+      ++work;
+      continue;
+    }
+    work += chunk.voxels->runs.size() + columns;
     if (surface_open != 0)
       surface_open -= find_column_tops(*chunk.voxels, chunk.base_y, materials.showing, out.surface);
     ground_open -= find_column_tops(*chunk.voxels, chunk.base_y, materials.ground, out.ground);

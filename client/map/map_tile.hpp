@@ -1,6 +1,7 @@
-// MapTile: one column of chunks from above: for each column of voxels what shows, and the picture of
-// it. The picture has shaded relief: slopes towards the west and the north are light, as if the sun
-// stood there. Water and glass are tinted by how deep one looks through them. Pure.
+// MapTile: one column of chunks from above: for each column of voxels the voxel that shows, and an
+// image of all of them. The image has shaded relief: slopes towards the west and the north are
+// light, as if the sun stood there. Water and glass are tinted by the depth to the ground below
+// them. Pure.
 #pragma once
 #include <compare>
 #include <cstdint>
@@ -40,20 +41,20 @@ struct MapTile {
   std::size_t bytes() const;
 };
 
-/// Returns the tile of these chunks, without a picture. Requires chunks from the highest to the
+/// Returns the tile of these chunks, without an image. Requires chunks from the highest to the
 /// lowest, cubes of one edge. Adds the runs and columns that were visited to `work`. Cost: as
 /// find_column_tops() for each chunk down to the ground.
 MapTile make_map_tile(std::span<const StackedChunk> chunks, std::int32_t edge,
                       const MapMaterials& materials, std::size_t& work);
 
-/// Paints the picture of a tile. The neighbours to the west (-x) and to the north (-z) give the
-/// slopes at the borders; null: not known. Cost: O(columns).
+/// Returns the painted image of a tile. The neighbours to the west (-x) and to the north (-z) give
+/// the slopes at the borders; null: not known. Cost: O(columns).
 std::shared_ptr<const OverlayImage> paint_map_tile(const MapTile& tile, const MapTile* west,
                                                    const MapTile* north,
                                                    const MapMaterials& materials);
 
-/// Returns true if the tiles have other heights at the borders on which the slopes of the neighbours
-/// to the east and to the south depend. Null stands for no tile.
+/// Returns true if the tiles have other heights at the borders on which the slopes of the
+/// neighbours to the east and to the south depend. Null stands for no tile.
 bool has_other_border(const MapTile* before, const MapTile* after);
 
 }  // namespace runstone

@@ -8,6 +8,12 @@
 #include "common/core/coords.hpp"
 
 namespace runstone {
+namespace {
+
+/// The search for the nearest tile compares so many keys in the time of one unit of work.
+constexpr std::size_t kKeysPerWork = 8;
+
+}  // namespace
 
 void WorldMap::set_materials(const MaterialTable& table) {
   materials_ = map_materials(table);
@@ -54,11 +60,13 @@ bool WorldMap::step(const Replica& replica, double x, double z) {
   }
   bool has_changed = false;
   for (std::size_t work = 0; work < kWorkMax && !stale_.empty(); has_changed = true) {
+    work += stale_.size() / kKeysPerWork;
     const MapTileKey key = nearest(stale_);
     stale_.erase(key);
     make(replica, key, work);
   }
   for (std::size_t work = 0; work < kWorkMax && !unpainted_.empty(); has_changed = true) {
+    work += unpainted_.size() / kKeysPerWork;
     const MapTileKey key = nearest(unpainted_);
     unpainted_.erase(key);
     paint(key, work);
@@ -136,7 +144,8 @@ bool WorldMap::make_room(MapTileKey key, std::size_t tile_bytes) {
 }
 
 double WorldMap::distance(MapTileKey key) const {
-  return std::hypot((key.x + 0.5) * edge_ - centre_x_, (key.z + 0.5) * edge_ - centre_z_);
+  const double x = (key.x + 0.5) * edge_ - centre_x_, z = (key.z + 0.5) * edge_ - centre_z_;
+  return x * x + z * z;
 }
 
 MapTileKey WorldMap::nearest(const std::set<MapTileKey>& keys) const {

@@ -1,7 +1,7 @@
-// WorldMap: the map from above of the chunks that a replica shows, of the live world or of the past.
-// While it is open, each changed chunk makes the tile of its column out of date, and every step
-// makes a bounded number of tiles again, those near the centre first. While it is closed it holds
-// nothing. Pure. One thread.
+// WorldMap: the map from above of the chunks that a replica shows, of the live world or of the
+// past. While it is open, each changed chunk makes the tile of its column out of date, and every
+// step makes a bounded number of tiles again, those near the centre first. While it is closed it
+// holds nothing. Pure. One thread.
 #pragma once
 #include <cstddef>
 #include <map>
@@ -15,10 +15,10 @@ namespace runstone {
 
 class WorldMap {
  public:
-  /// The tiles may take this much memory, on the GPU a third of it again. The tiles that are farthest
-  /// from the centre are dropped.
+  /// The greatest memory of the tiles, in bytes. On the GPU they take up to a third of it once
+  /// more. Beyond it, the tiles that are farthest from the centre are dropped.
   static constexpr std::size_t kBytesMax = 48 << 20;
-  /// The runs and columns that a step visits, except for the last tile of the step: about a
+  /// A step begins no tile after it has visited this many runs and columns, which takes about a
   /// millisecond.
   static constexpr std::size_t kWorkMax = 50'000;
 
@@ -49,6 +49,7 @@ class WorldMap {
   const MapTile* find(MapTileKey key) const;
   /// Returns the key of the set that is nearest to the centre. Requires a set that is not empty.
   MapTileKey nearest(const std::set<MapTileKey>& keys) const;
+  /// Returns the squared distance of the middle of a tile from the centre, in voxels.
   double distance(MapTileKey key) const;
   /// Makes room for another tile. Returns false if all tiles are nearer than `key`.
   bool make_room(MapTileKey key, std::size_t tile_bytes);
@@ -64,7 +65,7 @@ class WorldMap {
   std::size_t bytes_ = 0;               // of tiles_
   std::set<MapTileKey> stale_;          // to be made from the chunks
   std::set<MapTileKey> unpainted_;      // of tiles_, to be painted
-  std::set<MapTileKey> dropped_;        // there is no room for them
+  std::set<MapTileKey> dropped_;        // tiles for which there is no room
   double centre_x_ = 0, centre_z_ = 0;  // voxels
 };
 

@@ -205,7 +205,8 @@ asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
   }
 }
 
-/// Connects and, unless the link is not encrypted, performs the TLS handshake. Returns as connect().
+/// Connects and, unless the link is not encrypted, performs the TLS handshake. Returns as
+/// connect().
 template <class State>
 asio::awaitable<std::string> open(State& state,
                                   const asio::ip::tcp::resolver::results_type& endpoints) {

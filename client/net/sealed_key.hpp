@@ -1,5 +1,5 @@
-// Sealed key: a player's secret key as one line of text, encrypted with a passphrase, so that it can
-// be moved to another computer.
+// Sealed key: a player's secret key as one line of text, encrypted with a passphrase, so that it
+// can be moved to another computer.
 //   runstone-key-1:BASE64
 // The base64 text (with padding) holds
 //   u8 version 1, u32 operations, u32 memory in KiB, 16 bytes of salt: the costs and the salt of

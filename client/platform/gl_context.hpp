@@ -1,6 +1,7 @@
-// GlContext: a current OpenGL context. Off screen it is made by EGL surfaceless or, if that fails,
-// by OSMesa; neither needs an X server. client/platform/window.hpp makes the context of a window.
-// Thread: the context is current on the thread that makes it, and is used and destroyed there.
+// GlContext: a current OpenGL context. Off screen it is made by EGL without a surface or, if that
+// fails, by OSMesa. Neither needs an X server. client/platform/window.hpp makes the context of a
+// window. Thread: the context is current on the thread that makes it, and is used and destroyed
+// there.
 #pragma once
 #include <memory>
 #include <string>

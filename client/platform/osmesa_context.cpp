@@ -3,6 +3,8 @@
 #include <GL/osmesa.h>
 
 #include <array>
+#include <cstdlib>
+#include <string_view>
 #include <vector>
 
 namespace runstone {
@@ -30,9 +32,21 @@ class OsmesaContext final : public GlContext {
   std::vector<unsigned char> window_;
 };
 
+/// Returns false if GALLIUM_DRIVER names a driver that OSMesa does not have. Mesa 22 then ends the
+/// program.
+bool has_driver() {
+  const char* const name = std::getenv("GALLIUM_DRIVER");
+  return name == nullptr || std::string_view(name) == "llvmpipe" ||
+         std::string_view(name) == "softpipe";
+}
+
 }  // namespace
 
 std::unique_ptr<GlContext> make_osmesa_context(std::string& tried) {
+  if (!has_driver()) {
+    tried += "OSMesa: it has no driver of the name in GALLIUM_DRIVER; ";
+    return nullptr;
+  }
   constexpr std::array<std::array<int, 2>, 2> kVersions = {{{4, 5}, {3, 3}}};
   for (const auto& [major, minor] : kVersions) {
     const std::array<int, 11> attributes = {OSMESA_FORMAT,

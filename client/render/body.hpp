@@ -1,4 +1,4 @@
-// Body: another player, drawn as a torso with a head in the player's colour.
+// Body: another player, drawn by BodyPainter as boxes in the player's colour.
 #pragma once
 #include <cstdint>
 

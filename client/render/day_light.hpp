@@ -12,7 +12,7 @@ struct DayLight {
   glm::vec3 glow{0};                          // around the sun
   glm::vec3 ambient_up{0}, ambient_down{0};   // on faces that look up and down
   glm::vec3 dark{0};                          // everywhere, so that caves are not black
-  float lamps = 1;                            // strength of what gives off light
+  float lamps = 1;                            // factor of the light of lamps
   float exposure = 1;
   float fog_start = 0, fog_end = 1;  // voxels from the eye; terrain has vanished at fog_end
 };

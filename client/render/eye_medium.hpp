@@ -1,4 +1,4 @@
-// The light that an eye sees that is inside a voxel: of a solid, of glass or of water. Pure.
+// The light of a frame whose eye is inside a voxel of a solid, of glass or of water. Pure.
 #pragma once
 #include <glm/glm.hpp>
 
@@ -11,7 +11,8 @@ namespace runstone {
 ///   - In a solid, a dense and dark fog of its colour hides what lies behind the next voxels, so
 ///     nobody sees through the ground.
 ///   - In a liquid, the fog has its colour and a short range, and sun and sky are tinted.
-/// `around` is the light at the eye: red, green and blue of lamps, and the share of the sky, 0 .. 1.
+/// `around` is the light at the eye: red, green and blue of lamps, and the share of the sky, 0 ..
+/// 1.
 DayLight light_inside(const MaterialInfo& material, const DayLight& outside,
                       const glm::vec4& around);
 

@@ -17,8 +17,8 @@ struct GhostChunk {
   /// placed: the quads of voxels that the edit would set, drawn in the colours of their materials.
   /// removed: the quads of voxels that it would clear, drawn in red. Either may be null.
   std::shared_ptr<const ChunkMesh> placed, removed;
-  /// The colour of the player whose preview it is, r, g, b; nullopt: of this player. Ghosts of others
-  /// are drawn lighter, in their colour.
+  /// The colour of the player whose preview it is, r, g, b; nullopt: of this player. Ghosts of
+  /// others are drawn lighter, in their colour.
   std::optional<std::array<std::uint8_t, 3>> tint = std::nullopt;
 };
 

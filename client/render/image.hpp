@@ -1,4 +1,4 @@
-// Image: a picture in memory, which can be written to a PNG file.
+// Image: the pixels of a frame in memory, which can be written to a PNG file.
 #pragma once
 #include <cstdint>
 #include <string>

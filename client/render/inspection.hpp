@@ -1,4 +1,4 @@
-// Inspection: what a frame shows of the way chunks are stored and meshed, on top of the faces:
+// Inspection: how a frame shows the storage and the meshes of chunks, on top of the faces:
 //   wireframe   the edges of quads
 //   runs        the faces at which a stored run ends, in the axis order of its chunk
 //   orders      the axis order of each chunk, as a tint
@@ -78,8 +78,8 @@ constexpr InspectionColour colour_of(AxisOrder order) {
   return kColours[static_cast<std::size_t>(order)];
 }
 
-/// Returns bit i % 32 of word i / 32 set if a run starts at voxel i of the chunk, in its axis order.
-/// Requires a volume that is a multiple of 32. Cost: O(runs + volume / 32).
+/// Returns bit i % 32 of word i / 32 set if a run starts at voxel i of the chunk, in its axis
+/// order. Requires a volume that is a multiple of 32. Cost: O(runs + volume / 32).
 std::vector<std::uint32_t> run_start_bits(const RunChunk& chunk);
 
 }  // namespace runstone

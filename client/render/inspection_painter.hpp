@@ -1,5 +1,5 @@
-// InspectionPainter: draws the modes of an Inspection over the faces of the last passes. It draws the
-// quads of chunks once more, so its pattern lies exactly on the faces. Thread: the GL thread.
+// InspectionPainter: draws the modes of an Inspection over the faces of the last passes. It draws
+// the quads of chunks once more, so its pattern lies exactly on the faces. Thread: the GL thread.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -18,9 +18,9 @@ class InspectionPainter {
   /// Throws std::runtime_error with the driver's log if the shader does not compile.
   InspectionPainter();
 
-  /// Begins a pass over chunks. `clip` maps eye-relative coordinates to clip space. `inspection` must
-  /// outlive the pass. The starts of runs are uploaded for at most kUploadsMax chunks, or for all
-  /// with `exact`.
+  /// Begins a pass over chunks. `clip` maps eye-relative coordinates to clip space. `inspection`
+  /// must outlive the pass. The starts of runs are uploaded for at most kUploadsMax chunks, or for
+  /// all with `exact`.
   void begin(const Inspection& inspection, const glm::mat4& clip, const QuadBuffer& quads,
              bool exact);
   /// Sets the chunk whose quads are drawn next. `origin` is relative to the eye, `edge` in voxels.

@@ -26,8 +26,8 @@ struct LightChunk {
 /// Requires a cube. Cost: O(runs + columns that opaque runs cover).
 LightChunk light_chunk(const RunChunk& chunk, const LightCodes& codes);
 
-/// Calls f(first, last, code) for boxes [first, last) that tile the chunk. Places are in voxels from
-/// its origin along x, y and z. Cost: O(runs).
+/// Calls f(first, last, code) for boxes [first, last) that tile the chunk. Places are in voxels
+/// from its origin along x, y and z. Cost: O(runs).
 template <class F>
 void for_each_light_box(const RunChunk& codes, F&& f) {
   const OrderedExtent extent = ordered(codes.extent, codes.order);

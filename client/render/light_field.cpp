@@ -113,9 +113,13 @@ void LightField::mark(VoxelBox dirty) {
   }
   dirty_.push_back(dirty);
   if (dirty_.size() <= kDirtyMax) return;
-  VoxelBox all = kNoBox;
-  for (const VoxelBox& box : dirty_) all = hull(all, box);
-  dirty_ = {all};
+  // The box joins the one with which it makes the smallest hull.
+  const auto joined = std::min_element(
+      dirty_.begin(), dirty_.end() - 1, [&dirty](const VoxelBox& a, const VoxelBox& b) {
+        return volume_of(hull(a, dirty)) < volume_of(hull(b, dirty));
+      });
+  *joined = hull(*joined, dirty);
+  dirty_.pop_back();
 }
 
 VoxelBox LightField::fill(ChunkCoord at, const LightChunk* chunk, const VoxelBox& part) {

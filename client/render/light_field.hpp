@@ -1,9 +1,9 @@
-// LightField: the light of every voxel in a box around the eye: how much sky it sees, and the light
-// of lamps that reaches it. Light from the sky falls straight down through what is not opaque, and
-// from there it spreads as that of lamps does (LightFlood). So rooms and caves are dark, and light
-// comes in through doors and windows.
-//   - The runs of each chunk are kept as runs of light codes, so a move of the box needs no chunk
-//     again.
+// LightField: the light of every voxel in a box around the eye: the light of the sky and of lamps
+// that reaches it. Light from the sky falls straight down through what is not opaque, and from
+// there it spreads as that of lamps does (LightFlood). So rooms and caves are dark, and light comes
+// in through doors and windows.
+//   - The runs of each chunk are kept as runs of light codes, so that the box can move without
+//     getting chunks again.
 //   - A change marks a box of voxels, and update() computes the light anew as far from it as light
 //     reaches.
 //   - The levels stand in a ring: a voxel lies at its coordinates modulo the size of the box. So a

@@ -8,9 +8,9 @@ namespace runstone {
 
 // field_lit() is the light of lamps and sky at a place of the light field (RUNSTONE_FIELD_GLSL).
 // display() is the only step from linear light to the picture: the filmic curve of Hejl and
-// Burgess-Dawson (2010), a quotient of polynomials that includes the encoding to sRGB. Its cut of the
-// darkest tones is left out, because caves would be black. In ambient light the walls along x are a
-// little darker, so that hills in the shade and far away keep their shape.
+// Burgess-Dawson (2010), a quotient of polynomials that includes the encoding to sRGB. Its cut of
+// the darkest tones is left out, because caves would be black. In ambient light the walls along x
+// are a little darker, so that hills in the shade and far away keep their shape.
 #define RUNSTONE_LIGHT_GLSL                                                            \
   "uniform vec3 sun_direction, sun_colour, zenith, horizon, nadir, glow;\n"            \
   "uniform vec3 ambient_up, ambient_down, dark;\n"                                     \

@@ -1,6 +1,6 @@
 // LightTexture: the light field on the GPU, a texture of three dimensions that a shader reads with
-// linear interpolation. Opaque voxels have no light, so places beside them are darker: the same read
-// gives the ambient occlusion of corners. Thread: the GL thread.
+// linear interpolation. Opaque voxels have no light, so places beside them are darker: the same
+// read gives the ambient occlusion of corners. Thread: the GL thread.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -27,9 +27,10 @@ class LightTexture {
   std::uint64_t bytes_ = 0;
 };
 
-/// vec4 field_light(vec3 relative): the light at a place relative to the eye. Red, green and blue are
-/// the linear light of lamps, and the last is the share of the sky that is seen, 0 .. 1. Outside the
-/// field, and at its rim, there are no lamps and all of the sky. `at` is 0 .. 1 inside the field.
+/// vec4 field_light(vec3 relative): the light at a place relative to the eye. Red, green and blue
+/// are the linear light of lamps, and the last is the share of the sky that is seen, 0 .. 1.
+/// Outside the field, and at its rim, there are no lamps and all of the sky. `at` is 0 .. 1 inside
+/// the field.
 #define RUNSTONE_FIELD_GLSL                                                                \
   "uniform sampler3D light_field;\n"                                                       \
   "uniform vec3 field_scale, field_offset, field_turn;\n"                                  \

@@ -1,5 +1,5 @@
-// MaterialTextures: colour and look of each material, in two textures of 256 x 256 with a pixel for
-// each id. Thread: the GL thread.
+// MaterialTextures: colour and look of each material, in two textures of 256 x 256 pixels, a pixel
+// for each id. Thread: the GL thread.
 #pragma once
 #include "client/render/gl_handle.hpp"
 #include "common/materials/material_table.hpp"

@@ -1,4 +1,4 @@
-// OverlayFrame: what the user interface wants drawn over a frame: triangles in pixels, with clip
+// OverlayFrame: the user interface as it is drawn over a frame: triangles in pixels, with clip
 // rectangles, an atlas of glyphs and images. It has no types of the library that makes it, so that
 // the draw thread needs only OpenGL. A frame is never changed after it was made, and any thread may
 // read it.
@@ -11,7 +11,8 @@
 namespace runstone {
 
 /// A corner of a triangle. x and y are pixels from the upper left corner of the frame. u and v are
-/// places in the atlas or image, 0 to 1. The colour is sRGB; red is the lowest byte, alpha the highest.
+/// places in the atlas or image, 0 to 1. The colour is sRGB; red is the lowest byte, alpha the
+/// highest.
 struct OverlayVertex {
   float x = 0, y = 0;
   float u = 0, v = 0;
@@ -20,8 +21,8 @@ struct OverlayVertex {
 };
 static_assert(sizeof(OverlayVertex) == 20);
 
-/// Triangles that are clipped by the same rectangle and have the same texture. Commands are drawn in
-/// their order.
+/// Triangles that are clipped by the same rectangle and have the same texture. Commands are drawn
+/// in their order.
 struct OverlayCommand {
   std::array<float, 4> clip{};     // left, top, right, bottom in pixels
   std::uint32_t first_index = 0;   // in OverlayFrame::indices
@@ -37,8 +38,8 @@ struct OverlayAtlas {
   std::vector<std::uint8_t> coverage;  // width * height
 };
 
-/// A picture in a window, such as a part of a map. It is uploaded when a frame has it that the frame
-/// before had not, so a picture that changes is a new one.
+/// An image in a window, such as a part of a map. It is uploaded with the first frame that has it.
+/// It never changes: changed contents are a new image.
 struct OverlayImage {
   int width = 0, height = 0;
   std::vector<std::uint32_t> pixels;  // width * height, in the form of OverlayVertex::colour

@@ -13,8 +13,8 @@ struct ProjectedPoint {
   double distance = 0;  // voxels along the direction of sight
 };
 
-/// Returns the pixel of a place, or nullopt if the place is not in front of the eye. `size` is width
-/// and height of the frame.
+/// Returns the pixel of a place, or nullopt if the place is not in front of the eye. `size` is
+/// width and height of the frame.
 inline std::optional<ProjectedPoint> project(const Camera& camera, std::array<int, 2> size,
                                              double x, double y, double z) {
   const double sine = std::sin(camera.yaw), cosine = std::cos(camera.yaw);

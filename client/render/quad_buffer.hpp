@@ -1,6 +1,7 @@
-// QuadBuffer: the quads of all chunks in one buffer on the GPU, and the calls that draw spans of it.
-// A vertex shader reads the quads as a buffer texture (quad_glsl.hpp). So spans of any chunks are
-// drawn by one call, and OpenGL 3.3, which has no base instance, suffices. Thread: the GL thread.
+// QuadBuffer: the quads of all chunks in one buffer on the GPU, and the calls that draw spans of
+// it. A vertex shader reads the quads as a buffer texture (quad_glsl.hpp). So spans of any chunks
+// are drawn by one call, and OpenGL 3.3, which has no base instance, suffices. Thread: the GL
+// thread.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,6 +1,6 @@
 // The packed quads of common/mesh/quad.hpp in GLSL: a vertex shader reads quad and corner by the
-// number of the vertex, four vertices a quad. So a draw needs no vertex attributes, and the quads of
-// all chunks lie in one buffer texture.
+// number of the vertex, four vertices a quad. So a draw needs no vertex attributes, and the quads
+// of all chunks lie in one buffer texture.
 #pragma once
 
 namespace runstone {

@@ -25,11 +25,11 @@ class QuadSpans {
   QuadSpans(const QuadLayers& layers, std::int32_t edge, std::uint32_t first);
 
   QuadSpan all() const;
-  /// Appends the spans whose faces may be seen from `eye`, in voxels relative to the chunk's origin.
-  /// A place very far away stands for a direction.
+  /// Appends the spans whose faces may be seen from `eye`, in voxels relative to the chunk's
+  /// origin. A place very far away stands for a direction.
   void append_facing(const std::array<double, 3>& eye, std::vector<QuadSpan>& out) const;
-  /// Appends a span for each layer with quads, from the farthest plane to the nearest one. Planes of
-  /// one axis are in their right order; those of different axes may not be.
+  /// Appends a span for each layer with quads, from the farthest plane to the nearest one. Planes
+  /// of one axis are in their right order; those of different axes may not be.
   void append_back_to_front(const std::array<double, 3>& eye, std::vector<QuadSpan>& out) const;
 
  private:

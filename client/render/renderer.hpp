@@ -1,7 +1,7 @@
 // Renderer: draws chunk meshes with sun, sky and fog, and transparent materials in a blended pass.
-// Quads are packed into 8 bytes, drawn as instances and unpacked in the vertex shader. Requires
-// OpenGL 3.3 core or newer. The position of the eye is subtracted from chunk positions in double
-// precision before they become floats, so that places far from the origin do not jitter. Thread:
+// A quad takes 8 bytes; the vertex shader reads and unpacks it (quad_glsl.hpp). Requires OpenGL 3.3
+// core or newer. The position of the eye is subtracted from chunk positions in double precision
+// before they become floats, so that places far from the origin do not jitter. Thread:
 // all calls on the one thread whose context is current.
 #pragma once
 #include <cstdint>
@@ -31,7 +31,8 @@ struct RenderStats {
   std::uint64_t quads_drawn = 0;
   std::uint64_t quad_bytes = 0;  // on the GPU, of all chunks
   std::uint64_t gpu_bytes = 0;   // those, the light field and the shadow maps
-  /// The picture changes with FrameLook::seconds: it shows transparent faces or ghosts.
+  /// True if the frame changes with FrameLook::seconds, because it shows transparent faces or
+  /// ghosts.
   bool is_animated = false;
 };
 
@@ -49,8 +50,8 @@ class Renderer {
 
   void set_materials(const MaterialTable& materials);
   /// Replaces the chunk's quads on the GPU. `edge` is in voxels. `voxels` are the runs that were
-  /// meshed: light and dark corners come from them. They may be
-  /// null; then the chunk counts as empty there.
+  /// meshed, from which light and dark corners are computed. If `voxels` is null, the chunk counts
+  /// as empty there.
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels = nullptr);
   void remove(const ChunkKey& key);
@@ -67,7 +68,7 @@ class Renderer {
   Image read_image();
   /// Copies the last frame to the window's default framebuffer.
   void present(int window_width, int window_height) { present(0, 0, window_width, window_height); }
-  /// Copies it to a rectangle, in pixels from the lower left corner of the window.
+  /// Copies the last frame to a rectangle, in pixels from the lower left corner of the window.
   void present(int left, int bottom, int width, int height);
 
  private:

@@ -1,6 +1,6 @@
 // ShadowMaps: depth maps of the terrain as the sun sees it, in two cascades around the eye: a small
 // one of high resolution, and a large one around it. A chunk uses the smallest cascade that holds
-// all of it, so a fragment need not choose. A cascade does not depend on the direction of sight. It
+// all of it, so its fragments read one map. A cascade does not depend on the direction of sight. It
 // is drawn again only if
 //   - the eye has moved by a part of its radius (its middle is a multiple of that part, and its
 //     pixels keep their places in the world),

@@ -9,10 +9,11 @@ inline constexpr float kLiquidSurface = 7.0F;
 /// The fraction for roughness 1. It is below 1 by more than the step of a 16-bit float below 8.
 inline constexpr float kRoughnessScale = 0.98F;
 
-// Requires `look`, RUNSTONE_LIGHT_GLSL and `float hash(ivec3)`. The first one is for all programs.
+// All three macros require `look`. RUNSTONE_PATTERN_GLSL requires `float hash(ivec3)`, too, and
+// RUNSTONE_GLOSS_GLSL requires RUNSTONE_SURFACE_PARTS_GLSL and RUNSTONE_LIGHT_GLSL.
 //   shade(): the factor of the brightness at `st`, the place on the face in voxels. `up` is 1 on
-//     upper and lower faces. Patterns are those of common/core/material_look.hpp. Bricks are shifted
-//     by a half from row to row. The weave has eight threads to a voxel.
+//     upper and lower faces. Patterns are those of common/core/material_look.hpp. Bricks are
+//     shifted by a half from row to row. The weave has eight threads to a voxel.
 //   gloss(): `lit` with the sun and the sky that a smooth face mirrors. `sun` is the share of
 //     sunlight on the face, `open` that of skylight. Half of the highlight has the colour of the
 //     material, as on metal. A face of roughness 0.7 or more, which a 16-bit float may round down,

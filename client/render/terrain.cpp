@@ -13,19 +13,20 @@
 namespace runstone {
 namespace {
 
-/// The radius of the inner shadow map, in edges of a chunk. It holds the chunk of the eye as a whole,
-/// and those beside it in most places.
+/// The radius of the inner shadow map, in edges of a chunk. It holds the chunk of the eye as a
+/// whole, and those beside it in most places.
 constexpr double kShadowEdges = 1.75;
 
 /// Coordinates fixed to the world are taken modulo this number of voxels, so that a float holds
 /// them precisely.
 constexpr std::int32_t kPattern = 8192;
 
-/// The light field around the eye, in voxels: corners are dark and lamps light up to half of it away.
+/// The light field around the eye, in voxels: corners are dark and lamps light up to half of it
+/// away.
 constexpr std::int32_t kFieldWidth = 192, kFieldHeight = 128;
 
-/// The growth of a quad that closes pinholes, as a share of the distance: a thirtieth of a pixel of a
-/// picture of 720 lines, or eight times the precision of a rasterizer with 256 steps in a pixel.
+/// The growth of a quad that closes pinholes, as a share of the distance: a thirtieth of a pixel of
+/// a picture of 720 lines, or eight times the precision of a rasterizer with 256 steps in a pixel.
 constexpr float kSeam = 0.00006F;
 
 // Texture units.

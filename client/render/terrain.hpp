@@ -64,8 +64,8 @@ class Terrain {
   /// opaque ones. If the quality is not low, it is read and must not be bound for drawing.
   void draw_transparent(const FrameView& view, GLuint scene_depth);
   void draw_ghosts(const FrameView& view, std::span<const GhostChunk> ghosts);
-  /// Draws an inspection over the faces in view. Valid after draw_opaque(). Costs nothing if no mode
-  /// is on.
+  /// Draws an inspection over the faces in view. Valid after draw_opaque(). Costs nothing if no
+  /// mode is on.
   void draw_inspection(const FrameView& view, const Inspection& inspection);
   std::uint64_t quad_bytes() const { return quads_.used_bytes(); }
   std::uint64_t gpu_bytes() const;

@@ -1,6 +1,7 @@
 // The shaders of terrain, in GLSL 3.30. Their variants are chosen by definitions before the text:
-// RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH reads
-// the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, and RUNSTONE_FOG fades.
+// RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH
+// reads the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, and RUNSTONE_FOG
+// fades.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"
@@ -27,9 +28,9 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "void main() {\n"
     "  QuadCorner c = quad_corner();\n"
     "  relative = origin + c.at;\n"
-    // Merged quads meet in T-junctions, where rounding leaves pinholes. So each quad grows by a small
-    // fraction of a pixel along both of its axes, whatever the angle at which they are seen: an axis
-    // of length 1 is seen with the length sqrt(q) / distance^2.
+    // Merged quads meet in T-junctions, where rounding leaves pinholes. So each quad grows by a
+    // small fraction of a pixel along both of its axes, whatever the angle at which they are seen:
+    // an axis of length 1 is seen with the length sqrt(q) / distance^2.
     "  float d2 = dot(relative, relative);\n"
     "  vec3 q = max(d2 - relative * relative, 0.0004 * d2);\n"
     "  relative += c.outward * (seam * d2 * inversesqrt(q));\n"

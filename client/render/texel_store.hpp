@@ -2,10 +2,10 @@
 // texture. Its size doubles when it becomes full. The contents then move piece by piece, a piece
 // with each add(), so that no call copies the whole buffer:
 //   - The move begins when less than a quarter is free.
-//   - Shaders read the old buffer until all texels were copied. Texels that are written meanwhile go
-//     to both buffers.
-//   - A piece is large enough that the move ends before the old buffer is full. If it is too
-//     fragmented for a range all the same, the rest is copied at once.
+//   - Shaders read the old buffer until all texels were copied. Texels that are written meanwhile
+//     go to both buffers.
+//   - A piece is large enough that the move ends before the old buffer is full. If no free range of
+//     the old buffer is large enough all the same, the rest is copied at once.
 // Thread: the GL thread.
 #pragma once
 #include <cstddef>
@@ -23,7 +23,7 @@ class TexelStore {
 
   /// Copies `count` texels into a free range and returns its first texel. Throws
   /// std::runtime_error if the driver allows no larger buffer texture. Requires count > 0. Cost:
-  /// O(count) while less than three quarters are used for large `count`, see above.
+  /// O(count), or O(texels of the buffer) if the rest of a move is copied at once.
   std::uint32_t add(const void* texels, std::uint32_t count);
   /// Overwrites texels. Requires a range inside the buffer.
   void write(std::uint32_t first, const void* texels, std::uint32_t count);

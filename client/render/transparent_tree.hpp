@@ -1,7 +1,8 @@
-// TransparentTree: the transparent quads of a chunk in an order that blends them rightly from every
-// place: what lies behind comes first, also between faces of different directions. It is a binary
-// space partition (Fuchs, Kedem and Naylor 1980) whose planes are those of the quads. A quad that
-// crosses a plane is cut into two, so no quads hide each other in a circle. Pure.
+// TransparentTree: gives, for every place of the eye, the order in which the transparent quads of a
+// chunk are blended correctly: what lies behind comes first, also between faces of different
+// directions. It is a binary space partition (Fuchs, Kedem and Naylor 1980) whose planes are those
+// of the quads. A quad that crosses a plane is cut into two, so no quads hide each other in a
+// circle. Pure.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -26,8 +27,8 @@ class TransparentTree {
 
   /// Returns the pieces in the order to which the spans refer.
   std::span<const Quad> pieces() const { return pieces_; }
-  /// Appends the spans of all pieces from back to front; piece 0 lies at `first` in the buffer. `eye`
-  /// is in voxels relative to the origin of the chunk. Cost: O(planes).
+  /// Appends the spans of all pieces from back to front; piece 0 lies at `first` in the buffer.
+  /// `eye` is in voxels relative to the origin of the chunk. Cost: O(planes).
   void append_back_to_front(const std::array<double, 3>& eye, std::uint32_t first,
                             std::vector<QuadSpan>& out) const;
 

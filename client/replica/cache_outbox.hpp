@@ -17,9 +17,9 @@ inline constexpr std::size_t kCacheBatchBytesMax = std::size_t{64} << 20;
 
 class CacheOutbox {
  public:
-  /// From now on chunks that leave the view are collected.
+  /// Collects the chunks that leave the view from now on.
   void enable() { is_enabled_ = true; }
-  /// The chunk leaves the view.
+  /// Adds a chunk that leaves the view.
   void add(const TrackedChunk& chunk);
   /// Returns at most `count_max` chunks: first those that left the view, then those in `chunks`
   /// that changed since they were last taken, until these take kCacheBatchBytesMax. `chunks` is

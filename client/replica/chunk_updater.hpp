@@ -31,14 +31,14 @@ class ChunkUpdater {
   bool apply_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us);
   /// Takes a snapshot of another moment, whatever its version. Applies nothing.
   void replace(TrackedChunk& chunk, Chunk snapshot);
-  /// The server says that the claimed chunk, at `seq`, is as it has it. Requests a snapshot if the
+  /// Takes the answer that the claimed chunk is current at `seq`. Requests a snapshot if the
   /// confirmed chunk is older.
   void apply_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us);
   /// Takes the edits that a claimed chunk lacked. Requests a snapshot if they do not follow the
   /// confirmed chunk, or if the digest differs after them. Returns true if they became part of the
   /// confirmed chunk.
   bool apply_missing_edits(TrackedChunk& chunk, const ChunkEdits& update, TimeUs now_us);
-  /// The server cannot send the chunk.
+  /// Takes the answer that the server cannot send the chunk.
   void set_unavailable(TrackedChunk& chunk, UnavailableReason reason);
   /// Takes a chunk from a cache. The server has not vouched for it. Requires a chunk without a
   /// confirmed one.
@@ -59,14 +59,14 @@ class ChunkUpdater {
   void predict(TrackedChunk& chunk, const EditDescriptor& edit, EditChange& cause);
   /// Shows the confirmed runs with the pending edits on top. Requires a confirmed chunk.
   void show(TrackedChunk& chunk, std::span<EditChange* const> cause = {});
-  /// The replica is about to erase the chunk: it is not shown any more.
+  /// Queues that the chunk is not shown any more. Call it before the replica erases the chunk.
   void forget(const TrackedChunk& chunk) { shown_.forget(chunk); }
 
   /// Requests a snapshot, and applies nothing else to the chunk until it arrives.
   void request(TrackedChunk& chunk, TimeUs now_us);
   /// Repeats the requests that are kRequestAgainUs old.
   void tick(TimeUs now_us);
-  /// Chunks to request from the server, ascending.
+  /// Returns the chunks to request from the server, ascending.
   std::vector<ChunkKey> take_requests() { return std::exchange(requests_, {}); }
   void clear_requests() { requests_.clear(); }
 

@@ -21,11 +21,11 @@ class Claims {
   /// answer. The digests are computed from the runs, so that a copy that has drifted is found.
   /// Cost: O(runs of the claimed chunks + chunks).
   std::vector<CachedChunk> take(const ReplicaChunks& chunks);
-  /// The server answered for the chunk, with whatever message.
+  /// Call it when the server has answered for the chunk, with any message.
   void answer(const ChunkKey& key) { waiting_.erase(key); }
-  /// The chunk left the view: it may be claimed again.
+  /// Call it when the chunk left the view. The chunk may then be claimed again.
   void forget(const ChunkKey& key);
-  /// A new connection begins.
+  /// Forgets all claims. Call it when a new connection begins.
   void clear();
 
   std::size_t waiting_count() const { return waiting_.size(); }

@@ -1,4 +1,4 @@
-// Copy: the voxels that a replica shows inside a box, as a clipboard.
+// copy_box(): copies the voxels that a replica shows inside a box to a clipboard.
 #pragma once
 #include <cstdint>
 #include <memory>

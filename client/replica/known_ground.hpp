@@ -1,7 +1,9 @@
-// KnownGround: what the server has said the player may do, and the protected boxes near its view.
-// The replica refuses an edit by it before it shows and sends the edit. It decides as the server
-// does (decide_ground()) where it has every box that overlaps the edit. Where it lacks a box, it
-// may allow an edit that the server rejects, or refuse one that a box of higher rank would admit.
+// KnownGround: the rights of the player and the protected boxes near the view, as the server has
+// sent them. Before the replica shows and sends an edit, it checks the edit here.
+//   - If every box that overlaps the edit is known, the decision is that of the server
+//     (decide_ground()).
+//   - If a box is not known, an edit may be allowed that the server rejects, or an edit may be
+//     refused that a box of higher rank would admit.
 // One thread.
 #pragma once
 #include <map>
@@ -16,7 +18,8 @@ namespace runstone {
 
 class KnownGround {
  public:
-  /// Forgets everything, because another session begins: until it says more, every edit is allowed.
+  /// Forgets everything, because another session begins. Until its messages arrive, every edit is
+  /// allowed.
   void clear();
   void receive(const Permissions& permissions) { permissions_ = permissions; }
   /// Fails if more than kGroundBoxesMax boxes would be known; then the boxes are unspecified.

@@ -1,6 +1,6 @@
-// PastView: whether a replica shows the live world or a moment of the past, and what a change
-// between them means for its chunks. In the past the chunks are read-only: snapshots replace them,
-// and nothing is predicted or applied. One thread.
+// PastView: records if a replica shows the live world or a moment of the past, and adapts its
+// chunks when this changes. In the past the chunks are read-only: snapshots replace them, and
+// nothing is predicted or applied. One thread.
 #pragma once
 #include <optional>
 
@@ -29,7 +29,7 @@ class PastView {
   ///   - Otherwise every chunk is expected again.
   /// Cost: O(chunks).
   void show(const std::optional<PastMoment>& moment, ReplicaChunks& chunks);
-  /// A new connection shows the live world.
+  /// Shows the live world, because a new connection begins.
   void reset() { moment_.reset(); }
 
  private:

@@ -1,7 +1,7 @@
 // RecentViews: the view in force on a connection and the views before it. The server's answers for
 // chunks carry the number of the view that they answer. A chunk that leaves the view is forgotten.
-// If it comes back, an answer to a view before that is for the forgotten chunk: it is ignored, and
-// a newer answer follows. One thread.
+// If it comes back, answers to earlier views are for the forgotten chunk. They are ignored, and a
+// newer answer follows. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>

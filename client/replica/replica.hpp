@@ -93,8 +93,8 @@ class Replica {
   /// Shows a local edit at once and keeps it until it is durable. `submitted_us`: the click, or the
   /// scheduled time. `action`: as in LocalEdits::submit(). Fails
   ///   - before open(), and while the past is shown;
-  ///   - if the descriptor is invalid, has a material that the world lacks, or exceeds the heights or
-  ///     the edit volume of the world;
+  ///   - if the descriptor is invalid, has a material that the world lacks, or exceeds the heights
+  ///     or the edit volume of the world;
   ///   - with not_permitted if the player may not make it, as far as this client knows (ground());
   ///   - if it touches an unavailable chunk or more than kTouchedChunksMax chunks;
   ///   - if kLocalEditsMax edits are kept.
@@ -105,11 +105,13 @@ class Replica {
   /// Takes snapshots, and completes claimed chunks by the edits that they lack. Requests a chunk if
   /// its edits do not fit.
   void receive(Chunks chunks, const Arrival& arrival);
-  /// The claimed chunks are current. Requests those of which the claimed copy is not held any more.
+  /// Takes the answer that claimed chunks are current. Requests those whose claimed copy is not
+  /// held any more.
   void receive(const ChunksNotModified& same, TimeUs now_us);
   /// Takes snapshots of one material each.
   void receive(const UniformChunks& uniform, const Arrival& arrival);
-  /// The server cannot send these chunks: nothing is shown there, and edits there are refused.
+  /// Takes the answer that the server cannot send these chunks. Nothing is shown there, and edits
+  /// there are refused.
   void receive(const ChunkUnavailable& unavailable);
   /// Fails if the commit is of another epoch, or if a list of previous sequences does not fit its
   /// edit.
@@ -117,14 +119,15 @@ class Replica {
   void receive(const Reject& reject, TimeUs now_us);
   void receive(const Durable& durable);
   void receive(const DigestCheck& check, TimeUs now_us);
-  /// Local edits may use the materials below `count` from now on.
+  /// Allows local edits to use the materials below `count` from now on.
   void set_material_count(std::size_t count) { parameters_->material_count = count; }
   void receive(const Permissions& permissions) { ground_.receive(permissions); }
   /// Fails as KnownGround::receive() does.
   Result<void> receive(const ProtectedGround& change) { return ground_.receive(change); }
-  /// The chunks that follow are of another moment; nullopt: of the live world. What is shown stays
-  /// until they arrive. In the past nothing is predicted, and commits only resolve local edits.
-  /// Back in the live world every chunk is expected again, and pending edits are shown again.
+  /// Announces that the chunks that follow are of another moment; nullopt: of the live world. What
+  /// is shown stays until they arrive. In the past nothing is predicted, and commits only resolve
+  /// local edits. Back in the live world every chunk is expected again, and pending edits are shown
+  /// again.
   void show_moment(const std::optional<PastMoment>& past);
   /// Repeats the requests for chunks that did not arrive within kRequestAgainUs.
   void tick(TimeUs now_us) { updater_.tick(now_us); }
@@ -138,7 +141,7 @@ class Replica {
   /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may
   /// have them.
   std::vector<ChunkKey> missing() const;
-  /// From now on chunks that leave the view are collected for the cache.
+  /// Collects the chunks that leave the view for the cache from now on.
   void collect_for_cache() { outbox_.enable(); }
   /// Returns at most `count_max` chunks to be cached, see CacheOutbox::take().
   std::vector<KeyedChunk> take_for_cache(std::size_t count_max);
@@ -163,12 +166,12 @@ class Replica {
   /// Returns the keys of all confirmed chunks, ascending.
   std::vector<ChunkKey> confirmed_keys() const;
   std::size_t confirmed_count() const { return chunks_.confirmed_count(); }
-  /// Chunks that the server has vouched for on this connection. After a reconnection the others may
-  /// lack edits.
+  /// Returns the number of chunks that the server has vouched for on this connection. After a
+  /// reconnection the others may lack edits.
   std::size_t current_count() const { return chunks_.vouched_count(); }
-  /// Chunks for which a snapshot was requested.
+  /// Returns the number of chunks for which a snapshot was requested.
   std::size_t awaiting_count() const { return chunks_.awaiting().size(); }
-  /// Chunks that the server said on this connection it cannot send.
+  /// Returns the number of chunks that the server cannot send, by its answers on this connection.
   std::size_t unavailable_count() const { return chunks_.count(ChunkState::unavailable); }
   bool unavailable(const ChunkKey& key) const;
   /// Returns true if the server sends this chunk sooner or later: the view and the world have it,
@@ -179,7 +182,7 @@ class Replica {
   /// Returns the memory of all chunks: confirmed and shown runs, and edits that wait beside them.
   std::size_t chunk_bytes() const { return chunks_.bytes(); }
   Sequence durable() const { return durable_; }
-  /// Newest sequence seen in a message of the server.
+  /// Returns the newest sequence seen in a message of the server.
   Sequence newest() const { return newest_; }
   const ReplicaCounters& counters() const { return counters_; }
 

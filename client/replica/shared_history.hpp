@@ -1,5 +1,5 @@
-// SharedHistory: which versions that a client holds from an earlier connection are still history
-// that the server shares. After a crash a server comes back without the edits that were not
+// SharedHistory: decides which versions that a client holds from an earlier connection are still
+// part of the server's history. After a crash a server starts without the edits that were not
 // durable, and gives their sequences to other edits. Pure.
 #pragma once
 #include <algorithm>
@@ -27,8 +27,8 @@ class SharedHistory {
     // Of the edits of an earlier epoch, only those known to be durable survived for sure. The log
     // may have grown past its old end since, with other edits.
     common_ = before ? std::min(before->durable, now.durable) : 0;
-    // A restored backup, and a log that has lost edits, is another branch. Other servers may show one
-    // only by an epoch or sequence that went back. Then no sequence is common for sure.
+    // A restored backup, and a log that has lost edits, is another branch. Other servers may show
+    // one only by an epoch or sequence that went back. Then no sequence is common for sure.
     went_back_ = before && (!is_same_branch(now.epoch, before->epoch) ||
                             now.epoch < before->epoch || now.durable < before->durable ||
                             (now.epoch == before->epoch && now.head < before->head));

@@ -58,7 +58,8 @@ struct PathReport {
   std::uint64_t unknown_submit = 0;
 };
 
-/// The way of one edit of which the submit time is known. Times are those of steady_now_us().
+/// One edit whose submit time is known, with the times of its stages. Times are those of
+/// steady_now_us().
 struct RecentEdit {
   EditPath path = EditPath::remote;
   TimeUs submitted_us = 0;
@@ -100,8 +101,8 @@ class LatencyRecorder {
 
   /// Returns the number of edits that have not reached the last stage.
   std::size_t open_edits() const { return open_.size(); }
-  /// Returns the last kRecentMax edits that passed the last stage, or that have none; the newest one
-  /// is the last.
+  /// Returns the last kRecentMax edits that passed the last stage, or that have none; the newest
+  /// one is the last.
   const std::deque<RecentEdit>& recent() const { return recent_; }
   static constexpr std::size_t kRecentMax = 64;
   /// Returns everything recorded so far. Edits that are still open count as infinite.

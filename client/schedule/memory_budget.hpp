@@ -1,11 +1,12 @@
 // MemoryBudget: bounds the memory of a client, whatever its server sends. A few bytes on the wire
-// can become a chunk with a run and three quads for each voxel. So no bound of the network helps;
-// the client counts what it keeps.
+// can become a chunk with a run and three quads for each voxel. Bounds of the network cannot
+// prevent this, so the client counts what it keeps.
 //   - If it keeps more than the budget, the view shrinks by one step. The farthest chunks leave it,
-//     so that near chunks win over far ones. The chunk at the player always stays.
+//     so that the near ones stay. The chunk at the player always stays.
 //   - If the view is complete and the next larger one should fit, the view grows by one step. The
-//     server then sends the chunks that were given up. The estimate takes all chunks for equal, so
-//     it may be wrong, and the view shrinks again; then the pause before the next attempt doubles.
+//     server then sends the chunks that were given up. The estimate assumes that all chunks are
+//     equal. If it was wrong, the view shrinks again, and the pause before the next attempt
+//     doubles.
 // The budget may be exceeded by what arrives between two calls of step(). Pure. One thread.
 #pragma once
 #include <cstddef>
@@ -32,8 +33,8 @@ struct ViewRadii {
 
 class MemoryBudget {
  public:
-  /// Between a change of the view and its next growth. Doubles up to the maximum while growths
-  /// fail.
+  /// The least time between a change of the view and its next growth. It doubles up to the maximum
+  /// while growths fail.
   static constexpr TimeUs kGrowPauseUs = 2'000'000;
   static constexpr TimeUs kGrowPauseUsMax = 128'000'000;
 

@@ -179,7 +179,7 @@ struct ZoomMap {
 struct ShowTimeline {
   bool is_shown = true;
 };
-/// A rollback, as in its window.
+/// A command of the rollback window.
 struct Rollback {
   enum class Kind : std::uint8_t { preview, apply, undo, forget };
   Kind kind = Kind::preview;

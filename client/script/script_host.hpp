@@ -111,8 +111,8 @@ class ScriptHost {
   virtual void show_timeline(bool is_shown) = 0;
   /// Returns true until the open map is drawn and the open timeline has its marks.
   virtual bool loading_panels() const = 0;
-  /// Begin a rollback's preview, apply it, undo it, or forget it, and show its ghosts. Return an empty
-  /// text, or why the command cannot be sent.
+  /// Send the commands that preview, apply and undo a rollback, and forget its preview. Return an
+  /// empty text, or why the command cannot be sent.
   virtual std::string preview_rollback(const std::string& filters) = 0;
   virtual std::string apply_rollback() = 0;
   virtual std::string undo_rollback() = 0;

@@ -75,7 +75,7 @@ class ScriptRunner {
   Progress run(const script::Click& c);
   Progress run(const script::ShowInterface& c);
   Progress run(const script::Inspect& c);
-  // script_panels.cpp
+  // Map, timeline and rollback: script_panels.cpp.
   Progress run(const script::ShowMap& c);
   Progress run(const script::ZoomMap& c);
   Progress run(const script::ShowTimeline& c);
@@ -105,8 +105,7 @@ class ScriptRunner {
   void start_edits(ToolEdits edits);
   /// Submits the edits of start_edits() that are left.
   Progress submit_edits();
-  /// Returns the edits of a change of the selection. Requires its materials.
-  /// Carries out a command of the tools.
+  /// Carries out a command of the tools. Returns the edits to submit.
   ToolEdits carry_out(const ToolCommand& command);
   std::optional<WorldPos> resolve(const ScriptPosition& position);
   std::optional<VoxelPos> resolve_voxel(const ScriptPosition& position);

@@ -1,5 +1,5 @@
-// ScriptWords: the words of a line of a script, and the numbers and places that they say. Internal to
-// the parser.
+// ScriptWords: the words of a line of a script, and functions that read numbers and places from
+// them. Internal to the parser.
 #pragma once
 #include <algorithm>
 #include <charconv>

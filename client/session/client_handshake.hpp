@@ -38,7 +38,8 @@ struct WelcomeFault {
 };
 /// Returns nullopt if the server has this protocol version, has proved its key on the connection of
 /// this binding, and the key is the pinned one of its world. Adds the key to `pinned` if the world
-/// has none. Otherwise returns the reason for the rejection. Cost: one signature check, about 0.1 ms.
+/// has none. Otherwise returns the reason for the rejection. Cost: one signature check, about 0.1
+/// ms.
 std::optional<WelcomeFault> check_welcome(const Hello& hello, const Welcome& welcome,
                                           const std::optional<ChannelBinding>& binding,
                                           std::map<WorldId, PublicKey>& pinned);

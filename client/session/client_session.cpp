@@ -37,6 +37,7 @@ void ClientSession::disconnected() {
   chat_.disconnected();
   if (is_commanding_) command_lines_ = {"the connection ended before the answer came"};
   is_commanding_ = false;
+  restore_preview_.reset();  // the server forgets its previews when it ends
   early_.clear();
 }
 
@@ -153,7 +154,7 @@ void ClientSession::tick(TimeUs now_us) {
 void ClientSession::submit_lost_edits(TimeUs now_us) {
   lost_.forget_settled(replica_->local_edits());
   while (const LostEdit* lost = lost_.due(now_us)) {
-    const auto submitted = submit(lost->edit, lost->submitted_us, now_us);
+    const auto submitted = submit(lost->edit, lost->submitted_us, now_us, lost_.action());
     const bool is_later = !submitted && submitted.error().code == ErrorCode::limit_exceeded;
     if (is_later) return lost_.put_off(now_us);
     if (submitted) {
@@ -256,13 +257,19 @@ void ClientSession::on_command_output(CommandOutput output) {
 void ClientSession::on_restore_preview(RestorePreview preview) {
   if (!is_commanding_ || preview.command != command_) return;
   const std::size_t materials = welcome()->materials.size();
-  std::erase_if(preview.edits,
-                [&](const EditDescriptor& edit) { return material_max(edit) >= materials; });
+  // The server makes the edits of a preview chunk by chunk.
+  constexpr std::uint64_t kChunksMax = 8;
+  std::erase_if(preview.edits, [&](const EditDescriptor& edit) {
+    return material_max(edit) >= materials ||
+           touched_chunks_bound(edit, welcome()->chunk_edge) > kChunksMax;
+  });
   restore_preview_ = std::move(preview);
 }
 
 void ClientSession::step_timeline(TimeUs now_us) {
-  if (!is_open() || (welcome()->features & kFeatureLogMarks) == 0) return;
+  if (!is_open()) return;
+  if ((welcome()->features & kFeatureLogMarks) == 0)
+    return timeline_.refuse("this server does not say who edited");
   // The server reads marks from its disk, so it has none of the edits that are not durable.
   const Sequence newest = replica_->durable();
   const auto& past = replica_->past();

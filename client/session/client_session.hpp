@@ -35,10 +35,11 @@ inline constexpr TimeUs kPingEveryFirstUs = 50'000;
 inline constexpr unsigned kPingsFirst = 4;
 /// Edits wait this long for the first pong. Then they are sent without a time.
 inline constexpr TimeUs kOffsetWaitUsMax = 1'000'000;
-/// SessionAccepted is of the class of the edits, so messages of other classes may overtake it. So
-/// many are held back. Chunks are none of them, because they answer a view, which is sent later.
+/// The number of messages that are held back until SessionAccepted arrives. It has the class of the
+/// edits, so messages of other classes may overtake it. Chunks are not among them, because they
+/// answer a view, which is sent later.
 inline constexpr std::size_t kEarlyMessagesMax = 64;
-/// A view waits this long for the cache.
+/// The time for which a view waits for the cache.
 inline constexpr TimeUs kCacheWaitUsMax = 250'000;
 /// Lines kept of the output of one command.
 inline constexpr std::size_t kCommandLinesKept = 4096;
@@ -56,8 +57,8 @@ class ClientSession {
  public:
   explicit ClientSession(SessionConfig config);
 
-  /// A new byte stream is up. `nonce` must be fresh and random, so that old welcomes cannot be
-  /// replayed.
+  /// Begins a connection on a new byte stream. `nonce` must be fresh and random, so that old
+  /// welcomes cannot be replayed.
   void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us);
   void disconnected();
   /// Takes one decoded message. After an error wants_close() returns true and a goodbye is queued.
@@ -80,8 +81,8 @@ class ClientSession {
   /// Returns why submit() has refused this edit with this error, for the player. If the player may
   /// not make the edit, the text names the protected box or the role.
   std::string refusal_text(const EditDescriptor& edit, const Error& error) const;
-  /// Returns how long the player's edit budget needs until it suffices for this edit, as far as this
-  /// client knows.
+  /// Returns how long the player's edit budget needs until it suffices for this edit, as far as
+  /// this client knows.
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) {
     return allowance_.wait_us(edit, now_us);
   }
@@ -118,8 +119,8 @@ class ClientSession {
   /// it. Edits with materials that this client does not know are left out.
   const std::optional<RestorePreview>& restore_preview() const { return restore_preview_; }
 
-  /// Asks for the marks that the timeline lacks, if it is time. Call it while the timeline is on the
-  /// screen. Does nothing unless open, and with servers that send no marks.
+  /// Requests the marks that the timeline lacks, if a request is due. Call it while the timeline is
+  /// on the screen. Does nothing unless open, and with servers that send no marks.
   void step_timeline(TimeUs now_us);
   const LogTimeline& timeline() const { return timeline_; }
   /// Returns a number that rises with each change of the timeline.

@@ -1,7 +1,7 @@
 // EditAllowance: what is left of the player's edit budget, as far as this client knows. It predicts
-// the server's EditLedger, so that the client does not show edits that will be refused. The server
-// may still refuse one: other sessions of the same key use the same budget, and all players of an
-// address share another one.
+// the server's EditLedger, so that the client does not show edits that the server will reject. The
+// server may reject an edit all the same: other sessions of the same key use the same budget, and
+// all players of an address share another one.
 // Thread: one. Times are arguments (microseconds of the client's steady clock).
 #pragma once
 #include <cstdint>
@@ -13,14 +13,14 @@ namespace runstone {
 
 class EditAllowance {
  public:
-  /// Takes over what Welcome or Permissions says. A budget that stays the same is not filled again,
+  /// Takes the budget of Welcome or Permissions. A budget that stays the same is not filled again,
   /// because the server remembers it over a reconnection, too.
   void set(const EditBudget& budget, std::uint16_t chunk_edge);
   /// Returns how long the player must wait before this edit: 0 if it is paid by what is left.
   TimeUs wait_us(const EditDescriptor& edit, TimeUs now_us);
   /// Pays for an edit. Requires wait_us() == 0.
   void pay(const EditDescriptor& edit, TimeUs now_us);
-  /// The server refused an edit because a budget is used up.
+  /// Call it when the server rejected an edit because a budget is used up.
   void refused(TimeUs now_us) { left_.drain(now_us); }
 
  private:

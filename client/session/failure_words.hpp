@@ -1,5 +1,5 @@
-// Failure words: why a player is not on a server, in words for the player. The texts of servers and
-// of the system follow as detail, so that nothing is hidden. Pure.
+// Failure words: the reason why a player is not on a server, in words for the player. The detail
+// has the exact text of the server or of the system. Pure.
 #pragma once
 #include <string>
 #include <string_view>

@@ -1,6 +1,5 @@
-// HistoryRequests: the requests of a session to see its view at a moment of the past, or live
-// again, and their answers. The newest request replaces those before it. Of one connection. One
-// thread.
+// HistoryRequests: the requests of one connection to see its view at a moment of the past, or live
+// again, and their answers. The newest request replaces those before it. One thread.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -21,14 +21,13 @@ class KeyTransferSession {
   using Request = std::variant<KeyDeposit, KeyRequest>;
   using Answer = std::variant<KeyDeposited, SealedKey>;
 
-  /// `keys` sign a deposit. A request may use any keys. `pinned` has the server
-  /// keys seen before.
+  /// `keys` sign a deposit. A request may use any keys. `pinned` has the server keys seen before.
   KeyTransferSession(const KeyPair& keys, std::map<WorldId, PublicKey> pinned, Request request);
 
-  /// The byte stream is up. `nonce` is fresh and random.
+  /// Begins the connection on its byte stream. `nonce` must be fresh and random.
   void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding);
   void receive(const Message& message);
-  /// The byte stream has ended, or there was none.
+  /// Call it when the byte stream has ended, or could not be made.
   void disconnected(const std::string& why);
   /// Returns the messages to send, in order.
   std::vector<Message> take_outgoing() { return std::exchange(outgoing_, {}); }

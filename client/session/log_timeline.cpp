@@ -1,6 +1,7 @@
 #include "client/session/log_timeline.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace runstone {
 namespace {
@@ -56,6 +57,11 @@ bool LogTimeline::receive(const LogMarks& marks, TimeUs now_us) {
   for (const LogAuthor& author : marks.authors) names_[author.author] = author.name;
   first_ = marks.first;
   (kind == Kind::band ? band_ : recent_) = marks.marks;
+  std::set<AuthorId> shown;
+  for (const auto* list : {&band_, &recent_}) {
+    for (const LogMark& mark : *list) shown.insert(mark.author);
+  }
+  std::erase_if(names_, [&](const auto& name) { return !shown.contains(name.first); });
   return true;
 }
 

@@ -1,7 +1,7 @@
-// LostEdits: edits of before a reconnection that the server rejects for a while: its log is full, or
-// they are more than the edit budget pays at once. The player saw them applied, while there was no
-// connection, or before the server ended and lost them. So they are not given up: they are submitted
-// again, as new edits, until the server takes them.
+// LostEdits: edits from before a reconnection that the server rejects for a while, because its log
+// is full, or because they cost more than is left of the edit budget. The player saw these edits
+// applied: there was no connection then, or the server lost them when it ended. So they are
+// submitted again, as new edits, until the server accepts them.
 // Bound: the edits that LocalEdits kept at the reconnection. Thread: one. Times are arguments.
 #pragma once
 #include <deque>
@@ -14,6 +14,7 @@ namespace runstone {
 struct LostEdit {
   EditDescriptor edit;
   TimeUs submitted_us = 0;
+  ClientSequence action = 0;  // as LocalEdit::action
 };
 
 class LostEdits {
@@ -22,7 +23,7 @@ class LostEdits {
   static constexpr TimeUs kAgainUs = 1'000'000;
 
   /// Takes the edit over if it is older than the connection, which opened at `opened_us`, and the
-  /// reason of the rejection passes. Call it before LocalEdits takes the rejection.
+  /// reason of the rejection is temporary. Call it before LocalEdits takes the rejection.
   void take(const LocalEdits& edits, const Reject& reject, TimeUs opened_us, TimeUs now_us) {
     const bool is_temporary =
         reject.reason == RejectReason::busy || reject.reason == RejectReason::rate_limited;
@@ -30,15 +31,25 @@ class LostEdits {
     const bool is_again = again_.erase(reject.client_seq) != 0;
     if (!is_temporary || local == nullptr) return;
     if (!is_again && local->submitted_us >= opened_us) return;
-    edits_.push_back({local->edit, local->submitted_us});
+    edits_.push_back({local->edit, local->submitted_us, local->action});
     put_off(now_us);
   }
   /// Returns the oldest edit if it is time to submit it, otherwise null.
   const LostEdit* due(TimeUs now_us) const {
     return edits_.empty() || now_us < due_us_ ? nullptr : &edits_.front();
   }
+  /// Returns the action with which the oldest edit is submitted, so that the edits of one action
+  /// stay one action. Requires that due() returned the edit.
+  ClientSequence action() const {
+    const ClientSequence was = edits_.front().action;
+    if (was == 0) return 0;
+    return was == action_ ? new_action_ : kBeginsAction;
+  }
   /// Removes the oldest edit, which was submitted as `seq`.
   void submitted(ClientSequence seq) {
+    const ClientSequence was = edits_.front().action;
+    if (was != action_) new_action_ = seq;
+    action_ = was;
     edits_.pop_front();
     again_.insert(seq);
   }
@@ -52,11 +63,13 @@ class LostEdits {
   void clear() {
     edits_.clear();
     again_.clear();
+    action_ = 0;
   }
 
  private:
   std::deque<LostEdit> edits_;
   std::set<ClientSequence> again_;  // that were submitted again and may be rejected once more
+  ClientSequence action_ = 0, new_action_ = 0;  // of the edit that was submitted last
   TimeUs due_us_ = 0;
 };
 

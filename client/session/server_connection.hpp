@@ -1,5 +1,5 @@
-// ServerConnection: the client's end of a connection to a server, whatever the client keeps of the
-// world. States:
+// ServerConnection: the client's end of a connection to a server. It is the same for clients with
+// and without a replica. States:
 //   offline --connected()--> hello_sent --Welcome--> authenticating --SessionAccepted--> open
 // disconnected() leads back to offline from every state. The connection performs the handshake,
 // sends pings, view, pose and requests, and ends a silent connection. The session that contains it
@@ -44,9 +44,9 @@ class ServerConnection {
  public:
   explicit ServerConnection(SessionConfig config) : config_(std::move(config)) {}
 
-  /// A new byte stream is up. `nonce` must be fresh and random, so that old welcomes cannot be
-  /// replayed. `binding` identifies an encrypted stream; the signatures of both sides hold for it
-  /// alone.
+  /// Begins a connection on a new byte stream. `nonce` must be fresh and random, so that old
+  /// welcomes cannot be replayed. `binding` identifies an encrypted stream; the signatures of both
+  /// sides hold for it alone.
   void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us);
   void disconnected();
 
@@ -61,7 +61,7 @@ class ServerConnection {
   /// Handles the messages of the handshake, pongs and new materials once open, and goodbyes. Leaves
   /// other messages as they are.
   Dispatch receive(Message& message, const Arrival& arrival);
-  /// A sound message arrived that did not pass through receive().
+  /// Notes that a valid message arrived that did not pass through receive().
   void note_message(TimeUs now_us) { last_message_us_ = now_us; }
 
   /// Queues a goodbye, once. wants_close() returns true afterwards.

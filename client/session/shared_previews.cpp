@@ -13,6 +13,7 @@ void SharedPreviews::reset() {
   others_.clear();
   sent_.clear();
   sent_us_.reset();
+  unfit_us_.reset();
 }
 
 void SharedPreviews::expire(TimeUs now_us) {
@@ -25,7 +26,9 @@ std::optional<PreviewShare> SharedPreviews::share(const std::vector<EditDescript
                                                   std::int32_t chunk_edge, TimeUs now_us) {
   if (sent_us_ && now_us - *sent_us_ < kEveryUs) return std::nullopt;
   if (edits.empty() && sent_.empty()) return std::nullopt;
+  if (unfit_us_ && now_us - *unfit_us_ < kEveryUs) return std::nullopt;
   const bool is_shared = may_be_shared(edits, chunk_edge);
+  unfit_us_ = is_shared ? std::nullopt : std::optional(now_us);
   const std::vector<EditDescriptor> wanted = is_shared ? edits : std::vector<EditDescriptor>{};
   const bool is_due = !wanted.empty() && (!sent_us_ || now_us - *sent_us_ >= kRepeatUs);
   if (wanted == sent_ && !is_due) return std::nullopt;

@@ -1,5 +1,5 @@
-// SharedPreviews: what the other players are about to do, as they share it, and when this player's
-// own preview is to be sent. Time is an argument. One thread.
+// SharedPreviews: the previews that the other players share, and the times at which this player's
+// preview is sent. Time is an argument. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@ class SharedPreviews {
   static constexpr std::size_t kAuthorsMax = 64;
   /// A preview is sent at most this often, and again after kRepeatUs while it stays the same.
   static constexpr TimeUs kEveryUs = 200'000, kRepeatUs = 2'000'000;
-  /// A preview vanishes when no other one has come for so long.
+  /// A preview is dropped if no newer one of its player has arrived for this time.
   static constexpr TimeUs kShownUs = 5'000'000;
 
   struct Shared {
@@ -27,7 +27,8 @@ class SharedPreviews {
     friend bool operator==(const Shared&, const Shared&) = default;
   };
 
-  /// Takes the preview of another player. One that may not be shared (may_be_shared()) counts as none.
+  /// Takes the preview of another player. One that may not be shared (may_be_shared()) counts as
+  /// none.
   void receive(PlayerPreview preview, std::int32_t chunk_edge, TimeUs now_us);
   /// Forgets the preview of a player who left.
   void forget(AuthorId author) { others_.erase(author); }
@@ -38,14 +39,16 @@ class SharedPreviews {
   const std::map<AuthorId, Shared>& others() const { return others_; }
 
   /// Takes this player's preview. Returns the message to send now, or nullopt if there is none yet.
-  /// A preview that may not be shared counts as none. Call it often. Cost: O(1) between two messages.
+  /// A preview that may not be shared counts as none. Call it often. Cost: O(1) between two
+  /// messages.
   std::optional<PreviewShare> share(const std::vector<EditDescriptor>& edits,
                                     std::int32_t chunk_edge, TimeUs now_us);
 
  private:
   std::map<AuthorId, Shared> others_;
   std::vector<EditDescriptor> sent_;
-  std::optional<TimeUs> sent_us_;  // nullopt: nothing was sent on this connection
+  std::optional<TimeUs> unfit_us_;  // when a preview was found that may not be shared
+  std::optional<TimeUs> sent_us_;   // nullopt: nothing was sent on this connection
 };
 
 }  // namespace runstone

@@ -16,7 +16,7 @@ enum class QualityChoice : std::uint8_t {
   high,
 };
 inline constexpr std::size_t kQualityChoiceCount = 4;
-/// Returns "automatic", "lowest", ...
+/// Returns "automatic", "low", "medium" or "high".
 const char* name_of(QualityChoice quality);
 
 struct ClientSettings {
@@ -33,13 +33,13 @@ struct ClientSettings {
   bool shows_previews = true;       // ghosts of what other players are about to do
   bool shares_previews = true;      // others see what this player is about to do
   /// The keys that differ from the defaults, by the name of their action. A value has the names of
-  /// keys with blanks between them, such as "W up", or is empty. Who uses them checks the names.
+  /// keys with blanks between them, such as "W up", or is empty. key_map_of() checks the names.
   std::map<std::string, std::string> keys;
   friend bool operator==(const ClientSettings&, const ClientSettings&) = default;
 };
 
-/// The settings of a text, and one line for each key that was not used and why. A key that is not
-/// known, has the wrong type or is out of range does not prevent the use of the others.
+/// The settings of a text, and a line for each key that was not used, with the reason. A key that
+/// is not known, has the wrong type or is out of range does not prevent the use of the others.
 struct ReadSettings {
   ClientSettings settings;
   std::vector<std::string> warnings;

@@ -19,15 +19,15 @@ struct RecentServer {
   friend bool operator==(const RecentServer&, const RecentServer&) = default;
 };
 
-/// The servers that joined last are kept, this many.
+/// The number of servers that are kept: those that were joined last.
 inline constexpr std::size_t kRecentServersMax = 16;
 
 /// Puts a server at the front. It replaces the entry of the same address.
 void add_recent(std::vector<RecentServer>& servers, RecentServer server);
 
 std::string to_toml(const std::vector<RecentServer>& servers);
-/// Fails with the line and the reason if the text is not TOML. Entries with a missing or wrong field
-/// are left out.
+/// Fails with the line and the reason if the text is not TOML. Entries with a missing or wrong
+/// field are left out.
 Result<std::vector<RecentServer>, std::string> read_recent_servers(std::string_view toml);
 
 /// Returns $XDG_STATE_HOME/runstone/servers.toml, otherwise the one in ~/.local/state, or an empty
@@ -41,8 +41,8 @@ struct LoadedServers {
 /// Reads the file. A missing file gives no servers. A broken file is renamed to FILE.broken, which
 /// the warning says.
 LoadedServers load_recent_servers(const std::string& file);
-/// Reads the file, puts the server at the front and replaces the file. Fails with a line that begins
-/// with the file's name.
+/// Reads the file, puts the server at the front and replaces the file. Fails with a line that
+/// begins with the file's name.
 Result<void, std::string> save_recent_server(const std::string& file, RecentServer server);
 
 }  // namespace runstone

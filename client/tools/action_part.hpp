@@ -1,4 +1,5 @@
-// ActionPart: the place of an edit in an action. The edits of an action are undone and redone as one.
+// ActionPart: the place of an edit in an action. The edits of an action are undone and redone as
+// one.
 #pragma once
 #include <cstddef>
 #include <cstdint>

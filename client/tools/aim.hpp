@@ -1,4 +1,4 @@
-// Aim: the place at which a player points, and the material in the hand.
+// Aim: the place at which a player points, and the held material.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -27,7 +27,7 @@ struct FixedAim {
 /// The two mouse buttons. `clear` removes voxels, and `place` sets the held material.
 enum class ToolButton : std::uint8_t { clear, place };
 
-/// Places of a tool that are given by their numbers instead of by clicks.
+/// Places of a tool that are given by their coordinates instead of by clicks.
 struct TypedPlaces {
   ToolButton button = ToolButton::place;
   std::vector<VoxelPos> places;

@@ -1,8 +1,7 @@
 // EditPreview: the exact effect of edits that are not made yet, as ghosts that are drawn over the
-// world. The changes to the shown runs are found by the search of apply_stack(), the function of the
-// server. They are meshed. Work is divided over turns: step() does a
-// bounded part, and the ghosts of the edits before stay until all of the new ones are made.
-// One thread. No clock.
+// world. The changes to the shown runs are found by the search of apply_stack(), the function of
+// the server, and are meshed. Work is divided over turns: step() does a bounded part, and the
+// ghosts of the previous edits stay until all of the new ones are made. One thread. No clock.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +22,8 @@ namespace runstone {
 
 class EditPreview {
  public:
-  /// The chunks of one preview. Edits that touch more are previewed in the first ones only.
+  /// The largest number of chunks in one preview. If the edits touch more, only the first ones are
+  /// previewed.
   static constexpr std::size_t kChunksMax = 512;
 
   /// Shows these edits, in this order, from the next step() on. Empty: shows nothing at once. Does
@@ -33,15 +33,15 @@ class EditPreview {
   void set_visibility(const VisibilityTable& visibility);
 
   /// Compares the chunks with those that were previewed, and makes ghosts again where the edits or
-  /// the chunks changed: at most `chunks_max` chunks in this call. Returns true if ghosts() changed.
-  /// Requires an open replica. Cost: O(touched chunks), and for each chunk that is made O(rows of
-  /// the edits + runs + quads).
+  /// the chunks changed: at most `chunks_max` chunks in this call. Returns true if ghosts()
+  /// changed. Requires an open replica. Cost: O(touched chunks), and for each chunk that is made
+  /// O(rows of the edits + runs + quads).
   bool step(const Replica& replica, std::size_t chunks_max);
   /// Returns true if ghosts() shows the present edits on the chunks of the last step().
-  bool is_complete() const { return stage_ == Stage::complete; }
+  bool is_complete() const { return stage_ == Stage::complete && !is_restarted_; }
 
-  /// Returns true if a chunk that the edits touch, or a neighbour of one, changed since the last
-  /// begin of the work. Tools read the neighbours, too. Cost: O(touched chunks).
+  /// Returns true if a chunk that the edits touch, or a neighbour of one, changed since the work
+  /// began. Tools read the neighbours, too. Cost: O(touched chunks).
   bool is_outdated(const Replica& replica) const;
 
   const std::vector<EditDescriptor>& edits() const { return edits_; }
@@ -62,14 +62,14 @@ class EditPreview {
     bool has_placed = false, has_removed = false;
   };
 
-  /// A turned paste at the origin, and the same one made straight.
+  /// A turned paste at the origin, and a paste without orientation that has the same effect.
   struct StraightPaste {
     std::shared_ptr<const Clipboard> clipboard;
     Orientation orientation;
     std::optional<Paste> straight;
   };
 
-  /// Fills applied_ with edits_, in which turned pastes are made straight.
+  /// Fills applied_ with edits_, and replaces turned pastes by pastes without orientation.
   void straighten();
   void begin(const Replica& replica);
   void watch(const Replica& replica);
@@ -78,7 +78,7 @@ class EditPreview {
 
   std::vector<EditDescriptor> edits_;
   std::vector<EditDescriptor> applied_;
-  StraightPaste straight_;  // the last one: a paste is moved about as it lies
+  StraightPaste straight_;  // of the last turned paste: moving it keeps its orientation
   std::int32_t edge_ = 0;
   std::vector<ChunkCoord> chunks_;  // ascending
   std::map<ChunkCoord, Part> parts_;

@@ -1,4 +1,4 @@
-// ExtrudeTool: pushes the connected flat face that the player looks at out, or in.
+// ExtrudeTool: moves the connected flat face that the player looks at outward or inward.
 #pragma once
 #include "client/tools/tool.hpp"
 

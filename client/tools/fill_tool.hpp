@@ -1,4 +1,5 @@
-// FillTool: replaces or removes the connected surface of one material that faces the player's side.
+// FillTool: replaces or removes the connected surface of one material on the side that the player
+// looks at.
 #pragma once
 #include "client/tools/tool.hpp"
 

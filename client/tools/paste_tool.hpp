@@ -1,5 +1,5 @@
-// PasteTool: puts the clipboard against the place that the player looks at. Its lowest layer stands
-// there, with the place in the middle.
+// PasteTool: pastes the clipboard at the place that the player looks at. The place is the middle of
+// the lowest layer.
 #pragma once
 #include "client/tools/tool.hpp"
 

@@ -1,5 +1,5 @@
-// ReplaceTool: replaces the material that the player looks at, in a sphere or a cube around it or in
-// the selection.
+// ReplaceTool: replaces the material that the player looks at, in a sphere or a cube around it or
+// in the selection.
 #pragma once
 #include "client/tools/tool.hpp"
 

@@ -1,5 +1,5 @@
-// ShownVoxels: reads single shown voxels of a replica. It keeps the chunk of the last voxel, because
-// the next one is mostly in it. One thread.
+// ShownVoxels: reads single shown voxels of a replica. It keeps the chunk of the last voxel,
+// because the next voxel is usually in the same chunk. One thread.
 #pragma once
 #include <optional>
 
@@ -11,12 +11,12 @@ namespace runstone {
 
 class ShownVoxels {
  public:
-  /// Requires an open replica. It must outlive this object, and may not change meanwhile.
+  /// Requires an open replica. It must outlive this object, and must not change during its life.
   explicit ShownVoxels(const Replica& replica) : replica_(replica), edge_(replica.chunk_edge()) {
     RUNSTONE_ASSERT(edge_ > 0);
   }
 
-  /// Returns nullopt if the chunk is not shown. Cost: O(log runs).
+  /// Returns the material of a voxel, or nullopt if its chunk is not shown. Cost: O(log runs).
   std::optional<Material> at(VoxelPos voxel) {
     const ChunkCoord coord = chunk_of(voxel, edge_);
     if (!is_read_ || coord != coord_) {

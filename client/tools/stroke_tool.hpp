@@ -1,5 +1,5 @@
-// StrokeTool: draws a line as thick as a sphere of its radius along the places over which the player
-// moves the aim while the button is held. The whole line is one edit.
+// StrokeTool: draws a line as thick as a sphere of its radius along the places over which the
+// player moves the aim while the button is held. The whole line is one edit.
 #pragma once
 #include "client/tools/tool.hpp"
 

@@ -1,5 +1,5 @@
-// Surface flood: the connected part of a surface that faces one direction. A voxel belongs to such a
-// surface if it is not empty and the voxel in front of it is empty.
+// Surface flood: the connected part of a surface that faces one direction. A voxel belongs to such
+// a surface if it is not empty and the voxel in front of it is empty.
 #pragma once
 #include <cstddef>
 #include <vector>

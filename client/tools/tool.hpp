@@ -17,7 +17,7 @@
 
 namespace runstone {
 
-/// The content of a paste and how it lies.
+/// The content of a paste and its orientation.
 struct ToolClipboard {
   std::shared_ptr<const Clipboard> content;  // null: nothing was copied
   Orientation orientation;

@@ -16,6 +16,8 @@ namespace {
 constexpr std::int32_t kStackMax = 64;
 /// Bounds the steps of one move or growth.
 constexpr std::int32_t kStepsMax = 4096;
+/// A preview that is refused is planned again after so many calls.
+constexpr unsigned kPlanAgainCalls = 32;
 
 std::int32_t side_along(const VoxelBox& box, Axis axis) {
   switch (axis) {
@@ -27,6 +29,30 @@ std::int32_t side_along(const VoxelBox& box, Axis axis) {
       break;
   }
   return box.max.z - box.min.z;
+}
+
+/// The parts of a box that moves along an axis. `entering` moves out of the box, `staying` moves
+/// onto other voxels of it, and `left` is what the box leaves. A part may be empty.
+struct MoveParts {
+  VoxelBox entering, staying, left;
+};
+
+/// Requires 0 < steps.
+MoveParts parts_of_move(const VoxelBox& box, Direction direction, std::int32_t steps) {
+  const Axis axis = axis_of(direction);
+  std::int32_t VoxelPos::* const at = axis == Axis::x   ? &VoxelPos::x
+                                      : axis == Axis::y ? &VoxelPos::y
+                                                        : &VoxelPos::z;
+  const std::int32_t depth = std::min(steps, side_along(box, axis));
+  MoveParts out{box, box, box};
+  if (is_positive(direction)) {
+    out.entering.min.*at = out.staying.max.*at = box.max.*at - depth;
+    out.left.max.*at = box.min.*at + depth;
+  } else {
+    out.entering.max.*at = out.staying.min.*at = box.min.*at + depth;
+    out.left.min.*at = box.max.*at - depth;
+  }
+  return out;
 }
 
 CopyEmpty copy_empty(bool is_solid) {
@@ -268,11 +294,21 @@ ToolEdits ToolBox::move(const Replica& replica, Direction direction, std::int32_
   const auto box = selected();
   if (!box) return failure(box.error());
   if (std::abs(steps) > kStepsMax) return failure("the selection moves by at most 4096 voxels");
-  const auto copied = copy_box(replica, *box, CopyEmpty::as_untouched);
-  if (!copied) return cannot_copy(copied.error());
-  std::vector<EditDescriptor> edits = {
-      {FillBox{*box}, {}, kEmpty},
-      {Paste{moved(box->min, direction, steps), *copied, {}}, {}, kEmpty}};
+  if (steps == 0) return failure("the selection moves by one voxel or more");
+  const Direction towards = steps > 0 ? direction : opposite(direction);
+  const MoveParts parts = parts_of_move(*box, towards, std::abs(steps));
+  // The place that is left is cleared last: if an edit is refused, nothing is lost.
+  std::vector<EditDescriptor> edits;
+  for (const auto& [part, how] : {std::pair{parts.entering, CopyEmpty::as_untouched},
+                                  std::pair{parts.staying, CopyEmpty::as_empty}}) {
+    if (part.empty()) continue;
+    auto copied = copy_box(replica, part, how);
+    if (!copied && copied.error().code == ErrorCode::bad_value) continue;  // nothing is in it
+    if (!copied) return cannot_copy(copied.error());
+    edits.push_back({Paste{moved(part.min, direction, steps), *std::move(copied), {}}, {}, kEmpty});
+  }
+  if (edits.empty()) return failure("the selection is empty");
+  edits.push_back({FillBox{parts.left}, {}, kEmpty});
   select(moved(*box, direction, steps));
   return merge_edits(std::move(edits));
 }
@@ -301,6 +337,7 @@ std::string ToolBox::set_materials(const MaterialTable& materials) {
   materials_ = materials;
   preview_.set_visibility(VisibilityTable(visibilities(materials)));
   points_.clear();
+  typed_.reset();  // an open window gives its places again
   ++revision_;
   if (!clipboard_.content) return {};
   std::vector<std::optional<Material>> palette;
@@ -330,7 +367,9 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
     wanted.face = aim.hit->face;
     wanted.seen = aim.hit->material;
   }
-  if (previewed_ != wanted || preview_.is_outdated(replica)) {
+  // A refusal may end without a change of what is watched, for example when a chunk arrives.
+  const bool may_end = !preview_refusal_.empty() && ++refused_calls_ % kPlanAgainCalls == 0;
+  if (previewed_ != wanted || may_end || preview_.is_outdated(replica)) {
     previewed_ = wanted;
     preview_refusal_.clear();
     std::vector<EditDescriptor> edits;

@@ -1,6 +1,7 @@
-// ToolBox: the tools of a player and the state that they share: the chosen tool, the places chosen so
-// far, the selection, the clipboard, the symmetry and the preview. It answers clicks with edits,
-// which the caller submits in the given order. Pure: no clock, socket, window or OpenGL. One thread.
+// ToolBox: the tools of a player and the state that they share: the chosen tool, the places chosen
+// so far, the selection, the clipboard, the symmetry and the preview. It answers clicks with edits,
+// which the caller submits in the given order. Pure: no clock, socket, window or OpenGL. One
+// thread.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -29,12 +30,12 @@ class ToolBox {
   Result<void, std::string> choose(std::string_view name);
   /// Sets a parameter of the chosen tool. Fails as Tool::set() does.
   Result<void, std::string> set_parameter(std::string_view name, std::int32_t value);
-  /// Changes the first parameter of the chosen tool by so many steps, within its range.
+  /// Changes the first parameter of the chosen tool by `steps`, within its range.
   void change_size(std::int32_t steps);
 
   /// Takes the press of a button. Returns the edits to submit, which are none while places are
-  /// being chosen. The other button than that of the first place forgets the places. Fails with
-  /// words for the player. Requires an open replica.
+  /// being chosen. If the first place was chosen with the other button, forgets the places instead.
+  /// Fails with words for the player. Requires an open replica.
   ToolEdits press(const Replica& replica, const Aim& aim, ToolButton button);
   /// Takes the aim while the button is held. Only tools that are drawn use it.
   void drag(const Aim& aim);
@@ -44,15 +45,16 @@ class ToolBox {
   bool cancel();
   std::span<const VoxelPos> points() const { return points_; }
 
-  /// Chooses places by their numbers, wherever the player looks; nullopt: by clicks again. The
-  /// preview then shows what apply_typed() does. Requires coordinates inside the world.
+  /// Sets places by their coordinates, wherever the player looks. The preview then shows what
+  /// apply_typed() does. With nullopt, clicks choose places again. Requires coordinates inside the
+  /// world.
   void type_places(std::optional<TypedPlaces> typed);
   const std::optional<TypedPlaces>& typed_places() const { return typed_; }
   /// Returns how many places apply_typed() takes with the chosen tool, at least and at most.
   std::array<std::size_t, 2> typed_count() const;
   /// Returns the edits of the typed places, as if each had been chosen by a click; a tool that
-  /// selects selects them. Fails with words for the player if none are typed, or too few or too
-  /// many. Requires an open replica.
+  /// selects selects them. Fails with words for the player if no places are typed, or if there are
+  /// too few or too many. Requires an open replica.
   ToolEdits apply_typed(const Replica& replica, Material held);
 
   const std::optional<VoxelBox>& selection() const { return selection_; }
@@ -64,8 +66,8 @@ class ToolBox {
   /// Moves the selected box, not its voxels.
   Result<void, std::string> shift(Direction direction, std::int32_t steps);
 
-  /// Copies the selected voxels. With `is_solid`, a paste leaves the voxels alone where the copy is
-  /// empty. Fails with words for the player, as do the functions below.
+  /// Copies the selected voxels. With `is_solid`, a paste changes no voxel where the copy is empty.
+  /// Fails with words for the player, as do the functions below.
   Result<void, std::string> copy(const Replica& replica, bool is_solid);
   /// Copies the selected voxels and returns the edit that clears them.
   ToolEdits cut(const Replica& replica, bool is_solid);
@@ -75,8 +77,8 @@ class ToolBox {
   ToolEdits replace(Material from, Material to) const;
   /// Returns the edits that repeat the selected voxels `times` times in a direction.
   ToolEdits stack(const Replica& replica, Direction direction, std::int32_t times) const;
-  /// Returns the edits that move the selected voxels, and moves the selection. Solid voxels move and
-  /// leave empty ones behind.
+  /// Returns the edits that move the selected voxels, and moves the selection. Solid voxels move
+  /// and leave empty ones behind.
   ToolEdits move(const Replica& replica, Direction direction, std::int32_t steps);
 
   const ToolClipboard& clipboard() const { return clipboard_; }
@@ -86,22 +88,22 @@ class ToolBox {
   void mirror(Axis axis);
 
   const Symmetry& symmetry() const { return symmetry_; }
-  /// The symmetry counts for the edits of tools, not for those of the selection.
+  /// Sets the symmetry. It applies to the edits of tools, not to those of the selection.
   void set_symmetry(const Symmetry& symmetry);
 
-  /// Takes the materials of the world. The clipboard of another world gets the ids that its
-  /// materials have here, by name. Materials that the world lacks become untouched cells; the
-  /// returned text names them, and is empty if there are none.
+  /// Takes the materials of the world. The clipboard of another world gets the ids that materials
+  /// of the same names have in this world. Materials that the world lacks become untouched cells;
+  /// the returned text names them, and is empty if there are none.
   std::string set_materials(const MaterialTable& materials);
 
   void show_preview(bool is_shown);
   bool is_preview_shown() const { return is_preview_shown_; }
-  /// Makes the preview of the click that would come next: at most `chunks_max` chunks in this call.
-  /// Returns true if the ghosts changed. Requires an open replica. Cost: that of the chosen tool's
-  /// plan, if the aim, the tool or the chunks changed, and EditPreview::step().
+  /// Makes the preview of the next click: at most `chunks_max` chunks in this call. Returns true if
+  /// the ghosts changed. Requires an open replica. Cost: that of the chosen tool's plan, if the
+  /// aim, the tool or the chunks changed, and EditPreview::step().
   bool step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max);
   const EditPreview& preview() const { return preview_; }
-  /// Returns why the click that would come next would be refused, or an empty text.
+  /// Returns why the next click would be refused, or an empty text.
   const std::string& preview_refusal() const { return preview_refusal_; }
 
  private:
@@ -134,6 +136,7 @@ class ToolBox {
   MaterialTable materials_;
   EditPreview preview_;
   std::string preview_refusal_;
+  unsigned refused_calls_ = 0;  // of step_preview() with a refusal
   std::optional<Previewed> previewed_;
   std::uint64_t revision_ = 0;  // rises when the state behind the preview changes
   bool is_preview_shown_ = true;

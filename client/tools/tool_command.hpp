@@ -18,7 +18,8 @@ struct ParameterChange {
   std::string name;
   std::int32_t value = 0;
 };
-/// Gives the places of the chosen tool by their numbers; nullopt: by clicks again.
+/// Sets the places of the chosen tool by their coordinates. With nullopt, clicks choose places
+/// again.
 struct PlacesChange {
   std::optional<TypedPlaces> typed;
 };
@@ -32,11 +33,11 @@ struct SelectionChange {
 struct SelectionCommand {
   enum class Kind : std::uint8_t { copy, cut, clear, fill, replace, stack, move, grow, shift };
   Kind kind = Kind::copy;
-  bool is_solid = false;                   // copy, cut: a paste leaves alone what was empty
+  bool is_solid = false;                   // copy, cut: a paste skips the empty voxels
   Material material = kEmpty;              // fill: the new one; replace: the old one
   Material other = kEmpty;                 // replace: the new one
   Direction direction = Direction::pos_y;  // stack, move, grow, shift
-  std::int32_t count = 1;                  // the same
+  std::int32_t count = 1;                  // stack, move, grow, shift
 };
 /// Turns the clipboard by quarter turns, and then mirrors it.
 struct ClipboardTurn {

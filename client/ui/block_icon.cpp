@@ -122,8 +122,8 @@ void block_icon(ImDrawList& list, ImVec2 from, ImVec2 to, const MaterialInfo& ma
     for (const float reach : {0.68F, 0.6F, 0.54F})
       list.AddCircleFilled(middle, reach * side, IM_COL32(c[0], c[1], c[2], glow * 2 / 5));
   }
-  // The block is seen from above one of its edges: half of the width is one side, and the upper face
-  // is half as high as it is wide.
+  // The block is seen from above one of its edges: half of the width is one side, and the upper
+  // face is half as high as it is wide.
   const float half = side / 2, quarter = side / 4;
   const ImVec2 top{middle.x, middle.y - half}, left{middle.x - half, middle.y - quarter};
   const ImVec2 front{middle.x, middle.y};

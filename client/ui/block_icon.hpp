@@ -1,4 +1,4 @@
-// The picture of a material in hotbar and palette: a small block with the colour, pattern, gloss and
+// The icon of a material in hotbar and palette: a small block with the colour, pattern, gloss and
 // glow of the material. Only sources of client/ui include this file.
 #pragma once
 #include <imgui.h>
@@ -7,8 +7,8 @@
 
 namespace runstone {
 
-/// Draws the block into the rectangle. A transparent material shows a light ground through it, and a
-/// material that gives off light has a halo. Cost: at most about 40 shapes.
+/// Draws the block into the rectangle. A transparent material shows a light ground through it, and
+/// a material that gives off light has a halo. Cost: at most about 40 shapes.
 void block_icon(ImDrawList& list, ImVec2 from, ImVec2 to, const MaterialInfo& material);
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// ChatCompletion: what the tab key makes of a line of chat: names of players, and words of commands
-// of the server. Pressing the key again takes the next word that fits. Pure. One thread.
+// ChatCompletion: completes a line of chat for the tab key, by names of players and words of
+// commands of the server. Pressing the key again takes the next word that fits. Pure. One thread.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -10,13 +10,13 @@
 
 namespace runstone {
 
-/// Returns the commands of a server, words with single blanks between, ascending. The server decides
-/// which of them a player may give.
+/// Returns the commands of a server, words with single blanks between, ascending. The server
+/// decides which of them a player may give.
 std::span<const std::string_view> completed_commands();
 
 class ChatCompletion {
  public:
-  /// Names of the players that are here.
+  /// Sets the names of the players who are here.
   void set_names(std::vector<std::string> names) { names_ = std::move(names); }
 
   struct Line {
@@ -24,9 +24,9 @@ class ChatCompletion {
     std::size_t cursor = 0;  // bytes
     friend bool operator==(const Line&, const Line&) = default;
   };
-  /// Completes the word that ends at the cursor, with the first word that fits, or with the next one
-  /// if `line` is the result of the call before. Returns the same line if nothing fits. In commands
-  /// a name with blanks gets quotes. Cost: O(names + commands).
+  /// Completes the word that ends at the cursor, with the first word that fits, or with the next
+  /// one if `line` is the result of the call before. Returns the same line if nothing fits. In
+  /// commands a name with blanks gets quotes. Cost: O(names + commands).
   Line complete(const Line& line);
 
  private:

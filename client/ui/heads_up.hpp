@@ -5,13 +5,13 @@
 
 namespace runstone {
 
-/// Makes this part with ImGui. `name_seconds` is the time since another slot was chosen: the name of
-/// its material is shown for some seconds. Returns the y of the highest pixel row of the hotbar.
+/// Makes this part with ImGui. `name_seconds` is the time since another slot was chosen: the name
+/// of its material is shown for some seconds. Returns the y of the highest pixel row of the hotbar.
 double build_heads_up(const HudState& state, double name_seconds, double scale);
 
-/// For how long the name of the held material is shown, in seconds.
+/// The time for which the name of the held material is shown, in seconds.
 inline constexpr double kSlotNameSeconds = 2.5;
-/// For how long it fades at the end of that time.
+/// The time for which it fades at the end of that time, in seconds.
 inline constexpr double kSlotNameFadeSeconds = 0.5;
 
 }  // namespace runstone

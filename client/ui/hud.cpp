@@ -54,7 +54,7 @@ bool Hud::close_top() {
   if (chat_.is_open()) return chat_.close(), true;
   if (palette_.is_open()) return palette_.close(), true;
   return std::exchange(shows_help_, false) || tools_.close() || rollback_.close() ||
-         timeline_.close() || map_.close();
+         timeline_.close() || map_.close() || std::exchange(shows_statistics_, false);
 }
 
 bool Hud::takes_focus() const { return chat_.takes_focus() || palette_.takes_focus(); }
@@ -63,10 +63,12 @@ UiFocus Hud::focus() const {
   UiFocus out;
   out.has_window = chat_.is_open() || palette_.is_open();
   // ImGui still names a text field whose window was closed after the last frame.
-  out.types = (out.has_window || tools_.is_open()) && (context_.types() || takes_focus());
+  const bool has_fields =
+      out.has_window || tools_.is_open() || rollback_.is_open() || timeline_.is_open();
+  out.types = has_fields && (context_.types() || takes_focus());
   out.over_window = context_.over_window();
-  for (const bool is_open :
-       {map_.is_open(), timeline_.is_open(), rollback_.is_open(), tools_.has_mouse()})
+  for (const bool is_open : {map_.is_open(), timeline_.is_open(), rollback_.is_open(),
+                             tools_.has_mouse(), shows_help_, shows_statistics_})
     out.panels += is_open ? 1 : 0;
   return out;
 }

@@ -28,10 +28,10 @@ class Hud {
   explicit Hud(const KeyMap& keys, double scale = 1);
 
   void feed(const std::vector<InputEvent>& events) { context_.feed(events); }
-  /// Carries out an action that opens or closes a window. Returns false if the action is none, or if
-  /// it is `release` and no window is open.
+  /// Carries out an action that opens or closes a window. Returns false if the action is none, or
+  /// if it is `release` and no window is open.
   bool act(Action action);
-  /// Returns what the interface wants of the next events.
+  /// Returns which of the next events the interface takes.
   UiFocus focus() const;
   void notify(std::string text, NoticeKind kind = NoticeKind::information);
   /// Adds a line to the chat.

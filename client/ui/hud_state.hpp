@@ -1,5 +1,5 @@
-// HudState: what the heads-up display shows of this moment. It is plain data that the client fills
-// for each frame; texts are ready to be drawn.
+// HudState: the contents of the heads-up display in one frame. It is plain data that the client
+// fills for each frame; texts are ready to be drawn.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -39,7 +39,7 @@ struct NamePlate {
 
 /// The state of the timeline. Its marks are filled only while Hud::shows_timeline().
 struct TimelineState {
-  Sequence newest = 0;  // of the live world
+  Sequence newest = 0;  // of the live world, at most kSequenceShownMax
   Sequence shown = 0;   // equal to `newest` in the live world
   bool is_past = false;
   bool is_loading = false;
@@ -47,7 +47,7 @@ struct TimelineState {
   std::vector<LogMark> band = {};    // over all of the log, ascending by seq
   std::vector<LogMark> recent = {};  // that end at the shown moment, ascending by seq
   std::map<AuthorId, std::string> authors = {};  // names of those of the marks
-  std::string refusal = {};                      // why there are no marks; empty: they come
+  std::string refusal = {};                      // why there will be no marks, or empty
 
   /// Returns the name of an author, or "#N" if it is not known.
   std::string name_of(AuthorId author) const {
@@ -66,7 +66,7 @@ struct HudState {
   std::optional<Material> aimed_at;  // the voxel in sight
   std::string state;                 // for example that the past is shown; empty: nothing special
   std::optional<VoxelPos> sight;     // its place
-  std::string tool;                  // the chosen tool and its numbers; empty: the plain hand
+  std::string tool;                  // the chosen tool and its numbers; empty: the plain voxel tool
   const ToolBox* tools = nullptr;    // not null while the tool window is open
   bool has_preview = false;          // `tools` has the preview of the next click
   bool shows_players = false;

@@ -78,6 +78,7 @@ Menu::Menu(const ClientSettings& settings)
 void Menu::reset() {
   shows_settings_ = false;
   password_.clear();
+  context_.release_all();
 }
 
 std::shared_ptr<const OverlayFrame> Menu::title(const TitleState& state, std::array<int, 2> size,

@@ -1,6 +1,6 @@
-// Menu: the screens around the game: title, connecting, pause and settings. Input events and a state
-// come in; overlay frames and actions of the user come out. It needs no window and no OpenGL. One
-// thread.
+// Menu: the screens around the game: title, connecting, pause and settings. Input events and a
+// state come in; overlay frames and actions of the user come out. It needs no window and no OpenGL.
+// One thread.
 #pragma once
 #include <array>
 #include <memory>
@@ -21,7 +21,8 @@ class Menu {
   explicit Menu(const ClientSettings& settings);
 
   void feed(const std::vector<InputEvent>& events) { context_.feed(events); }
-  /// Return the overlay of a frame of `size` pixels, `seconds` after the last one.
+  /// The next three functions return the overlay of a frame of `size` pixels, `seconds` after the
+  /// last one.
   std::shared_ptr<const OverlayFrame> title(const TitleState& state, std::array<int, 2> size,
                                             double seconds);
   std::shared_ptr<const OverlayFrame> connecting(const ConnectingState& state,

@@ -8,8 +8,8 @@
 
 namespace runstone {
 
-/// Join a server. `name` is that of the player, here and below. The address is as the user typed it:
-/// HOST, HOST:PORT or a link.
+/// Join a server. `name` is that of the player, here and below. The address is as the user typed
+/// it: HOST, HOST:PORT or a link.
 struct JoinAddress {
   std::string address, name;
 };

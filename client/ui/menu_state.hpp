@@ -1,4 +1,5 @@
-// MenuState: what the menus around the game show. It is plain data, and texts are ready to be drawn.
+// MenuState: the contents of the menus around the game. It is plain data; texts are ready to be
+// drawn.
 #pragma once
 #include <string>
 #include <vector>

@@ -11,10 +11,12 @@
 
 namespace runstone {
 
-/// Returns the materials that can be placed and whose name, that for people or that of the table, has
-/// all words of the text or parts of words, in any case of letters. Names for people that begin with
-/// the text come first, then those of which another word does. Otherwise the order is that of the
-/// table. Cost: O(bytes of all names).
+/// Returns the materials that can be placed and match the text, as follows:
+///   - A material matches if each word of the text is in its readable name or in its name of the
+///     table, as a part or as a whole. Upper and lower case are equal.
+///   - Materials whose readable name begins with the text come first. Then come those of which
+///     another word begins with it, and then the others. Each group has the order of the table.
+/// Cost: O(bytes of all names).
 std::vector<Material> matching_materials(const MaterialTable& table, const std::string& text);
 
 class PaletteWindow {
@@ -24,8 +26,8 @@ class PaletteWindow {
   bool is_open() const { return is_open_; }
   /// Returns true from open() until the field has the keyboard.
   bool takes_focus() const { return is_open_ && takes_focus_; }
-  /// Makes the window with ImGui. Returns the material if one was chosen, by a click, or by enter,
-  /// which takes the first one; the window is closed then.
+  /// Makes the window with ImGui. Returns the material that the user chose, and closes the window:
+  /// a click chooses a material, and enter chooses the first one.
   std::optional<Material> build(const MaterialTable& table, Material held, double scale);
 
  private:

@@ -1,5 +1,5 @@
-// RollbackWindow: chooses the edits that a rollback takes back, and shows what it would change before
-// it is applied. One thread.
+// RollbackWindow: the user chooses here the edits that a rollback takes back, and sees what it
+// would change before it is applied. One thread.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -13,7 +13,7 @@ namespace runstone {
 
 inline constexpr std::size_t kStageCount = 7;
 
-/// The way of one edit to the screen: milliseconds since it was submitted, at the end of each stage.
+/// One edit on its path to the screen: the milliseconds from its submit to the end of each stage.
 struct EditWay {
   bool is_local = false;
   std::array<double, kStageCount> end_ms{};  // negative: the edit has no such stage

@@ -1,5 +1,5 @@
-// TimelineBand: the log as a band of coloured segments, one colour an author, with dates below and
-// a legend. One thread.
+// TimelineBand: the log as a band of coloured segments, with one colour for each author, dates
+// below and a legend. One thread.
 #pragma once
 #include <optional>
 #include <vector>

@@ -1,6 +1,6 @@
 // TimelineWindow: a slider over the log of the world. Moving it shows the world as it was. Below it
-// are the authors of the log and the last edits before the shown moment; a click goes there. One
-// thread.
+// are the authors of the log and the last edits before the shown moment; a click shows the world
+// after that edit. One thread.
 #pragma once
 #include <optional>
 #include <utility>
@@ -17,7 +17,7 @@ class TimelineWindow {
   bool close() { return std::exchange(is_open_, false); }
   bool is_open() const { return is_open_; }
   /// Makes the window with ImGui. Returns the moment if the user moved to another one. While the
-  /// slider is dragged, moments are returned only as fast as they are loaded.
+  /// slider is dragged, a moment is returned only after the one before was loaded.
   std::optional<ShowMoment> build(const TimelineState& state, double scale);
 
  private:

@@ -20,8 +20,8 @@ constexpr std::array<const char*, kDirectionCount> kDirections = {"-x", "+x", "-
                                                                   "+y", "-z", "+z"};
 constexpr std::array<const char*, 5> kSymmetries = {"none", "mirrored along x", "mirrored along z",
                                                     "mirrored along x and z", "a half turn"};
-/// The coordinates that can be typed. Edits end far inside these limits.
-constexpr int kCoordinateMax = 1 << 24;
+/// The greatest coordinate that can be typed.
+constexpr int kCoordinateMax = kWorldLimit - 1;
 const ImVec4 kToolWarning = {1, 0.82F, 0.47F, 1};
 
 std::array<int, 3> numbers_of(VoxelPos at) { return {at.x, at.y, at.z}; }
@@ -222,6 +222,7 @@ void ToolWindow::build_places(const HudState& state, std::vector<ToolCommand>& o
 
 void ToolWindow::build_symmetry(const HudState& state, std::vector<ToolCommand>& out) {
   if (!ImGui::CollapsingHeader("Symmetry")) return;
+  ImGui::PushID("symmetry");
   Symmetry symmetry = state.tools->symmetry();
   int kind = static_cast<int>(symmetry.kind);
   if (choice("kind", kind, kSymmetries)) {
@@ -245,6 +246,7 @@ void ToolWindow::build_symmetry(const HudState& state, std::vector<ToolCommand>&
     symmetry.centre2_x = 2 * seen->x;
     symmetry.centre2_z = 2 * seen->z;
   }
+  ImGui::PopID();
   if (symmetry != state.tools->symmetry()) out.emplace_back(SymmetryChange{symmetry});
 }
 

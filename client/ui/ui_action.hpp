@@ -18,7 +18,7 @@ struct SendLine {
 struct HoldMaterial {
   Material material = 0;
 };
-/// The user moved to this moment of the log. The live world if `is_live`.
+/// The user moved to this moment of the log, or to the live world if `is_live`.
 struct ShowMoment {
   Sequence seq = 0;
   bool is_live = false;

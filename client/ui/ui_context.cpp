@@ -132,9 +132,15 @@ void apply(const InputEvent& event) {
   ImGuiIO& io = ImGui::GetIO();
   if (const auto* key = std::get_if<KeyEvent>(&event)) {
     io.KeysDown[static_cast<std::size_t>(key->key)] = key->is_pressed;
-    io.KeyCtrl = key->control;
-    io.KeyShift = key->shift;
-    io.KeyAlt = key->alt;
+    // An event of a modifier key has the modifiers from before it.
+    const auto is_held = [&](Key left, Key right, bool of_event) {
+      const bool is_down = io.KeysDown[static_cast<std::size_t>(left)] ||
+                           io.KeysDown[static_cast<std::size_t>(right)];
+      return is_down || (of_event && key->key != left && key->key != right);
+    };
+    io.KeyCtrl = is_held(Key::left_control, Key::right_control, key->control);
+    io.KeyShift = is_held(Key::left_shift, Key::right_shift, key->shift);
+    io.KeyAlt = is_held(Key::left_alt, Key::right_alt, key->alt);
   } else if (const auto* typed = std::get_if<CharacterEvent>(&event)) {
     io.AddInputCharacter(typed->character);
   } else if (const auto* cursor = std::get_if<CursorEvent>(&event)) {
@@ -170,6 +176,15 @@ UiContext::~UiContext() = default;
 void UiContext::enable_keyboard() {
   ImGui::SetCurrentContext(context_.get());
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+}
+
+void UiContext::release_all() {
+  ImGui::SetCurrentContext(context_.get());
+  events_.clear();
+  ImGuiIO& io = ImGui::GetIO();
+  io.ClearInputKeys();
+  io.ClearInputCharacters();
+  std::ranges::fill(io.MouseDown, false);
 }
 
 void UiContext::feed(const std::vector<InputEvent>& events) {

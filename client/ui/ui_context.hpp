@@ -28,18 +28,22 @@ class UiContext {
   void enable_keyboard();
   /// Queues events for the next frame.
   void feed(const std::vector<InputEvent>& events);
-  /// Calls `build`, which makes windows with ImGui, and returns what they look like. `size` is in
-  /// pixels, `seconds` is the time since the last frame. If the queued events do not fit one frame,
-  /// such as a press and a release of the same key, `build` is called several times, and the last
-  /// call is the one that is returned. Cost: some 100 µs for a dozen windows.
+  /// Drops the events that wait, and takes every key and button as released.
+  void release_all();
+  /// Calls `build`, which makes windows with ImGui, and returns the overlay of these windows.
+  /// `size` is in pixels, `seconds` is the time since the last frame. If the queued events do not
+  /// fit one frame, such as a press and a release of the same key, `build` is called several times,
+  /// and the last call is the one that is returned. Cost: some 100 µs for a dozen windows.
   std::shared_ptr<const OverlayFrame> make_frame(std::array<int, 2> size, double seconds,
                                                  const std::function<void()>& build);
 
-  /// Shows an image in the frame that is made, and returns its name for ImGui. Call it from `build`.
+  /// Shows an image in the frame that is made, and returns its name for ImGui. Call it from
+  /// `build`.
   void* add_image(std::shared_ptr<const OverlayImage> image);
 
-  /// Makes a frame that takes no events and no time and is not returned. A text field that was asked
-  /// to take the keyboard has it after at most kFocusFrames such frames, before it would miss events.
+  /// Makes a frame that takes no events and no time and is not returned. A text field that was
+  /// asked to take the keyboard has it after at most kFocusFrames such frames, before it would miss
+  /// events.
   void make_hidden_frame(std::array<int, 2> size, const std::function<void()>& build);
   static constexpr int kFocusFrames = 3;
 

@@ -14,7 +14,7 @@ inline constexpr ImGuiWindowFlags kShowOnly =
     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus |
     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
 
-/// Draws text with a dark shadow, so that it can be read over any ground. `alpha` is 0 to 1.
+/// Draws text with a dark shadow, so that it can be read over any background. `alpha` is 0 to 1.
 void shadowed_text(ImDrawList& list, ImVec2 at, ImU32 colour, std::string_view text,
                    double alpha = 1);
 /// Returns the width of a text in pixels.

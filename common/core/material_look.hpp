@@ -1,5 +1,5 @@
-// MaterialLook: how the faces of a material are drawn, beside its colour. Integers only, so that
-// tables, records and messages hold the same values.
+// MaterialLook: how the faces of a material are drawn, besides its colour. All values are integers,
+// so that tables, records and messages hold the same values.
 #pragma once
 #include <cstdint>
 
@@ -17,7 +17,8 @@ enum class MaterialPattern : std::uint8_t {
   bark = 5,    // grooves along the vertical axis, rings on the upper and lower face
   weave = 6,   // threads that cross
 };
-/// The number of patterns. A pattern from here on belongs to a later version and is drawn as `none`.
+/// The number of patterns. A greater or equal value is a pattern of a later version and is drawn as
+/// `none`.
 inline constexpr std::uint8_t kMaterialPatterns = 7;
 
 /// The greatest value of a share, in percent.
@@ -35,8 +36,8 @@ struct MaterialLook {
 /// Fails (bad_value) for a share above kLookShareMax and for a pattern of a later version.
 Result<void> validate_look(const MaterialLook& look);
 
-/// Returns the nearest look that validate_look() accepts: shares above the greatest one become that
-/// one, and a pattern of a later version becomes `none`.
+/// Returns the nearest look that validate_look() accepts: a share above kLookShareMax becomes
+/// kLookShareMax, and a pattern of a later version becomes `none`.
 MaterialLook nearest_valid_look(MaterialLook look);
 
 }  // namespace runstone

@@ -13,8 +13,8 @@ struct WordLook {
 
 using enum MaterialPattern;
 
-/// The first row whose word is in the name decides, so specific words precede general ones. Columns:
-/// variation, grain, roughness, emission, pattern.
+/// The first row whose word is in the name decides, so specific words precede general ones.
+/// Columns: variation, grain, roughness, emission, pattern.
 constexpr std::array kWords = {
     // Light. A block of glowing ore or glass is a lamp, too.
     WordLook{"lamp", {2, 6, 60, 100, none}},

@@ -1,5 +1,6 @@
-// The look of a material whose row gives none: worlds of earlier versions and of other programs have
-// names and colours only. Client, server and imports take it from here.
+// The look of a material whose row gives none. Worlds of earlier versions and of other programs
+// have names and colours only. The client draws such materials with this look, and an import stores
+// it.
 #pragma once
 #include <string_view>
 
@@ -9,8 +10,9 @@
 
 namespace runstone {
 
-/// Returns the look for a name such as "oak_planks" or "default:meselamp": that of the first known
-/// word in it, otherwise MaterialLook{}. A liquid gets no pattern. Cost: O(length of the name).
+/// Returns the look for a name such as "oak_planks" or "default:meselamp": that of the first word
+/// of the list in default_look.cpp which the name contains, otherwise MaterialLook{}. A liquid gets
+/// no pattern. Cost: O(length of the name).
 MaterialLook default_look(std::string_view name, MaterialBody body);
 
 /// Returns the look of a row: the given one, otherwise default_look().

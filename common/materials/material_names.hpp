@@ -1,4 +1,5 @@
-// The words of a material table's text form, in the order of the values. Internal to this module.
+// The words of the TOML form of a material table, in the order of the values. Internal to this
+// module.
 #pragma once
 #include <iterator>
 

@@ -1,5 +1,5 @@
 // MaterialTable: the properties of each material id. It is a data file (TOML) like the thesis'
-// table (7.4): row i describes id i. Rows never change and never leave; a world may get more of them.
+// table (7.4): row i describes id i. Rows never change and are never removed; rows may be appended.
 // Id 0 is always "air", empty.
 #pragma once
 #include <array>
@@ -74,12 +74,12 @@ class MaterialTable {
   /// bad_value for a bad or duplicate name, an opaque material with alpha below 255, or a number
   /// or a look outside its range. Cost: O(log size).
   Result<Material> add(MaterialInfo info);
-  /// Fails if the rows cannot be appended together: with limit_exceeded if the table has no room for
-  /// all of them, and with bad_value for a bad row, or a name that is taken, by the table or by an
-  /// earlier row. The error's offset is the number of the row. Cost: O(rows log size).
+  /// Fails if the rows cannot be appended together: with limit_exceeded if the table has no room
+  /// for all of them, and with bad_value for a bad row, or a name that is taken, by the table or by
+  /// an earlier row. The error's offset is the number of the row. Cost: O(rows log size).
   Result<void> check_rows(std::span<const MaterialRow> rows) const;
-  /// Appends the rows, without generation rules; the first gets the id `first`. Fails as check_rows()
-  /// does, and with broken_invariant if `first` is not size(); then nothing changes.
+  /// Appends the rows, without generation rules; the first gets the id `first`. Fails as
+  /// check_rows() does, and with broken_invariant if `first` is not size(); then nothing changes.
   Result<void> append(Material first, std::span<const MaterialRow> rows);
 
   friend bool operator==(const MaterialTable&, const MaterialTable&) = default;
@@ -102,8 +102,8 @@ struct MaterialFileRow {
   std::uint32_t line = 0;
 };
 /// Reads `[[material]]` tables for MaterialTable::append(). Air is not among them. Fails as
-/// parse_material_table() does, and for a generation rule: a generator makes terrain of the materials
-/// that its world was created with.
+/// parse_material_table() does, and for a generation rule: a generator makes terrain of the
+/// materials that its world was created with.
 Result<std::vector<MaterialFileRow>, TextError> parse_material_rows(std::string_view toml,
                                                                     std::string_view file);
 

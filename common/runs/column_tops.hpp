@@ -1,7 +1,7 @@
-// Column tops: the world as seen from above. For each column of voxels, which has one x and one z,
-// the highest voxel that shows, found straight from the runs of chunks. Chunks that lie above each
-// other are visited from the highest one down, and each closes the columns in which it shows
-// something.
+// Column tops: the world as seen from above. A column has one x and one z, and its top is the
+// highest voxel that shows. Tops are found directly from the runs of chunks. Visit chunks that lie
+// above each other from the highest one down: each chunk closes the columns in which it finds a
+// top.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -24,7 +24,7 @@ struct ColumnTop {
   friend bool operator==(const ColumnTop&, const ColumnTop&) = default;
 };
 
-/// True for each material that shows, by id. Ids beyond the end show.
+/// True for each material that shows from above, by id. Ids beyond the end show.
 using ShowingMaterials = std::vector<bool>;
 
 /// Finds the tops of the open columns in a chunk whose lowest voxels are at `base_y`, and returns

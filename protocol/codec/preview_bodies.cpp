@@ -37,10 +37,17 @@ Bytes encode_preview(const std::vector<EditDescriptor>& edits) {
   return bytes;
 }
 
+bool is_light_preview(const EditDescriptor& edit, std::int32_t chunk_edge) {
+  if (touched_chunks_bound(edit, chunk_edge) > kPreviewChunksMax) return false;
+  const auto* const paste = std::get_if<Paste>(&edit.shape);
+  return paste == nullptr || paste->orientation == Orientation{} ||
+         paste->clipboard->extent().volume() <= kPreviewTurnedVoxelsMax;
+}
+
 bool may_be_shared(const std::vector<EditDescriptor>& edits, std::int32_t chunk_edge) {
   if (edits.size() > kPreviewEditsMax) return false;
   for (const EditDescriptor& edit : edits) {
-    if (!validate(edit) || touched_chunks_bound(edit, chunk_edge) > kPreviewChunksMax) return false;
+    if (!validate(edit) || !is_light_preview(edit, chunk_edge)) return false;
   }
   return encode_preview(edits).size() <= kPreviewListBytesMax;
 }

@@ -23,6 +23,11 @@ struct PlayerPreview {
   friend bool operator==(const PlayerPreview&, const PlayerPreview&) = default;
 };
 
+/// Returns true if showing the preview of an edit costs its viewers little: it touches at most
+/// kPreviewChunksMax chunks, and a paste that is turned has at most kPreviewTurnedVoxelsMax voxels.
+/// Requires a valid edit. Cost: O(1).
+bool is_light_preview(const EditDescriptor& edit, std::int32_t chunk_edge);
+
 /// Returns true if these edits may be shared: few, short, and each touches few chunks. Cost: that of
 /// encoding them.
 bool may_be_shared(const std::vector<EditDescriptor>& edits, std::int32_t chunk_edge);

@@ -15,7 +15,10 @@ Result<Message> BodyReader::read(const wire::RestorePreview& t) const {
   if (!take_text(t.preview(), 0, kPreviewIdBytesMax, m.preview))
     return bad("restore preview: id is not 0 .. 32 bytes of text");
   m.edits.reserve(*count);
+  std::size_t bytes = 0;
   for (std::uint32_t i = 0; i < *count; ++i) {
+    bytes += view_of(t.edits()->Get(i)->edit()).size();
+    if (bytes > kRestorePreviewBytesMax) return bad("restore preview is too long");
     auto edit = decode_voxel_edit(view_of(t.edits()->Get(i)->edit()));
     if (!edit) return Unexpected<Error>{edit.error()};
     m.edits.push_back(*std::move(edit));

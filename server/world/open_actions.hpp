@@ -1,8 +1,9 @@
-// OpenActions: of each client whose newest edit belongs to an action of several edits, the first edit
-// of the action that was ordered. The edits that follow name it as their subject, so that an undo
-// finds all of them in the log. Nothing is kept when the server ends, and beyond kClientsMax clients
-// the one that began its action first is forgotten: the rest of such an action is an action of its
-// own. One thread.
+// OpenActions: remembers, for each client whose newest edit belongs to an action of several edits,
+// the first edit of this action that was ordered. The edits that follow name it as their subject,
+// so that an undo finds all of them in the log. An action is forgotten
+//   - when the server ends;
+//   - when more than kClientsMax clients have one: the action that began first is forgotten.
+// The rest of a forgotten action is an action by itself. One thread.
 #pragma once
 #include <cstddef>
 #include <iterator>
@@ -19,8 +20,8 @@ class OpenActions {
  public:
   static constexpr std::size_t kClientsMax = 4'096;
 
-  /// Takes an edit of a player that gets the sequence `seq`, in log order. Returns the first edit of
-  /// its action, or 0 if the edit is the first one or an action by itself. An action has at most
+  /// Takes an edit of a player that gets the sequence `seq`, in log order. Returns the first edit
+  /// of its action, or 0 if the edit is the first one or an action by itself. An action has at most
   /// kActionEditsMax edits; the next edit begins another one. Cost: O(log clients).
   Sequence order(const OperationId& op, ClientSequence action, Sequence seq) {
     const Client client{op.author, op.instance};
@@ -56,7 +57,7 @@ class OpenActions {
   }
 
   std::map<Client, Open> open_;
-  std::list<Client> by_age_;  // the clients of open_; the action that began first is in front
+  std::list<Client> by_age_;  // the clients of open_; the one whose action began first is in front
 };
 
 }  // namespace runstone

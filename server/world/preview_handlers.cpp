@@ -19,7 +19,7 @@ constexpr std::size_t kDroppedPreviewBytes = 4'096;
 bool is_possible(const WorldState& world, WorldSession& mine, const EditDescriptor& edit,
                  const Clocks& now) {
   const WorldConfig& config = world.config;
-  if (touched_chunks_bound(edit, config.chunk_edge) > kPreviewChunksMax) return false;
+  if (!is_light_preview(edit, config.chunk_edge)) return false;
   if (world.authority.check(edit)) return false;
   if (config.reach_max == 0) return true;
   const WorldPos& from = mine.position.follow(mine.pose.at, config.speed_max, now.steady_us);
@@ -61,20 +61,27 @@ void on_preview_share(WorldState& world, SessionId session, const PreviewShare& 
   const bool are_possible =
       is_live && std::all_of(share.edits.begin(), share.edits.end(),
                              [&](const auto& edit) { return is_possible(world, mine, edit, now); });
-  std::vector<SessionId> readers;
+  // `waiting` show the preview before, and get none now: the next one comes soon.
+  std::vector<SessionId> readers, waiting;
   if (are_possible) {
     for (const SessionId id : viewers(world, session, share.edits)) {
       WorldSession* const other = world.find(id);
       if (readers.size() == kPreviewReadersMax) break;
       if (other == nullptr || !reads_previews(*other, mine)) continue;
-      if (other->previews_read.take(1, now.steady_us)) readers.push_back(id);
+      if (other->previews_read.take(1, now.steady_us)) {
+        readers.push_back(id);
+      } else if (std::binary_search(mine.preview_readers.begin(), mine.preview_readers.end(), id)) {
+        waiting.push_back(id);
+      }
     }
   } else {
     world.environment.charge_reading(session, kDroppedPreviewBytes);
   }
-  std::vector<SessionId> gone;
-  std::set_difference(mine.preview_readers.begin(), mine.preview_readers.end(), readers.begin(),
-                      readers.end(), std::back_inserter(gone));
+  std::vector<SessionId> showing, gone;
+  std::set_union(readers.begin(), readers.end(), waiting.begin(), waiting.end(),
+                 std::back_inserter(showing));
+  std::set_difference(mine.preview_readers.begin(), mine.preview_readers.end(), showing.begin(),
+                      showing.end(), std::back_inserter(gone));
   std::erase_if(gone, [&](SessionId id) {
     const WorldSession* const other = world.find(id);
     return other == nullptr || other->state != SessionStage::open;
@@ -87,7 +94,7 @@ void on_preview_share(WorldState& world, SessionId session, const PreviewShare& 
   };
   pass_on(gone, {mine.author, {}});
   pass_on(readers, {mine.author, share.edits});
-  mine.preview_readers = std::move(readers);
+  mine.preview_readers = std::move(showing);
 }
 
 }  // namespace runstone

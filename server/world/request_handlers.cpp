@@ -81,6 +81,10 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   if (world.authority.queue().has(op)) return;
   if (world.authority.resolved().knows(op)) {
     refusal = world.authority.resolved().answer_to(op);
+  } else if (request.action != 0 && request.action == mine.refused_action) {
+    refusal = mine.refused_reason;
+    detail = "an earlier edit of the same action was refused";
+    world.authority.reject(op, *refusal);
   } else if (!has_room) {
     refusal = RejectReason::busy;
     world.authority.reject(op, *refusal);
@@ -108,9 +112,14 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   }
   if (!refusal) return;
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
-  if (*refusal == RejectReason::busy) detail = why_busy(world, request.edit, mine.author);
+  if (*refusal == RejectReason::busy && detail.empty())
+    detail = why_busy(world, request.edit, mine.author);
   ++world.counters.edits_rejected;
   if (*refusal != RejectReason::already_resolved) {
+    if (request.action != 0) {
+      mine.refused_action = request.action;
+      mine.refused_reason = *refusal;
+    }
     // The details of other reasons have numbers that differ each time.
     const bool has_detail = *refusal == RejectReason::not_permitted;
     world.refusals.add(

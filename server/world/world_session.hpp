@@ -80,6 +80,10 @@ struct WorldSession {
   bool read_only_sent = false;
   Sequence awaits_durable =
       0;  // the client's last edit; the session gets the watermark at once until then
+  // The last action of which an edit was refused, and why: its later edits are refused as well. A move
+  // then does not clear a place whose copy was refused.
+  ClientSequence refused_action = 0;
+  RejectReason refused_reason = RejectReason::busy;
   // Rejects that did not fit the session's queue, in order. They are sent when it drains.
   std::vector<Reject> pending_rejects;
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};

@@ -14,8 +14,8 @@ namespace runstone::bench {
 namespace {
 
 constexpr std::array<std::string_view, 2> kWaysOfRdm = {"quads", "product"};
-constexpr std::array<std::string_view, 4> kSameMesh = {"rdm_kept", "rdm_plain", "grid_binary",
-                                                       "mask_binary"};
+constexpr std::array<std::string_view, 5> kSameMesh = {"rdm_kept", "rdm_plain", "padded_binary",
+                                                       "grid_binary", "mask_binary"};
 constexpr int kSideMin = 16, kSideMaxPixels = 4096;
 
 }  // namespace

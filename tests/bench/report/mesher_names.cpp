@@ -15,6 +15,7 @@ constexpr std::array kNames = {
     Name{"rdm_kept", "ours, borders kept", "RDM, kept", true},
     Name{"rdm_plain", "ours, no vectors", "RDM, plain", true},
     Name{"decode_binary", "decode + binary greedy", "decode+binary"},
+    Name{"padded_binary", "padded runs + binary greedy", "padded+binary", true},
     Name{"grid_binary", "binary greedy (grid ready)", "binary, grid", true},
     Name{"mask_binary", "binary greedy (mask ready)", "binary, mask", true},
     Name{"culled", "culled over an octree", "culled"},

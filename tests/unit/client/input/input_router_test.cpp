@@ -113,6 +113,27 @@ TEST_CASE("a second panel frees the mouse too, until both are closed", "[client_
   CHECK(router.is_captured());
 }
 
+TEST_CASE("what is held ends when other code takes the events", "[client_input]") {
+  InputRouter router;
+  capture(router);
+  CHECK(turn(router, {key(Key::w, true)}).player.forward);
+  router.release_all();
+  CHECK_FALSE(turn(router, {}).player.forward);
+  CHECK(router.is_captured());
+  CHECK(turn(router, {key(Key::w, true)}).player.forward);
+  router.release();
+  CHECK_FALSE(turn(router, {}).player.forward);
+  CHECK_FALSE(router.is_captured());
+}
+
+TEST_CASE("the interface sees control while the mouse is free, although it moves the player faster",
+          "[client_input]") {
+  InputRouter router;
+  const RoutedInput pressed = turn(router, {key(Key::left_control, true)});
+  CHECK(pressed.player.fast);
+  CHECK(pressed.for_ui.size() == 1);
+}
+
 TEST_CASE("closing a panel captures the mouse only if it was captured before", "[client_input]") {
   InputRouter router;
   router.set_windows(false, 1);

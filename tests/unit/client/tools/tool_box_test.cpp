@@ -200,6 +200,26 @@ TEST_CASE_METHOD(FlatBench, "a selection is copied, cut, pasted, turned, stacked
   CHECK(box.stack(replica, Direction::pos_y, 65).error() == "a stack has 1 to 64 copies");
 }
 
+TEST_CASE_METHOD(FlatBench, "a selection that moves onto a part of itself keeps its gaps",
+                 "[tools]") {
+  const auto row = [this](std::vector<Material> voxels) {
+    for (std::size_t i = 0; i < voxels.size(); ++i)
+      CHECK(at({static_cast<std::int32_t>(i), 0, 0}) == voxels[i]);
+  };
+  submit(
+      {{SetVoxel{{1, 0, 0}}, {}, 2}, {SetVoxel{{3, 0, 0}}, {}, 3}, {SetVoxel{{6, 0, 0}}, {}, 1}});
+  box.select(VoxelBox{{1, 0, 0}, {5, 1, 1}});
+  submit(*box.move(replica, Direction::pos_x, 2));
+  row({0, 0, 0, 2, 0, 3, 1});  // where the selection has air, the world stays
+  submit(*box.move(replica, Direction::neg_x, 1));
+  row({0, 0, 2, 0, 3, 1, 0});
+  CHECK(box.selection() == VoxelBox{{2, 0, 0}, {6, 1, 1}});
+  CHECK(box.move(replica, Direction::pos_x, 0).error() ==
+        "the selection moves by one voxel or more");
+  box.select(VoxelBox{{20, 3, 0}, {22, 4, 1}});
+  CHECK(box.move(replica, Direction::pos_y, 1).error() == "the selection is empty");
+}
+
 TEST_CASE_METHOD(FlatBench, "a selection grows, shrinks to one voxel at least, and shifts",
                  "[tools]") {
   CHECK(box.grow(Direction::pos_x, 1).error() == "nothing is selected");

@@ -120,4 +120,20 @@ TEST_CASE("one who is behind misses previews, and gets few a second from all tog
   CHECK(of_one <= kPreviewReadersMax);
 }
 
+TEST_CASE("one who gets too many previews keeps the last one of a player", "[world]") {
+  PreviewBench bench;
+  for (SessionId session = 1; session <= 42; ++session) bench.enter(session);
+  bench.share(2, {box_at(3)});
+  REQUIRE(bench.previews(1).size() == 1);
+  const AuthorId author = bench.previews(1)[0].author;
+  for (SessionId session = 3; session <= 42; ++session) bench.share(session, {box_at(3)});
+  const std::size_t before = bench.previews(1).size();
+  CHECK(before == kPreviewsReadBurst);
+  bench.share(2, {box_at(5)});
+  CHECK(bench.previews(1).size() == before);  // neither the new one nor "none"
+  bench.share(2, {});
+  REQUIRE(bench.previews(1).size() == before + 1);
+  CHECK(bench.previews(1).back() == PlayerPreview{author, {}});
+}
+
 }  // namespace runstone::test::preview_handlers_test
