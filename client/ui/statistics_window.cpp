@@ -22,7 +22,9 @@ std::string bytes_text(double bytes) {
 }
 
 void text_line(const std::string& text) {
+  ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ImGui::PopTextWrapPos();
 }
 
 void frame_plot(const StatisticsState& state, double scale) {
