@@ -99,7 +99,6 @@ std::size_t find_column_tops(const RunChunk& chunk, std::int32_t base_y,
     return chunk.runs.visit(
         [&](const auto& runs) { return find_in_lines(runs, e, places, base_y, showing, tops); });
   }
-  RUNSTONE_ASSERT(e.f != 0 && e.m != 0);  // no extent is empty
   const ColumnPlaces places{chunk.extent.x, axes[0]};
   const bool is_y_slowest = axes[2] == Axis::y;
   return chunk.runs.visit([&](const auto& runs) {

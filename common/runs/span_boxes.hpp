@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "common/core/assert.hpp"
 #include "common/runs/axis_order.hpp"
 
 namespace runstone {
@@ -15,9 +16,11 @@ struct OrderedBox {
   std::array<std::uint32_t, 3> first{}, last{};
 };
 
-/// Calls f(box) for the boxes of voxels [first, last), in index order. Cost: O(1).
+/// Calls f(box) for the boxes of voxels [first, last), in index order. Requires an extent that is not
+/// empty. Cost: O(1).
 template <class F>
 void for_each_box(OrderedExtent e, VoxelIndex first, VoxelIndex last, F&& f) {
+  RUNSTONE_ASSERT(e.f != 0 && e.m != 0);
   while (first < last) {
     const std::uint32_t line = first / e.f;
     const std::uint32_t at = first - line * e.f;
