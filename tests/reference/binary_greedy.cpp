@@ -8,7 +8,17 @@
 #include "tests/reference/bit_matrix.hpp"
 #include "tests/reference/row_compare.hpp"
 
+// As the sweep of the product, the mesher is compiled once per instruction set. Highway selects one
+// at run time: counting bits takes one instruction on newer processors, and several on the oldest.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tests/reference/binary_greedy.cpp"
+#include <hwy/foreach_target.h>
+// Highway requires this include after foreach_target.h.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace runstone::reference {
+namespace HWY_NAMESPACE {
 namespace {
 
 using Word = std::uint64_t;
@@ -285,13 +295,32 @@ void mesh(const Grid& grid, const Material* materials, const OccupancyMask& mask
 
 }  // namespace
 
-void mesh_binary_greedy(const DenseGrid& grid, const OccupancyMask& mask, BinaryScratch& scratch,
-                        ChunkMesh& out) {
+void mesh_grid(const DenseGrid& grid, const OccupancyMask& mask, BinaryScratch& scratch,
+               ChunkMesh& out) {
   mesh(grid, nullptr, mask, scratch, out);
 }
 
-void mesh_binary_greedy(const PaletteVolume& volume, BinaryScratch& scratch, ChunkMesh& out) {
+void mesh_volume(const PaletteVolume& volume, BinaryScratch& scratch, ChunkMesh& out) {
   mesh(volume.grid, volume.palette.materials().data(), volume.mask, scratch, out);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace runstone::reference
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace runstone::reference {
+
+HWY_EXPORT(mesh_grid);
+HWY_EXPORT(mesh_volume);
+
+void mesh_binary_greedy(const DenseGrid& grid, const OccupancyMask& mask, BinaryScratch& scratch,
+                        ChunkMesh& out) {
+  HWY_DYNAMIC_DISPATCH(mesh_grid)(grid, mask, scratch, out);
+}
+
+void mesh_binary_greedy(const PaletteVolume& volume, BinaryScratch& scratch, ChunkMesh& out) {
+  HWY_DYNAMIC_DISPATCH(mesh_volume)(volume, scratch, out);
 }
 
 void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility,
@@ -309,3 +338,4 @@ void mesh_binary_greedy(const RunChunk& chunk, const GridNeighbours& neighbours,
 }
 
 }  // namespace runstone::reference
+#endif

@@ -22,19 +22,34 @@ constexpr std::uint64_t low_bits(std::uint32_t count) {
 /// The number of voxels that a comparison may read beyond the last one that it compares.
 inline constexpr std::size_t kCompareSlack = 16;
 
+#if defined(__SSE2__)
+/// Return all bits of a lane if the voxels there are equal. A register has 16 / sizeof(Voxel) lanes.
+inline __m128i equal_lanes(__m128i a, __m128i b, std::uint8_t) { return _mm_cmpeq_epi8(a, b); }
+inline __m128i equal_lanes(__m128i a, __m128i b, std::uint16_t) { return _mm_cmpeq_epi16(a, b); }
+inline __m128i splat(std::uint8_t voxel) { return _mm_set1_epi8(static_cast<char>(voxel)); }
+inline __m128i splat(std::uint16_t voxel) { return _mm_set1_epi16(static_cast<short>(voxel)); }
+template <class Voxel>
+__m128i load_lanes(const Voxel* from) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+}
+inline std::uint32_t byte_mask(__m128i lanes) {
+  return static_cast<std::uint32_t>(_mm_movemask_epi8(lanes));
+}
+#endif
+
 /// Returns a word with bit i set if a[i] != b[i], for i < count. Requires 0 < count <= 64 and
-/// kCompareSlack readable materials behind both.
-inline std::uint64_t differing_bits(const Material* a, const Material* b, std::uint32_t count) {
+/// kCompareSlack readable voxels behind both. Voxel is Material or a byte.
+template <class Voxel>
+std::uint64_t differing_bits(const Voxel* a, const Voxel* b, std::uint32_t count) {
   std::uint64_t equal = 0;
 #if defined(__SSE2__)
-  const auto eight = [&](std::uint32_t i) {
-    return _mm_cmpeq_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(a + i)),
-                           _mm_loadu_si128(reinterpret_cast<const __m128i*>(b + i)));
+  const auto equal_at = [&](std::uint32_t i) {
+    return equal_lanes(load_lanes(a + i), load_lanes(b + i), Voxel{});
   };
   for (std::uint32_t i = 0; i < count; i += 16) {
-    const auto bits =
-        static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(eight(i), eight(i + 8))));
-    equal |= std::uint64_t{bits} << i;
+    __m128i sixteen = equal_at(i);
+    if constexpr (sizeof(Voxel) == 2) sixteen = _mm_packs_epi16(sixteen, equal_at(i + 8));
+    equal |= std::uint64_t{byte_mask(sixteen)} << i;
   }
 #else
   for (std::uint32_t i = 0; i < count; ++i) equal |= std::uint64_t{a[i] == b[i]} << i;
@@ -42,60 +57,24 @@ inline std::uint64_t differing_bits(const Material* a, const Material* b, std::u
   return ~equal & low_bits(count);
 }
 
-/// Returns how many of the `count` materials from `row` on equal `material`, before the first that
-/// differs. Requires kCompareSlack readable materials behind them.
-inline std::uint32_t equal_prefix(const Material* row, std::uint32_t count, Material material) {
+/// Returns how many of the `count` voxels from `row` on equal `voxel`, before the first that differs.
+/// Requires kCompareSlack readable voxels behind them.
+template <class Voxel>
+std::uint32_t equal_prefix(const Voxel* row, std::uint32_t count, Voxel voxel) {
   std::uint32_t i = 0;
 #if defined(__SSE2__)
-  const __m128i wanted = _mm_set1_epi16(static_cast<short>(material));
-  for (; i < count; i += 8) {
-    const __m128i here = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + i));
-    const auto other =
-        static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi16(here, wanted))) ^ 0xffffu;
-    if (other != 0) {
-      i += static_cast<std::uint32_t>(__builtin_ctz(other)) / 2;
-      break;
-    }
+  constexpr std::uint32_t kLanes = 16 / sizeof(Voxel);
+  const __m128i wanted = splat(voxel);
+  for (; i < count; i += kLanes) {
+    const std::uint32_t other =
+        byte_mask(equal_lanes(load_lanes(row + i), wanted, voxel)) ^ 0xffffu;
+    if (other == 0) continue;
+    i += static_cast<std::uint32_t>(__builtin_ctz(other)) * kLanes / 16;
+    break;
   }
   return i < count ? i : count;
 #else
-  while (i < count && row[i] == material) ++i;
-  return i;
-#endif
-}
-
-/// The same for palette ids.
-inline std::uint64_t differing_bits(const std::uint8_t* a, const std::uint8_t* b,
-                                    std::uint32_t count) {
-  std::uint64_t equal = 0;
-#if defined(__SSE2__)
-  for (std::uint32_t i = 0; i < count; i += 16) {
-    const __m128i same = _mm_cmpeq_epi8(_mm_loadu_si128(reinterpret_cast<const __m128i*>(a + i)),
-                                        _mm_loadu_si128(reinterpret_cast<const __m128i*>(b + i)));
-    equal |= std::uint64_t{static_cast<std::uint32_t>(_mm_movemask_epi8(same))} << i;
-  }
-#else
-  for (std::uint32_t i = 0; i < count; ++i) equal |= std::uint64_t{a[i] == b[i]} << i;
-#endif
-  return ~equal & low_bits(count);
-}
-
-inline std::uint32_t equal_prefix(const std::uint8_t* row, std::uint32_t count, std::uint8_t id) {
-  std::uint32_t i = 0;
-#if defined(__SSE2__)
-  const __m128i wanted = _mm_set1_epi8(static_cast<char>(id));
-  for (; i < count; i += 16) {
-    const __m128i here = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + i));
-    const auto other =
-        static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(here, wanted))) ^ 0xffffu;
-    if (other != 0) {
-      i += static_cast<std::uint32_t>(__builtin_ctz(other));
-      break;
-    }
-  }
-  return i < count ? i : count;
-#else
-  while (i < count && row[i] == id) ++i;
+  while (i < count && row[i] == voxel) ++i;
   return i;
 #endif
 }

@@ -1,6 +1,7 @@
 // Scenes that are small enough to count by hand, and the promises of the functions beyond the
 // faces.
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "common/runs/dense.hpp"
 #include "common/runs/reorder.hpp"
@@ -231,25 +232,26 @@ TEST_CASE("a transposed bit matrix has rows for columns", "[mesh][reference]") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("rows of materials compare bit by bit and up to their first difference",
-          "[mesh][reference]") {
+TEMPLATE_TEST_CASE("rows of voxels compare bit by bit and up to their first difference",
+                   "[mesh][reference]", Material, PaletteId) {
+  constexpr TestType kOther = std::numeric_limits<TestType>::max(), kSame = 9;
   SplitMix64 rng(7);
-  std::array<Material, 64 + 1 + kCompareSlack> a{}, b{};
+  std::array<TestType, 64 + 1 + kCompareSlack> a{}, b{};
   for (int round = 0; round < 300; ++round) {
     const std::uint32_t count = 1 + rng.below(64);
     const std::uint32_t rarity = 1 + rng.below(30);
     for (std::size_t i = 0; i < a.size(); ++i) {
-      a[i] = static_cast<Material>(rng.below(rarity) == 0 ? 65535 : 9);
-      b[i] = static_cast<Material>(rng.below(rarity) == 0 ? 65535 : 9);
+      a[i] = rng.below(rarity) == 0 ? kOther : kSame;
+      b[i] = rng.below(rarity) == 0 ? kOther : kSame;
     }
     std::uint64_t differ = 0;
     std::uint32_t prefix = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       differ |= std::uint64_t{a[i] != b[i]} << i;
-      prefix += prefix == i && a[i] == 9 ? 1u : 0u;
+      prefix += prefix == i && a[i] == kSame ? 1u : 0u;
     }
     REQUIRE(differing_bits(a.data(), b.data(), count) == differ);
-    REQUIRE(equal_prefix(a.data(), count, 9) == prefix);
+    REQUIRE(equal_prefix(a.data(), count, kSame) == prefix);
   }
 }
 
