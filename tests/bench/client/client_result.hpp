@@ -11,8 +11,9 @@
 
 namespace runstone::bench {
 
-/// Bursts of edits of others that arrive between two frames. `Added` work is what delays a frame:
-/// meshing on the main thread before its order, and uploads on the draw thread.
+/// Bursts of edits of others that arrive between two frames. *Added* work is what delays a frame:
+/// meshing on the main thread before its order, and uploads on the draw thread. The light and the
+/// shadows that the edits change are made while a frame is drawn: they are in `slowest_ms` alone.
 struct BurstRow {
   std::string budget;  // "4 ms" or "none"
   unsigned edits = 0, bursts = 0;
@@ -22,6 +23,9 @@ struct BurstRow {
   std::size_t frames_min = 0, frames_max = 0;     // until all edits of a burst were presented
   std::size_t carried_max = 0;                    // uploads that a frame left for later ones
   double still_ms = 0;                            // the median frame without a burst
+  /// The slowest of the frames of a burst and of those after it until the light is settled, all its
+  /// work included; the median over the bursts.
+  double slowest_ms = 0;
 };
 
 struct OwnEditRow {
