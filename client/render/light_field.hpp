@@ -40,7 +40,7 @@ class LightField {
   /// change is begun after `kWorkMax` voxels; the rest is left for the next call. Appends the boxes
   /// whose levels changed.
   void update(VoxelPos eye, bool all, std::vector<VoxelBox>& changed);
-  static constexpr std::int64_t kWorkMax = 300'000;
+  static constexpr std::int64_t kWorkMax = 150'000;
 
   /// Returns the box. It is empty before the first update().
   const VoxelBox& box() const { return box_; }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <limits>
 #include <stdexcept>
 
 namespace runstone {
@@ -18,7 +19,9 @@ constexpr double kDepth = 1.6;
 }  // namespace
 
 ShadowMaps::ShadowMaps() : maps_(GlTexture::make()) {
-  for (Cascade& cascade : cascades_) cascade.framebuffer = GlFramebuffer::make();
+  for (Cascade& cascade : cascades_) {
+    for (GlFramebuffer& framebuffer : cascade.framebuffers) framebuffer = GlFramebuffer::make();
+  }
 }
 
 void ShadowMaps::set_quality(Quality quality) {
@@ -35,7 +38,7 @@ void ShadowMaps::resize(int side) {
   if (side == side_) return;
   side_ = side;
   glBindTexture(GL_TEXTURE_2D_ARRAY, maps_.get());
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT16, side, side, kCascades, 0,
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT16, side, side, 2 * kCascades, 0,
                GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, nullptr);
   const auto set = [](GLenum what, GLint value) {
     glTexParameteri(GL_TEXTURE_2D_ARRAY, what, value);
@@ -44,15 +47,18 @@ void ShadowMaps::resize(int side) {
   set(GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   set(GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   set(GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  for (int i = 0; i < kCascades; ++i) {
-    Cascade& cascade = cascades_[static_cast<std::size_t>(i)];
+  GLint layer = 0;
+  for (Cascade& cascade : cascades_) {
     cascade.is_drawn = false;
-    glBindFramebuffer(GL_FRAMEBUFFER, cascade.framebuffer.get());
-    glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, maps_.get(), 0, i);
-    glDrawBuffer(GL_NONE);
-    glReadBuffer(GL_NONE);
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-      throw std::runtime_error("the OpenGL driver cannot draw shadow maps");
+    cascade.next.reset();
+    for (const GlFramebuffer& framebuffer : cascade.framebuffers) {
+      glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
+      glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, maps_.get(), 0, layer++);
+      glDrawBuffer(GL_NONE);
+      glReadBuffer(GL_NONE);
+      if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw std::runtime_error("the OpenGL driver cannot draw shadow maps");
+    }
   }
 }
 
@@ -62,6 +68,7 @@ void ShadowMaps::set_radii(double near, double far) {
     if (cascades_[i].radius == radii[i]) continue;
     cascades_[i].radius = radii[i];
     cascades_[i].is_drawn = false;
+    cascades_[i].next.reset();
   }
 }
 
@@ -69,11 +76,18 @@ void ShadowMaps::changed(const glm::dvec3& min, const glm::dvec3& max) {
   const glm::dvec3 middle = 0.5 * (min + max);
   const double reach = 0.5 * glm::length(max - min);
   for (Cascade& cascade : cascades_) {
-    // Only the distance from the axis of the light through the cascade counts.
-    const glm::dvec3 at = to_light_ * (middle - cascade.middle);
-    const double side = cascade.radius * (1 + kStep) * std::sqrt(2.0) + reach;
-    if (at.x * at.x + at.y * at.y <= side * side) cascade.is_stale = true;
+    if (is_touched(cascade, cascade.middle, middle, reach) ||
+        (cascade.next && is_touched(cascade, cascade.next->middle, middle, reach)))
+      cascade.is_stale = true;
   }
+}
+
+bool ShadowMaps::is_touched(const Cascade& cascade, const glm::dvec3& middle,
+                            const glm::dvec3& change, double reach) const {
+  // Only the distance from the axis of the light through the cascade counts.
+  const glm::dvec3 at = to_light_ * (change - middle);
+  const double side = cascade.radius * (1 + kStep) * std::sqrt(2.0) + reach;
+  return at.x * at.x + at.y * at.y <= side * side;
 }
 
 glm::dvec3 ShadowMaps::middle_of(const Cascade& cascade, const glm::dvec3& eye) const {
@@ -96,33 +110,42 @@ void ShadowMaps::update(const glm::dvec3& eye, const DayLight& light, double nea
     const glm::dvec3 back(sun_);
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3{0, 1, 0}, back));
     to_light_ = glm::transpose(glm::dmat3(right, glm::cross(back, right), back));
-    for (Cascade& cascade : cascades_) cascade.is_stale = true;
+    for (Cascade& cascade : cascades_) cascade.is_drawn = false;
   }
-  bool may_draw = true;
-  for (unsigned i = 0; i < kCascades; ++i) {
-    Cascade& cascade = cascades_[(next_ + i) % kCascades];
+  for (Cascade& cascade : cascades_) {
     const glm::dvec3 middle = middle_of(cascade, eye);
-    const bool is_wanted = cascade.is_stale || middle != cascade.middle;
-    if (cascade.is_drawn && !(is_wanted && (may_draw || all))) continue;
-    if (cascade.is_drawn) may_draw = false;
-    draw(cascade, middle, draw_terrain);
+    const bool is_near = cascade.is_drawn && glm::length(middle - cascade.middle) < cascade.radius;
+    const bool is_wanted = !is_near || cascade.is_stale || middle != cascade.middle;
+    if (all || !is_near) {
+      if (!is_wanted && !cascade.next) continue;
+      begin(cascade, middle);
+      step(cascade, std::numeric_limits<std::size_t>::max(), draw_terrain);
+    } else {
+      if (is_wanted && !cascade.next) begin(cascade, middle);
+      if (cascade.next) step(cascade, kQuadsAFrame, draw_terrain);
+    }
   }
-  next_ = (next_ + 1) % kCascades;
 }
 
-void ShadowMaps::draw(Cascade& cascade, const glm::dvec3& middle, const DrawTerrain& draw_terrain) {
-  cascade.middle = middle;
-  cascade.is_drawn = true;
+void ShadowMaps::begin(Cascade& cascade, const glm::dvec3& middle) {
   cascade.is_stale = false;
   const auto reach = static_cast<float>(cascade.radius * (1 + kStep));
   const auto depth = static_cast<float>(cascades_.back().radius * kDepth);
   const glm::mat4 view(glm::dmat4{to_light_});
-  cascade.clip = glm::ortho(-reach, reach, -reach, reach, -depth, depth) * view;
-  glBindFramebuffer(GL_FRAMEBUFFER, cascade.framebuffer.get());
+  cascade.next = ShadowPass{glm::ortho(-reach, reach, -reach, reach, -depth, depth) * view, middle,
+                            2 * reach / static_cast<float>(side_)};
+}
+
+void ShadowMaps::step(Cascade& cascade, std::size_t quads_max, const DrawTerrain& draw_terrain) {
+  const int layer = cascade.shown ^ 1;
+  glBindFramebuffer(GL_FRAMEBUFFER, cascade.framebuffers[static_cast<std::size_t>(layer)].get());
   glViewport(0, 0, side_, side_);
-  glClear(GL_DEPTH_BUFFER_BIT);
-  draw_terrain(cascade.clip, middle, 2 * reach / static_cast<float>(side_));
-  ++drawn_;
+  if (!cascade.next->drawn_to) glClear(GL_DEPTH_BUFFER_BIT);
+  if (!draw_terrain(*cascade.next, quads_max)) return;
+  cascade.middle = cascade.next->middle;
+  cascade.shown = layer;
+  cascade.is_drawn = true;
+  cascade.next.reset();
 }
 
 void ShadowMaps::bind(const GlProgram& program, GLint unit) const {
@@ -157,11 +180,11 @@ void ShadowMaps::use(const GlProgram& program, int cascade, const glm::dvec3& ey
   glUniform3fv(at("shadow_scale"), 1, glm::value_ptr(scale));
   glUniform3fv(at("shadow_offset"), 1, glm::value_ptr(offset));
   glUniform1f(at("shadow_bias"), static_cast<float>(1.5 * 2 * reach / side_));
-  glUniform1i(at("shadow_layer"), cascade);
+  glUniform1i(at("shadow_layer"), 2 * cascade + c.shown);
 }
 
 std::uint64_t ShadowMaps::byte_size() const {
-  return std::uint64_t{2} * kCascades * static_cast<std::uint64_t>(side_) *
+  return std::uint64_t{2} * 2 * kCascades * static_cast<std::uint64_t>(side_) *
          static_cast<std::uint64_t>(side_);
 }
 

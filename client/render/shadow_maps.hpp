@@ -1,38 +1,53 @@
 // ShadowMaps: depth maps of the terrain as the sun sees it, in two cascades around the eye: a small
 // one of high resolution, and a large one around it. A chunk uses the smallest cascade that holds
-// all of it, so its fragments read one map. A cascade does not depend on the direction of sight. It
+// all of it, so a fragment need not choose. A cascade does not depend on the direction of sight. It
 // is drawn again only if
 //   - the eye has moved by a part of its radius (its middle is a multiple of that part, and its
 //     pixels keep their places in the world),
 //   - a chunk within it changed, or
 //   - the sun moved.
+// A cascade has two maps: one is shown, and the next one is drawn over several frames, a bounded
+// number of quads in each. So an edit or a moving eye makes no frame much longer.
 // Thread: the GL thread.
 #pragma once
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "client/render/day_light.hpp"
 #include "client/render/frame_look.hpp"
 #include "client/render/gl_handle.hpp"
+#include "common/core/coords.hpp"
 
 namespace runstone {
+
+/// A map that is being drawn.
+struct ShadowPass {
+  glm::mat4 clip{1};                   // maps coordinates relative to the middle into the map's box
+  glm::dvec3 middle{0};                // world voxels
+  float pixel = 0;                     // side of a pixel, voxels
+  std::optional<ChunkKey> drawn_to{};  // the last chunk that was drawn
+};
 
 class ShadowMaps {
  public:
   static constexpr int kCascades = 2;
+  /// The quads that a frame draws into the next map of a cascade. The last chunk may exceed it.
+  static constexpr std::size_t kQuadsAFrame = 1'500;
 
-  /// Draws the terrain into a cascade: everything that `clip` maps into its box. `clip` maps
-  /// coordinates relative to `middle`, in world voxels. `pixel` is the side of a pixel in voxels.
-  using DrawTerrain =
-      std::function<void(const glm::mat4& clip, const glm::dvec3& middle, float pixel)>;
+  /// Draws the chunks behind `drawn_to` into the map, in the order of their keys, until `quads_max`
+  /// quads are drawn. Returns true if no chunk is left.
+  using DrawTerrain = std::function<bool(ShadowPass& pass, std::size_t quads_max)>;
 
   ShadowMaps();
   /// Call it for each chunk that changed: a box in world voxels.
   void changed(const glm::dvec3& min, const glm::dvec3& max);
-  /// Draws the cascades that need it, and leaves another framebuffer bound. If `all` is false, at
-  /// most one cascade that was drawn before is drawn again, so that a frame stays short.
-  /// The inner cascade has the radius `near`, the outer one `far`, in voxels.
+  /// Draws the cascades that need it, and leaves another framebuffer bound. If `all` is false, it
+  /// draws at most kQuadsAFrame quads into each cascade that has a map near the eye, and shows a
+  /// map once it is complete. The inner cascade has the radius `near`, the outer one `far`, in voxels.
   void update(const glm::dvec3& eye, const DayLight& light, double near, double far,
               Quality quality, bool all, const DrawTerrain& draw_terrain);
   /// Binds the maps to a texture unit and sets the uniforms that all chunks share. Requires that
@@ -43,29 +58,33 @@ class ShadowMaps {
   /// Sets the uniforms of a cascade, for an eye in world voxels.
   void use(const GlProgram& program, int cascade, const glm::dvec3& eye) const;
   std::uint64_t byte_size() const;
-  std::uint64_t cascades_drawn() const { return drawn_; }
 
  private:
   struct Cascade {
-    double radius = 0;  // voxels; 0: not in use
-    glm::dvec3 middle{0};
-    glm::mat4 clip{1};  // relative to the middle
-    bool is_drawn = false, is_stale = false;
-    GlFramebuffer framebuffer;
+    double radius = 0;               // voxels; 0: not in use
+    glm::dvec3 middle{0};            // of the shown map
+    int shown = 0;                   // layer of the shown map; that of the next one is shown ^ 1
+    bool is_drawn = false;           // there is a shown map
+    bool is_stale = false;           // terrain changed since the newest map was begun
+    std::optional<ShadowPass> next;  // the map that is being drawn
+    std::array<GlFramebuffer, 2> framebuffers;  // of both maps
   };
   void set_quality(Quality quality);
   void resize(int side);
   void set_radii(double near, double far);
   glm::dvec3 middle_of(const Cascade& cascade, const glm::dvec3& eye) const;
-  void draw(Cascade& cascade, const glm::dvec3& middle, const DrawTerrain& draw_terrain);
+  /// Returns true if the cascade is within reach of a change.
+  bool is_touched(const Cascade& cascade, const glm::dvec3& middle, const glm::dvec3& change,
+                  double reach) const;
+  void begin(Cascade& cascade, const glm::dvec3& middle);
+  /// Draws a part of the next map, and shows it if it is complete.
+  void step(Cascade& cascade, std::size_t quads_max, const DrawTerrain& draw_terrain);
 
   std::array<Cascade, kCascades> cascades_;
-  GlTexture maps_;  // an array of depth maps, one layer a cascade
+  GlTexture maps_;  // an array of depth maps, two layers a cascade
   int side_ = 0;    // of a map, pixels
   glm::vec3 sun_{0};
   glm::dmat3 to_light_{1};  // rows: right, up and back of the light's view
-  std::uint64_t drawn_ = 0;
-  unsigned next_ = 0;  // cascade to look at first
 };
 
 /// In the vertex shader: vec3 to_shadow(vec3 relative, vec3 normal), the place of a vertex in the

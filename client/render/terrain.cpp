@@ -180,11 +180,9 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigne
 
 void Terrain::update_light(const FrameView& view) {
   if (view.look.quality == Quality::low) return;
-  shadows_.update(view.eye, view.light, kShadowEdges * edge_, view.far, view.look.quality,
-                  view.look.exact,
-                  [this](const glm::mat4& clip, const glm::dvec3& middle, float pixel) {
-                    draw_depth(clip, middle, pixel);
-                  });
+  shadows_.update(
+      view.eye, view.light, kShadowEdges * edge_, view.far, view.look.quality, view.look.exact,
+      [this](ShadowPass& pass, std::size_t quads_max) { return draw_depth(pass, quads_max); });
   relit_.clear();
   field_.update(voxel_at(view.eye), view.look.exact, relit_);
   field_texture_.copy(field_, relit_);
@@ -200,34 +198,41 @@ glm::vec4 Terrain::light_at(const FrameView& view, const glm::dvec3& at) const {
   return {channel(0) * channel(0), channel(8) * channel(8), channel(16) * channel(16), channel(24)};
 }
 
-void Terrain::draw_depth(const glm::mat4& clip, const glm::dvec3& middle, float pixel) {
+bool Terrain::draw_depth(ShadowPass& pass, std::size_t quads_max) {
   glUseProgram(depth_program_.get());
   quads_.bind(depth_program_, kQuadUnit);
   glUniformMatrix4fv(glGetUniformLocation(depth_program_.get(), "clip"), 1, GL_FALSE,
-                     glm::value_ptr(clip));
+                     glm::value_ptr(pass.clip));
   // Light must not leak through the T-junctions of merged quads.
   constexpr float kDepthSeam = 0.05F;  // of a pixel
-  glUniform1f(glGetUniformLocation(depth_program_.get(), "seam"), kDepthSeam * pixel);
+  glUniform1f(glGetUniformLocation(depth_program_.get(), "seam"), kDepthSeam * pass.pixel);
   const GLint origin = glGetUniformLocation(depth_program_.get(), "origin");
   glEnable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5F, 2.0F);
-  const Frustum frustum(clip);
-  const glm::vec3 to_sun = glm::normalize(glm::vec3(-clip[0][2], -clip[1][2], -clip[2][2]));
+  const Frustum frustum(pass.clip);
+  const glm::vec3 to_sun =
+      glm::normalize(glm::vec3(-pass.clip[0][2], -pass.clip[1][2], -pass.clip[2][2]));
   std::array<double, 3> sun{};
   for (int i = 0; i < 3; ++i)
     sun[static_cast<std::size_t>(i)] = 1e9 * static_cast<double>(to_sun[i]);
-  for (const auto& [key, chunk] : chunks_) {
-    const glm::vec3 at(origin_in_world(key, chunk.edge) - middle);
+  std::size_t quads = 0;
+  auto next = pass.drawn_to ? chunks_.upper_bound(*pass.drawn_to) : chunks_.begin();
+  for (; next != chunks_.end() && quads < quads_max; ++next) {
+    const auto& [key, chunk] = *next;
+    pass.drawn_to = key;
+    const glm::vec3 at(origin_in_world(key, chunk.edge) - pass.middle);
     if (!frustum.may_see(at, at + static_cast<float>(chunk.edge))) continue;
     spans_.clear();
     chunk.opaque.append_facing(sun, spans_);
     if (spans_.empty()) continue;
     glUniform3fv(origin, 1, glm::value_ptr(at));
     quads_.draw(spans_);
+    for (const QuadSpan& span : spans_) quads += span.count;
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
+  return next == chunks_.end();
 }
 
 void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {

@@ -112,7 +112,7 @@ class Terrain {
                   const std::function<void(const GlProgram& program)>& set);
   /// Uses the program for a chunk and sets its uniforms. Requires begin_pass() before.
   void use_for(const Visible& chunk, const FrameView& view, bool is_transparent);
-  void draw_depth(const glm::mat4& clip, const glm::dvec3& middle, float pixel);
+  bool draw_depth(ShadowPass& pass, std::size_t quads_max);
   Program& program(Quality quality, bool is_transparent, unsigned variant);
   QuadSpan ghost_quads(const std::shared_ptr<const ChunkMesh>& mesh);
 

@@ -477,6 +477,46 @@ TEST_CASE("a wall throws a shadow away from the sun, and an edit takes it away",
   CHECK(different_pixels(open, brightness(floor, Quality::high)) == 0);
 }
 
+TEST_CASE("in a window, shadows of many quads follow an edit within some frames", "[render]") {
+  const auto context = context_or_warn(&make_egl_surfaceless_context);
+  if (!context) return;
+  Renderer renderer(context->loader());
+  renderer.set_materials(red_and_glass());
+  ChunkMesh floor;  // three chunks of it have more quads than a frame draws into a shadow map
+  for (std::uint8_t x = 0; x < 32; ++x) {
+    for (std::uint8_t z = 0; z < 32; ++z)
+      add(floor.opaque, {x, 0, z, 1, 1, Direction::pos_y, kRed});
+  }
+  for (const std::int32_t x : {-1, 0, 1}) renderer.upload({0, {x, 0, 0}}, kEdge, floor);
+  Camera camera;
+  camera.x = 16, camera.y = 40, camera.z = 16;
+  camera.pitch = -M_PI / 2;
+  FrameContents contents;
+  contents.look.time_of_day = 0.375;
+  const auto picture = [&](bool is_exact) {
+    contents.look.exact = is_exact;
+    renderer.draw(camera, 160, 120, contents);
+    return renderer.read_image();
+  };
+  const Image open = picture(false);  // the first maps are drawn at once
+  CHECK(different_pixels(open, picture(true)) == 0);
+  ChunkMesh wall = floor;
+  add(wall.opaque, {16, 1, 0, 8, 32, Direction::pos_x, kRed});
+  renderer.upload({0, {0, 0, 0}}, kEdge, wall);
+  const Image at_once = picture(false);
+  unsigned frames = 1;
+  Image later = at_once;
+  while (different_pixels(open, later) < 800 && frames < 20) {
+    later = picture(false);
+    ++frames;
+  }
+  CHECK(frames > 1);
+  CHECK(frames <= 4);
+  for (unsigned i = 0; i < 4; ++i) later = picture(false);
+  CHECK(different_pixels(later, picture(true)) == 0);
+  CHECK(different_pixels(open, later) > 800);
+}
+
 TEST_CASE("a ghost shows removed voxels in red and placed ones in their colour", "[render]") {
   const auto context = context_or_warn(&make_egl_surfaceless_context);
   if (!context) return;
