@@ -62,9 +62,9 @@ std::vector<Target> ClientBenchResult::targets() const {
                    fmt::format("at most {:.0f} ms", kBudgetMs),
                    fmt::format("{:.1f} ms", row.worst_added_ms),
                    verdict_of(row.worst_added_ms <= kBudgetMs)});
-    const double more_ms = row.slowest_ms - row.still_ms;
+    const double more_ms = row.slowest_ms - row.still_slowest_ms;
     out.push_back(
-        {"the same with the light and shadows that change: slowest frame beyond a still one",
+        {"the same with the light and shadows that change: slowest frame, beyond that without edits",
          fmt::format("at most {:.0f} ms", kBudgetMs), fmt::format("{:.1f} ms", more_ms),
          verdict_of(more_ms <= kBudgetMs)});
   }
@@ -101,7 +101,8 @@ void write_json(const ClientBenchResult& result, std::ostream& out) {
                                   {"frames_max", row.frames_max},
                                   {"carried_max", row.carried_max},
                                   {"still_ms", row.still_ms},
-                                  {"slowest_ms", row.slowest_ms}});
+                                  {"slowest_ms", row.slowest_ms},
+                                  {"still_slowest_ms", row.still_slowest_ms}});
   }
   json["own_edit"] = Json{{"edits", result.own_edit.edits},
                           {"frames_max", result.own_edit.frames_max},
@@ -125,16 +126,16 @@ void write_tables(const ClientBenchResult& result, std::ostream& out) {
   fmt::print(out,
              "\n### Bursts\n\n| uploads a frame | edits | bursts | worst frame: added ms | worst "
              "mesh ms | worst upload ms | added ms of a burst | frames | most carried over | ms of "
-             "a frame without | slowest frame, with light: ms "
-             "|\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+             "a frame without | slowest: ms | slowest without: ms "
+             "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const BurstRow& row : result.bursts) {
     fmt::print(
         out,
-        "| {} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {} to {} | {} | {:.1f} | {:.1f} "
-        "|\n",
+        "| {} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {} to {} | {} | {:.1f} | {:.1f} | "
+        "{:.1f} |\n",
         row.budget, row.edits, row.bursts, row.worst_added_ms, row.worst_mesh_ms,
         row.worst_upload_ms, row.total_ms, row.frames_min, row.frames_max, row.carried_max,
-        row.still_ms, row.slowest_ms);
+        row.still_ms, row.slowest_ms, row.still_slowest_ms);
   }
   fmt::print(out,
              "\n### Own edits\n\n| edits | frames to changed pixels, mean | most |\n|---|---|---|\n"

@@ -70,8 +70,8 @@ ClientRig::ClientRig(const VoxelWorld& world, const RigOptions& options)
           },
           DrawPriority::normal, [this] { wake_.notify(); }, options.budget)),
       pipeline_(replica_, draw_thread_.get(), true, 1, [this] { wake_.notify(); }) {
-  // Water would move, and automatic quality would change the frames that are compared.
-  pipeline_.look().set_exact(true);
+  // Frames are those of a window. Where pixels are compared, nothing else may change them.
+  pipeline_.look().set_exact(options.watches_pixels);
   pipeline_.look().set_quality(options.quality);
   pipeline_.set_materials(seeded_materials());
   load();
