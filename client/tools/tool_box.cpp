@@ -368,8 +368,9 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
     wanted.seen = aim.hit->material;
   }
   // A refusal may end without a change of what is watched, for example when a chunk arrives.
-  const bool may_end = !preview_refusal_.empty() && ++refused_calls_ % kPlanAgainCalls == 0;
-  if (previewed_ != wanted || may_end || preview_.is_outdated(replica)) {
+  const bool is_planned_again =
+      !preview_refusal_.empty() && ++refused_calls_ % kPlanAgainCalls == 0;
+  if (previewed_ != wanted || is_planned_again || preview_.is_outdated(replica)) {
     previewed_ = wanted;
     preview_refusal_.clear();
     std::vector<EditDescriptor> edits;

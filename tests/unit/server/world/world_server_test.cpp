@@ -109,6 +109,29 @@ TEST_CASE("edits of the server leave room in the log for the large edits that wa
   CHECK(bench.environment.records.back().cause == Cause::undo);
 }
 
+TEST_CASE("once an edit of an action is rejected, so are its later edits", "[world]") {
+  WorldBench bench;
+  bench.join(1, 1);
+  const auto send = [&](ClientSequence seq, ClientSequence action, Material material = 1) {
+    const EditDescriptor edit{SetVoxel{{static_cast<std::int32_t>(seq), 1, 1}}, {}, material};
+    bench.server.received(1, EditRequest{seq, 0, edit, std::nullopt, action}, bench.now());
+  };
+  constexpr Material kUnknown = 999;
+  send(1, 1);
+  send(2, 1, kUnknown);
+  send(3, 1);
+  send(4, 4);
+  send(5, 0);
+  bench.tick();
+  const auto rejects = bench.environment.messages<Reject>(1, kEdge);
+  REQUIRE(rejects.size() == 2);
+  CHECK(rejects[0].client_seq == 2);
+  CHECK(rejects[1].client_seq == 3);
+  CHECK(rejects[1].reason == rejects[0].reason);
+  CHECK(rejects[1].detail == "an earlier edit of the same action was refused");
+  CHECK(bench.server.head() == 3);  // the edits 1, 4 and 5
+}
+
 TEST_CASE("rejections and requests for chunks count as much that was read", "[world]") {
   WorldConfig c = config();
   c.edit_budget = {1, 1};
