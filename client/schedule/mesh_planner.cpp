@@ -41,6 +41,7 @@ void MeshPlanner::take(std::span<const ChunkChange> changes) {
         if (it->second.rank) ready_.erase(*it->second.rank);
         if (it->second.dirty) --dirty_;
         keep(it->second, nullptr);
+        borders_.erase(chunk.key);
         states_.erase(it);
       }
       for_each_beside(chunk.key, [this](const ChunkKey& key, State& state) { place(key, state); });
@@ -49,6 +50,7 @@ void MeshPlanner::take(std::span<const ChunkChange> changes) {
     State& state = states_[chunk.key];
     state.serial = chunk.serial;
     state.changed |= chunk.layers;
+    if (chunk.whole || chunk.layers.here.any()) borders_.erase(chunk.key);
     state.urgency = std::max(state.urgency, urgency_of(chunk));
     if (!chunk.whole) {
       mark(chunk.key, state);
@@ -97,6 +99,7 @@ void MeshPlanner::mark_whole(const ChunkKey& key, State& state) {
   keep(state, nullptr);
   if (std::exchange(state.job, 0) != 0)
     state.urgency = std::max(state.urgency, state.urgency_in_job);
+  state.job_runs = nullptr;
   mark(key, state);
 }
 
@@ -130,7 +133,9 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
     job.chunk = replica_.shown(key);
     std::uint8_t open_sides = 0;
     for (std::size_t i = 0; i < job.neighbours.size(); ++i) {
-      job.neighbours[i] = replica_.shown(beside(key, static_cast<Direction>(i)));
+      const ChunkKey next = beside(key, static_cast<Direction>(i));
+      job.neighbours[i] = replica_.shown(next);
+      job.borders[i] = borders_.find(next, job.neighbours[i]);
       if (!job.neighbours[i]) open_sides = static_cast<std::uint8_t>(open_sides | 1U << i);
     }
     // The kept mesh and the changed layers give the present mesh if take() has got all changes.
@@ -150,6 +155,7 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
     state.order = job.chunk->order;
     state.open_sides = open_sides;
     state.job = job.number;
+    state.job_runs = job.chunk;
     if (!std::exchange(state.counted, true)) ++chunks_;
     state.dirty = false;
     state.urgency_in_job = job.urgency = std::exchange(state.urgency, Urgency::terrain);
@@ -159,16 +165,20 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
   return std::nullopt;
 }
 
-bool MeshPlanner::finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh) {
+bool MeshPlanner::finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh,
+                         BordersPtr borders) {
   const auto it = states_.find(key);
   if (it == states_.end() || number != it->second.job) return false;
   keep(it->second, std::move(mesh));
+  const ShownPtr runs = std::exchange(it->second.job_runs, nullptr);
+  if (borders && replica_.shown(key) == runs) borders_.keep(key, runs, std::move(borders));
   it->second.job = 0;
   place(key, it->second);
   return true;
 }
 
 void MeshPlanner::forget_meshes() {
+  borders_.clear();
   for (auto& [key, state] : states_) mark_whole(key, state);
 }
 
@@ -176,6 +186,7 @@ void MeshPlanner::mesh_again_from(Material first) {
   for (auto& [key, state] : states_) {
     const ShownPtr shown = replica_.shown(key);
     if (!shown || !has_material_from(*shown, first)) continue;
+    borders_.erase(key);
     mark_whole(key, state);
     for_each_beside(key,
                     [this](const ChunkKey& other, State& beside) { mark_whole(other, beside); });

@@ -19,6 +19,8 @@
 //   - the axis order changed;
 //   - there are changes that take() has not got yet.
 //
+// It also keeps the borders that a mesh of a whole chunk has made, for the later meshes beside it.
+//
 // One thread. Cost: O(log chunks) per change or job; O(chunks to mesh) when the eye enters another
 // chunk. Memory: kept_bytes(), and about 500 bytes per chunk in view.
 #pragma once
@@ -34,6 +36,7 @@
 
 #include "client/replica/replica.hpp"
 #include "client/replica/replica_changes.hpp"
+#include "client/schedule/kept_borders.hpp"
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/runs/axis_order.hpp"
@@ -51,6 +54,7 @@ struct MeshJob {
   std::uint64_t serial = 0;  // Replica::shown_serial() of the meshed runs
   ShownPtr chunk;
   std::array<ShownPtr, kDirectionCount> neighbours;  // null: beyond the view, or unavailable
+  std::array<BordersPtr, kDirectionCount> borders;   // of the neighbours; null: none are kept
   /// The mesh to start from, and the layers that changed since, as arguments of mesh_rdm_layers().
   /// Null if the whole chunk is to be meshed.
   MeshPtr before;
@@ -83,9 +87,11 @@ class MeshPlanner {
   /// Returns the next job of this size, or nullopt while every chunk left waits for a neighbour or
   /// a result. Pass its mesh to finish(), unless forget_meshes() made the job void.
   std::optional<MeshJob> next(JobSize size = JobSize::any);
-  /// Takes and keeps the mesh of a finished job. Returns true if it should be drawn. Returns false
-  /// if the chunk has left the view since, even if it came back, or if the job was made void.
-  bool finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh);
+  /// Takes and keeps the mesh of a finished job, and the borders of its chunk if it made them.
+  /// Returns true if the mesh should be drawn. Returns false if the chunk has left the view since,
+  /// even if it came back, or if the job was made void.
+  bool finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh,
+              BordersPtr borders = nullptr);
   /// Drops all meshes and makes all open jobs void, because materials look different now. Every
   /// chunk is meshed again.
   void forget_meshes();
@@ -100,8 +106,8 @@ class MeshPlanner {
   /// Returns the number of chunks that got at least one job. jobs() divided by it is the number of
   /// meshes per chunk.
   std::uint64_t chunks_meshed() const { return chunks_; }
-  /// Returns the size of the kept meshes, in bytes.
-  std::size_t kept_bytes() const { return kept_bytes_; }
+  /// Returns the size of the kept meshes and borders, in bytes.
+  std::size_t kept_bytes() const { return kept_bytes_ + borders_.bytes(); }
 
  private:
   using Rank = std::tuple<int, int, std::int64_t, ChunkKey>;
@@ -111,6 +117,7 @@ class MeshPlanner {
     Urgency urgency_in_job = Urgency::terrain;  // those of the job, which count again if it is void
     bool counted = false;                       // counted in chunks_
     std::uint64_t job = 0;                      // number of the open job; 0: none
+    ShownPtr job_runs;                          // the chunk of the open job
     std::uint64_t serial = 0;                   // of the newest change
     ChangedLayers changed;                      // since the newest job was made
     // The sources of the newest job, and its mesh. The mesh is null while the job is open or void.
@@ -133,7 +140,8 @@ class MeshPlanner {
   std::map<ChunkKey, State> states_;
   std::set<Rank> ready_;
   std::size_t dirty_ = 0;
-  std::size_t kept_bytes_ = 0;
+  std::size_t kept_bytes_ = 0;  // of meshes
+  KeptBorders borders_;
   std::uint64_t jobs_ = 0, chunks_ = 0;
 };
 

@@ -109,14 +109,21 @@ MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
   result.chunk = job.chunk;
   result.urgency = job.urgency;
   MeshNeighbours neighbours{};
-  for (std::size_t i = 0; i < neighbours.size(); ++i) neighbours[i] = job.neighbours[i].get();
+  MeshBorders borders{};
+  for (std::size_t i = 0; i < neighbours.size(); ++i) {
+    neighbours[i] = job.neighbours[i].get();
+    borders[i] = job.borders[i].get();
+  }
   const std::int64_t start = clock_();
   if (job.before) {
     scratch.mesh = *job.before;
     result.layers_only = mesh_rdm_layers(*job.chunk, neighbours, visibility, job.changed.here,
                                          job.changed.beyond, scratch.rdm, scratch.mesh);
   } else {
-    mesh_rdm(*job.chunk, neighbours, visibility, scratch.rdm, scratch.mesh);
+    mesh_rdm(*job.chunk, neighbours, borders, visibility, scratch.rdm, scratch.mesh,
+             &scratch.borders);
+    if (!scratch.borders.empty())
+      result.borders = std::make_shared<const ChunkBorders>(scratch.borders);
   }
   result.layers = result.layers_only ? layers_of(job) : all_layers(job.chunk->extent);
   result.mesh = scratch.mesh.empty() ? empty_ : std::make_shared<const ChunkMesh>(scratch.mesh);

@@ -26,6 +26,7 @@ struct MeshResult {
   std::int32_t edge = 0;                 // voxels
   ShownPtr chunk;                        // the runs that were meshed
   MeshPtr mesh;                          // chunks without quads share one mesh
+  BordersPtr borders;                    // of the chunk; null unless all of it was meshed
   bool layers_only = false;              // the other layers are those of the previous mesh
   Urgency urgency = Urgency::terrain;    // of the job
   DirtyLayers layers;                    // that were meshed, of those in which a voxel changed
@@ -58,7 +59,9 @@ class MeshPool {
  private:
   struct Scratch {
     RdmScratch rdm;
-    ChunkMesh mesh;  // its capacity grows; the result is a copy of the right size
+    // Their capacities grow; the results are copies of the right size.
+    ChunkMesh mesh;
+    ChunkBorders borders;
   };
   void work(const std::stop_token& stop);
   MeshResult mesh(const MeshJob& job, const VisibilityTable& visibility, Scratch& scratch) const;

@@ -1,5 +1,6 @@
-// Bit rows: one line of a layer as bits, in the narrowest integer that holds it. Sides up to 64
-// need a Row64, longer sides a Row128. Code that works on rows is a template over the two.
+// Bit rows: one line of a layer as bits, in the narrowest integer that holds it: a Row32 for sides
+// up to 32, a Row64 for sides up to 64, a Row128 for longer ones. Code that works on rows is a
+// template over the three.
 #pragma once
 #include <array>
 #include <bit>
@@ -8,6 +9,7 @@
 
 namespace runstone {
 
+using Row32 = std::uint32_t;
 using Row64 = std::uint64_t;
 __extension__ using Row128 = unsigned __int128;
 
@@ -21,18 +23,23 @@ constexpr Row bits_below(unsigned count) {
 }
 
 /// Returns the place of the lowest set bit, or kRowBits<Row> if there is none.
+constexpr unsigned lowest_bit(Row32 row) { return static_cast<unsigned>(std::countr_zero(row)); }
 constexpr unsigned lowest_bit(Row64 row) { return static_cast<unsigned>(std::countr_zero(row)); }
 constexpr unsigned lowest_bit(Row128 row) {
   const auto low = static_cast<Row64>(row);
   return low != 0 ? lowest_bit(low) : 64 + lowest_bit(static_cast<Row64>(row >> 64));
 }
 
+constexpr unsigned bit_count(Row32 row) { return static_cast<unsigned>(std::popcount(row)); }
 constexpr unsigned bit_count(Row64 row) { return static_cast<unsigned>(std::popcount(row)); }
 constexpr unsigned bit_count(Row128 row) {
   return bit_count(static_cast<Row64>(row)) + bit_count(static_cast<Row64>(row >> 64));
 }
 
 /// Returns the place of the highest set bit. Requires row != 0.
+constexpr unsigned highest_bit(Row32 row) {
+  return 31u - static_cast<unsigned>(std::countl_zero(row));
+}
 constexpr unsigned highest_bit(Row64 row) {
   return 63u - static_cast<unsigned>(std::countl_zero(row));
 }

@@ -161,9 +161,14 @@ bool equal_borders(const RunChunk& chunk, const ChunkBorders& a, const ChunkBord
     if (a.bit_axis(side) != b.bit_axis(side) || a.row_count(side) != b.row_count(side) ||
         a.row_words(side) != b.row_words(side) ||
         a.has_transparent(side) != b.has_transparent(side) ||
-        !std::equal(a.rows(side), a.rows(side) + words, b.rows(side))) {
+        !std::equal(a.rows(side), a.rows(side) + words, b.rows(side)) ||
+        !std::ranges::equal(a.transparent_materials(side), b.transparent_materials(side))) {
       return false;
     }
+    if (a.has_transparent(side) &&
+        !std::equal(a.transparent_rows(side), a.transparent_rows(side) + words,
+                    b.transparent_rows(side)))
+      return false;
   }
   return true;
 }

@@ -149,7 +149,7 @@ class LayerReader {
         const std::uint32_t at = first + bit;
         const Row64 low = marks[at / 64] >> (at % 64);
         const Row64 high = at % 64 == 0 ? 0 : marks[at / 64 + 1] << (64 - at % 64);
-        row |= Row{low | high} << bit;
+        row |= static_cast<Row>(low | high) << bit;
       }
       rows[s] = row & valid;
     }

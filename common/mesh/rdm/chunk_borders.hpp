@@ -1,11 +1,12 @@
-// ChunkBorders: the opaque voxels of the six outermost layers of a chunk, one bit per voxel. It is
-// the helper structure for borders that thesis 9.1 proposes. A holder that keeps it beside a chunk
-// saves the meshes of the six neighbours from reading runs that lie far from them. It pays where
-// whole chunks are meshed again and again. The client of this project meshes most chunks once and
-// does not keep it (docs/meshing.md).
+// ChunkBorders: which voxels of the six outermost layers of a chunk are opaque, which are transparent,
+// and of which materials the transparent ones are. It is the helper structure for borders that
+// thesis 9.1 proposes: a chunk whose neighbours have it is meshed without reading their runs. A mesh
+// of a chunk makes the chunk's own borders at little cost (mesh_rdm()). The client keeps them beside
+// the meshes (client/schedule/mesh_planner.hpp).
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/core/coords.hpp"
@@ -18,14 +19,23 @@ class ChunkBorders {
  public:
   /// Replaces all six sides by those of `chunk`. For a chunk of one material nothing is kept,
   /// because its single run is a shorter summary. The contents hold for this version of the chunk
-  /// and this table. Allocates for the first chunk of a size. Cost: O(runs).
+  /// and this table. Allocates only to grow. Cost: O(runs), and O(voxels of a side) for each side
+  /// with transparent voxels.
   void read(const RunChunk& chunk, const VisibilityTable& visibility);
 
-  /// Does the same from rows that are known: those of each side, with bits and rows along the axes
-  /// of side_axes(), and whether each side has transparent voxels.
+  /// The voxels of one side as rows of bits, in any type of unsigned integer.
   template <class Rows>
-  void keep(const RunChunk& chunk, const std::array<Rows, kDirectionCount>& sides,
-            const std::array<bool, kDirectionCount>& transparent);
+  struct SideRows {
+    const Rows& opaque;
+    const Rows& transparent;  // not read if there are no materials
+    /// The materials of the transparent voxels, in the order of rows and bits. One material may
+    /// stand for all of them. Empty if there are no transparent voxels.
+    std::span<const Material> materials;
+  };
+  /// Replaces all six sides by known ones. Bits and rows lie along the axes of side_axes(), and the
+  /// sides are in its order, the negative one first.
+  template <class Rows>
+  void keep(const RunChunk& chunk, const std::array<SideRows<Rows>, kDirectionCount>& sides);
 
   bool empty() const { return words_.empty(); }
   /// Returns true if extent and axis order are those of the chunk, and the borders are of a chunk
@@ -34,34 +44,49 @@ class ChunkBorders {
     return !empty() && extent_ == chunk.extent && order_ == chunk.order;
   }
   /// Returns true if a side has transparent voxels.
-  bool has_transparent(Direction side) const {
-    return transparent_[static_cast<std::size_t>(side)];
-  }
+  bool has_transparent(Direction side) const { return at(side).materials != 0; }
   /// Returns the axis along the bits of a side's rows.
-  Axis bit_axis(Direction side) const { return bit_axis_[static_cast<std::size_t>(side)]; }
+  Axis bit_axis(Direction side) const { return at(side).bit_axis; }
+  std::size_t row_words(Direction side) const { return at(side).row_words; }
+  std::size_t row_count(Direction side) const { return at(side).row_count; }
   /// Returns the opaque voxels of a side, in rows of row_words() words, lowest bits first.
-  const std::uint32_t* rows(Direction side) const {
-    return words_.data() + first_[static_cast<std::size_t>(side)];
+  const std::uint32_t* rows(Direction side) const { return words_.data() + at(side).first; }
+  /// Returns the transparent voxels of a side in the same form. Requires has_transparent().
+  const std::uint32_t* transparent_rows(Direction side) const {
+    return rows(side) + row_words(side) * row_count(side);
   }
-  std::size_t row_words(Direction side) const { return row_words_[static_cast<std::size_t>(side)]; }
-  std::size_t row_count(Direction side) const { return row_count_[static_cast<std::size_t>(side)]; }
+  /// Returns the materials of a side's transparent voxels: one if all are of one material, otherwise
+  /// one for each voxel, in the order of rows and bits.
+  std::span<const Material> transparent_materials(Direction side) const {
+    return std::span(materials_).subspan(at(side).first_material, at(side).materials);
+  }
   /// Returns the heap bytes allocated.
-  std::size_t byte_size() const { return words_.capacity() * sizeof(std::uint32_t); }
+  std::size_t byte_size() const {
+    return words_.capacity() * sizeof(std::uint32_t) + materials_.capacity() * sizeof(Material);
+  }
 
  private:
-  void lay_out(const RunChunk& chunk);
+  struct Side {
+    Axis bit_axis{};
+    std::uint8_t row_words = 0, row_count = 0;
+    std::uint16_t first = 0;           // in words_
+    std::uint32_t first_material = 0;  // in materials_
+    std::uint16_t materials = 0;
+  };
+  const Side& at(Direction side) const { return sides_[static_cast<std::size_t>(side)]; }
+  void begin(const RunChunk& chunk);
   template <class Row>
   void read_sides(const RunChunk& chunk, const VisibilityTable& visibility);
   template <class Rows>
-  void keep_side(Direction side, const Rows& rows);
+  void keep_side(const RunChunk& chunk, Direction direction, Axis bit_axis, Axis row_axis,
+                 const SideRows<Rows>& rows);
 
-  std::vector<std::uint32_t> words_;
+  std::vector<std::uint32_t> words_;  // of each side: the opaque rows, then the transparent ones
+  std::vector<Material> materials_;
+  std::vector<Material> layer_;  // scratch of read()
   Extent extent_;
   AxisOrder order_{};
-  std::array<std::uint16_t, kDirectionCount> first_{};
-  std::array<std::uint8_t, kDirectionCount> row_words_{}, row_count_{};
-  std::array<Axis, kDirectionCount> bit_axis_{};
-  std::array<bool, kDirectionCount> transparent_{};
+  std::array<Side, kDirectionCount> sides_;
 };
 
 }  // namespace runstone

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "common/mesh/visibility.hpp"
@@ -54,6 +55,8 @@ class ChunkPalette {
 
   std::size_t transparent_count() const { return of_class_[1].size(); }
   bool has_transparent() const { return transparent_count() != 0; }
+  /// Returns the transparent materials, by number.
+  std::span<const Material> transparent() const { return of_class_[1]; }
   /// Returns the number of materials that are not empty.
   std::size_t solid_count() const { return of_class_[0].size() + of_class_[1].size(); }
   /// Returns the material that is not empty. Requires that there is only one.

@@ -27,43 +27,43 @@ class ChunkSides {
   using Lanes = typename Traits::Lanes;
   using Row = typename Traits::Row;
 
+  using Index = typename Traits::Index;
+
  public:
   ChunkSides(const SweepInput& input, SweepState<Row>& state)
       : st_(state),
+        palette_(input.palette),
         e_(input.extent),
-        mixed_(Traits::kManyMaterials && input.palette->has_transparent()) {}
+        mixed_(Traits::kManyMaterials && input.palette->has_transparent()),
+        lists_materials_(mixed_ && input.palette->transparent_count() > 1) {
+    for (OwnSide<Row>& side : st_.own_sides) {
+      side.has_transparent = false;
+      side.materials.clear();
+    }
+  }
 
-  /// Adds the part of layer s, in slot `slot`, to the sides. Requires hiding rows that are its
-  /// opaque ones.
+  /// Adds the part of layer s to the sides. `slot` is that of the layer, or of an earlier layer
+  /// that it repeats. Requires hiding rows that are its opaque ones.
   void find(std::uint32_t s, unsigned slot) {
     const Row* const opaque = st_.hiding[slot].data();
-    auto& sides = st_.chunk_sides;
-    sides[at(Side::mid_neg)][s] = opaque[0];
-    sides[at(Side::mid_pos)][s] = opaque[e_.m - 1];
-    sides[at(Side::fast_neg)][s] = first_column(opaque);
-    sides[at(Side::fast_pos)][s] = last_column(opaque);
-    if (s == 0) std::copy_n(opaque, e_.m, sides[at(Side::slow_neg)].data());
-    if (s + 1 == e_.s) std::copy_n(opaque, e_.m, sides[at(Side::slow_pos)].data());
-    if (s == 0) st_.sides_transparent.fill(false);
+    const std::uint32_t last = e_.m - 1;
+    side(Side::mid_neg).opaque[s] = opaque[0];
+    side(Side::mid_pos).opaque[s] = opaque[last];
+    side(Side::fast_neg).opaque[s] = first_column(opaque);
+    side(Side::fast_pos).opaque[s] = last_column(opaque);
+    if (s == 0) std::copy_n(opaque, e_.m, side(Side::slow_neg).opaque.data());
+    if (s + 1 == e_.s) std::copy_n(opaque, e_.m, side(Side::slow_pos).opaque.data());
     if (!mixed_) return;
     const Row* const clear = st_.transparent.data();
-    auto& found = st_.sides_transparent;
-    found[at(Side::mid_neg)] |= clear[0] != 0;
-    found[at(Side::mid_pos)] |= clear[e_.m - 1] != 0;
-    found[at(Side::fast_neg)] |= first_column(clear) != 0;
-    found[at(Side::fast_pos)] |= last_column(clear) != 0;
-    const bool any = std::any_of(clear, clear + e_.m, [](Row row) { return row != 0; });
-    if (s == 0) found[at(Side::slow_neg)] = any;
-    if (s + 1 == e_.s) found[at(Side::slow_pos)] = any;
-  }
-  /// Does the same for a layer s that repeats the previous layer, which is in slot `slot`.
-  void repeat(std::uint32_t s, unsigned slot) {
-    auto& sides = st_.chunk_sides;
-    for (const Side side : kLayerSides) sides[at(side)][s] = sides[at(side)][s - 1];
-    if (s + 1 != e_.s) return;
-    std::copy_n(st_.hiding[slot].data(), e_.m, sides[at(Side::slow_pos)].data());
-    // The layer has one material: if any voxel is transparent, those of the first line are.
-    st_.sides_transparent[at(Side::slow_pos)] = mixed_ && st_.transparent.data()[0] != 0;
+    const Index* const indices = st_.template indices<Index>()[slot].data();
+    add(Side::mid_neg, s, clear[0], indices, 1);
+    add(Side::mid_pos, s, clear[last], indices + last * e_.f, 1);
+    add(Side::fast_neg, s, first_column(clear), indices, e_.f);
+    add(Side::fast_pos, s, last_column(clear), indices + e_.f - 1, e_.f);
+    for (std::uint32_t m = 0; m < e_.m; ++m) {
+      if (s == 0) add(Side::slow_neg, m, clear[m], indices + m * e_.f, 1);
+      if (s + 1 == e_.s) add(Side::slow_pos, m, clear[m], indices + m * e_.f, 1);
+    }
   }
 
  private:
@@ -71,10 +71,22 @@ class ChunkSides {
   Row last_column(const Row* rows) const {
     return column_of<Lanes, Row>(rows, e_.m, Row{1} << (e_.f - 1));
   }
+  OwnSide<Row>& side(Side side) { return st_.own_sides[at(side)]; }
+  /// Sets a row of transparent voxels. The index of bit i is indices[i * step].
+  void add(Side side, std::uint32_t row, Row clear, const Index* indices, std::uint32_t step) {
+    OwnSide<Row>& own = this->side(side);
+    own.transparent[row] = clear;
+    own.has_transparent |= clear != 0;
+    if (!lists_materials_) return;
+    for (; clear != 0; clear &= clear - 1)
+      own.materials.push_back(palette_->material(indices[lowest_bit(clear) * step]));
+  }
 
   SweepState<Row>& st_;
+  const ChunkPalette* palette_;
   const OrderedExtent e_;
-  const bool mixed_;  // some materials are transparent and others are not
+  const bool mixed_;            // some materials are transparent and others are not
+  const bool lists_materials_;  // more than one is transparent
 };
 
 }  // namespace HWY_NAMESPACE

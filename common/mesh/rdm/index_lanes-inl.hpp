@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -23,11 +25,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// The plain path: one index at a time.
 struct PlainIndices {
-  /// Number of indices that fill() may write behind `stop`.
-  template <class Index>
+  /// Number of indices that fill() may write behind `stop`, in chunks whose lines fit a Row.
+  template <class Row, class Index>
   static constexpr unsigned kBehind = 0;
 
-  template <class Index>
+  template <class Row, class Index>
   static void fill(Index* from, const Index* stop, Index index) {
     for (; from < stop; ++from) *from = index;
   }
@@ -69,28 +71,31 @@ struct PlainIndices {
 };
 
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
-/// A vector of indices at a time.
+/// A vector of indices at a time, or as many as a line has.
 struct VectorIndices {
-  template <class Index>
-  using D = hn::CappedTag<Index, 64>;
-  template <class Index>
-  static constexpr unsigned kBehind = hn::MaxLanes(D<Index>());
+  template <class Row, class Index>
+  using D = hn::CappedTag<Index, std::min(kRowBits<Row>, 64u)>;
+  template <class Row, class Index>
+  static constexpr unsigned kBehind = hn::MaxLanes(D<Row, Index>());
 
-  template <class Index>
+  template <class Row, class Index>
   static HWY_INLINE void fill(Index* from, const Index* stop, Index index) {
-    const D<Index> d;
+    constexpr auto kStep = static_cast<std::ptrdiff_t>(kBehind<Row, Index>);
+    const D<Row, Index> d;
     const auto v = hn::Set(d, index);
+    hn::StoreU(v, d, from);
+    if (HWY_LIKELY(stop - from <= kStep)) return;  // most runs are shorter than a line
     do {
+      from += kStep;
       hn::StoreU(v, d, from);
-      from += kBehind<Index>;
-    } while (from < stop);
+    } while (stop - from > kStep);
   }
 
   template <class Row>
   static HWY_INLINE void put(Row row, std::uint8_t value, std::uint8_t* to) {
-    const D<std::uint8_t> d;
+    const D<Row, std::uint8_t> d;
     const auto v = hn::Set(d, value);
-    for (unsigned i = 0; i < kRowBits<Row>; i += kBehind<std::uint8_t>) {
+    for (unsigned i = 0; i < kRowBits<Row>; i += kBehind<Row, std::uint8_t>) {
       const auto bits = static_cast<std::uint64_t>(row >> i);
       std::uint8_t bytes[8];
       std::memcpy(bytes, &bits, sizeof bytes);
@@ -100,20 +105,22 @@ struct VectorIndices {
 
   template <class Row, class Index>
   class Line {
+    using Tag = D<Row, Index>;
+    static constexpr unsigned kLanes = hn::MaxLanes(Tag());
+
    public:
     static HWY_INLINE Line at(const Index* indices) {
       Line line;
-      for (unsigned i = 0; i < kParts; ++i)
-        line.part_[i] = hn::LoadU(D<Index>(), indices + i * kBehind<Index>);
+      for (unsigned i = 0; i < kParts; ++i) line.part_[i] = hn::LoadU(Tag(), indices + i * kLanes);
       return line;
     }
     HWY_INLINE Row solid() const {
-      return gather([this](unsigned i) { return hn::Ne(part_[i], hn::Zero(D<Index>())); });
+      return gather([this](unsigned i) { return hn::Ne(part_[i], hn::Zero(Tag())); });
     }
     HWY_INLINE Row transparent() const {
-      const hn::RebindToSigned<D<Index>> s;
+      const hn::RebindToSigned<Tag> s;
       return gather([&](unsigned i) {
-        return hn::RebindMask(D<Index>(), hn::Lt(hn::BitCast(s, part_[i]), hn::Zero(s)));
+        return hn::RebindMask(Tag(), hn::Lt(hn::BitCast(s, part_[i]), hn::Zero(s)));
       });
     }
     friend HWY_INLINE Row differing(const Line& a, const Line& b) {
@@ -121,20 +128,20 @@ struct VectorIndices {
     }
 
    private:
-    static constexpr unsigned kParts = kRowBits<Row> / kBehind<Index>;
+    static constexpr unsigned kParts = kRowBits<Row> / kLanes;
     template <class F>
     static HWY_INLINE Row gather(F&& mask_of) {
       Row row = 0;
       for (unsigned i = 0; i < kParts; ++i) {
         std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(D<Index>(), mask_of(i), bytes);
+        hn::StoreMaskBits(Tag(), mask_of(i), bytes);
         std::uint64_t bits = 0;
         std::memcpy(&bits, bytes, sizeof bits);
-        row |= Row{bits} << (i * kBehind<Index>);
+        row |= static_cast<Row>(bits) << (i * kLanes);
       }
       return row;
     }
-    hn::Vec<D<Index>> part_[kParts];
+    hn::Vec<Tag> part_[kParts];
   };
 };
 #else

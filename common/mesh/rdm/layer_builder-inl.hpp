@@ -24,6 +24,12 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
+/// Where the rows of a layer are written, as SweepState names them.
+template <class Row>
+struct LayerMarks {
+  Row *solid, *hiding, *transparent, *fast, *mid, *slow;
+};
+
 /// Traits: a SweepTraits.
 template <class Traits>
 class LayerBuilder {
@@ -34,11 +40,11 @@ class LayerBuilder {
   using Line = typename Traits::Line;
   using Rows = LayerRows<Row>;
   static constexpr bool kManyMaterials = Traits::kManyMaterials;
-  static_assert(IndexLanes::template kBehind<Index> <= LayerIndices<Row, Index>::kRoom);
+  static_assert(IndexLanes::template kBehind<Row, Index> <= LayerIndices<Row, Index>::kRoom);
 
  public:
   LayerBuilder(const SweepInput& input, const Borders<Row>& borders, SweepState<Row>& state)
-      : in_(input),
+      : runs_(input.runs),
         borders_(borders),
         st_(state),
         indices_(state.template indices<Index>()),
@@ -49,7 +55,7 @@ class LayerBuilder {
   /// Advances to layer s. Call it once per layer, in order from 0, even for layers that are not
   /// built.
   void advance_to(std::uint32_t s) {
-    if (runs()[run_].end == s * e_.layer()) ++run_;
+    if (runs_.end(run_) == s * e_.layer()) ++run_;
   }
 
   /// Returns true if the current layer s and the previous one are of the same single material and
@@ -57,13 +63,13 @@ class LayerBuilder {
   /// != 0.
   bool repeats(std::uint32_t s) const {
     const std::uint32_t begin = s * e_.layer();
-    const PaletteRun& run = runs()[run_];
-    const std::uint32_t run_begin = run_ == 0 ? 0 : runs()[run_ - 1].end;
-    if (run_begin + e_.layer() > begin || run.end < begin + e_.layer()) return false;
-    if (run.index == 0) return true;
+    const std::uint32_t run_begin = run_ == 0 ? 0 : runs_.end(run_ - 1);
+    if (run_begin + e_.layer() > begin || runs_.end(run_) < begin + e_.layer()) return false;
+    const PaletteIndex index = full_index(runs_.template index<Index>(run_));
+    if (index == 0) return true;
     for (const Side side : kLayerSides) {
       if (borders_.hiding[at(side)][s] != borders_.hiding[at(side)][s - 1]) return false;
-      if (borders_.meets[at(side)] && (run.index & kTransparentBit) != 0) return false;
+      if (borders_.meets[at(side)] && (index & kTransparentBit) != 0) return false;
     }
     return true;
   }
@@ -71,40 +77,22 @@ class LayerBuilder {
   /// Writes the indices and the rows of the current layer s from the runs that lie in it.
   void build(std::uint32_t s, LayerPair layers) {
     decode(s, indices_[layers.current].data());
-    const Index* line = indices_[layers.current].data();
-    const Index* line_previous = indices_[layers.previous].data();
-    Row* const solid = st_.solid[layers.current].data();
-    Row* const hiding = st_.hiding[layers.current].data();
-    Row* const transparent = st_.transparent.data();
-    Row* const fast = st_.cut_fast[layers.current].data();
-    Row* const mid = st_.cut_mid[layers.current].data();
-    Row* const slow = st_.cut_slow.data();
+    const Index* const first = indices_[layers.current].data();
+    const LayerMarks<Row> marks = {st_.solid[layers.current].data(),
+                                   st_.hiding[layers.current].data(),
+                                   st_.transparent.data(),
+                                   st_.cut_fast[layers.current].data(),
+                                   st_.cut_mid[layers.current].data(),
+                                   st_.cut_slow.data()};
+    mark_lines(first, indices_[layers.previous].data(), marks);
     const std::uint32_t count = e_.m;
-    Line above = Line::at(line - e_.f);
-    for (std::uint32_t m = 0; m < count; ++m, line += e_.f, line_previous += e_.f) {
-      const Line current = Line::at(line);
-      const Row faced = current.solid() & valid_;
-      solid[m] = faced;
-      hiding[m] = faced;
-      if constexpr (kManyMaterials) {
-        if (mixed_) {
-          transparent[m] = current.transparent() & valid_;
-          hiding[m] = faced & ~transparent[m];
-        }
-        fast[m] = differing(current, Line::at(line - 1)) | 1;
-        mid[m] = differing(current, above);
-        slow[m] = differing(current, Line::at(line_previous));
-        above = current;
-      }
-    }
-    std::fill_n(solid + count, Rows::kBehind, Row{0});
+    std::fill_n(marks.solid + count, Rows::kBehind, Row{0});
     if constexpr (kManyMaterials) {
-      mid[0] = mid[count] = ~Row{0};
-      if (s == 0) std::fill_n(slow, count, ~Row{0});
+      marks.mid[0] = marks.mid[count] = ~Row{0};
+      if (s == 0) std::fill_n(marks.slow, count, ~Row{0});
     }
-    hiding[-1] = hide_middle(Side::mid_neg, s, indices_[layers.current].data());
-    hiding[count] =
-        hide_middle(Side::mid_pos, s, indices_[layers.current].data() + (count - 1) * e_.f);
+    marks.hiding[-1] = hide_middle(Side::mid_neg, s, first);
+    marks.hiding[count] = hide_middle(Side::mid_pos, s, first + (count - 1) * e_.f);
   }
 
   /// Writes the voxels beyond a slow side into the hiding rows of slot `slot`, as if they were a
@@ -137,21 +125,41 @@ class LayerBuilder {
   }
 
  private:
-  const PaletteRun* runs() const { return in_.runs.data(); }
-
   /// Writes the indices of layer s to `first`, and some behind them.
   void decode(std::uint32_t s, Index* first) {
     const std::uint32_t begin = s * e_.layer();
     const std::uint32_t end = begin + e_.layer();
+    const IndexedRuns runs = runs_;  // a copy: the compiler takes written bytes for its members
     Index* to = first;
-    const PaletteRun* run = runs() + run_;
-    for (; run->end < end; ++run) {
-      Index* const stop = first + (run->end - begin);
-      IndexLanes::fill(to, stop, index_as<Index>(run->index));
+    std::size_t run = run_;
+    for (std::uint32_t run_end; (run_end = runs.end(run)) < end; ++run) {
+      Index* const stop = first + (run_end - begin);
+      IndexLanes::template fill<Row>(to, stop, runs.template index<Index>(run));
       to = stop;
     }
-    IndexLanes::fill(to, first + e_.layer(), index_as<Index>(run->index));
-    run_ = static_cast<std::size_t>(run - runs());
+    IndexLanes::template fill<Row>(to, first + e_.layer(), runs.template index<Index>(run));
+    run_ = run;
+  }
+
+  /// Writes the rows of a layer from its indices and those of the previous layer.
+  void mark_lines(const Index* line, const Index* line_previous, const LayerMarks<Row>& to) {
+    Line above = Line::at(line - e_.f);
+    for (std::uint32_t m = 0; m < e_.m; ++m, line += e_.f, line_previous += e_.f) {
+      const Line current = Line::at(line);
+      const Row faced = current.solid() & valid_;
+      to.solid[m] = faced;
+      to.hiding[m] = faced;
+      if constexpr (kManyMaterials) {
+        if (mixed_) {
+          to.transparent[m] = current.transparent() & valid_;
+          to.hiding[m] = faced & ~to.transparent[m];
+        }
+        to.fast[m] = differing(current, Line::at(line - 1)) | 1;
+        to.mid[m] = differing(current, above);
+        to.slow[m] = differing(current, Line::at(line_previous));
+        above = current;
+      }
+    }
   }
 
   /// Returns the bits that hide the faces of a middle side in layer s. `line` is the chunk's line
@@ -174,8 +182,9 @@ class LayerBuilder {
     if (const auto& theirs = borders_.indices[at(side)]; !theirs.empty()) {
       for (Row left = same; left != 0; left &= left - 1) {
         const unsigned bit = lowest_bit(left);
-        if (full_index(index_at(bit)) != theirs[std::size_t{row} * bits + bit])
-          same ^= Row{1} << bit;
+        const PaletteIndex index =
+            theirs.size() == 1 ? theirs.front() : theirs[std::size_t{row} * bits + bit];
+        if (full_index(index_at(bit)) != index) same ^= Row{1} << bit;
       }
     }
     return same;
@@ -186,7 +195,7 @@ class LayerBuilder {
     return same_beyond(side, row, e_.f, ours, [line](unsigned bit) { return line[bit]; });
   }
 
-  const SweepInput& in_;
+  const IndexedRuns runs_;
   const Borders<Row>& borders_;
   SweepState<Row>& st_;
   typename SweepState<Row>::template Indices<Index>& indices_;

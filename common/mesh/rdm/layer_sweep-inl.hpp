@@ -50,7 +50,7 @@ class Sweep {
     for (std::uint32_t s = 0; s < e_.s; ++s) {
       builder_.advance_to(s);
       if (s != 0 && builder_.repeats(s)) {
-        if (wants_chunk_sides_) chunk_sides_.repeat(s, layers_.previous);
+        if (wants_chunk_sides_) chunk_sides_.find(s, layers_.previous);
         continue;
       }
       builder_.build(s, layers_);
@@ -175,7 +175,7 @@ class Sweep {
     return Lanes::any(x);
   }
   static HWY_INLINE void add(RowSet& set, std::uint64_t lanes, std::uint32_t m) {
-    set |= Row{lanes} << m;
+    set |= static_cast<Row>(lanes) << m;
   }
 
   /// Ends the sweep as if a layer without faces followed the last one, which is in the previous
@@ -229,7 +229,8 @@ void sweep(const SweepInput& input, const Borders<typename Lanes::Row>& borders,
            SweepState<typename Lanes::Row>& state) {
   const OrderedExtent& e = input.extent;
   RUNSTONE_ASSERT(std::max({e.f, e.m, e.s}) <= kRowBits<typename Lanes::Row>);
-  RUNSTONE_ASSERT(!input.runs.empty() && input.runs.back().end == e.layer() * e.s);
+  RUNSTONE_ASSERT(input.runs.size() != 0 &&
+                  input.runs.end(input.runs.size() - 1) == e.layer() * e.s);
   RUNSTONE_ASSERT(input.palette->solid_count() != 0);
   if (input.palette->solid_count() == 1) {
     Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, false>>(input, borders, state).run();

@@ -16,6 +16,7 @@ namespace runstone::rdm {
 /// Puts the quads of the chunk into the buckets, with the best instruction set of the machine.
 /// Requires sides up to kRowBits<Row>, runs that tile the extent and at least one material that is
 /// not empty.
+void sweep_layers(const SweepInput& input, const Borders<Row32>& borders, SweepState<Row32>& state);
 void sweep_layers(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state);
 void sweep_layers(const SweepInput& input, const Borders<Row128>& borders,
                   SweepState<Row128>& state);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
+#include <functional>
 #include <memory>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 #include "common/core/assert.hpp"
@@ -34,36 +36,42 @@ using rdm::side_of;
 using rdm::SideAxes;
 using Scratch = RdmScratch::State;
 
-/// Assigns palette indices to the materials of the chunk and lists its runs by index.
-void index_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch& scratch) {
-  scratch.palette.clear();
-  scratch.runs.resize(chunk.runs.size());
-  chunk.runs.visit([&, out = scratch.runs.data()](const auto& runs) {
-    rdm::ChunkPalette& palette = scratch.palette;
-    const std::size_t size = runs.size();
-    for (std::size_t i = 0; i < size; ++i)
-      out[i] = {runs.end(i), palette.index_of(runs.material(i), visibility)};
-  });
-  // A single transparent material is meshed as a single opaque one.
-  if (scratch.palette.solid_count() == 1 && scratch.palette.has_transparent()) {
-    for (rdm::PaletteRun& run : scratch.runs) run.index = run.index != 0 ? 1 : 0;
+/// Assigns palette indices to the materials of the chunk and lists those of its runs.
+rdm::IndexedRuns index_runs(const RunChunk& chunk, const VisibilityTable& visibility,
+                            Scratch& scratch) {
+  rdm::ChunkPalette& palette = scratch.palette;
+  palette.clear();
+  const auto list = [&](auto& indices) {
+    indices.resize(chunk.runs.size());
+    chunk.runs.visit([&, out = indices.data()](const auto& runs) {
+      const std::size_t size = runs.size();
+      for (std::size_t i = 0; i < size; ++i)
+        out[i] = rdm::index_as<std::decay_t<decltype(*out)>>(
+            palette.index_of(runs.material(i), visibility));
+    });
+  };
+  list(scratch.byte_indices);
+  if (!palette.fit_bytes()) {
+    list(scratch.full_indices);
+    return {chunk.runs, nullptr, scratch.full_indices.data()};
   }
+  // A single transparent material is meshed as a single opaque one.
+  if (palette.solid_count() == 1 && palette.has_transparent()) {
+    for (rdm::BytePaletteIndex& index : scratch.byte_indices) index = index != 0 ? 1 : 0;
+  }
+  return {chunk.runs, scratch.byte_indices.data(), nullptr};
 }
 
-/// Copies the rows of bits that a neighbour's holder keeps, in the chunk's orientation.
+/// Copies rows of bits that a neighbour's borders keep, in the chunk's orientation.
 template <class Rows>
-void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side, Axis bit_axis,
-                 Rows& out) {
+void copy_rows(const ChunkBorders& kept, Direction side, const std::uint32_t* from, Axis bit_axis,
+               Rows& out) {
   using Row = typename Rows::value_type;
-  RUNSTONE_ASSERT(borders.fits(of));
-  const std::uint32_t* from = borders.rows(side);
-  const std::size_t words = borders.row_words(side);
-  const std::size_t count = borders.row_count(side);
+  const std::size_t words = kept.row_words(side);
+  const std::size_t count = kept.row_count(side);
   if (words == 1) {
     std::copy_n(from, count, out.begin());
-  } else if (words == 2) {
-    for (std::size_t r = 0; r < count; ++r) out[r] = from[2 * r] | Row{from[2 * r + 1]} << 32;
-  } else {
+  } else if constexpr (sizeof(Row) > sizeof(*from)) {
     for (std::size_t r = 0; r < count; ++r) {
       Row row = 0;
       for (std::size_t w = words; w != 0; --w) row = row << 32 | from[w - 1];
@@ -71,9 +79,36 @@ void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side
       out[r] = row;
     }
   }
-  if (borders.bit_axis(side) == bit_axis) return;
+  if (kept.bit_axis(side) == bit_axis) return;
   std::fill(out.begin() + static_cast<std::ptrdiff_t>(count), out.end(), Row{0});
   transpose(out);
+}
+
+/// Finds the voxels of a kept side, of several transparent materials, whose material the chunk has.
+template <class Row>
+void find_known(const ChunkBorders& kept, Direction side, Axis bit_axis, std::size_t bits,
+                std::size_t row_count, const rdm::ChunkPalette& palette, std::size_t at,
+                rdm::Borders<Row>& borders) {
+  auto& known = borders.transparent[at];
+  known.fill(0);
+  const bool is_turned = kept.bit_axis(side) != bit_axis;
+  const std::size_t words = kept.row_words(side), rows = kept.row_count(side);
+  auto& indices = borders.indices[at];
+  if (palette.transparent_count() > 1) indices.resize(bits * row_count);
+  const std::uint32_t* word = kept.transparent_rows(side);
+  const Material* material = kept.transparent_materials(side).data();
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t w = 0; w < words; ++w, ++word) {
+      for (std::uint32_t left = *word; left != 0; left &= left - 1) {
+        const PaletteIndex index = palette.transparent_index(*material++);
+        if (index == 0) continue;
+        const std::size_t bit = 32 * w + lowest_bit(Row64{left});
+        const std::size_t row_at = is_turned ? bit : r, bit_at = is_turned ? r : bit;
+        known[row_at] |= Row{1} << bit_at;
+        if (!indices.empty()) indices[row_at * bits + bit_at] = index;
+      }
+    }
+  }
 }
 
 /// Reads a border where transparent voxels may meet: the chunk has transparent materials among
@@ -115,12 +150,54 @@ void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
   }
   borders.hiding[at] = planes[0];
   borders.transparent[at] = planes[1];
-  borders.meets[at] =
-      std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; });
-  if (!borders.meets[at] || palette.transparent_count() == 1) return;
-  if (!dense) read_voxels();
-  std::transform(voxels.begin(), voxels.end(), std::back_inserter(borders.indices[at]),
-                 [&palette](Material material) { return palette.transparent_index(material); });
+  std::size_t known = 0;
+  for (const Row row : planes[1]) known += bit_count(row);
+  borders.meets[at] = known != 0;
+  if (known == 0 || palette.transparent_count() == 1) return;
+  // A few voxels are looked up one by one.
+  constexpr std::size_t kLookupsMax = 128;
+  const bool looks_up = !dense && known <= kLookupsMax;
+  if (!dense && !looks_up) read_voxels();
+  auto& indices = borders.indices[at];
+  indices.resize(std::size_t{bits} * rows);
+  std::array<std::uint8_t, 3> voxel{};
+  voxel[static_cast<std::size_t>(place.axis)] = static_cast<std::uint8_t>(place.at);
+  for (std::uint32_t r = 0; r < rows; ++r) {
+    voxel[static_cast<std::size_t>(place.row_axis())] = static_cast<std::uint8_t>(r);
+    for (Row left = planes[1][r]; left != 0; left &= left - 1) {
+      const std::uint32_t bit = lowest_bit(left);
+      voxel[static_cast<std::size_t>(place.bit_axis)] = static_cast<std::uint8_t>(bit);
+      const std::size_t i = std::size_t{r} * bits + bit;
+      indices[i] = palette.transparent_index(
+          looks_up ? material_at(neighbour, {voxel[0], voxel[1], voxel[2]}) : voxels[i]);
+    }
+  }
+}
+
+/// Does what read_border() does from the borders that the neighbour's holder keeps.
+template <class Row>
+void use_kept_border(const ChunkBorders& kept, Direction touching, const rdm::LayerPlace& place,
+                     std::uint32_t bits, std::uint32_t rows, const rdm::ChunkPalette& palette,
+                     std::size_t at, rdm::Borders<Row>& borders) {
+  auto& hiding = borders.hiding[at];
+  copy_rows(kept, touching, kept.rows(touching), place.bit_axis, hiding);
+  if (!palette.has_transparent() || !kept.has_transparent(touching)) return;
+  auto& known = borders.transparent[at];
+  const auto materials = kept.transparent_materials(touching);
+  if (materials.size() == 1) {
+    const PaletteIndex index = palette.transparent_index(materials.front());
+    if (index == 0) return;
+    copy_rows(kept, touching, kept.transparent_rows(touching), place.bit_axis, known);
+    if (palette.transparent_count() > 1) borders.indices[at].assign(1, index);
+  } else {
+    find_known(kept, touching, place.bit_axis, bits, rows, palette, at, borders);
+  }
+  if (palette.solid_count() == 1) {
+    // A single transparent material is meshed as a single opaque one.
+    std::transform(hiding.begin(), hiding.end(), known.begin(), hiding.begin(), std::bit_or<>());
+  } else {
+    borders.meets[at] = std::any_of(known.begin(), known.end(), [](Row row) { return row != 0; });
+  }
 }
 
 template <class Row>
@@ -140,11 +217,13 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
                   side_of(*neighbour, axes.row) == side_of(chunk, axes.row));
   const std::uint32_t layer = is_positive(direction) ? 0 : side_of(*neighbour, axes.layer) - 1;
   const rdm::LayerPlace place{axes.layer, axes.bit, layer};
+  if (kept != nullptr && !neighbour->is_uniform()) {
+    RUNSTONE_ASSERT(kept->fits(*neighbour));
+    return use_kept_border(*kept, opposite(direction), place, side_of(chunk, axes.bit),
+                           side_of(chunk, axes.row), palette, at, borders);
+  }
   std::array<typename rdm::Borders<Row>::Rows, 1> plane;
-  const Direction touching = opposite(direction);
-  const bool is_kept = kept != nullptr && !neighbour->is_uniform();
-  if (!palette.has_transparent() || (is_kept && !kept->has_transparent(touching))) {
-    if (is_kept) return copy_border(*kept, *neighbour, touching, axes.bit, hiding);
+  if (!palette.has_transparent()) {
     rdm::read_layer_rows(*neighbour, place, plane,
                          [table = visibility.data()](Material material) -> PaletteIndex {
                            return table[material] == Visibility::opaque ? 1 : 0;
@@ -164,15 +243,41 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
   read_mixed_border(*neighbour, place, visibility, scratch, at, borders);
 }
 
+/// Keeps the chunk's own sides, which the sweep has found.
 template <class Row>
-void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
+void keep_borders(const RunChunk& chunk, const rdm::ChunkPalette& palette,
+                  const rdm::SweepState<Row>& sweep, ChunkBorders& out) {
+  using Rows = std::array<Row, kRowBits<Row>>;
+  static constexpr Rows kNone{};
+  const auto axes = side_axes(chunk.order);
+  const bool single_transparent = palette.solid_count() == 1 && palette.has_transparent();
+  const auto side = [&](std::size_t i) -> ChunkBorders::SideRows<Rows> {
+    const rdm::OwnSide<Row>& own = sweep.own_sides[i];
+    std::span<const Material> materials;
+    if (single_transparent) {
+      // The sweep took this material for an opaque one.
+      const std::uint32_t rows = side_of(chunk, axes[i / 2].row);
+      if (std::any_of(own.opaque.begin(), own.opaque.begin() + rows, [](Row r) { return r != 0; }))
+        materials = palette.transparent();
+      return {kNone, own.opaque, materials};
+    }
+    if (own.has_transparent)
+      materials = palette.transparent_count() == 1 ? palette.transparent() : own.materials;
+    return {own.opaque, own.transparent, materials};
+  };
+  out.keep<Rows>(chunk, {side(0), side(1), side(2), side(3), side(4), side(5)});
+}
+
+template <class Row>
+void mesh_chunk(const RunChunk& chunk, const rdm::IndexedRuns& runs,
+                const MeshNeighbours& neighbours, const MeshBorders& borders,
                 ChunkBorders* chunk_borders, const VisibilityTable& visibility, Scratch& scratch,
                 std::unique_ptr<RowScratch<Row>>& rows) {
   if (!rows) rows = std::make_unique<RowScratch<Row>>();
   const auto axes = side_axes(chunk.order);
   const auto strips = rdm::strip_axes(chunk.order);
   rdm::SweepInput input;
-  input.runs = scratch.runs;
+  input.runs = runs;
   input.extent = ordered(chunk.extent, chunk.order);
   input.palette = &scratch.palette;
   input.opaque = &scratch.opaque;
@@ -187,13 +292,11 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
     read_border(chunk, direction, neighbours[d], borders[d], a, visibility, scratch,
                 static_cast<Side>(side), rows->borders);
   }
-  if (scratch.plain) {
-    rdm::sweep_layers_plain(input, rows->borders, rows->sweep);
-  } else {
-    rdm::sweep_layers(input, rows->borders, rows->sweep);
+  if constexpr (!std::is_same_v<Row, Row32>) {
+    if (scratch.plain) rdm::sweep_layers_plain(input, rows->borders, rows->sweep);
   }
-  if (chunk_borders != nullptr)
-    chunk_borders->keep(chunk, rows->sweep.chunk_sides, rows->sweep.sides_transparent);
+  if (!scratch.plain) rdm::sweep_layers(input, rows->borders, rows->sweep);
+  if (chunk_borders != nullptr) keep_borders(chunk, scratch.palette, rows->sweep, *chunk_borders);
 }
 
 /// Meshes a chunk of one material whose neighbours are missing or of one material each: whole
@@ -239,20 +342,23 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
     if (visibility[chunk.runs.material(0)] == Visibility::empty) return out.clear();
     if (mesh_uniform(chunk, neighbours, visibility, out)) return;
   }
-  index_runs(chunk, visibility, state);
-  const bool single_transparent =
-      state.palette.solid_count() == 1 && state.palette.has_transparent();
-  if (chunk_borders != nullptr && (state.palette.solid_count() == 0 || single_transparent)) {
-    // The sweep does not run, or does not distinguish this material from an opaque one.
-    chunk_borders->read(chunk, visibility);
-    chunk_borders = nullptr;
+  const rdm::IndexedRuns runs = index_runs(chunk, visibility, state);
+  if (state.palette.solid_count() == 0) {
+    if (chunk_borders != nullptr) chunk_borders->read(chunk, visibility);
+    return out.clear();
   }
-  if (state.palette.solid_count() == 0) return out.clear();
   const auto sides = chunk.extent.sides();
-  if (*std::max_element(sides.begin(), sides.end()) <= 64) {
-    mesh_chunk(chunk, neighbours, borders, chunk_borders, visibility, state, state.narrow);
+  const auto longest = *std::max_element(sides.begin(), sides.end());
+  const auto mesh_in = [&](auto& rows) {
+    mesh_chunk(chunk, runs, neighbours, borders, chunk_borders, visibility, state, rows);
+  };
+  // The plain path has no rows of 32 bits: it is not fast anyway.
+  if (longest <= 32 && !state.plain) {
+    mesh_in(state.rows_32);
+  } else if (longest <= 64) {
+    mesh_in(state.rows_64);
   } else {
-    mesh_chunk(chunk, neighbours, borders, chunk_borders, visibility, state, state.wide);
+    mesh_in(state.rows_128);
   }
   state.opaque.finish(sides, out.opaque);
   if (state.palette.has_transparent()) {

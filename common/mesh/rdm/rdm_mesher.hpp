@@ -52,12 +52,10 @@ class RdmScratch {
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out);
 
-/// Makes the same mesh with kept borders of neighbours. Requires borders that match `neighbours` as
-/// they are now: their runs are read only where transparent voxels may meet. If `chunk_borders` is
-/// not null, it becomes the result of chunk_borders->read(chunk, visibility), at little cost,
-/// because the sweep visits all of its voxels. It is for holders that mesh whole chunks again and
-/// again, such as the mesher benchmarks. The client does not keep borders: it remeshes single layers
-/// with mesh_rdm_layers().
+/// Makes the same mesh with kept borders of neighbours, whose runs are not read then. Requires
+/// borders that match `neighbours` as they are now. If `chunk_borders` is not null, it becomes the
+/// result of chunk_borders->read(chunk, visibility), at little cost, because the sweep visits all of
+/// its voxels.
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out,
               ChunkBorders* chunk_borders = nullptr);

@@ -43,9 +43,10 @@ struct OneRow {
 
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
 /// A step takes as many rows as a vector holds.
+template <class R>
 struct VectorRows {
-  using Row = Row64;
-  using D = hn::CappedTag<Row64, 8>;
+  using Row = R;
+  using D = hn::CappedTag<Row, 64 / sizeof(Row)>;
   using V = hn::Vec<D>;
   static constexpr unsigned kLanes = hn::MaxLanes(D());
   static HWY_INLINE V load(const Row* p) { return hn::LoadU(D(), p); }
@@ -61,15 +62,17 @@ struct VectorRows {
   static HWY_INLINE std::uint64_t any(V a) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(D(), hn::Ne(a, hn::Zero(D())), bytes);
-    return bytes[0];
+    return bytes[0] | std::uint64_t{bytes[1]} << 8;
   }
   static HWY_INLINE V where(std::uint64_t lanes, Row row) {
-    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(lanes)};
+    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(lanes),
+                                   static_cast<std::uint8_t>(lanes >> 8)};
     return hn::IfThenElseZero(hn::LoadMaskBits(D(), bytes), hn::Set(D(), row));
   }
 };
 #else
-using VectorRows = OneRow<Row64>;
+template <class R>
+using VectorRows = OneRow<R>;
 #endif
 
 /// Calls step(first row) for every step of whole vectors over `count` rows. The last step may
@@ -85,7 +88,7 @@ Row column_of(const Row* rows, std::uint32_t count, Row bit) {
   const auto wanted = Lanes::all(bit);
   Row column = 0;
   for_rows<Lanes>(count, [&](std::uint32_t m) {
-    column |= Row{Lanes::any(Lanes::both(Lanes::load(rows + m), wanted))} << m;
+    column |= static_cast<Row>(Lanes::any(Lanes::both(Lanes::load(rows + m), wanted))) << m;
   });
   return column & bits_below<Row>(count);
 }

@@ -38,7 +38,9 @@ namespace runstone {
 
 struct RdmScratch::State {
   rdm::ChunkPalette palette;
-  std::vector<rdm::PaletteRun> runs;
+  // The palette indices of the chunk's runs, in the type that the palette fits.
+  std::vector<rdm::BytePaletteIndex> byte_indices;
+  std::vector<rdm::PaletteIndex> full_indices;
   std::vector<Material> border_voxels;  // of a border layer, where transparent materials meet
   rdm::QuadBuckets opaque, transparent;
   std::array<rdm::LayerPatch, 2> patch;         // opaque and transparent
@@ -49,9 +51,10 @@ struct RdmScratch::State {
   std::array<std::array<Quad, kSideMax>, 2> strips;  // of the current row, by pass
   std::vector<Quad> adjacent;                        // quads above and below that row
   std::array<std::vector<Quad>, 2> layer;            // quads of the current layer, by pass
-  std::unique_ptr<rdm::RowScratch<Row64>> narrow;
-  // Made for the first chunk with a side above 64.
-  std::unique_ptr<rdm::RowScratch<Row128>> wide;
+  // Each is made for the first chunk whose longest side needs it.
+  std::unique_ptr<rdm::RowScratch<Row32>> rows_32;
+  std::unique_ptr<rdm::RowScratch<Row64>> rows_64;
+  std::unique_ptr<rdm::RowScratch<Row128>> rows_128;
   bool plain = false;
 };
 

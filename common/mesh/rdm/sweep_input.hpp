@@ -2,9 +2,11 @@
 // beyond its six sides. Internal to rdm.
 #pragma once
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include "common/mesh/rdm/chunk_palette.hpp"
@@ -12,13 +14,52 @@
 #include "common/mesh/rdm/quad_shape.hpp"
 #include "common/runs/axis_order.hpp"
 #include "common/runs/bit_row.hpp"
+#include "common/runs/run_list.hpp"
 
 namespace runstone::rdm {
 
-/// Covers [end of the previous run, end) of the flattened chunk.
-struct PaletteRun {
-  std::uint32_t end = 0;
-  PaletteIndex index = 0;
+/// The runs of a chunk as the sweep reads them: the ends where the chunk keeps them, and a palette
+/// index for each run.
+class IndexedRuns {
+ public:
+  IndexedRuns() = default;
+  /// The chunk's runs and the indices must stay in place. `full` is null if the indices are bytes.
+  IndexedRuns(const RunList& runs, const BytePaletteIndex* bytes, const PaletteIndex* full)
+      : size_(runs.size()), bytes_(bytes), full_(full) {
+    static_assert(std::endian::native == std::endian::little);
+    runs.visit([this](const auto& view) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(view)>, NarrowRuns>) {
+        words_ = reinterpret_cast<const std::byte*>(view.packed().data());
+        mask_ = 0xffff;
+      } else {
+        words_ = reinterpret_cast<const std::byte*>(view.ends().data());
+        mask_ = 0xffffffff;
+      }
+    });
+  }
+  std::size_t size() const { return size_; }
+  /// Both forms of a list have a word of 32 bits a run, whose lowest bits are the end.
+  std::uint32_t end(std::size_t run) const {
+    std::uint32_t word;
+    std::memcpy(&word, words_ + 4 * run, sizeof word);
+    return word & mask_;
+  }
+  /// Returns the index in the type Index. Requires that type's indices.
+  template <class Index>
+  Index index(std::size_t run) const {
+    if constexpr (sizeof(Index) == 1) {
+      return bytes_[run];
+    } else {
+      return full_[run];
+    }
+  }
+
+ private:
+  const std::byte* words_ = nullptr;
+  std::uint32_t mask_ = 0;
+  std::size_t size_ = 0;
+  const BytePaletteIndex* bytes_ = nullptr;
+  const PaletteIndex* full_ = nullptr;
 };
 
 /// A side of the chunk by the rank of its axis: slow, middle, fast; negative before positive.
@@ -51,20 +92,20 @@ struct Borders {
   std::array<Rows, 6> transparent;
   /// True if a side has such voxels. Always false for a chunk of one material.
   std::array<bool, 6> meets{};
-  /// The palette indices of `transparent`, row by row. Empty unless the chunk has more than one
-  /// transparent material.
+  /// The palette indices of `transparent`, row by row, or one that all of them have. Empty unless
+  /// the chunk has more than one transparent material.
   std::array<std::vector<PaletteIndex>, 6> indices;
 };
 
 struct SweepInput {
-  std::span<const PaletteRun> runs;
+  IndexedRuns runs;
   OrderedExtent extent{};
   const ChunkPalette* palette = nullptr;
   std::array<Direction, 6> direction{};  // by Side
   std::array<QuadShape, 6> shape;        // by Side
   QuadBuckets* opaque = nullptr;
   QuadBuckets* transparent = nullptr;
-  bool chunk_sides = false;  // true if SweepState::chunk_sides is needed
+  bool chunk_sides = false;  // true if SweepState::own_sides are needed
 };
 
 }  // namespace runstone::rdm

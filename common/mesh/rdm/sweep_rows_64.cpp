@@ -14,7 +14,7 @@ namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
 void sweep_64(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
-  sweep<VectorRows, VectorIndices>(input, borders, state);
+  sweep<VectorRows<Row64>, VectorIndices>(input, borders, state);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "common/mesh/quad.hpp"
 #include "common/mesh/rdm/chunk_palette.hpp"
@@ -37,6 +38,15 @@ struct LayerIndices {
 /// The slots of the current and of the previous layer in SweepState.
 struct LayerPair {
   unsigned current = 0, previous = 1;
+};
+
+/// One of the six outermost layers of the chunk itself, laid out as in Borders.
+template <class Row>
+struct OwnSide {
+  std::array<Row, kRowBits<Row>> opaque{}, transparent{};
+  bool has_transparent = false;  // `transparent` is set only if it is true
+  /// The materials of the transparent voxels, by row and bit. Empty if the chunk has one of them.
+  std::vector<Material> materials;
 };
 
 template <class Row>
@@ -80,9 +90,7 @@ struct SweepState {
   std::array<std::array<std::uint8_t, kPlaces>, 2> start_layer;
 
   // The part that ChunkSides writes, by Side.
-  // Opaque voxels, laid out as in Borders.
-  std::array<std::array<Row, kRowBits<Row>>, 6> chunk_sides;
-  std::array<bool, 6> sides_transparent;  // true if the side has transparent voxels
+  std::array<OwnSide<Row>, 6> own_sides;
 
   /// Returns the palette indices in the type Index. Allocates for the first chunk that needs full
   /// ones.

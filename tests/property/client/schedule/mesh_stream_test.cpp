@@ -67,7 +67,7 @@ struct Sabotage {
 };
 
 struct Counts {
-  std::uint64_t whole = 0, layers = 0, beyond = 0, refused = 0, turned = 0, wrong = 0;
+  std::uint64_t whole = 0, layers = 0, beyond = 0, refused = 0, turned = 0, bordered = 0, wrong = 0;
 };
 
 class MeshStream {
@@ -325,7 +325,9 @@ class MeshStream {
     if (!same(*result.mesh, whole_mesh(*job.chunk, neighbours))) ++counts_.wrong;
     ++(result.layers_only ? counts_.layers : counts_.whole);
     if (result.layers_only && job.changed.beyond != ChangedLayers{}.beyond) ++counts_.beyond;
-    if (planner_.finish(result.key, result.number, result.mesh)) {
+    const auto is_kept = [](const BordersPtr& borders) { return borders != nullptr; };
+    if (!result.layers_only && std::ranges::any_of(job.borders, is_kept)) ++counts_.bordered;
+    if (planner_.finish(result.key, result.number, result.mesh, result.borders)) {
       drawn_.insert_or_assign(result.key, std::pair(job, result.mesh));
     } else {
       ++counts_.refused;
@@ -402,14 +404,16 @@ TEST_CASE("every mesh equals a whole mesh, quad for quad", "[schedule][property]
     sum.beyond += c.beyond;
     sum.refused += c.refused;
     sum.turned += c.turned;
+    sum.bordered += c.bordered;
   }
   // The interleavings cover these cases.
-  CAPTURE(sum.whole, sum.layers, sum.beyond, sum.refused, sum.turned);
+  CAPTURE(sum.whole, sum.layers, sum.beyond, sum.refused, sum.turned, sum.bordered);
   CHECK(sum.layers > sum.whole / 5);  // large edits mesh the whole chunk as well
   CHECK(sum.whole > sum.layers / 10);
   CHECK(sum.beyond > 100);
   CHECK(sum.refused > 10);
   CHECK(sum.turned > 10);
+  CHECK(sum.bordered > sum.whole / 10);
 }
 
 TEST_CASE("a planner that misses a changed layer is caught by the comparison",
