@@ -79,11 +79,11 @@ void measure_volume(const BenchOptions& options, const Volume& volume,
     }
     return std::nullopt;
   };
-  const auto decode = median_of("decode_binary"), grid = median_of("grid_binary");
+  const auto decode = median_of("decode_binary"), mask = median_of("mask_binary");
   for (std::size_t i = first; i < result.rows.size(); ++i) {
     const double ours = result.rows[i].timing.median_ns;
     if (decode) result.rows[i].against_decode = *decode / ours;
-    if (grid) result.rows[i].against_grid = *grid / ours;
+    if (mask) result.rows[i].against_mask = *mask / ours;
   }
 }
 

@@ -43,7 +43,7 @@ nlohmann::ordered_json json_of(const MeshRow& row) {
   out["allocations"] = row.timing.allocations;
   out["copy_ns"] = row.timing.copy_ns;
   if (row.against_decode) out["against_decode"] = *row.against_decode;
-  if (row.against_grid) out["against_grid"] = *row.against_grid;
+  if (row.against_mask) out["against_mask"] = *row.against_mask;
   return out;
 }
 
@@ -53,8 +53,8 @@ struct Total {
   std::size_t vertices = 0, triangles = 0, t_junctions = 0, thin_16 = 0, thin_100 = 0;
   double median = 0, min = 0, p90 = 0, copy = 0;
   std::array<double, kPhaseCount> phase{};
-  std::vector<double> against_decode, against_grid;
-  double decode = 0, grid = 0;  // medians of the two baselines, over the rows with ratios
+  std::vector<double> against_decode, against_mask;
+  double decode = 0, mask = 0;  // medians of the two baselines, over the rows with ratios
 
   void add(const MeshRow& row) {
     ++volumes;
@@ -76,9 +76,9 @@ struct Total {
       against_decode.push_back(*row.against_decode);
       decode += *row.against_decode * row.timing.median_ns;
     }
-    if (row.against_grid) {
-      against_grid.push_back(*row.against_grid);
-      grid += *row.against_grid * row.timing.median_ns;
+    if (row.against_mask) {
+      against_mask.push_back(*row.against_mask);
+      mask += *row.against_mask * row.timing.median_ns;
     }
   }
 };
@@ -103,7 +103,7 @@ void write_total(const std::string& mesher, const Total& total, std::ostream& ou
              mean(total.vertices), mean(total.triangles), mean(total.t_junctions),
              mean(total.thin_16), mean(total.thin_100), mean(total.storage),
              mean(total.allocations), ratios(total.against_decode, total.decode, total.median),
-             ratios(total.against_grid, total.grid, total.median), total.median / total.copy);
+             ratios(total.against_mask, total.mask, total.median), total.median / total.copy);
 }
 
 /// The rows of one mesher over the volumes of a world, at one edge and in one rank of order.
@@ -142,7 +142,7 @@ void write_csv(const MeshResult& result, std::ostream& out) {
       out,
       "world,part,edge,order,rank,mesher,runs,median_ns,min_ns,p90_ns,decode_ns,octree_ns,mask_ns,"
       "mesh_ns,ns_per_run,quads,vertices,triangles,t_junctions,t_junction_edges,thin_16,thin_100,"
-      "mesh_bytes,storage_bytes,allocations,copy_ns,against_decode,against_grid\n");
+      "mesh_bytes,storage_bytes,allocations,copy_ns,against_decode,against_mask\n");
   for (const MeshRow& row : result.rows) {
     const Timing& t = row.timing;
     fmt::print(out, "{},{},{},{},{},{},{},{:.1f},{:.1f},{:.1f},", row.world, row.part, row.edge,
@@ -152,7 +152,7 @@ void write_csv(const MeshResult& result, std::ostream& out) {
                t.mesh.triangles, t.mesh.t_junctions.places, t.mesh.t_junctions.edges,
                t.mesh.thin.above_16, t.mesh.thin.above_100, t.mesh.bytes);
     fmt::print(out, "{},{},{:.1f},{},{}\n", t.storage_bytes, t.allocations, t.copy_ns,
-               ratio_text(row.against_decode), ratio_text(row.against_grid));
+               ratio_text(row.against_decode), ratio_text(row.against_mask));
   }
 }
 
@@ -182,7 +182,7 @@ void write_tables(const MeshResult& result, std::ostream& out) {
     fmt::print(out,
                "| mesher | median µs | min | p90 | decode | octree | mask | mesh | ns/run | "
                "quads | vertices | triangles | T-junctions | thin 1:16 | 1:100 | storage B | "
-               "allocations | x decode + binary | x grid ready | copies |\n");
+               "allocations | x decode + binary | x mask ready | copies |\n");
     fmt::print(
         out, "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const auto& [mesher, total] : group.meshers) write_total(mesher, total, out);
@@ -192,7 +192,7 @@ void write_tables(const MeshResult& result, std::ostream& out) {
 void write_overview(const MeshResult& result, std::ostream& out) {
   fmt::print(out,
              "| world | edge | order | volumes | runs | quads | median µs | ns/run | "
-             "x decode + binary | x grid ready | copies |\n"
+             "x decode + binary | x mask ready | copies |\n"
              "|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Group& group : groups_of(result.rows)) {
     for (const auto& [mesher, total] : group.meshers) {
@@ -203,7 +203,7 @@ void write_overview(const MeshResult& result, std::ostream& out) {
                  total.median / static_cast<double>(total.volumes) / 1000,
                  total.median / static_cast<double>(total.runs),
                  ratios(total.against_decode, total.decode, total.median),
-                 ratios(total.against_grid, total.grid, total.median), total.median / total.copy);
+                 ratios(total.against_mask, total.mask, total.median), total.median / total.copy);
     }
   }
 }

@@ -23,9 +23,9 @@ struct MeshRow {
   std::string mesher;
   std::size_t runs = 0;
   Timing timing;
-  /// The median of decode_binary or grid_binary in the same cell, divided by this row's median.
+  /// The median of decode_binary or mask_binary in the same cell, divided by this row's median.
   /// Above 1 this row is faster.
-  std::optional<double> against_decode, against_grid;
+  std::optional<double> against_decode, against_mask;
 
   double ns_per_run() const { return timing.median_ns / static_cast<double>(runs); }
   std::string cell() const;  // world, part, edge and order as text
