@@ -1,12 +1,13 @@
 """Charts: dots, bars, lines, stacks and points, each from plain numbers to one SVG element.
 
-Values that are no numbers are left out. An interval is drawn as a thin line through its mark.
+Values that are no numbers are left out; without any number there is no chart, but an empty text. An
+interval is drawn as a thin line through its mark.
 """
 import math
 from dataclasses import dataclass, field
 
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from .statistics import UNKNOWN, Interval
 from .style import FONT, GRID, INK, PAPER, QUIET, new_canvas, svg_of
@@ -95,6 +96,8 @@ def _shown(value):
 
 def dots(name, title, rows, series, axis):
     """Draws a mark for each series in each row, with its interval."""
+    if not any(_shown(v) for one in series for v in one.values):
+        return ""
     step = min(0.22, 0.6 / max(1, len(series)))
     canvas, (axes,) = new_canvas(0.6 + ROW * len(rows) * (1 if len(series) < 4 else 1.25) * (1 + 0.4 * any("\n" in r for r in rows)))
     for i, one in enumerate(series):
@@ -116,6 +119,8 @@ def dots(name, title, rows, series, axis):
 
 def bars(name, title, all_bars, axis):
     """Draws a bar for each value, on a logarithmic axis a dot, with a note behind it."""
+    if not any(_shown(bar.value) for bar in all_bars):
+        return ""
     canvas, (axes,) = new_canvas(0.6 + ROW * len(all_bars))
     most = max((b.value.high for b in all_bars if _shown(b.value)), default=1)
     for row, bar in enumerate(all_bars):
@@ -143,6 +148,8 @@ def bars(name, title, all_bars, axis):
 
 def lines(name, title, series, x, y, spans=()):
     """Draws a line for each series; an interval is a band around it."""
+    if not any(_shown(v) for one in series for _, v in one.values):
+        return ""
     canvas, (axes,) = new_canvas(3.1)
     for one in series:
         known = [(at, v) for at, v in one.values if _shown(v)]
@@ -159,6 +166,10 @@ def lines(name, title, series, x, y, spans=()):
         axes.annotate(span.name, ((span.low + span.high) / 2, 0.98), xycoords=("data", "axes fraction"), rotation=90,
                       ha="center", va="top", fontsize=FONT - 2, color=QUIET)
     _set_axis(x, "x", axes)
+    measured = sorted({at for one in series for at, v in one.values if _shown(v)})
+    if x.log and len(measured) < 8:
+        axes.set_xticks(measured)
+        axes.xaxis.set_minor_locator(NullLocator())
     _set_axis(y, "y", axes)
     _legend(canvas, [_handle(s, "--" if s.hollow else "-") for s in series])
     return svg_of(canvas, name, title)
@@ -166,6 +177,8 @@ def lines(name, title, series, x, y, spans=()):
 
 def stacks(name, title, rows, parts, axis):
     """Draws a bar of parts for each row."""
+    if not any(math.isfinite(v) for part in parts for v in part.values):
+        return ""
     canvas, (axes,) = new_canvas(0.6 + ROW * len(rows))
     left = [0.0] * len(rows)
     for part in parts:
@@ -182,6 +195,8 @@ def stacks(name, title, rows, parts, axis):
 
 def points(name, title, series, x, y):
     """Draws one point (x, y) of each series with both intervals. The lower left is the best."""
+    if not any(_shown(v) for one in series for v in one.values[0]):
+        return ""
     canvas, (axes,) = new_canvas(3.6)
     for one in series:
         (across, up), = one.values

@@ -64,7 +64,7 @@ def _frame_times(frames):
                   f"The same chunks, shader and vertex format: only the polygons differ. A frame takes {ms('rdm')} ms with our mesh "
                   f"(geometric mean of {len(frames.worlds)} worlds), {ms('culled')} with culled faces, {ms('rle_rdm')} with the thesis' RLE RDM.",
                   ("frames",), columns, table,
-                  [bars("frames", "frame time by mesher", all_bars, Axis("median frame, times ours, geometric mean over worlds", False, 1))],
+                  [bars("frames", "frame time by mesher", all_bars, Axis("median frame, times ours, geometric mean over worlds", True, 1))],
                   notes=["Lines: 95 % bootstrap interval over the worlds. Meshers whose intervals overlap share places.", *frames.notes()])
 
 
@@ -95,7 +95,7 @@ def _seams(frames):
     def lanes(key):
         return mean_interval(frames.of(key, "lanes"))
     columns, table = frames.table()
-    return Figure("seams", "What T-junctions and thin triangles do on screen (4.2.1, 4.2.2)",
+    return Figure("seams", "T-junctions and thin triangles on screen (4.2.1, 4.2.2)",
                   "Pixels inside a plane that differ from the picture of culled faces: "
                   f"{interval_text(pixels('rdm'))} a picture with our mesh, {interval_text(pixels('poly2tri'))} with Poly2Tri. A GPU shades in blocks of "
                   f"2 x 2, so it shades more lanes than fragments along every edge: {number_text(lanes('rdm').middle)} lanes a fragment with our mesh, "

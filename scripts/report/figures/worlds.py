@@ -1,4 +1,4 @@
-"""Beyond the thesis: landscapes, a real world, worlds made to hurt, axis orders, edits."""
+"""Beyond the thesis: landscapes, a real world, worlds that are hard to mesh, axis orders, edits."""
 import math
 
 from ..charts import Axis, Series, dots, lines
@@ -100,6 +100,6 @@ def _stacks(evidence):
 
 def worlds_section(evidence):
     return Section("worlds", "Beyond the thesis: worlds, orders, edits",
-                   "Seeded landscapes, a real world made by another program (Luanti), and worlds made to hurt.",
-                   [_worlds(evidence, "landscapes", "Places people build in"), _worlds(evidence, "adversaries", "Worlds made to hurt"),
+                   "Seeded landscapes, a real world made by another program (Luanti), and worlds that are hard to mesh.",
+                   [_worlds(evidence, "landscapes", "Landscapes and a real world"), _worlds(evidence, "adversaries", "Worlds that are hard to mesh"),
                     _orders(evidence), _dirty_layers(evidence), _stacks(evidence)])
