@@ -27,6 +27,7 @@ class Axis:
 @dataclass(frozen=True)
 class Series:
     """One mark in each row, or one line."""
+
     name: str
     colour: str
     values: list  # of Interval; for lines of (x, Interval)
@@ -45,6 +46,7 @@ class Bar:
 @dataclass(frozen=True)
 class Span:
     """A part of the x axis with a name."""
+
     low: float
     high: float
     name: str
@@ -81,13 +83,30 @@ def _legend(canvas, handles):
     width, total = canvas.get_size_inches()
     canvas.set_size_inches(width, total + height)
     canvas.get_layout_engine().set(rect=(0, 0, 1, 1 - height / (total + height)))
-    canvas.legend(handles=handles, loc="upper left", bbox_to_anchor=(0, 1), ncols=columns, fontsize=FONT, handletextpad=0.4,
-                  columnspacing=1.2, borderaxespad=0, borderpad=0.1)
+    canvas.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(0, 1),
+        ncols=columns,
+        fontsize=FONT,
+        handletextpad=0.4,
+        columnspacing=1.2,
+        borderaxespad=0,
+        borderpad=0.1,
+    )
 
 
 def _handle(series, line="none"):
-    return Line2D([], [], color=series.colour, marker=series.marker, linestyle=line, markersize=5,
-                  markerfacecolor=PAPER if series.hollow else series.colour, label=series.name)
+    return Line2D(
+        [],
+        [],
+        color=series.colour,
+        marker=series.marker,
+        linestyle=line,
+        markersize=5,
+        markerfacecolor=PAPER if series.hollow else series.colour,
+        label=series.name,
+    )
 
 
 def _shown(value):
@@ -99,17 +118,27 @@ def dots(name, title, rows, series, axis):
     if not any(_shown(v) for one in series for v in one.values):
         return ""
     step = min(0.22, 0.6 / max(1, len(series)))
-    canvas, (axes,) = new_canvas(0.6 + ROW * len(rows) * (1 if len(series) < 4 else 1.25) * (1 + 0.4 * any("\n" in r for r in rows)))
+    canvas, (axes,) = new_canvas(
+        0.6 + ROW * len(rows) * (1 if len(series) < 4 else 1.25) * (1 + 0.4 * any("\n" in r for r in rows))
+    )
     for i, one in enumerate(series):
         shift = (i - (len(series) - 1) / 2) * step
         for row, value in enumerate(one.values):
             if not _shown(value) or (axis.log and value.middle <= 0):
                 continue
             if value.low < value.high:
-                axes.plot([value.low, value.high], [row + shift] * 2, color=one.colour, linewidth=1.3,
-                          solid_capstyle="butt")
-            axes.plot([value.middle], [row + shift], color=one.colour, marker=one.marker, markersize=4.6,
-                      markerfacecolor=PAPER if one.hollow else one.colour, linestyle="none")
+                axes.plot(
+                    [value.low, value.high], [row + shift] * 2, color=one.colour, linewidth=1.3, solid_capstyle="butt"
+                )
+            axes.plot(
+                [value.middle],
+                [row + shift],
+                color=one.colour,
+                marker=one.marker,
+                markersize=4.6,
+                markerfacecolor=PAPER if one.hollow else one.colour,
+                linestyle="none",
+            )
     axes.set_yticks(range(len(rows)), rows)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     _set_axis(axis, "x", axes)
@@ -132,8 +161,15 @@ def bars(name, title, all_bars, axis):
             axes.barh(row, bar.value.middle, height=0.62, color=bar.colour)
         if bar.value.low < bar.value.high:
             axes.plot([bar.value.low, bar.value.high], [row, row], color=bar.colour if axis.log else INK, linewidth=1.3)
-        axes.annotate(bar.note, (bar.value.high, row), xytext=(6, 0), textcoords="offset points", va="center", color=QUIET,
-                      fontsize=FONT - 1)
+        axes.annotate(
+            bar.note,
+            (bar.value.high, row),
+            xytext=(6, 0),
+            textcoords="offset points",
+            va="center",
+            color=QUIET,
+            fontsize=FONT - 1,
+        )
     axes.set_yticks(range(len(all_bars)), [b.name for b in all_bars])
     axes.set_ylim(len(all_bars) - 0.4, -0.6)
     if axis.log:
@@ -157,14 +193,31 @@ def lines(name, title, series, x, y, spans=()):
             continue
         xs = [at for at, _ in known]
         if any(v.low < v.high for _, v in known):
-            axes.fill_between(xs, [v.low for _, v in known], [v.high for _, v in known], color=one.colour, alpha=0.16,
-                              linewidth=0)
-        axes.plot(xs, [v.middle for _, v in known], color=one.colour, marker=one.marker, markersize=4, linewidth=1.4,
-                  linestyle="--" if one.hollow else "-", markerfacecolor=PAPER if one.hollow else one.colour)
+            axes.fill_between(
+                xs, [v.low for _, v in known], [v.high for _, v in known], color=one.colour, alpha=0.16, linewidth=0
+            )
+        axes.plot(
+            xs,
+            [v.middle for _, v in known],
+            color=one.colour,
+            marker=one.marker,
+            markersize=4,
+            linewidth=1.4,
+            linestyle="--" if one.hollow else "-",
+            markerfacecolor=PAPER if one.hollow else one.colour,
+        )
     for span in spans:
         axes.axvspan(span.low, span.high, color=GRID, alpha=0.5, linewidth=0)
-        axes.annotate(span.name, ((span.low + span.high) / 2, 0.98), xycoords=("data", "axes fraction"), rotation=90,
-                      ha="center", va="top", fontsize=FONT - 2, color=QUIET)
+        axes.annotate(
+            span.name,
+            ((span.low + span.high) / 2, 0.98),
+            xycoords=("data", "axes fraction"),
+            rotation=90,
+            ha="center",
+            va="top",
+            fontsize=FONT - 2,
+            color=QUIET,
+        )
     _set_axis(x, "x", axes)
     measured = sorted({at for one in series for at, v in one.values if _shown(v)})
     if x.log and len(measured) < 8:
@@ -199,15 +252,26 @@ def points(name, title, series, x, y):
         return ""
     canvas, (axes,) = new_canvas(3.6)
     for one in series:
-        (across, up), = one.values
+        ((across, up),) = one.values
         if not (_shown(across) and _shown(up)):
             continue
         for low_high, is_across in ((across, True), (up, False)):
             ends = [low_high.low, low_high.high]
-            axes.plot(ends if is_across else [across.middle] * 2, [up.middle] * 2 if is_across else ends, color=one.colour,
-                      linewidth=1.1)
-        axes.plot([across.middle], [up.middle], color=one.colour, marker=one.marker, markersize=6,
-                  markerfacecolor=PAPER if one.hollow else one.colour, linestyle="none")
+            axes.plot(
+                ends if is_across else [across.middle] * 2,
+                [up.middle] * 2 if is_across else ends,
+                color=one.colour,
+                linewidth=1.1,
+            )
+        axes.plot(
+            [across.middle],
+            [up.middle],
+            color=one.colour,
+            marker=one.marker,
+            markersize=6,
+            markerfacecolor=PAPER if one.hollow else one.colour,
+            linestyle="none",
+        )
     _set_axis(x, "x", axes)
     _set_axis(y, "y", axes)
     _legend(canvas, [_handle(s) for s in series])

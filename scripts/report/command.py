@@ -13,15 +13,40 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 def _options(arguments):
-    parser = argparse.ArgumentParser(prog="make-report", description="Measures with runstone-bench of the release build and writes a page: "
-                                     "FOLDER/index.html. The same command continues a run that was interrupted.")
-    parser.add_argument("--out", required=True, metavar="FOLDER", type=Path, help="folder of the page, its tables (csv/) and results (data/)")
+    parser = argparse.ArgumentParser(
+        prog="make-report",
+        description=(
+            "Measures with runstone-bench of the release build and writes a page: "
+            "FOLDER/index.html. The same command continues a run that was interrupted."
+        ),
+    )
+    parser.add_argument(
+        "--out",
+        required=True,
+        metavar="FOLDER",
+        type=Path,
+        help="folder of the page, its tables (csv/) and results (data/)",
+    )
     parser.add_argument("--quick", action="store_true", help="all figures with few repetitions: some five minutes")
-    parser.add_argument("--luanti", metavar="DIR", type=Path, default=ROOT / "tests/data/luanti_v7_small", help="folder of a Luanti world")
+    parser.add_argument(
+        "--luanti",
+        metavar="DIR",
+        type=Path,
+        default=ROOT / "tests/data/luanti_v7_small",
+        help="folder of a Luanti world",
+    )
     parser.add_argument("--steps", metavar="S,...", help="measure only these steps; all but siege by default")
-    parser.add_argument("--page-only", action="store_true", help="measure nothing: write the page from the existing results")
+    parser.add_argument(
+        "--page-only", action="store_true", help="measure nothing: write the page from the existing results"
+    )
     parser.add_argument("--again", action="store_true", help="measure steps again that have a result")
-    parser.add_argument("--bench", metavar="FILE", type=Path, default=ROOT / "build/release/bin/runstone-bench", help="the program to measure with")
+    parser.add_argument(
+        "--bench",
+        metavar="FILE",
+        type=Path,
+        default=ROOT / "build/release/bin/runstone-bench",
+        help="the program to measure with",
+    )
     return parser, parser.parse_args(arguments)
 
 

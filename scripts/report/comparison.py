@@ -1,8 +1,16 @@
 """Comparison: our mesher with another one on the same volumes, volume by volume and together."""
 from dataclasses import dataclass
 
-from .statistics import (UNKNOWN, Interval, geometric_mean_interval, mean, ratio_of, repetitions_of,
-                         sum_ratio_interval, with_quads)
+from .statistics import (
+    UNKNOWN,
+    Interval,
+    geometric_mean_interval,
+    mean,
+    ratio_of,
+    repetitions_of,
+    sum_ratio_interval,
+    with_quads,
+)
 
 OURS = "rdm"
 DECISIVE = "decode_binary"
@@ -50,8 +58,15 @@ def compare(rows, other, ours=OURS):
         gain = geometric_mean_interval([b / a for a, b in zip(ours_ns, other_ns)])
         sums = sum_ratio_interval(other_ns, ours_ns)
     triangles = sum(a["triangles"] for a, _ in both.values())
-    return Comparison(other, volumes, gain, sums, mean(ours_ns) / 1000, mean(other_ns) / 1000,
-                      sum(b["triangles"] for _, b in both.values()) / triangles if triangles else UNKNOWN.middle)
+    return Comparison(
+        other,
+        volumes,
+        gain,
+        sums,
+        mean(ours_ns) / 1000,
+        mean(other_ns) / 1000,
+        sum(b["triangles"] for _, b in both.values()) / triangles if triangles else UNKNOWN.middle,
+    )
 
 
 def gains_by_world(rows, other):

@@ -55,8 +55,10 @@ class Results:
                 absent.append(step)
             elif found.key != self.common.key:
                 length = "a quick run" if found.quick else "a full run"
-                out.append(f"The step {step} was measured differently from the rest: {found.machine.text()}; "
-                           f"world {found.luanti}; {length}.")
+                out.append(
+                    f"The step {step} was measured differently from the rest: {found.machine.text()}; "
+                    f"world {found.luanti}; {length}."
+                )
         if absent:
             out.append(f"Not measured: {', '.join(absent)}.")
         return out

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 @dataclass(frozen=True)
 class HeatTable:
     """Numbers in a table, shaded by their ratio to the least of the row or column."""
+
     corner: str
     columns: list
     rows: list  # of (name, [cell text, shade 0 .. 1])
@@ -47,6 +48,8 @@ def csv_of(figure):
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(figure.columns)
     for row in figure.rows:
-        writer.writerow("" if isinstance(v, float) and not math.isfinite(v) else
-                        f"{v:.6g}" if isinstance(v, float) else v for v in row)
+        writer.writerow(
+            "" if isinstance(v, float) and not math.isfinite(v) else f"{v:.6g}" if isinstance(v, float) else v
+            for v in row
+        )
     return out.getvalue()

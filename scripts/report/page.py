@@ -23,18 +23,36 @@ def _data_uri(csv):
 
 def _verdict_figure(verdict):
     """Returns the decisive chart with its numbers as a figure."""
-    return Figure("verdict", "The decisive comparison", verdict.sentence, verdict.steps, verdict.columns, verdict.rows,
-                  [verdict.chart] if verdict.chart else [])
+    return Figure(
+        "verdict",
+        "The decisive comparison",
+        verdict.sentence,
+        verdict.steps,
+        verdict.columns,
+        verdict.rows,
+        [verdict.chart] if verdict.chart else [],
+    )
 
 
 def render(evidence, sections, verdict):
     """Returns the page. It refers to nothing outside itself."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True,
-                                     undefined=jinja2.StrictUndefined)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
     environment.filters.update(svg=Markup, csv_uri=lambda f: _data_uri(csv_of(f)), duration=duration_text)
     css = colour_css() + (HERE / "page.css").read_text(encoding="utf-8")
     return environment.get_template("page.html.j2").render(
-        css=Markup(css), evidence=evidence, here=evidence.here, sections=sections, verdict=verdict, verdict_figure=_verdict_figure(verdict))
+        css=Markup(css),
+        evidence=evidence,
+        here=evidence.here,
+        sections=sections,
+        verdict=verdict,
+        verdict_figure=_verdict_figure(verdict),
+    )
 
 
 def write_page(out, steps, thesis, failures=None):

@@ -106,9 +106,15 @@ def read_result(folder, step):
     if field_of(content, "step", str, file) != step.name:
         raise ResultError(f"{file}: the field step is {content['step']}, not {step.name}")
     machine = read_machine(field_of(content, "machine", dict, file), file)
-    out = StepResult(step.name, machine, field_of(content, "quick", bool, file),
-                     field_of(content, "luanti", str, file), field_of(content, "measured_at", str, file),
-                     field_of(content, "seconds", float, file), content.get("result"))
+    out = StepResult(
+        step.name,
+        machine,
+        field_of(content, "quick", bool, file),
+        field_of(content, "luanti", str, file),
+        field_of(content, "measured_at", str, file),
+        field_of(content, "seconds", float, file),
+        content.get("result"),
+    )
     rows_of(step, out.result, file)
     return out
 
@@ -123,7 +129,14 @@ def write_atomically(file, text):
 
 
 def write_result(folder, result):
-    content = {"format": FORMAT, "step": result.step, "quick": result.quick, "luanti": result.luanti,
-               "measured_at": result.measured_at, "seconds": result.seconds,
-               "machine": vars(result.machine), "result": result.result}
+    content = {
+        "format": FORMAT,
+        "step": result.step,
+        "quick": result.quick,
+        "luanti": result.luanti,
+        "measured_at": result.measured_at,
+        "seconds": result.seconds,
+        "machine": vars(result.machine),
+        "result": result.result,
+    }
     write_atomically(result_file(folder, result.step), json.dumps(content, indent=1) + "\n")

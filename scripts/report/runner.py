@@ -59,8 +59,10 @@ class Runner:
         for step in steps:
             try:
                 if not read_result(self.data, step).quick:
-                    return (f"{self.out} has results of a full run, which a quick one would replace: "
-                            "name another folder or give --again")
+                    return (
+                        f"{self.out} has results of a full run, which a quick one would replace: "
+                        "name another folder or give --again"
+                    )
             except ResultError:
                 continue
         return None
@@ -90,8 +92,10 @@ class Runner:
         rows_of(step, result, f"result of {step.name}")
         seconds = time.monotonic() - start
         at = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
-        write_result(self.data, StepResult(step.name, machine, self.quick, world_name(self.luanti), at,
-                                           round(seconds, 2), result))
+        write_result(
+            self.data,
+            StepResult(step.name, machine, self.quick, world_name(self.luanti), at, round(seconds, 2), result),
+        )
         return seconds
 
     def run(self, steps, failures, err=sys.stderr):
@@ -99,7 +103,9 @@ class Runner:
         machine = self.machine()
         left = sum(step.seconds for step in steps)
         for i, step in enumerate(steps):
-            print(f"[{i + 1}/{len(steps)}] {step.name}, about {duration_text(left)} left: ", end="", file=err, flush=True)
+            print(
+                f"[{i + 1}/{len(steps)}] {step.name}, about {duration_text(left)} left: ", end="", file=err, flush=True
+            )
             left -= step.seconds
             if self.is_measured(step, machine):
                 print("is there", file=err)

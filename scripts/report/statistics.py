@@ -97,8 +97,9 @@ def ratio_of(numerator, denominator):
     """Returns the ratio of two intervals: the widest that their ends allow."""
     if not (numerator.is_known and denominator.is_known) or denominator.low <= 0:
         return UNKNOWN
-    return Interval(numerator.low / denominator.high, numerator.middle / denominator.middle,
-                    numerator.high / denominator.low)
+    return Interval(
+        numerator.low / denominator.high, numerator.middle / denominator.middle, numerator.high / denominator.low
+    )
 
 
 def empty_volumes(rows):

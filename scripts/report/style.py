@@ -15,10 +15,17 @@ WIDTH = 5.6  # inches; the page scales a drawing to its column
 FONT = 8.5
 
 # Colours that are not of a mesher: name, on white, on black.
-NEUTRAL = (("ink", "#1b1b1c", "#ececed"), ("quiet", "#5b5b5c", "#acacad"), ("grid", "#dcdcdd", "#3d3d3e"),
-           ("paper", "#fefefe", "#161617"), ("other", "#707071", "#a6a6a7"),
-           ("phase1", "#c4c4c5", "#5f5f60"), ("phase2", "#9a9a9b", "#8a8a8b"),
-           ("phase3", "#66666a", "#b9b9ba"), ("phase4", "#303032", "#ededee"))
+NEUTRAL = (
+    ("ink", "#1b1b1c", "#ececed"),
+    ("quiet", "#5b5b5c", "#acacad"),
+    ("grid", "#dcdcdd", "#3d3d3e"),
+    ("paper", "#fefefe", "#161617"),
+    ("other", "#707071", "#a6a6a7"),
+    ("phase1", "#c4c4c5", "#5f5f60"),
+    ("phase2", "#9a9a9b", "#8a8a8b"),
+    ("phase3", "#66666a", "#b9b9ba"),
+    ("phase4", "#303032", "#ededee"),
+)
 COLOURS = {name: light for name, light, _ in NEUTRAL}
 INK, QUIET, GRID, PAPER, OTHER = (COLOURS[n] for n in ("ink", "quiet", "grid", "paper", "other"))
 PHASES = tuple(COLOURS[f"phase{i}"] for i in range(1, 5))
@@ -27,12 +34,31 @@ _ALL = (*NEUTRAL, *((m.key.replace("_", "-"), m.light, m.dark) for m in MESHERS.
 _VARIABLES = {light: f"var(--{name},{light})" for name, light, _ in _ALL}
 assert len(_VARIABLES) == len(_ALL), "two names share a colour, so the SVG could not tell them apart"
 
-matplotlib.rcParams.update({
-    "svg.fonttype": "none", "font.size": FONT, "axes.edgecolor": GRID, "axes.labelcolor": QUIET,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
-    "grid.color": GRID, "grid.linewidth": 0.6, "xtick.color": GRID, "ytick.color": GRID, "xtick.labelcolor": QUIET,
-    "ytick.labelcolor": INK, "text.color": INK, "legend.frameon": False, "xtick.major.size": 2.5,
-    "ytick.major.size": 0, "figure.facecolor": "none", "axes.facecolor": "none", "savefig.facecolor": "none"})
+matplotlib.rcParams.update(
+    {
+        "svg.fonttype": "none",
+        "font.size": FONT,
+        "axes.edgecolor": GRID,
+        "axes.labelcolor": QUIET,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "grid.color": GRID,
+        "grid.linewidth": 0.6,
+        "xtick.color": GRID,
+        "ytick.color": GRID,
+        "xtick.labelcolor": QUIET,
+        "ytick.labelcolor": INK,
+        "text.color": INK,
+        "legend.frameon": False,
+        "xtick.major.size": 2.5,
+        "ytick.major.size": 0,
+        "figure.facecolor": "none",
+        "axes.facecolor": "none",
+        "savefig.facecolor": "none",
+    }
+)
 
 
 def colour_css():
@@ -55,7 +81,7 @@ def svg_of(canvas, name, title):
     with matplotlib.rc_context({"svg.hashsalt": name}):
         canvas.savefig(text, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     svg = text.getvalue()
-    svg = svg[svg.index("<svg"):]
+    svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.S)
     used = set(re.findall(r'(?:href="|url\()#([^")]+)', svg))
     svg = re.sub(r' id="([^"]+)"', lambda m: f' id="{name}-{m[1]}"' if m[1] in used else "", svg)
@@ -66,7 +92,7 @@ def svg_of(canvas, name, title):
     head = f'<svg class="chart" role="img" aria-label="{_escaped(title)}" {box} xmlns="http://www.w3.org/2000/svg"'
     if "xlink:" in svg:
         head += ' xmlns:xlink="http://www.w3.org/1999/xlink"'
-    svg = head + ">" + svg[svg.index(">") + 1:]
+    svg = head + ">" + svg[svg.index(">") + 1 :]
     return re.sub(r"\n\s*", "\n", svg).strip()
 
 

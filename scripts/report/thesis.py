@@ -5,17 +5,24 @@ from pathlib import Path
 
 from .results import ResultError
 
-MEANS_NOTE = ("The thesis averages by v = round((v + new) / 2), in which the last chunk weighs half. Here its raw "
-              "events are averaged plainly. Scenarios whose data contradict each other (12, 18, 31) are in these means.")
-VOXEL_PLUGIN_CHUNKS = ("Voxel Plugin: the mean over its chunks with voxels, some 27 of the 484 events it logs a scenario. "
-                       "The thesis drew the mean over all events, about a seventh of that.")
-VOXEL_PLUGIN_EVENTS = ("Voxel Plugin: phases are means over all 484 events it logs a scenario, of which some 27 are "
-                       "chunks with voxels.")
+MEANS_NOTE = (
+    "The thesis averages by v = round((v + new) / 2), in which the last chunk weighs half. Here its raw "
+    "events are averaged plainly. Scenarios whose data contradict each other (12, 18, 31) are in these means."
+)
+VOXEL_PLUGIN_CHUNKS = (
+    "Voxel Plugin: the mean over its chunks with voxels, some 27 of the 484 events it logs a scenario. "
+    "The thesis drew the mean over all events, about a seventh of that."
+)
+VOXEL_PLUGIN_EVENTS = (
+    "Voxel Plugin: phases are means over all 484 events it logs a scenario, of which some 27 are chunks with voxels."
+)
 # Defects of single files of its logs, which the table of defects does not have, since no golden test needs them.
-LOG_DEFECTS = {18: "Voxel Plugin's time is ten times the usual per vertex, likely another model's",
-               21: "the RLE meshing file holds events of other sessions; its phases are left out",
-               28: "the file of RLE's buffer phase holds Voxel Plugin's events; it is left out",
-               30: "the file of Grid's buffer phase is a copy of RLE's; it is left out"}
+LOG_DEFECTS = {
+    18: "Voxel Plugin's time is ten times the usual per vertex, likely another model's",
+    21: "the RLE meshing file holds events of other sessions; its phases are left out",
+    28: "the file of RLE's buffer phase holds Voxel Plugin's events; it is left out",
+    30: "the file of Grid's buffer phase is a copy of RLE's; it is left out",
+}
 
 
 def _read(file, columns):
@@ -35,10 +42,14 @@ class Thesis:
         folder = Path(folder)
         try:
             self.names = {int(r["number"]): r["name"] for r in _read(folder / "scenarios.csv", ("number", "name"))}
-            self._values = {(int(r["scenario"]), r["mesher"], r["metric"]): float(r["value"]) for r in
-                            _read(folder / "thesis_results.csv", ("scenario", "mesher", "metric", "value"))}
-            self._sizes = {(int(r["scenario"]), int(r["chunk_size"]), r["mesher"]): float(r["mean_ms"]) for r in
-                           _read(folder / "chunk_sizes.csv", ("scenario", "chunk_size", "mesher", "mean_ms"))}
+            self._values = {
+                (int(r["scenario"]), r["mesher"], r["metric"]): float(r["value"])
+                for r in _read(folder / "thesis_results.csv", ("scenario", "mesher", "metric", "value"))
+            }
+            self._sizes = {
+                (int(r["scenario"]), int(r["chunk_size"]), r["mesher"]): float(r["mean_ms"])
+                for r in _read(folder / "chunk_sizes.csv", ("scenario", "chunk_size", "mesher", "mean_ms"))
+            }
             defects = _read(folder / "scenario_defects.csv", ("number", "reason"))
         except ValueError as error:
             raise ResultError(f"{folder}: {error}") from None

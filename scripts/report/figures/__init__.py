@@ -7,5 +7,10 @@ from .worlds import worlds_section
 
 
 def all_sections(evidence):
-    return [meshers_section(evidence), thesis_section(evidence), drawing_section(evidence), worlds_section(evidence),
-            network_section(evidence)]
+    return [
+        meshers_section(evidence),
+        thesis_section(evidence),
+        drawing_section(evidence),
+        worlds_section(evidence),
+        network_section(evidence),
+    ]

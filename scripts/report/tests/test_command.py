@@ -97,26 +97,42 @@ class WithRunstoneBench(unittest.TestCase):
     def test_every_step_is_a_command_that_runstone_bench_accepts(self):
         for quick in (True, False):
             for step in report_steps(quick):
-                arguments = step.picture_arguments(37) if isinstance(step, PictureStep) else (*step.arguments, "--json", "x")
-                done = subprocess.run([os.environ["RUNSTONE_BENCH"], *arguments, "--help"], capture_output=True, text=True, check=False)
+                arguments = (
+                    step.picture_arguments(37) if isinstance(step, PictureStep) else (*step.arguments, "--json", "x")
+                )
+                done = subprocess.run(
+                    [os.environ["RUNSTONE_BENCH"], *arguments, "--help"], capture_output=True, text=True, check=False
+                )
                 self.assertEqual(done.returncode, 0, f"{step.name}: {done.stderr}")
 
     def test_runstone_bench_writes_what_the_page_needs(self):
         with tempfile.TemporaryDirectory() as folder:
             err = io.StringIO()
-            code = main(["--out", folder, "--quick", "--steps", "facts,edits,bytes", "--bench", os.environ["RUNSTONE_BENCH"]], err)
+            code = main(
+                ["--out", folder, "--quick", "--steps", "facts,edits,bytes", "--bench", os.environ["RUNSTONE_BENCH"]],
+                err,
+            )
             self.assertEqual(code, 0, err.getvalue())
             text = (Path(folder) / "index.html").read_text(encoding="utf-8")
-            self.assertIn("A chunk takes", text[text.index('id="memory-group-1"'):])
+            self.assertIn("A chunk takes", text[text.index('id="memory-group-1"') :])
 
 
 class Siege(unittest.TestCase):
     def test_the_charts_of_a_siege_are_files_of_their_own(self):
         with tempfile.TemporaryDirectory() as folder:
             cases = {"window 0 quiet": 2, "window 1 views": 9}
-            figures = [{"experiment": "siege", "profile": "loopback", "case": case, "figure": figure, "value": value}
-                       for case, p99 in cases.items()
-                       for figure, value in (("from_s", p99), ("to_s", p99 + 5), ("p50_ms", 1), ("p99_ms", p99), ("server_resident_mb", 50), ("disk_kb_s", 3))]
+            figures = [
+                {"experiment": "siege", "profile": "loopback", "case": case, "figure": figure, "value": value}
+                for case, p99 in cases.items()
+                for figure, value in (
+                    ("from_s", p99),
+                    ("to_s", p99 + 5),
+                    ("p50_ms", 1),
+                    ("p99_ms", p99),
+                    ("server_resident_mb", 50),
+                    ("disk_kb_s", 3),
+                )
+            ]
             file = Path(folder) / "net.json"
             file.write_text(json.dumps({"figures": figures}))
             subprocess.run([ROOT / "scripts/report/draw-siege", file, folder], check=True)

@@ -12,10 +12,35 @@ from report.style import colour_css
 from .sample_data import MACHINE, STEPS, thesis, write_report
 
 # The figures that docs/reproduce.md names.
-FIGURES = ("verdict", "meshers-time", "meshers-scenarios", "scenarios", "meshers-triangles", "t-junctions", "efficiency",
-           *(f"{kind}-group-{g}" for kind in ("memory", "vertices", "phases") for g in (1, 2, 3)), "timing-group-2", "timing-group-3",
-           "chunk-size-1", "chunk-size-5", "chunk-size-17", "frames", "fps", "seams", "storage", "landscapes", "adversaries", "axis-orders",
-           "dirty-layers", "stacks", "bytes", "transfers", "latency", "crowds", "siege")
+FIGURES = (
+    "verdict",
+    "meshers-time",
+    "meshers-scenarios",
+    "scenarios",
+    "meshers-triangles",
+    "t-junctions",
+    "efficiency",
+    *(f"{kind}-group-{g}" for kind in ("memory", "vertices", "phases") for g in (1, 2, 3)),
+    "timing-group-2",
+    "timing-group-3",
+    "chunk-size-1",
+    "chunk-size-5",
+    "chunk-size-17",
+    "frames",
+    "fps",
+    "seams",
+    "storage",
+    "landscapes",
+    "adversaries",
+    "axis-orders",
+    "dirty-layers",
+    "stacks",
+    "bytes",
+    "transfers",
+    "latency",
+    "crowds",
+    "siege",
+)
 VOID = {"meta", "img", "br"}
 
 
@@ -104,7 +129,7 @@ class Page(unittest.TestCase):
         self.assertIn("@media print", self.text)
 
     def test_the_first_screen_has_the_verdict_and_what_speaks_against_it(self):
-        start = self.text[:self.text.index('id="answers"')]
+        start = self.text[: self.text.index('id="answers"')]
         self.assertIn("takes 2 times as long over the 2 scenarios of the thesis that have quads", start)
         self.assertIn("What speaks against it", start)
         self.assertIn("in the real world in 0.9 times the time of ours", start)
@@ -135,7 +160,7 @@ class OtherPages(unittest.TestCase):
             evidence = write_page(folder, list(STEPS.values()), thesis())
             self.assertIn("edits.json: the field format is missing", evidence.errors()[0])
             text, _ = page_of(folder)
-            self.assertIn("edits.json: the field format is missing", text[text.index('id="stacks"'):])
+            self.assertIn("edits.json: the field format is missing", text[text.index('id="stacks"') :])
             self.assertFalse((Path(folder) / "csv/stacks.csv").exists())
 
     def test_the_results_of_two_machines_are_both_shown(self):

@@ -81,7 +81,9 @@ class Doubts(unittest.TestCase):
             self.assertIn("no disk. The older result is shown.", results.doubts(("bytes",))[0])
             self.assertEqual(results.doubts(("meshers",)), [])
             (Path(folder) / "data/facts.json").unlink()
-            self.assertEqual(results.__class__(Path(folder) / "data", STEPS.values()).doubts(("facts",)), ["Not measured: facts."])
+            self.assertEqual(
+                results.__class__(Path(folder) / "data", STEPS.values()).doubts(("facts",)), ["Not measured: facts."]
+            )
 
 
 class ThesisTables(unittest.TestCase):
