@@ -9,7 +9,9 @@ from .meshers import MESHERS, mesher
 from .statistics import UNKNOWN, exactly, geometric_mean_interval
 from .text import count_text, interval_text, number_text, time_text
 
+SCENARIOS, REAL_WORLD = MAIN_WORLDS = ("thesis' scenarios", "a real world")
 STEPS = ("meshers", "landscapes", "adversaries")
+THESIS_MESHER = "The thesis' own RLE RDM"
 BASELINES = (DECISIVE, "mask_binary", "rle_rdm")
 COLUMNS = ["machine", "world", "volumes", "mesher", "times ours", "low", "high", "sums: times ours", "low", "high"]
 
@@ -36,11 +38,11 @@ class Verdict:
 
 def world_rows(results):
     """Returns the rows of each world of the decisive comparison by its name for readers."""
-    out = {"thesis' scenarios": results.rows("meshers")}
+    out = {SCENARIOS: results.rows("meshers")}
     for step in ("landscapes", "adversaries"):
         rows = results.rows(step)
         worlds = sorted(rows.kinds("world"), key=lambda w: w != "luanti")
-        out |= {"a real world" if w == "luanti" else w: rows.where(world=w) for w in worlds}
+        out |= {REAL_WORLD if w == "luanti" else w: rows.where(world=w) for w in worlds}
     return out
 
 
@@ -49,13 +51,12 @@ def _comparisons(evidence):
     out = []
     for results in evidence.machines:
         for world, rows in world_rows(results).items():
-            is_main = world in ("thesis' scenarios", "a real world")
-            if not is_main and results is not evidence.here:
+            if world not in MAIN_WORLDS and results is not evidence.here:
                 continue
             found = {k: c for k in BASELINES if (c := compare(rows, k))}
             if found:
                 out.append((evidence.machine_name(results), world, found))
-    return sorted(out, key=lambda r: (r[1] != "thesis' scenarios", r[1] != "a real world"))
+    return sorted(out, key=lambda r: (r[1] != SCENARIOS, r[1] != REAL_WORLD))
 
 
 def _chart(evidence, comparisons):
@@ -63,7 +64,7 @@ def _chart(evidence, comparisons):
     rows = []
     for machine, world, found in comparisons:
         count = len(next(iter(found.values())).volumes)
-        rows.append(f"{world} ({count})" + (f"\n{machine}" if several else ""))
+        rows.append(f"{world} ({count})" + (f"\n{machine}" if several and world in MAIN_WORLDS else ""))
     series = [
         Series(mesher(k).name, mesher(k).light, [f[k].gain if k in f else UNKNOWN for _, _, f in comparisons])
         for k in BASELINES
@@ -87,7 +88,7 @@ def _sentence(scenarios, real):
         else (
             "Decoding the stored runs first is faster than meshing from them"
             if gain.high < 1
-            else "Meshing from the stored runs and decoding them first are not told apart"
+            else "No difference is measured between meshing from the stored runs and decoding them first"
         )
     )
     out = (
@@ -109,15 +110,19 @@ def _count_sentence(who, found, of):
         parts.append(
             f"in {len(found.undecided)}{names} the repetitions overlap"
             if parts
-            else f"{who} is not told apart from ours in {len(found.undecided)} of {len(found.volumes)} {of}{names}"
+            else (
+                f"{who} is never clearly faster; the repetitions overlap in {len(found.undecided)} of"
+                f" {len(found.volumes)} {of}{names}"
+            )
         )
     return "; ".join(parts) + "." if parts else ""
 
 
 def _mean_sentence(found):
     return (
-        f"By the arithmetic mean, in which slow scenarios weigh most, it takes {number_text(found.other_mean_us)} µs"
-        f" and ours {number_text(found.our_mean_us)}: {interval_text(found.sums)} times."
+        f"By the arithmetic mean, in which slow scenarios weigh most, {mesher(found.other).name} takes"
+        f" {number_text(found.other_mean_us)} µs and ours {number_text(found.our_mean_us)} µs. The ratio is"
+        f" {interval_text(found.sums)}."
     )
 
 
@@ -128,16 +133,16 @@ def _against(evidence, comparisons):
     )
     by_world = dict(here)
     out = []
-    scenarios = by_world.get("thesis' scenarios", {})
+    scenarios = by_world.get(SCENARIOS, {})
     if rle := scenarios.get("rle_rdm"):
         if rle.slower or rle.sums.low < 1:
             out.append(
-                f"{_count_sentence('The thesis’ own RLE RDM', rle, 'scenarios')} {_mean_sentence(rle)} It emits "
+                f"{_count_sentence(THESIS_MESHER, rle, 'scenarios')} {_mean_sentence(rle)} RLE RDM emits "
                 f"{number_text(rle.triangles)} times the triangles."
             )
     if decisive := scenarios.get(DECISIVE):
         out.append(f"{_count_sentence('Decoding first', decisive, 'scenarios')} {_mean_sentence(decisive)}".strip())
-    for world, title in (("thesis' scenarios", "in the scenarios"), ("a real world", "in the real world")):
+    for world, title in ((SCENARIOS, "in the scenarios"), (REAL_WORLD, "in the real world")):
         ready = by_world.get(world, {}).get("mask_binary")
         if ready and ready.gain.low < 1:
             out.append(
@@ -147,11 +152,11 @@ def _against(evidence, comparisons):
     slow = [
         f"{w} {interval_text(f[DECISIVE].gain)}"
         for w, f in here
-        if DECISIVE in f and f[DECISIVE].gain.low < 1 and w != "thesis' scenarios"
+        if DECISIVE in f and f[DECISIVE].gain.low < 1 and w != SCENARIOS
     ]
     if slow:
         out.append(
-            "Decoding first is faster, or not told apart, in these worlds (its time divided by ours):"
+            "In these worlds decoding first is faster, or the interval of its time divided by ours contains 1:"
             f" {'; '.join(slow)}."
         )
     out.append(_machines_sentence(evidence))
@@ -177,14 +182,14 @@ def _machines_sentence(evidence):
 
 
 def best_of(candidates, text):
-    """Returns the least candidates that are not told apart, and the others. Candidates are (name, interval, value)."""
+    """Returns the candidates (name, interval, value) whose intervals overlap that of the least, and the others."""
     measured = sorted((c for c in candidates if c[1].is_known), key=lambda c: c[1].middle)
     if not measured:
         return None
     equal = [c for c in measured if c[1].overlaps(measured[0][1])]
     rest = [c for c in measured if c not in equal]
     best = " and ".join(f"{name}: {text(value)}" for name, _, value in equal) + (
-        " (not told apart)" if len(equal) > 1 else ""
+        " (intervals overlap)" if len(equal) > 1 else ""
     )
     return best, "; ".join(f"{name}: {text(value)}" for name, _, value in rest[:3])
 
@@ -277,7 +282,7 @@ def verdict_of(evidence):
         for k, c in f.items()
     ]
     return Verdict(
-        _sentence(found.get("thesis' scenarios"), found.get("a real world")),
+        _sentence(found.get(SCENARIOS), found.get(REAL_WORLD)),
         _chart(evidence, comparisons) if comparisons else "",
         _against(evidence, comparisons),
         _answers(evidence),

@@ -113,7 +113,7 @@ def _frame_times(frames):
             )
         ],
         notes=[
-            "Lines: 95 % bootstrap interval over the worlds. Meshers whose intervals overlap share places.",
+            "The lines are 95 % bootstrap intervals over the worlds. Meshers whose intervals overlap share places.",
             *frames.notes(),
         ],
     )
@@ -194,7 +194,7 @@ def _seams(frames):
             _ranked("seams", "pinholes", frames, "pinholes a picture, pixels, mean over worlds", pixels),
             _ranked("seams-lanes", "lanes", frames, "shaded lanes a fragment, mean over worlds: 1 is ideal", lanes, 1),
         ],
-        notes=["Lines: 95 % bootstrap interval over the worlds.", *frames.notes()],
+        notes=["The lines are 95 % bootstrap intervals over the worlds.", *frames.notes()],
     )
 
 

@@ -92,7 +92,7 @@ def _time(totals):
             )
         ],
         notes=[
-            "Lines: 95 % bootstrap interval over the scenarios. Meshers whose intervals overlap share places.",
+            "The lines are 95 % bootstrap intervals over the scenarios. Meshers whose intervals overlap share places.",
             totals.empty_note(),
             "The chunk in the middle of 27; one core; runs in their cheapest axis order.",
             "Meshers marked 'grid ready' are not charged for making the grid out of what is stored.",
@@ -174,7 +174,7 @@ def _scenarios_chart(totals):
         ],
         HeatTable("µs", [mesher(k).short for k in totals.keys], table),
         [
-            "Lines: the fastest repetition to the 90th percentile. Empty cells took longer than 5 s.",
+            "The lines reach from the fastest repetition to the 90th percentile. Empty cells took longer than 5 s.",
             totals.empty_note(),
             "In the table a darker cell is slower within its scenario.",
         ],
@@ -288,7 +288,8 @@ def _gallery(evidence, totals):
         rows,
         cards=cards,
         notes=[
-            "In brackets: the range that the repetitions of both meshers allow. Where it contains 1, the edge is grey."
+            "The brackets hold the range that the repetitions of both meshers allow. Where it contains 1, the edge is"
+            " grey."
         ],
     )
 

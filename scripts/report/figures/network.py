@@ -113,7 +113,7 @@ def _transfers(evidence):
             ),
         ],
         notes=[
-            "Lines and brackets: 95 % bootstrap interval over the five worlds. Each time is the median of few"
+            "Lines and brackets show 95 % bootstrap intervals over the five worlds. Each time is the median of few"
             " repetitions."
         ],
     )
@@ -163,7 +163,7 @@ def _latency(evidence):
                 Axis("ms from the click to the mesh", True),
             )
         ],
-        notes=["Lines: from the median (p50) to the 99th percentile; the maximum is in the CSV."],
+        notes=["The lines reach from the median (p50) to the 99th percentile; the maximum is in the CSV."],
     )
 
 

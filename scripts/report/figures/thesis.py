@@ -156,7 +156,7 @@ class ThesisFigures:
                 ),
             ],
             notes=[
-                "In brackets: 95 % bootstrap interval of the arithmetic mean over the scenarios.",
+                "The brackets hold 95 % bootstrap intervals of the arithmetic mean over the scenarios.",
                 MIDDLE_NOTE,
                 *self.thesis.notes(scenarios),
                 VOXEL_PLUGIN_EVENTS,
@@ -236,7 +236,7 @@ class ThesisFigures:
             )
         at = measured(OURS)
         notes = [
-            "Bands: the fastest repetition to the 90th percentile.",
+            "The bands reach from the fastest repetition to the 90th percentile.",
             "Voxel Plugin always uses chunks of 32³ to draw: its line is no test of the side.",
         ]
         if is_noise:
@@ -326,7 +326,7 @@ class ThesisFigures:
                 )
             ],
             notes=[
-                "Lines: 95 % bootstrap interval over the scenarios.",
+                "The lines are 95 % bootstrap intervals over the scenarios.",
                 MIDDLE_NOTE,
                 MEANS_NOTE,
                 VOXEL_PLUGIN_CHUNKS,

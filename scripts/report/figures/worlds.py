@@ -70,8 +70,8 @@ def _worlds(evidence, step, title):
             )
         ],
         notes=[
-            "In brackets after the name: volumes with quads. Lines: 95 % bootstrap interval of the geometric mean over"
-            " the volumes; with one volume, the range that its repetitions allow."
+            "The number after a name counts its volumes with quads. The lines are 95 % bootstrap intervals of the"
+            " geometric mean over the volumes; with one volume, the range that its repetitions allow."
         ],
     )
 
@@ -143,7 +143,9 @@ def _orders(evidence):
             dots("axis-orders", "runs by axis order", worlds, runs, Axis("runs of a chunk, mean", True)),
             dots("axis-orders-time", "time by axis order", worlds, times, Axis("µs of a chunk, mean", True)),
         ],
-        notes=["Lines: 95 % bootstrap interval over the volumes of the world; a world with one volume has none."],
+        notes=[
+            "The lines are 95 % bootstrap intervals over the volumes of the world; a world with one volume has none."
+        ],
     )
 
 
@@ -218,7 +220,7 @@ def _stacks(evidence):
                 Axis("µs", True),
             )
         ],
-        notes=["Bands and brackets: from the median to the 90th percentile."],
+        notes=["Bands and brackets show the range from the median to the 90th percentile."],
     )
 
 

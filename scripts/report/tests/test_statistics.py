@@ -110,7 +110,7 @@ class Ranks(unittest.TestCase):
         best, rest = best_of(
             [("a", Interval(1, 2, 3), 2), ("b", Interval(2.5, 4, 5), 4), ("c", Interval(6, 7, 8), 7)], str
         )
-        self.assertEqual(best, "a: 2 and b: 4 (not told apart)")
+        self.assertEqual(best, "a: 2 and b: 4 (intervals overlap)")
         self.assertEqual(rest, "c: 7")
         self.assertEqual(best_of([("a", exactly(1), 1), ("b", exactly(2), 2)], str), ("a: 1", "b: 2"))
         self.assertIsNone(best_of([("a", exactly(math.nan), math.nan)], str))
