@@ -79,7 +79,7 @@ def _legend(canvas, handles):
         return
     longest = max(len(h.get_label()) for h in handles)
     columns = min(len(handles), 2 if longest > 24 else 3 if longest > 14 else 4)
-    height = LEGEND_LINE * math.ceil(len(handles) / columns)
+    height = LEGEND_LINE * math.ceil(len(handles) / columns) + 0.05
     width, total = canvas.get_size_inches()
     canvas.set_size_inches(width, total + height)
     canvas.get_layout_engine().set(rect=(0, 0, 1, 1 - height / (total + height)))
@@ -91,7 +91,7 @@ def _legend(canvas, handles):
         fontsize=FONT,
         handletextpad=0.4,
         columnspacing=1.2,
-        borderaxespad=0,
+        borderaxespad=0.3,
         borderpad=0.1,
     )
 

@@ -79,6 +79,7 @@ constexpr std::array<PaneMesher, 3> kMeshers = {
 
 std::vector<std::string> view_mesher_names() {
   std::vector<std::string> out;
+  out.reserve(kMeshers.size());
   for (const PaneMesher& mesher : kMeshers) out.emplace_back(mesher.short_name);
   return out;
 }
