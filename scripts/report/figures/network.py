@@ -131,7 +131,7 @@ def _latency(evidence):
         return Interval(p50, p50, value(profile, case, f"{figure}_p99_ms"))
 
     kinds = (
-        ("local edit", "idle", "local_predicted_meshed", OURS, False),
+        ("local edit", "idle", "local_predicted_meshed", OTHER, False),
         ("remote edit", "idle", "remote_meshed", INK, False),
         ("remote edit beside terrain, 20 clients", "streaming 20 clients", "remote_meshed", QUIET, True),
     )
@@ -179,7 +179,7 @@ def _crowds(evidence):
     series = [
         Series(name, colour, [(n, exactly(value(n, figure))) for n in FLEET_SIZES if n > 1], False, marker)
         for name, colour, figure, marker in (
-            ("p50", OURS, "seen_p50_ms", "o"),
+            ("p50", OTHER, "seen_p50_ms", "o"),
             ("p99", INK, "seen_p99_ms", "s"),
             ("max", QUIET, "seen_max_ms", "^"),
         )
@@ -229,7 +229,7 @@ def siege_charts(rows):
         "siege-p99": lines(
             "siege-p99",
             "latency of edits in a siege",
-            [line("p99", INK, "p99_ms"), line("p50", OURS, "p50_ms")],
+            [line("p99", INK, "p99_ms"), line("p50", OTHER, "p50_ms")],
             x,
             Axis("latency, ms", True),
             spans,
@@ -237,7 +237,7 @@ def siege_charts(rows):
         "siege-memory": lines(
             "siege-memory",
             "memory of the server in a siege",
-            [line("server", OURS, "server_resident_mb")],
+            [line("server", INK, "server_resident_mb")],
             x,
             Axis("resident memory, MB"),
             spans,
@@ -245,7 +245,7 @@ def siege_charts(rows):
         "siege-disk": lines(
             "siege-disk",
             "disk writes of the server in a siege",
-            [line("server", OURS, "disk_kb_s")],
+            [line("server", INK, "disk_kb_s")],
             x,
             Axis("written, KB/s"),
             spans,

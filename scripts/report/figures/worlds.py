@@ -6,7 +6,7 @@ from ..comparison import OURS, compare
 from ..figure import Figure, Section
 from ..meshers import mesher
 from ..statistics import Interval, exactly, geometric_mean, geometric_mean_interval, mean, mean_interval, with_quads
-from ..style import OTHER
+from ..style import INK, OTHER
 from ..text import interval_text, number_text
 
 BASELINES = ("decode_binary", "mask_binary", "rle_rdm", "culled")
@@ -194,7 +194,7 @@ def _stacks(evidence):
             colour,
             not stack,
         )
-        for how, colour in (("by hand", mesher(OURS).light), ("by brush", OTHER))
+        for how, colour in (("by hand", INK), ("by brush", OTHER))
         for stack in (True, False)
     ]
 
