@@ -4,18 +4,20 @@
 
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "tests/bench/app/program_options.hpp"
 #include "tests/bench/client/client_bench.hpp"
 #include "tests/bench/edits/edit_bench.hpp"
 #include "tests/bench/edits/log_bench.hpp"
 #include "tests/bench/frames/frames_bench.hpp"
+#include "tests/bench/harness/machine_json.hpp"
 #include "tests/bench/meshing/chunk_edge.hpp"
 #include "tests/bench/meshing/mesh_bench.hpp"
 #include "tests/bench/meshing/mesh_once.hpp"
 #include "tests/bench/network/net_bench.hpp"
-#include "tests/bench/report/report.hpp"
 #include "tests/bench/storage/storage_bench.hpp"
+#include "tests/bench/thesis/scenario_bench.hpp"
 #include "tests/bench/view/view_bench.hpp"
 #include "tests/bench/wire/bytes_bench.hpp"
 
@@ -142,6 +144,21 @@ int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err)
   return done ? 0 : 1;
 }
 
+int scenarios(const ScenarioTable& table, const BenchOptions& options, std::ostream& out,
+              std::ostream& err) {
+  return finish(Result<ScenarioTable, std::string>(table), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
+}
+
+int machine(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  const Machine machine = this_machine();
+  write_machine(machine, out);
+  const auto write = [&](std::ostream& to) { to << json_of(machine).dump(1) << '\n'; };
+  return write_file(options.json, write, err) ? 0 : 1;
+}
+
 }  // namespace
 
 int bench_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
@@ -163,8 +180,6 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return log(options.bench, out, err);
     case Command::edits:
       return edits(options.bench, out, err);
-    case Command::report:
-      return run_report(options.report, out, err);
     case Command::net:
       return net(options.net, out, err);
     case Command::frames:
@@ -173,6 +188,12 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return view(options.view, out, err);
     case Command::client:
       return client(options.client, out, err);
+    case Command::scenario_facts:
+      return scenarios(scenario_facts(err), options.bench, out, err);
+    case Command::scenario_times:
+      return scenarios(scenario_times(options.bench.repetitions, err), options.bench, out, err);
+    case Command::machine:
+      return machine(options.bench, out, err);
   }
   return 2;
 }

@@ -6,10 +6,19 @@
 #include "tests/bench/edits/edit_options.hpp"
 #include "tests/bench/meshing/mesh_options.hpp"
 #include "tests/bench/storage/storage_options.hpp"
+#include "tests/bench/thesis/scenario_bench.hpp"
 #include "tests/bench/wire/bytes_options.hpp"
 
 namespace runstone::bench {
 namespace {
+
+CLI::App* add_machine_command(CLI::App& app, BenchOptions& options) {
+  CLI::App* machine = app.add_subcommand(
+      "machine",
+      "measures nothing: prints the processor, compiler, commit and vector instructions");
+  machine->add_option("--json", options.json, "write them to this file");
+  return machine;
+}
 
 constexpr const char* kSmallLuanti = RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small";
 
@@ -18,13 +27,17 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 7> kSubcommands = {{{Command::mesh, add_mesh_command},
-                                                     {Command::chunk_edge, add_chunk_edge_command},
-                                                     {Command::edits, add_edits_command},
-                                                     {Command::log, add_log_command},
-                                                     {Command::bytes, add_bytes_command},
-                                                     {Command::storage, add_storage_command},
-                                                     {Command::mesh_once, add_mesh_once_command}}};
+constexpr std::array<Subcommand, 10> kSubcommands = {
+    {{Command::mesh, add_mesh_command},
+     {Command::chunk_edge, add_chunk_edge_command},
+     {Command::edits, add_edits_command},
+     {Command::log, add_log_command},
+     {Command::bytes, add_bytes_command},
+     {Command::storage, add_storage_command},
+     {Command::mesh_once, add_mesh_once_command},
+     {Command::scenario_facts, add_scenario_facts_command},
+     {Command::scenario_times, add_scenario_times_command},
+     {Command::machine, add_machine_command}}};
 
 }  // namespace
 
@@ -32,11 +45,11 @@ ParsedProgramOptions parse_program_options(int argc, const char* const* argv, st
                                            std::ostream& err) {
   CLI::App app(
       "Measures meshing, storage, edits, the log, the network and frames, "
-      "and prints tables of Markdown, or makes a page of them all.",
+      "and prints tables of Markdown.",
       "runstone-bench");
   app.require_subcommand(1);
   ProgramOptions options;
-  options.net.luanti = options.frames.luanti = options.report.luanti = kSmallLuanti;
+  options.net.luanti = options.frames.luanti = kSmallLuanti;
   options.view.luanti = options.client.luanti = kSmallLuanti;
   // Each subcommand has defaults of its own.
   std::array<BenchOptions, kSubcommands.size()> bench;
@@ -49,7 +62,6 @@ ParsedProgramOptions parse_program_options(int argc, const char* const* argv, st
   const CLI::App* frames = add_frames_command(app, options.frames);
   const CLI::App* view = add_view_command(app, options.view);
   const CLI::App* client = add_client_command(app, options.client);
-  const CLI::App* report = add_report_command(app, options.report);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -59,7 +71,6 @@ ParsedProgramOptions parse_program_options(int argc, const char* const* argv, st
   if (frames->parsed()) options.command = Command::frames;
   if (client->parsed()) options.command = Command::client;
   if (view->parsed()) options.command = Command::view;
-  if (report->parsed()) options.command = Command::report;
   for (std::size_t i = 0; i < kSubcommands.size(); ++i) {
     if (!parsers[i]->parsed()) continue;
     options.command = kSubcommands[i].command;

@@ -7,7 +7,6 @@
 #include "tests/bench/frames/frames_options.hpp"
 #include "tests/bench/harness/bench_options.hpp"
 #include "tests/bench/network/net_options.hpp"
-#include "tests/bench/report/report_options.hpp"
 #include "tests/bench/view/view_options.hpp"
 
 namespace runstone::bench {
@@ -24,7 +23,9 @@ enum class Command {
   frames,
   view,
   client,
-  report
+  scenario_facts,
+  scenario_times,
+  machine
 };
 
 struct ProgramOptions {
@@ -34,7 +35,6 @@ struct ProgramOptions {
   FramesOptions frames;       // of Command::frames
   ViewOptions view;           // of Command::view
   ClientBenchOptions client;  // of Command::client
-  ReportOptions report;       // of Command::report
 };
 
 /// The options, or the exit code of a program that ends here: 0 after help, 2 after a mistake.

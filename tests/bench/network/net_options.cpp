@@ -42,8 +42,6 @@ void add_siege_options(CLI::App& command, NetOptions& options) {
   command.add_option("--siege-bots", options.siege_bots, "honest clients in a siege")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
-  command.add_option("--siege-charts", options.siege_charts,
-                     "write the charts of a siege into this folder, as SVG");
 }
 
 void add_backup_options(CLI::App& command, NetOptions& options) {

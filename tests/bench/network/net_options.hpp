@@ -35,7 +35,6 @@ struct NetOptions {
   unsigned strangers = 5000;         // connections that never become players
   double siege_seconds = 600;        // of the windows of a siege together
   unsigned siege_bots = 100;         // honest clients in a siege
-  std::string siege_charts;          // folder for the charts of a siege; empty: none
   unsigned backup_mib = 1024;        // size of the world that is backed up
   unsigned backup_rounds = 5;        // windows with backups, and as many without
   std::uint64_t seed = 1;

@@ -12,7 +12,6 @@
 #include "tests/bench/network/attack.hpp"
 #include "tests/bench/network/attacked_server.hpp"
 #include "tests/bench/network/fleet.hpp"
-#include "tests/bench/network/siege_charts.hpp"
 #include "tests/bench/network/siege_flags.hpp"
 #include "tests/bench/network/siege_result.hpp"
 #include "tests/bench/network/siege_table.hpp"
@@ -155,8 +154,7 @@ Done measure_siege(Testbed& testbed, NetFindings& findings) {
   add_siege_figures(*result, findings.figures);
   add_siege_targets(*result, options, findings.targets);
   findings.tables += siege_table(*result, options);
-  if (options.siege_charts.empty()) return {};
-  return write_siege_charts(*result, options, options.siege_charts);
+  return {};
 }
 
 }  // namespace runstone::bench

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "tests/bench/frames/frames_options.hpp"
+#include "tests/bench/view/view_pane.hpp"
 #include "tests/bench/view/view_world.hpp"
 
 namespace runstone::bench {
@@ -31,7 +32,7 @@ CLI::App* add_view_command(CLI::App& app, ViewOptions& options) {
               throw CLI::ValidationError("--size",
                                          text + ": not a size like 1740x580, sides 16 .. 4096");
           },
-          "pixels of the picture, all three parts together")
+          "pixels of the picture, all parts together")
       ->default_str("1740x580");
   view->add_option("--turn", options.turn, "degrees of the camera around the chunks")
       ->capture_default_str()
@@ -42,6 +43,10 @@ CLI::App* add_view_command(CLI::App& app, ViewOptions& options) {
   view->add_option("--time", options.time_of_day, "time of day as a share of it: 0.5 is noon")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
+  const auto meshers = view_mesher_names();
+  view->add_option("--mesher", options.mesher, "draw one mesh; all side by side by default")
+      ->check(CLI::IsMember(std::set<std::string>(meshers.begin(), meshers.end())));
+  view->add_flag("!--no-edges", options.edges, "without the edges of the quads");
   view->add_flag("!--no-captions", options.captions, "without the figures in the picture");
   view->add_option("--out", options.out, "write a PNG file; without it, show a window");
   return view;

@@ -19,7 +19,9 @@ struct ViewOptions {
   double pitch = 32;               // degrees below the horizon
   double time_of_day = 0.42;       // share of the day
   bool captions = true;
-  std::string out;  // PNG file; empty: a window
+  bool edges = true;   // draw the edges of the quads
+  std::string mesher;  // a name of view_mesher_names(); empty: all, side by side
+  std::string out;     // PNG file; empty: a window
 };
 
 /// Adds the subcommand. `options` must outlive the parse.

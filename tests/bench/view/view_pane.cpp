@@ -67,37 +67,49 @@ ChunkMesher rdm_mesher(const FramesChunk& chunk, const VisibilityTable& visibili
 }
 
 struct PaneMesher {
-  const char *name, *timed;
+  const char *short_name, *name, *timed;
   ChunkMesher (*make)(const FramesChunk&, const VisibilityTable&);
 };
 constexpr std::array<PaneMesher, 3> kMeshers = {
-    {{"culled faces", "decode + mesh", &culled_mesher},
-     {"binary greedy", "decode + mask + mesh", &binary_mesher},
-     {"RDM", "mesh, from stored runs", &rdm_mesher}}};
+    {{"culled", "culled faces", "decode + mesh", &culled_mesher},
+     {"binary", "binary greedy", "decode + mask + mesh", &binary_mesher},
+     {"rdm", "RDM", "mesh, from stored runs", &rdm_mesher}}};
 
 }  // namespace
 
-std::vector<ViewPane> view_panes(const FramesWorld& world, unsigned repetitions) {
-  std::vector<std::vector<ChunkMesher>> meshers(kMeshers.size());
-  for (std::size_t m = 0; m < kMeshers.size(); ++m) {
+std::vector<std::string> view_mesher_names() {
+  std::vector<std::string> out;
+  out.reserve(kMeshers.size());
+  for (const PaneMesher& mesher : kMeshers) out.emplace_back(mesher.short_name);
+  return out;
+}
+
+std::vector<ViewPane> view_panes(const FramesWorld& world, unsigned repetitions,
+                                 std::string_view only) {
+  std::vector<PaneMesher> wanted(kMeshers.begin(), kMeshers.end());
+  std::erase_if(wanted, [only](const PaneMesher& mesher) {
+    return !only.empty() && mesher.short_name != only;
+  });
+  std::vector<std::vector<ChunkMesher>> meshers(wanted.size());
+  for (std::size_t m = 0; m < wanted.size(); ++m) {
     for (const FramesChunk& chunk : world.chunks) {
-      meshers[m].push_back(kMeshers[m].make(chunk, *world.visibility));
+      meshers[m].push_back(wanted[m].make(chunk, *world.visibility));
       meshers[m].back().mesh();  // touches its memory
     }
   }
-  std::vector<std::vector<double>> us(kMeshers.size());
+  std::vector<std::vector<double>> us(wanted.size());
   for (unsigned i = 0; i < repetitions; ++i) {
-    for (std::size_t m = 0; m < kMeshers.size(); ++m) {
+    for (std::size_t m = 0; m < wanted.size(); ++m) {
       const std::uint64_t start = core_ns();
       for (const ChunkMesher& mesher : meshers[m]) mesher.mesh();
       us[m].push_back(static_cast<double>(core_ns() - start) * 1e-3);
     }
   }
   std::vector<ViewPane> out;
-  for (std::size_t m = 0; m < kMeshers.size(); ++m) {
+  for (std::size_t m = 0; m < wanted.size(); ++m) {
     ViewPane pane;
-    pane.name = kMeshers[m].name;
-    pane.timed = kMeshers[m].timed;
+    pane.name = wanted[m].name;
+    pane.timed = wanted[m].timed;
     pane.mesh_us = median(us[m]);
     for (std::size_t c = 0; c < world.chunks.size(); ++c) {
       pane.chunks.push_back({world.chunks[c].at, meshers[m][c].result()});

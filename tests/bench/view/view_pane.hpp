@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/mesh/chunk_mesh.hpp"
@@ -23,10 +24,15 @@ struct ViewPane {
   std::size_t gpu_bytes() const { return quads * sizeof(Quad); }
 };
 
-/// Meshes all chunks with culled faces, binary greedy meshing and RDM. RDM begins with the stored
+/// Returns the short names of the meshers: "culled", "binary" and "rdm".
+std::vector<std::string> view_mesher_names();
+
+/// Meshes all chunks with culled faces, binary greedy meshing and RDM, or with the one that `only`
+/// names. RDM begins with the stored
 /// runs; the others decode them first, which their time contains. In each repetition the meshers take
 /// turns. Times are those of the thread's processor. Requires repetitions > 0 and an edge of at most
 /// 64.
-std::vector<ViewPane> view_panes(const FramesWorld& world, unsigned repetitions);
+std::vector<ViewPane> view_panes(const FramesWorld& world, unsigned repetitions,
+                                 std::string_view only = {});
 
 }  // namespace runstone::bench

@@ -306,42 +306,30 @@ TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
   }
 }
 
-TEST_CASE(
-    "report: a step is measured once, an interrupted run continues, and the page is written") {
+TEST_CASE("runstone-bench scenario-facts counts all chunks of the thesis' scenarios", "[bench]") {
   const test::TempFolder folder;
-  const std::vector<std::string> words = {"report",  "--out",   folder / "r",
-                                          "--quick", "--steps", "facts"};
-  const BenchOutput first = run_bench(words);
-  INFO(first.err);
-  REQUIRE(first.exit_code == 0);
-  CHECK(first.err.find("[1/1] facts") != std::string::npos);
-  const auto facts = nlohmann::json::parse(text_of(folder / "r/data/facts.json"));
-  REQUIRE(facts["result"]["rows"].size() == 37);
-  CHECK(facts["result"]["rows"][16]["opaque"] == 16384);    // the chessboard
-  CHECK(facts["result"]["rows"][16]["runs_zyx"] == 31776);  // lines meet in 992 runs
-  CHECK(text_of(folder / "r/index.html").find("memory-group-1") != std::string::npos);
+  const std::string json = folder / "facts.json";
+  const BenchOutput output = run_bench({"scenario-facts", "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  const auto rows = nlohmann::json::parse(text_of(json)).at("rows");
+  REQUIRE(rows.size() == 37);
+  CHECK(rows[0].at("chunks_without_quads") == 1);  // the chunk in the middle of 27 full ones
+  CHECK(rows[16].at("opaque") == 16384);           // the chessboard
+  CHECK(rows[16].at("runs_zyx") == 31776);         // lines meet in 992 runs
+  CHECK(output.out.find("| scenario | group |") != std::string::npos);
+}
 
-  const BenchOutput second = run_bench(words);
-  CHECK(second.exit_code == 0);
-  // A tree with uncommitted changes is always measured again.
-  const bool is_dirty = facts["machine"]["commit"].get<std::string>().ends_with("-dirty");
-  CHECK((second.err.find("is there") != std::string::npos) != is_dirty);
-
-  auto full = facts;
-  full["quick"] = false;
-  std::ofstream(folder / "r/data/facts.json") << full;
-  const BenchOutput over = run_bench(words);
-  CHECK(over.exit_code == 1);
-  CHECK(over.err.find("figures of a full run") != std::string::npos);
-
-  const BenchOutput short_run =
-      run_bench({"report", "--out", folder / "r2", "--quick", "--steps", "latency-lossy"});
-  CHECK(short_run.exit_code == 1);
-  CHECK(short_run.err.find("no step latency-lossy") != std::string::npos);
-
-  const BenchOutput unknown = run_bench({"report", "--out", folder / "r", "--steps", "everything"});
-  CHECK(unknown.exit_code == 2);
-  CHECK(unknown.err.find("everything") != std::string::npos);
+TEST_CASE("runstone-bench machine writes what results are compared by", "[bench]") {
+  const test::TempFolder folder;
+  const std::string json = folder / "machine.json";
+  REQUIRE(run_bench({"machine", "--json", json}).exit_code == 0);
+  const auto machine = nlohmann::json::parse(text_of(json));
+  for (const char* field : {"cpu", "cores", "compiler", "commit", "simd"}) {
+    CAPTURE(field);
+    CHECK(machine.contains(field));
+  }
+  CHECK(run_bench({"machine", "--json", folder / "no/such.json"}).exit_code == 1);
 }
 
 TEST_CASE("runstone-bench storage has a row for every store on every volume", "[bench]") {

@@ -16,8 +16,9 @@ int left_of(std::size_t i, std::size_t count, int width) {
 }  // namespace
 
 SplitView::SplitView(GlContextLoader loader, const FramesWorld& world,
-                     const MaterialTable& materials, std::span<const ViewPane> panes)
-    : captions_(panes.size()) {
+                     const MaterialTable& materials, std::span<const ViewPane> panes,
+                     bool has_edges)
+    : captions_(panes.size()), has_edges_(has_edges) {
   for (const ViewPane& pane : panes) {
     Renderer& renderer = *renderers_.emplace_back(std::make_unique<Renderer>(loader));
     renderer.set_materials(materials);
@@ -34,7 +35,7 @@ double SplitView::draw(std::size_t pane, const Camera& camera, int width, int he
   Renderer& renderer = *renderers_[pane];
   FrameContents contents;
   contents.look.time_of_day = time_of_day;
-  contents.inspection.modes.set(InspectionMode::wireframe, !is_plain);
+  contents.inspection.modes.set(InspectionMode::wireframe, has_edges_ && !is_plain);
   const std::uint64_t start = now_ns();
   renderer.draw(camera, width, height, contents);
   renderer.finish();

@@ -14,10 +14,10 @@ namespace runstone::bench {
 
 class SplitView {
  public:
-  /// Uploads the meshes. Throws std::runtime_error if a shader does not compile or the GPU has no
+  /// Uploads the meshes. Pictures show the edges of quads if `has_edges`. Throws std::runtime_error if a shader does not compile or the GPU has no
   /// memory left.
   SplitView(GlContextLoader loader, const FramesWorld& world, const MaterialTable& materials,
-            std::span<const ViewPane> panes);
+            std::span<const ViewPane> panes, bool has_edges);
 
   std::size_t size() const { return renderers_.size(); }
   void set_caption(std::size_t pane, Caption caption) { captions_[pane] = std::move(caption); }
@@ -34,6 +34,7 @@ class SplitView {
   std::vector<std::unique_ptr<Renderer>> renderers_;
   std::vector<Caption> captions_;  // by pane; one without a title is not drawn
   UiContext ui_;
+  bool has_edges_;
 };
 
 }  // namespace runstone::bench

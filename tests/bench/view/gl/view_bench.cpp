@@ -66,8 +66,8 @@ class ViewProgram {
  public:
   ViewProgram(const ViewOptions& options, const FramesWorld& world, GlContextLoader loader)
       : options_(options),
-        panes_(view_panes(world, options.repetitions)),
-        view_(loader, world, materials_of(world), panes_),
+        panes_(view_panes(world, options.repetitions, options.mesher)),
+        view_(loader, world, materials_of(world), panes_, options.edges),
         camera_(camera_of(panes_.front(), static_cast<int>(world.edge), options)) {
     result_.world = world.name;
     result_.chunks = world.chunks.size();

@@ -53,6 +53,22 @@ TEST_CASE("the split view draws the same chunks in three meshes", "[view]") {
   CHECK(std::filesystem::file_size(options.out) > 1000);
 }
 
+TEST_CASE("the view draws one mesh alone", "[view]") {
+  if (!has_gl()) return;
+  const test::TempFolder folder;
+  ViewOptions options;
+  options.repetitions = options.frames = 1;
+  options.width = options.height = 96;
+  options.mesher = "rdm";
+  options.edges = options.captions = false;
+  options.out = folder / "view.png";
+  const auto result = run_view(options);
+  REQUIRE(result);
+  REQUIRE(result->rows.size() == 1);
+  CHECK(result->rows[0].mesher == "RDM");
+  CHECK(result->rows[0].quads == 562);
+}
+
 TEST_CASE("the meshers of the split view show the same faces", "[view]") {
   const auto world = view_world("town", "");
   REQUIRE(world);
@@ -88,6 +104,7 @@ TEST_CASE("runstone-bench view rejects options that it cannot satisfy", "[view]"
   };
   CHECK(refused({"--world", "nowhere"}) == 2);
   CHECK(refused({"--size", "5x5"}) == 2);
+  CHECK(refused({"--mesher", "marching_cubes"}) == 2);
   CHECK(refused({"--pitch", "100"}) == 2);
   if (has_gl()) CHECK(refused({"--out", "/no/such/folder/view.png", "--frames", "1"}) == 1);
 }

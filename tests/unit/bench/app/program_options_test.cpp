@@ -61,7 +61,12 @@ TEST_CASE("each subcommand of runstone-bench has defaults of its own", "[options
   CHECK(options_of({"frames"}).command == Command::frames);
   CHECK(options_of({"view"}).command == Command::view);
   CHECK(options_of({"client"}).command == Command::client);
-  CHECK(options_of({"report", "--out", "x"}).command == Command::report);
+  CHECK(options_of({"machine"}).command == Command::machine);
+  CHECK(options_of({"scenario-facts"}).command == Command::scenario_facts);
+
+  const ProgramOptions times = options_of({"scenario-times"});
+  CHECK(times.command == Command::scenario_times);
+  CHECK(times.bench.repetitions == 9);
 }
 
 TEST_CASE("the option --quick changes only what the command line does not name", "[options]") {

@@ -1,0 +1,286 @@
+"""The same voxels under networked conditions: bytes, transfers, latency, crowds, a siege."""
+import math
+
+from ..charts import Axis, Bar, Series, Span, bars, dots, lines
+from ..figure import Figure, Section
+from ..meshers import mesher
+from ..statistics import Interval, exactly, geometric_mean_interval
+from ..steps import FLEET_SIZES, PROFILES
+from ..style import INK, OTHER, QUIET
+from ..text import count_text, interval_text, number_text
+
+OURS, BINARY = mesher("rdm").light, mesher("decode_binary").light
+FORMS = (
+    ("coded", "ours: coded (slow links)", OURS),
+    ("packed", "ours: packed", OURS),
+    ("raw", "ours: raw runs", OURS),
+    ("minecraft", "Minecraft's form + zlib", OTHER),
+    ("dense_zstd", "dense + zstd", BINARY),
+    ("luanti", "Luanti's form + zstd", OTHER),
+    ("luanti_light", "the same with its light", OTHER),
+)
+WAYS = (
+    ("packed", "packed runs + RDM", OURS, False),
+    ("raw", "raw runs + RDM", OURS, True),
+    ("dense_zstd", "dense + zstd + binary greedy", BINARY, False),
+    ("dense", "dense + binary greedy", BINARY, True),
+)
+WORLDS = ("luanti", "terrain", "caves", "town", "noise")
+NET_COLUMNS = ["link", "case", "figure", "value"]
+
+
+def _net_table(rows):
+    return [[r["profile"], r["case"], r["figure"], r["value"]] for r in rows]
+
+
+def _bytes(evidence):
+    every = evidence.here.rows("bytes")
+    rows = every.where(world="luanti", set="all")
+    size = {form: rows.where(form=form).number("bytes") for form, _, _ in FORMS}
+
+    def share(of):
+        return number_text(100 * size["packed"] / size[of])
+
+    all_bars = [
+        Bar(
+            name,
+            colour,
+            exactly(size[form]),
+            (
+                f"{number_text(size[form])} B; write {number_text(rows.where(form=form).number('encode_us'))}, "
+                f"read {number_text(rows.where(form=form).number('decode_us'))} µs"
+            ),
+        )
+        for form, name, colour in FORMS
+    ]
+    return Figure(
+        "bytes",
+        "A chunk on the wire",
+        (
+            f"Packed runs take {share('dense_zstd')} % of dense voxels under zstd, {share('luanti')} % of Luanti's form"
+            f" and {share('minecraft')} % of Minecraft's. Dense and plain they would be 65,536 bytes."
+        ),
+        ("bytes",),
+        ["world", "chunks", "form", "bytes", "encode us", "decode us"],
+        [[r["world"], r["set"], r["form"], r["bytes"], r["encode_us"], r["decode_us"]] for r in every],
+        [bars("bytes", "bytes of a chunk", all_bars, Axis("bytes of a chunk of 32³, mean over a real world"))],
+        notes=["Bytes are counted, so they have no interval."],
+    )
+
+
+def transfer_ms(rows, profile, case):
+    return rows.where(profile=profile, case=case, figure="complete_ms").number("value")
+
+
+def _transfers(evidence):
+    steps = tuple(f"transfer-{p}" for p in PROFILES)
+    rows = evidence.here.all_rows(steps)
+    gains = {
+        p: geometric_mean_interval(
+            [transfer_ms(rows, p, f"{w} dense_zstd") / transfer_ms(rows, p, f"{w} packed") for w in WORLDS]
+        )
+        for p in PROFILES
+    }
+    ratios = "; ".join(f"{p} {interval_text(g)}" for p, g in gains.items() if g.is_known)
+    return Figure(
+        "transfers",
+        "Send, unpack, mesh: under each link (9.2)",
+        (
+            "Until everything is meshed, dense voxels under zstd take this many times as long as packed runs"
+            f" (geometric mean of five worlds): {ratios or 'not measured'}. On slow links bytes decide, on fast ones"
+            " the meshing."
+        ),
+        steps,
+        NET_COLUMNS,
+        _net_table(rows),
+        [
+            dots(
+                "transfers",
+                "transfer and mesh",
+                list(PROFILES),
+                [
+                    Series(name, colour, [exactly(transfer_ms(rows, p, f"luanti {form}")) for p in PROFILES], hollow)
+                    for form, name, colour, hollow in WAYS
+                ],
+                Axis("ms until all 64 chunks are meshed, real world", True),
+            ),
+            dots(
+                "transfers-ratio",
+                "ratio of transfers",
+                list(PROFILES),
+                [Series("dense + zstd + binary greedy", BINARY, [gains[p] for p in PROFILES])],
+                Axis("times as long as packed runs + RDM", False, 1),
+            ),
+        ],
+        notes=[
+            "Lines and brackets show 95 % bootstrap intervals over the five worlds. Each time is the median of few"
+            " repetitions."
+        ],
+    )
+
+
+def _latency(evidence):
+    steps = tuple(f"latency-{p}" for p in PROFILES)
+    rows = evidence.here.all_rows(steps)
+
+    def value(profile, case, figure):
+        return rows.where(profile=profile, case=case, figure=figure).number("value")
+
+    def spread(profile, case, figure):
+        p50 = value(profile, case, f"{figure}_p50_ms")
+        return Interval(p50, p50, value(profile, case, f"{figure}_p99_ms"))
+
+    kinds = (
+        ("local edit", "idle", "local_predicted_meshed", OTHER, False),
+        ("remote edit", "idle", "remote_meshed", INK, False),
+        ("remote edit beside terrain, 20 clients", "streaming 20 clients", "remote_meshed", QUIET, True),
+    )
+
+    def p50(profile, figure):
+        return number_text(value(profile, "idle", f"{figure}_p50_ms"))
+
+    return Figure(
+        "latency",
+        "Latency plus mesh, by link",
+        (
+            f"The local edit is predicted, so it is meshed after {p50('loopback', 'local_predicted_meshed')} ms on"
+            f" loopback and {p50('broadband', 'local_predicted_meshed')} on broadband alike (p50). A remote edit takes"
+            f" the network's delay in addition: {p50('loopback', 'remote_meshed')} and"
+            f" {p50('broadband', 'remote_meshed')}."
+        ),
+        steps,
+        NET_COLUMNS,
+        _net_table(rows),
+        [
+            dots(
+                "latency",
+                "latency",
+                list(PROFILES),
+                [
+                    Series(name, colour, [spread(p, case, figure) for p in PROFILES], hollow)
+                    for name, case, figure, colour, hollow in kinds
+                ],
+                Axis("ms from the click to the mesh", True),
+            )
+        ],
+        notes=["The lines reach from the median (p50) to the 99th percentile; the maximum is in the CSV."],
+    )
+
+
+def _crowds(evidence):
+    steps = tuple(f"crowd-{n}" for n in FLEET_SIZES)
+    rows = evidence.here.all_rows(steps)
+
+    def value(clients, figure):
+        return rows.where(case=f"{clients} clients", figure=figure).number("value")
+
+    most = max((n for n in FLEET_SIZES if math.isfinite(value(n, "seen_p99_ms"))), default=1)
+    cores = evidence.here.common.machine.cores if evidence.here.common else 0
+    series = [
+        Series(name, colour, [(n, exactly(value(n, figure))) for n in FLEET_SIZES if n > 1], False, marker)
+        for name, colour, figure, marker in (
+            ("p50", OTHER, "seen_p50_ms", "o"),
+            ("p99", INK, "seen_p99_ms", "s"),
+            ("max", QUIET, "seen_max_ms", "^"),
+        )
+    ]
+    return Figure(
+        "crowds",
+        "Crowds: 1 to 1,000 clients",
+        (
+            f"{count_text(most)} clients on one server beside their bots on {cores} cores see each other's edits after"
+            f" {number_text(value(most, 'seen_p50_ms'))} ms (p50), {number_text(value(most, 'seen_p99_ms'))} (p99);"
+            f" {count_text(value(most, 'samples'))} samples, {number_text(value(most, 'never'))} never arrived,"
+            f" {number_text(value(most, 'disconnects'))} disconnects."
+        ),
+        steps,
+        NET_COLUMNS,
+        _net_table(rows),
+        [
+            lines(
+                "crowds",
+                "crowds",
+                series,
+                Axis("clients in one place, two edits a second each", True),
+                Axis("ms until the others have an edit", True),
+            )
+        ],
+        notes=["A single client has nobody to see its edits; its figures are in the CSV."],
+    )
+
+
+def siege_charts(rows):
+    """Returns the charts of a siege by name: latency, memory and disk over its windows."""
+    windows = [case for case in rows.where(experiment="siege").kinds("case") if case.startswith("window ")]
+
+    def value(case, figure):
+        return rows.where(experiment="siege", case=case, figure=figure).number("value")
+
+    middle = {w: (value(w, "from_s") + value(w, "to_s")) / 2 for w in windows}
+    spans = [
+        Span(value(w, "from_s"), value(w, "to_s"), w.split(" ", 2)[2]) for w in windows if not w.endswith(" quiet")
+    ]
+
+    def line(name, colour, figure):
+        return Series(name, colour, [(middle[w], exactly(value(w, figure))) for w in windows])
+
+    x = Axis("time since the server started, s")
+    return {
+        "siege-p99": lines(
+            "siege-p99",
+            "latency of edits in a siege",
+            [line("p99", INK, "p99_ms"), line("p50", OTHER, "p50_ms")],
+            x,
+            Axis("latency, ms", True),
+            spans,
+        ),
+        "siege-memory": lines(
+            "siege-memory",
+            "memory of the server in a siege",
+            [line("server", INK, "server_resident_mb")],
+            x,
+            Axis("resident memory, MB"),
+            spans,
+        ),
+        "siege-disk": lines(
+            "siege-disk",
+            "disk writes of the server in a siege",
+            [line("server", INK, "disk_kb_s")],
+            x,
+            Axis("written, KB/s"),
+            spans,
+        ),
+    }
+
+
+def _siege(evidence):
+    rows = evidence.here.rows("siege")
+    worst = max(((r["value"], r["case"]) for r in rows.where(figure="p99_ms")), default=(math.nan, "none"))
+    return Figure(
+        "siege",
+        "A siege: builders under attack",
+        (
+            f"All attacks take turns against one server. The worst p99 of the builders is {number_text(worst[0])} ms"
+            f" ({worst[1]})."
+        ),
+        ("siege",),
+        NET_COLUMNS,
+        _net_table(rows),
+        list(siege_charts(rows).values()),
+        notes=["Windows under attack are shaded and have the name of their attack."],
+    )
+
+
+def network_section(evidence):
+    figures = [_bytes(evidence), _transfers(evidence), _latency(evidence), _crowds(evidence)]
+    if evidence.here.has_any(("siege",)):
+        figures.append(_siege(evidence))
+    return Section(
+        "network",
+        "Under networked conditions",
+        (
+            "Real programs, simulated links: delay, jitter, rate and loss. Nothing here was asked of the "
+            "thesis' prototype."
+        ),
+        figures,
+    )

@@ -1,0 +1,143 @@
+"""make-report as a program. A small script takes the place of runstone-bench, except in the last tests."""
+import io
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+import unittest.mock
+from pathlib import Path
+from types import SimpleNamespace
+
+from report.command import main
+from report.steps import PictureStep, report_steps
+
+from .sample_data import MACHINE, ROOT, _results
+
+BENCH = """#!/usr/bin/python3
+import json, sys
+arguments = sys.argv[1:]
+with open({calls!r}, "a") as calls:
+    calls.write(arguments[0] + "\\n")
+if arguments[0] == "edits":
+    sys.exit("runstone-bench: no disk")
+known = json.load(open({known!r}))
+json.dump(known[arguments[0]], open(arguments[arguments.index("--json") + 1], "w"))
+"""
+
+
+class Command(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.calls, self.bench = self.folder / "calls", self.folder / "bench"
+        self.set_machine(vars(MACHINE))
+        # Drawing takes most of the time, and these tests do not read the page.
+        page = unittest.mock.patch("report.command.write_page", return_value=SimpleNamespace(errors=list))
+        self.write_page = page.start()
+        self.addCleanup(page.stop)
+        self.bench.write_text(BENCH.format(calls=str(self.calls), known=str(self.folder / "known.json")))
+        self.bench.chmod(0o755)
+
+    def set_machine(self, machine):
+        results = _results()
+        known = {"machine": machine, "scenario-facts": results["facts"], "bytes": results["bytes"]}
+        (self.folder / "known.json").write_text(json.dumps(known))
+
+    def run_report(self, *arguments):
+        err = io.StringIO()
+        code = main(["--out", str(self.folder / "out"), "--bench", str(self.bench), *arguments], err)
+        calls = self.calls.read_text().split() if self.calls.exists() else []
+        self.calls.unlink(missing_ok=True)
+        return code, err.getvalue(), [c for c in calls if c != "machine"]
+
+    def test_a_step_is_measured_once(self):
+        self.assertEqual(self.run_report("--steps", "facts,bytes")[::2], (0, ["scenario-facts", "bytes"]))
+        self.write_page.assert_called_once()
+        code, text, calls = self.run_report("--steps", "facts,bytes")
+        self.assertEqual((code, calls), (0, []))
+        self.assertIn("[1/2] facts, about 22 s left: is there", text)
+        self.assertEqual(self.run_report("--steps", "facts", "--again")[2], ["scenario-facts"])
+        self.assertEqual(self.run_report("--page-only")[::2], (0, []))
+
+    def test_another_commit_and_changed_trees_are_measured_again(self):
+        self.run_report("--steps", "facts")
+        self.set_machine({**vars(MACHINE), "commit": "ffff-dirty"})
+        self.assertEqual(self.run_report("--steps", "facts")[2], ["scenario-facts"])
+        self.assertEqual(self.run_report("--steps", "facts")[2], ["scenario-facts"])
+
+    def test_a_quick_run_does_not_replace_a_full_one(self):
+        self.run_report("--steps", "facts")
+        code, text, calls = self.run_report("--steps", "facts", "--quick")
+        self.assertEqual((code, calls), (1, []))
+        self.assertIn("has results of a full run", text)
+        self.assertEqual(self.run_report("--steps", "facts", "--quick", "--again")[0], 0)
+
+    def test_a_step_that_fails_is_named_and_the_others_run(self):
+        code, text, calls = self.run_report("--steps", "edits,bytes")
+        self.assertEqual((code, calls), (1, ["edits", "bytes"]))
+        self.assertIn("failed: bench edits ended with code 1: runstone-bench: no disk", text)
+        self.assertIn("no disk", self.write_page.call_args[0][3]["edits"])
+
+    def test_unknown_steps_are_rejected(self):
+        for arguments in (("--steps", "everything"), ("--quick", "--steps", "latency-lossy")):
+            with self.assertRaises(SystemExit), unittest.mock.patch("sys.stderr", io.StringIO()):
+                self.run_report(*arguments)
+
+    def test_a_missing_program_is_named(self):
+        self.bench.unlink()
+        code, text, _ = self.run_report("--steps", "facts")
+        self.assertEqual(code, 1)
+        self.assertIn("bench is missing", text)
+
+
+@unittest.skipUnless(os.environ.get("RUNSTONE_BENCH"), "RUNSTONE_BENCH does not name runstone-bench")
+class WithRunstoneBench(unittest.TestCase):
+    def test_every_step_is_a_command_that_runstone_bench_accepts(self):
+        for quick in (True, False):
+            for step in report_steps(quick):
+                arguments = (
+                    step.picture_arguments(37) if isinstance(step, PictureStep) else (*step.arguments, "--json", "x")
+                )
+                done = subprocess.run(
+                    [os.environ["RUNSTONE_BENCH"], *arguments, "--help"], capture_output=True, text=True, check=False
+                )
+                self.assertEqual(done.returncode, 0, f"{step.name}: {done.stderr}")
+
+    def test_runstone_bench_writes_what_the_page_needs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            err = io.StringIO()
+            code = main(
+                ["--out", folder, "--quick", "--steps", "facts,edits,bytes", "--bench", os.environ["RUNSTONE_BENCH"]],
+                err,
+            )
+            self.assertEqual(code, 0, err.getvalue())
+            text = (Path(folder) / "index.html").read_text(encoding="utf-8")
+            self.assertIn("A chunk takes", text[text.index('id="memory-group-1"') :])
+
+
+class Siege(unittest.TestCase):
+    def test_the_charts_of_a_siege_are_files_of_their_own(self):
+        with tempfile.TemporaryDirectory() as folder:
+            cases = {"window 0 quiet": 2, "window 1 views": 9}
+            figures = [
+                {"experiment": "siege", "profile": "loopback", "case": case, "figure": figure, "value": value}
+                for case, p99 in cases.items()
+                for figure, value in (
+                    ("from_s", p99),
+                    ("to_s", p99 + 5),
+                    ("p50_ms", 1),
+                    ("p99_ms", p99),
+                    ("server_resident_mb", 50),
+                    ("disk_kb_s", 3),
+                )
+            ]
+            file = Path(folder) / "net.json"
+            file.write_text(json.dumps({"figures": figures}))
+            subprocess.run([ROOT / "scripts/report/draw-siege", file, folder], check=True)
+            for name in ("siege-p99", "siege-memory", "siege-disk"):
+                text = (Path(folder) / f"{name}.svg").read_text()
+                self.assertTrue(text.startswith("<svg "))
+                self.assertIn(">views</text>", text)
+                self.assertIn("prefers-color-scheme:dark", text)

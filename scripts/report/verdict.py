@@ -1,0 +1,292 @@
+"""Verdict: the first screen of the page. One sentence, the decisive chart, and what speaks against it."""
+from dataclasses import dataclass
+
+from .charts import Axis, Series, dots
+from .comparison import DECISIVE, OURS, compare
+from .figures.meshers import MesherTotals
+from .figures.network import WAYS, WORLDS, transfer_ms
+from .meshers import MESHERS, mesher
+from .statistics import UNKNOWN, exactly, geometric_mean_interval
+from .text import count_text, interval_text, number_text, time_text
+
+SCENARIOS, REAL_WORLD = MAIN_WORLDS = ("thesis' scenarios", "a real world")
+STEPS = ("meshers", "landscapes", "adversaries")
+THESIS_MESHER = "The thesis' own RLE RDM"
+BASELINES = (DECISIVE, "mask_binary", "rle_rdm")
+COLUMNS = ["machine", "world", "volumes", "mesher", "times ours", "low", "high", "sums: times ours", "low", "high"]
+
+
+@dataclass(frozen=True)
+class Answer:
+    question: str
+    best: str
+    rest: str
+    figure: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    sentence: str
+    chart: str  # SVG; empty if nothing was measured
+    against: list
+    answers: list
+    columns: list
+    rows: list
+    empty_note: str = ""
+    steps: tuple = STEPS
+
+
+def world_rows(results):
+    """Returns the rows of each world of the decisive comparison by its name for readers."""
+    out = {SCENARIOS: results.rows("meshers")}
+    for step in ("landscapes", "adversaries"):
+        rows = results.rows(step)
+        worlds = sorted(rows.kinds("world"), key=lambda w: w != "luanti")
+        out |= {REAL_WORLD if w == "luanti" else w: rows.where(world=w) for w in worlds}
+    return out
+
+
+def _comparisons(evidence):
+    """Returns (machine, world, {mesher: Comparison}) for each row of the decisive chart."""
+    out = []
+    for results in evidence.machines:
+        for world, rows in world_rows(results).items():
+            if world not in MAIN_WORLDS and results is not evidence.here:
+                continue
+            found = {k: c for k in BASELINES if (c := compare(rows, k))}
+            if found:
+                out.append((evidence.machine_name(results), world, found))
+    return sorted(out, key=lambda r: (r[1] != SCENARIOS, r[1] != REAL_WORLD))
+
+
+def _chart(evidence, comparisons):
+    several = len(evidence.machines) > 1
+    rows = []
+    for machine, world, found in comparisons:
+        count = len(next(iter(found.values())).volumes)
+        rows.append(f"{world} ({count})" + (f"\n{machine}" if several and world in MAIN_WORLDS else ""))
+    series = [
+        Series(mesher(k).name, mesher(k).light, [f[k].gain if k in f else UNKNOWN for _, _, f in comparisons])
+        for k in BASELINES
+    ]
+    return dots(
+        "verdict",
+        "times as long as meshing from runs",
+        rows,
+        series,
+        Axis("times as long as meshing from runs (geometric mean)", True, 1),
+    )
+
+
+def _sentence(scenarios, real):
+    if scenarios is None:
+        return "The meshers were not measured yet."
+    gain = scenarios.gain
+    beginning = (
+        "Meshing from the stored runs is faster than decoding them first"
+        if gain.low > 1
+        else (
+            "Decoding the stored runs first is faster than meshing from them"
+            if gain.high < 1
+            else "No difference is measured between meshing from the stored runs and decoding them first"
+        )
+    )
+    out = (
+        f"{beginning}: decoding and binary greedy meshing, the fastest dense mesher, takes {interval_text(gain)} times"
+        f" as long over the {len(scenarios.volumes)} scenarios of the thesis that have quads"
+    )
+    if real:
+        out += f", and {interval_text(real.gain)} times over {len(real.volumes)} volumes of a real world"
+    return out + "."
+
+
+def _count_sentence(who, found, of):
+    parts = []
+    if found.slower:
+        names = f" ({', '.join(found.slower)})" if len(found.slower) <= 15 else ""
+        parts.append(f"{who} is faster than ours in {len(found.slower)} of {len(found.volumes)} {of}{names}")
+    if found.undecided:
+        names = f" ({', '.join(found.undecided)})" if len(found.undecided) <= 8 else ""
+        parts.append(
+            f"in {len(found.undecided)}{names} the repetitions overlap"
+            if parts
+            else (
+                f"{who} is never clearly faster; the repetitions overlap in {len(found.undecided)} of"
+                f" {len(found.volumes)} {of}{names}"
+            )
+        )
+    return "; ".join(parts) + "." if parts else ""
+
+
+def _mean_sentence(found):
+    return (
+        f"By the arithmetic mean, in which slow scenarios weigh most, {mesher(found.other).name} takes"
+        f" {number_text(found.other_mean_us)} µs and ours {number_text(found.our_mean_us)} µs. The ratio is"
+        f" {interval_text(found.sums)}."
+    )
+
+
+def _against(evidence, comparisons):
+    """Returns what a sceptic would say, each in a sentence or two."""
+    here = (
+        [(w, f) for m, w, f in comparisons if m == evidence.machine_name(evidence.here)] if evidence.here.common else []
+    )
+    by_world = dict(here)
+    out = []
+    scenarios = by_world.get(SCENARIOS, {})
+    if rle := scenarios.get("rle_rdm"):
+        if rle.slower or rle.sums.low < 1:
+            out.append(
+                f"{_count_sentence(THESIS_MESHER, rle, 'scenarios')} {_mean_sentence(rle)} RLE RDM emits "
+                f"{number_text(rle.triangles)} times the triangles."
+            )
+    if decisive := scenarios.get(DECISIVE):
+        out.append(f"{_count_sentence('Decoding first', decisive, 'scenarios')} {_mean_sentence(decisive)}".strip())
+    for world, title in ((SCENARIOS, "in the scenarios"), (REAL_WORLD, "in the real world")):
+        ready = by_world.get(world, {}).get("mask_binary")
+        if ready and ready.gain.low < 1:
+            out.append(
+                f"A program that has the grid and its mask ready meshes {title} in {interval_text(ready.gain)} times"
+                " the time of ours: there, runs save memory and bytes, not time."
+            )
+    slow = [
+        f"{w} {interval_text(f[DECISIVE].gain)}"
+        for w, f in here
+        if DECISIVE in f and f[DECISIVE].gain.low < 1 and w != SCENARIOS
+    ]
+    if slow:
+        out.append(
+            "In these worlds decoding first is faster, or the interval of its time divided by ours contains 1:"
+            f" {'; '.join(slow)}."
+        )
+    out.append(_machines_sentence(evidence))
+    drawn = evidence.here.find("frames")
+    if drawn and isinstance(drawn.result, dict) and drawn.result.get("gl", {}).get("software"):
+        out.append("The frames were drawn by software, not by a GPU.")
+    if evidence.here.common and evidence.here.common.quick:
+        out.append("This is a quick run: few repetitions, wide errors.")
+    return [" ".join(o.split()) for o in out if o.strip()]
+
+
+def _machines_sentence(evidence):
+    gains = [
+        (evidence.machine_name(r), c.gain) for r in evidence.machines if (c := compare(r.rows("meshers"), DECISIVE))
+    ]
+    if len(gains) > 1:
+        return (
+            "The ratio to decoding over the scenarios moves between machines: "
+            + "; ".join(f"{name} {interval_text(gain)}" for name, gain in gains)
+            + "."
+        )
+    return "The ratios are from one kind of machine. Between machines they move; the interval does not contain that."
+
+
+def best_of(candidates, text):
+    """Returns the candidates (name, interval, value) whose intervals overlap that of the least, and the others."""
+    measured = sorted((c for c in candidates if c[1].is_known), key=lambda c: c[1].middle)
+    if not measured:
+        return None
+    equal = [c for c in measured if c[1].overlaps(measured[0][1])]
+    rest = [c for c in measured if c not in equal]
+    best = " and ".join(f"{name}: {text(value)}" for name, _, value in equal) + (
+        " (intervals overlap)" if len(equal) > 1 else ""
+    )
+    return best, "; ".join(f"{name}: {text(value)}" for name, _, value in rest[:3])
+
+
+def _answers(evidence):
+    totals = MesherTotals(evidence.here.rows("meshers"))
+    out = []
+
+    def answer(question, figure, candidates, text):
+        found = best_of(candidates, text)
+        if found:
+            out.append(Answer(question, *found, figure))
+
+    def times(keys):
+        return [(mesher(k).name, totals.against_ours(k), totals.mean_ns(k)) for k in keys if k in totals.keys]
+
+    def counts(keys, field):
+        return [(mesher(k).name, exactly(totals.sum(k, field)), totals.sum(k, field)) for k in keys if k in totals.keys]
+
+    plain = [k for k, m in MESHERS.items() if k == OURS or not k.startswith("rdm_")]
+    if totals.parts:
+        answer(
+            "Fastest from the stored runs",
+            "meshers-time",
+            times([k for k in plain if mesher(k).start == "runs" and k != "padded_binary"]),
+            time_text,
+        )
+        answer(
+            "Fastest with a grid or mask ready",
+            "meshers-time",
+            times([k for k in plain if mesher(k).start in ("grid", "mask")]),
+            time_text,
+        )
+        answer(
+            "Fastest without merging faces",
+            "meshers-time",
+            times([k for k in plain if not mesher(k).merges]),
+            time_text,
+        )
+        rectangles = ("rdm", "decode_binary", "grid_rdm", "rle_rdm", "culled", "greedy", "naive_greedy", "run_strips")
+        answer(
+            "Fewest triangles without a search for the optimum",
+            "meshers-triangles",
+            counts(rectangles, "triangles"),
+            count_text,
+        )
+        answer(
+            "Fewest T-junctions among meshers that merge",
+            "t-junctions",
+            counts([k for k in plain if mesher(k).merges and not mesher(k).is_variant], "t_junctions"),
+            count_text,
+        )
+    rows = evidence.here.rows("bytes").where(world="luanti", set="all")
+    forms = (
+        ("packed", "packed runs"),
+        ("coded", "coded runs"),
+        ("raw", "raw runs"),
+        ("dense_zstd", "dense + zstd"),
+        ("luanti", "Luanti's form"),
+        ("minecraft", "Minecraft's form"),
+    )
+    answer(
+        "Fewest bytes of a real chunk on the wire",
+        "bytes",
+        [(name, exactly(size), size) for form, name in forms for size in (rows.where(form=form).number("bytes"),)],
+        lambda v: f"{number_text(v)} B",
+    )
+    for profile, title in (
+        ("loopback", "Soonest sent and meshed, on loopback"),
+        ("broadband", "The same over broadband"),
+    ):
+        net = evidence.here.rows(f"transfer-{profile}")
+        candidates = []
+        for form, name, _, _ in WAYS:
+            ratios = [
+                transfer_ms(net, profile, f"{w} {form}") / transfer_ms(net, profile, f"{w} packed") for w in WORLDS
+            ]
+            candidates.append((name, geometric_mean_interval(ratios), transfer_ms(net, profile, f"luanti {form}")))
+        answer(title, "transfers", candidates, lambda v: f"{number_text(v)} ms")
+    return out
+
+
+def verdict_of(evidence):
+    comparisons = _comparisons(evidence)
+    here = evidence.machine_name(evidence.here) if evidence.here.common else None
+    found = {w: f.get(DECISIVE) for m, w, f in comparisons if m == here}
+    rows = [
+        [m, w, len(c.volumes), k, c.gain.middle, c.gain.low, c.gain.high, c.sums.middle, c.sums.low, c.sums.high]
+        for m, w, f in comparisons
+        for k, c in f.items()
+    ]
+    return Verdict(
+        _sentence(found.get(SCENARIOS), found.get(REAL_WORLD)),
+        _chart(evidence, comparisons) if comparisons else "",
+        _against(evidence, comparisons),
+        _answers(evidence),
+        COLUMNS,
+        rows,
+        MesherTotals(evidence.here.rows("meshers")).empty_note(),
+    )
