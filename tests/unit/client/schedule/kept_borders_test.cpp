@@ -74,7 +74,8 @@ TEST_CASE_METHOD(PlannerBench, "a job has the borders that earlier meshes beside
   REQUIRE(middle);
   REQUIRE(middle->key.at == ChunkCoord{0, 0, 0});
   const BordersPtr borders = borders_of(*middle->chunk);
-  REQUIRE(planner.finish(middle->key, middle->number, std::make_shared<const ChunkMesh>(), borders));
+  REQUIRE(
+      planner.finish(middle->key, middle->number, std::make_shared<const ChunkMesh>(), borders));
   drain();
   const auto seen_from_beside = [this] {
     commit({kBenchEdge + 5, 5, 5}, static_cast<Material>(2 + edits));
