@@ -57,6 +57,23 @@ std::uint64_t differing_bits(const Voxel* a, const Voxel* b, std::uint32_t count
   return ~equal & low_bits(count);
 }
 
+/// Returns a word with bit i set if ids[i] < limit, for i < count. Requires 0 < count <= 64, a limit
+/// of at most 256, and kCompareSlack readable ids behind them.
+inline std::uint64_t ids_below(const std::uint8_t* ids, std::uint32_t count, std::uint32_t limit) {
+  if (limit == 0) return 0;
+  std::uint64_t below = 0;
+#if defined(__SSE2__)
+  const __m128i highest = splat(static_cast<std::uint8_t>(limit - 1));
+  for (std::uint32_t i = 0; i < count; i += 16) {
+    const __m128i lanes = load_lanes(ids + i);
+    below |= std::uint64_t{byte_mask(_mm_cmpeq_epi8(_mm_min_epu8(lanes, highest), lanes))} << i;
+  }
+#else
+  for (std::uint32_t i = 0; i < count; ++i) below |= std::uint64_t{ids[i] < limit} << i;
+#endif
+  return below & low_bits(count);
+}
+
 /// Returns how many of the `count` voxels from `row` on equal `voxel`, before the first that differs.
 /// Requires kCompareSlack readable voxels behind them.
 template <class Voxel>

@@ -20,6 +20,7 @@
 #include "tests/bench/thesis/scenario_bench.hpp"
 #include "tests/bench/view/view_bench.hpp"
 #include "tests/bench/wire/bytes_bench.hpp"
+#include "tests/bench/wire/bytes_to_quads.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -103,6 +104,13 @@ int bytes(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   });
 }
 
+int bytes_to_quads(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_bytes_to_quads(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
+}
+
 int frames(const FramesOptions& options, std::ostream& out, std::ostream& err) {
   return finish(run_frames_bench(options, err), options, err, [&](const auto& result) {
     write_machine(result.machine, out);
@@ -176,6 +184,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return chunk_edge(options.bench, out, err);
     case Command::bytes:
       return bytes(options.bench, out, err);
+    case Command::bytes_to_quads:
+      return bytes_to_quads(options.bench, out, err);
     case Command::log:
       return log(options.bench, out, err);
     case Command::edits:

@@ -27,12 +27,13 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 10> kSubcommands = {
+constexpr std::array<Subcommand, 11> kSubcommands = {
     {{Command::mesh, add_mesh_command},
      {Command::chunk_edge, add_chunk_edge_command},
      {Command::edits, add_edits_command},
      {Command::log, add_log_command},
      {Command::bytes, add_bytes_command},
+     {Command::bytes_to_quads, add_bytes_to_quads_command},
      {Command::storage, add_storage_command},
      {Command::mesh_once, add_mesh_once_command},
      {Command::scenario_facts, add_scenario_facts_command},

@@ -18,6 +18,7 @@ enum class Command {
   edits,
   log,
   bytes,
+  bytes_to_quads,
   storage,
   net,
   frames,

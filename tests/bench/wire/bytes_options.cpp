@@ -4,6 +4,7 @@
 
 #include "tests/bench/harness/common_options.hpp"
 #include "tests/bench/worlds/lit_chunk.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
 
@@ -17,6 +18,20 @@ CLI::App* add_bytes_command(CLI::App& app, BenchOptions& options) {
   add_repetitions_option(*bytes, options, "--min-runs",
                          "times that each chunk is coded in each form");
   return bytes;
+}
+
+CLI::App* add_bytes_to_quads_command(CLI::App& app, BenchOptions& options) {
+  options.repetitions = 15;
+  options.worlds = {"luanti"};
+  options.edges = {32};
+  CLI::App* quads = app.add_subcommand(
+      "bytes-to-quads",
+      "from the bytes of a chunk to its quads, stage by stage, against dense voxels");
+  add_world_options(*quads, options, measured_world_names());
+  add_edge_option(*quads, options);
+  quads->add_option("--json", options.json, "write all rows to this file");
+  add_repetitions_option(*quads, options, "--min-runs", "passes over the chunks of a world");
+  return quads;
 }
 
 }  // namespace runstone::bench

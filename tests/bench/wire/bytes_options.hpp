@@ -1,4 +1,4 @@
-// The command line of `runstone-bench bytes`.
+// The command lines of `runstone-bench bytes` and `runstone-bench bytes-to-quads`.
 #pragma once
 #include "tests/bench/harness/bench_options.hpp"
 
@@ -8,7 +8,8 @@ class App;
 
 namespace runstone::bench {
 
-/// Adds the subcommand with its defaults. `options` must outlive the parse.
+/// Add a subcommand with its defaults. `options` must outlive the parse.
 CLI::App* add_bytes_command(CLI::App& app, BenchOptions& options);
+CLI::App* add_bytes_to_quads_command(CLI::App& app, BenchOptions& options);
 
 }  // namespace runstone::bench

@@ -306,6 +306,30 @@ TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
   }
 }
 
+TEST_CASE("runstone-bench bytes-to-quads takes both ways over the same chunks", "[bench]") {
+  const test::TempFolder folder;
+  const std::string json = folder / "quads.json";
+  const BenchOutput output =
+      run_bench({"bytes-to-quads", "--min-runs", "1", "--worlds", "luanti,empty", "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  CHECK(output.out.find("packed bytes to quads") != std::string::npos);
+  const auto document = nlohmann::json::parse(text_of(json));
+  const auto& rows = document.at("rows");
+  REQUIRE(rows.size() == 2);  // no chunk of the empty world is measured
+  for (const auto& row : rows) {
+    CAPTURE(row.at("world"));
+    const bool is_empty = row.at("world") == "empty";
+    CHECK((row.at("chunks") == 0) == is_empty);
+    if (is_empty) continue;
+    CHECK(row.at("runs").at("bytes") < row.at("dense").at("bytes"));
+    for (const char* way : {"runs", "dense"}) {
+      CHECK(row.at(way).at("unpack_us") > 0);
+      CHECK(row.at(way).at("mesh_us") > 0);
+    }
+  }
+}
+
 TEST_CASE("runstone-bench scenario-facts counts all chunks of the thesis' scenarios", "[bench]") {
   const test::TempFolder folder;
   const std::string json = folder / "facts.json";

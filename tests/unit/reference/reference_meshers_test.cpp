@@ -9,6 +9,7 @@
 #include "tests/reference/binary_greedy.hpp"
 #include "tests/reference/bit_matrix.hpp"
 #include "tests/reference/culled_mesher.hpp"
+#include "tests/reference/dense_bytes.hpp"
 #include "tests/reference/grid_rdm.hpp"
 #include "tests/reference/palette_decode.hpp"
 #include "tests/reference/rle_rdm.hpp"
@@ -140,13 +141,13 @@ TEST_CASE("tail culling: a full chunk keeps all but the first layers' backs", "[
   CHECK(quads_of(scene).rle == 64 * 4 + 8 + 8);
 }
 
-TEST_CASE("binary greedy makes the same mesh from runs, from a grid and with its mask ready",
+TEST_CASE("binary greedy makes the same mesh from runs, bytes and a grid, and with its mask ready",
           "[mesh][reference]") {
   SplitMix64 rng(5);
   BinaryScratch scratch;
   OccupancyMask mask;
   PaletteVolume volume;
-  ChunkMesh ready, from_grid, from_runs, from_padded;
+  ChunkMesh ready, from_grid, from_runs, from_dense, from_padded;
   const auto same = [](const ChunkMesh& a, const ChunkMesh& b) {
     return a.opaque.quads == b.opaque.quads && a.opaque.first == b.opaque.first &&
            a.transparent.quads == b.transparent.quads && a.transparent.first == b.transparent.first;
@@ -162,6 +163,18 @@ TEST_CASE("binary greedy makes the same mesh from runs, from a grid and with its
     REQUIRE(same(ready, from_grid));
     REQUIRE(same(ready, from_runs));
     if (!scratch.volume.mask.one_transparent) ++compared;
+    const auto dense = dense_bytes(scene.chunk, mesh_visibility());
+    REQUIRE(dense);
+    std::array<std::optional<DenseBytes>, kDirectionCount> beside;
+    reference::DenseNeighbours neighbours{};
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      if (!scene.neighbours[d]) continue;
+      beside[d] = dense_bytes(reorder(*scene.neighbours[d], scene.chunk.order), mesh_visibility());
+      neighbours[d] = &*beside[d];
+    }
+    fill_volume(*dense, neighbours, mesh_visibility(), volume);
+    mesh_binary_greedy(volume, scratch, from_dense);
+    REQUIRE(same(ready, from_dense));
     const OrderedExtent e = grid.sides();
     if (std::max({e.f, e.m, e.s}) > kPaddedSideMax) continue;
     const auto padded = padded_runs(scene.chunk, scene.pointers());

@@ -1,0 +1,277 @@
+#include "tests/bench/wire/bytes_to_quads.hpp"
+
+#include <fmt/ostream.h>
+#include <zstd.h>
+
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <tuple>
+
+#include "common/core/assert.hpp"
+#include "common/mesh/rdm/rdm_mesher.hpp"
+#include "common/runs/reorder.hpp"
+#include "protocol/codec/chunk_codec.hpp"
+#include "tests/bench/harness/clocks.hpp"
+#include "tests/bench/harness/machine_json.hpp"
+#include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
+#include "tests/reference/binary_greedy.hpp"
+#include "tests/reference/dense_bytes.hpp"
+
+namespace runstone::bench {
+namespace {
+
+using reference::DenseBytes;
+
+constexpr int kDenseZstdLevel = 5;  // as that of packed chunks
+constexpr double kTargetUs = 10, kTargetGain = 3;
+
+using StageTimes = std::array<std::vector<double>, 3>;  // by pass
+
+/// A chunk in both forms, with what its meshes need of its neighbours.
+struct WireChunk {
+  const Volume* volume = nullptr;
+  std::array<std::optional<std::size_t>, kDirectionCount> beside;  // chunks of the same world
+
+  Bytes packed;
+  ChunkBorders borders;
+  bool has_borders = false;  // in this pass
+
+  Bytes frame;  // the dense ids
+  DenseBytes dense;
+  std::array<std::optional<DenseBytes>, kDirectionCount> dense_beside;
+
+  StageTimes runs_times, dense_times;
+};
+
+Bytes compressed(const DenseBytes& dense, std::uint32_t volume) {
+  Bytes out(ZSTD_compressBound(volume));
+  const std::size_t size =
+      ZSTD_compress(out.data(), out.size(), dense.ids.data(), volume, kDenseZstdLevel);
+  RUNSTONE_ASSERT(ZSTD_isError(size) == 0);
+  out.resize(size);
+  return out;
+}
+
+/// Returns the chunks of a world that binary greedy can mesh.
+std::vector<WireChunk> chunks_of(const MeasuredWorld& world) {
+  std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::size_t> at;
+  std::vector<WireChunk> out;
+  for (const Volume& volume : world.volumes) {
+    auto dense = reference::dense_bytes(volume.scene.chunk, *world.visibility);
+    if (!dense || volume.scene.chunk.is_uniform()) continue;
+    at[{volume.origin.x, volume.origin.y, volume.origin.z}] = out.size();
+    WireChunk& chunk = out.emplace_back();
+    chunk.volume = &volume;
+    chunk.packed = encode_chunk(volume.scene.chunk, ChunkEncoding::packed);
+    chunk.dense = *std::move(dense);
+    chunk.frame = compressed(chunk.dense, volume.scene.chunk.volume());
+  }
+  for (WireChunk& chunk : out) {
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      const auto& beside = chunk.volume->scene.neighbours[d];
+      if (!beside) continue;
+      chunk.dense_beside[d] = reference::dense_bytes(
+          reorder(*beside, chunk.volume->scene.chunk.order), *world.visibility);
+      RUNSTONE_ASSERT(chunk.dense_beside[d].has_value());
+      ChunkCoord step = neighbour({}, static_cast<Direction>(d));
+      const auto edge = static_cast<std::int32_t>(chunk.volume->edge);
+      const VoxelPos origin = chunk.volume->origin;
+      const auto found =
+          at.find({origin.x + edge * step.x, origin.y + edge * step.y, origin.z + edge * step.z});
+      if (found != at.end() && out[found->second].volume->scene.chunk == *beside)
+        chunk.beside[d] = found->second;
+    }
+  }
+  return out;
+}
+
+/// Ends a stage: adds the time since `start` and returns the present time.
+std::uint64_t end_stage(StageTimes& times, std::size_t stage, std::uint64_t start) {
+  const std::uint64_t now = now_ns();
+  times[stage].push_back(static_cast<double>(now - start) / 1000);
+  return now;
+}
+
+class RunsPath {
+ public:
+  /// Does all chunks in turn.
+  void pass(std::vector<WireChunk>& chunks, const VisibilityTable& visibility) {
+    for (WireChunk& chunk : chunks) chunk.has_borders = false;
+    for (WireChunk& chunk : chunks) {
+      MeshBorders borders{};
+      for (std::size_t d = 0; d < kDirectionCount; ++d) {
+        if (chunk.beside[d] && chunks[*chunk.beside[d]].has_borders)
+          borders[d] = &chunks[*chunk.beside[d]].borders;
+      }
+      const MeshNeighbours neighbours = chunk.volume->scene.pointers();
+      std::uint64_t at = now_ns();
+      const auto unpacked = decode_chunk(chunk.packed);
+      at = end_stage(chunk.runs_times, 0, at);
+      chunk.runs_times[1].push_back(0);
+      mesh_rdm(*unpacked, neighbours, borders, visibility, scratch_, mesh_, &chunk.borders);
+      end_stage(chunk.runs_times, 2, at);
+      chunk.has_borders = true;
+      RUNSTONE_ASSERT(*unpacked == chunk.volume->scene.chunk);
+    }
+  }
+
+ private:
+  RdmScratch scratch_;
+  ChunkMesh mesh_;
+};
+
+class DensePath {
+ public:
+  DensePath() : decompressor_(ZSTD_createDCtx(), ZSTD_freeDCtx) {}
+
+  void pass(std::vector<WireChunk>& chunks, const VisibilityTable& visibility) {
+    for (WireChunk& chunk : chunks) {
+      reference::DenseNeighbours neighbours{};
+      for (std::size_t d = 0; d < kDirectionCount; ++d)
+        neighbours[d] = chunk.dense_beside[d] ? &*chunk.dense_beside[d] : nullptr;
+      const std::size_t volume = chunk.volume->scene.chunk.volume();
+      std::uint64_t at = now_ns();
+      const std::size_t size =
+          ZSTD_decompressDCtx(decompressor_.get(), chunk.dense.ids.data(), volume,
+                              chunk.frame.data(), chunk.frame.size());
+      at = end_stage(chunk.dense_times, 0, at);
+      reference::fill_volume(chunk.dense, neighbours, visibility, scratch_.volume);
+      at = end_stage(chunk.dense_times, 1, at);
+      reference::mesh_binary_greedy(scratch_.volume, scratch_, mesh_);
+      end_stage(chunk.dense_times, 2, at);
+      RUNSTONE_ASSERT(size == volume);
+    }
+  }
+
+ private:
+  std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> decompressor_;
+  reference::BinaryScratch scratch_;
+  ChunkMesh mesh_;
+};
+
+QuadsWay way_of(std::string name, const std::vector<WireChunk>& chunks,
+               StageTimes WireChunk::* times, Bytes WireChunk::* bytes) {
+  QuadsWay out;
+  out.name = std::move(name);
+  const auto count = static_cast<double>(chunks.size());
+  for (const WireChunk& chunk : chunks) {
+    double total = 0;
+    for (std::size_t stage = 0; stage < out.stage_us.size(); ++stage) {
+      const double us = median((chunk.*times)[stage]);
+      out.stage_us[stage] += us / count;
+      total += us;
+    }
+    out.total_us.push_back(total);
+    out.bytes += static_cast<double>((chunk.*bytes).size()) / count;
+  }
+  return out;
+}
+
+QuadsRow measure(const MeasuredWorld& world, unsigned edge, unsigned repetitions) {
+  std::vector<WireChunk> chunks = chunks_of(world);
+  RunsPath runs;
+  DensePath dense;
+  for (unsigned i = 0; i < repetitions; ++i) {
+    runs.pass(chunks, *world.visibility);
+    dense.pass(chunks, *world.visibility);
+  }
+  QuadsRow row;
+  row.world = world.name;
+  row.edge = edge;
+  row.chunks = chunks.size();
+  row.runs = way_of("runs", chunks, &WireChunk::runs_times, &WireChunk::packed);
+  row.dense = way_of("dense", chunks, &WireChunk::dense_times, &WireChunk::frame);
+  if (chunks.empty()) return row;
+  std::vector<double> gains;
+  for (std::size_t i = 0; i < chunks.size(); ++i)
+    gains.push_back(row.dense.total_us[i] / row.runs.total_us[i]);
+  row.gain_mean = geometric_mean(gains);
+  row.gain_sums = row.dense.total() / row.runs.total();
+  return row;
+}
+
+}  // namespace
+
+std::vector<Target> QuadsResult::targets() const {
+  std::vector<Target> out;
+  for (const QuadsRow& row : rows) {
+    if (row.world != "luanti" || row.edge != 32) continue;
+    const auto judged = [](bool met) { return met ? Verdict::met : Verdict::missed; };
+    out.push_back({"luanti, edge 32: packed bytes to quads, mean of a chunk",
+                   fmt::format("at most {:.0f} µs", kTargetUs),
+                   fmt::format("{:.1f} µs", row.runs.total()),
+                   judged(row.runs.total() <= kTargetUs)});
+    out.push_back({"the same against dense bytes: geometric mean; ratio of sums",
+                   fmt::format("{:.0f}x; {:.0f}x", kTargetGain, kTargetGain),
+                   fmt::format("{:.2f}x; {:.2f}x", row.gain_mean, row.gain_sums),
+                   judged(row.gain_mean >= kTargetGain && row.gain_sums >= kTargetGain)});
+  }
+  return out;
+}
+
+Result<QuadsResult, std::string> run_bytes_to_quads(const BenchOptions& options,
+                                               std::ostream& progress) {
+  const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
+  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  QuadsResult out;
+  out.machine = this_machine();
+  out.repetitions = options.repetitions;
+  std::vector<std::string> skipped;
+  worlds->measure_each(
+      options.edges,
+      [&](std::size_t, const MeasuredWorld& world, unsigned edge) {
+        if (world.volumes.empty()) return;
+        out.rows.push_back(measure(world, edge, options.repetitions));
+      },
+      skipped, progress);
+  return out;
+}
+
+void write_table(const QuadsResult& result, std::ostream& out) {
+  fmt::print(out,
+             "{} passes over all chunks of a world\n\n"
+             "| world | edge | chunks | way | bytes | unpack µs | grid and mask µs | mesh µs | "
+             "total µs | x dense: geometric mean; sums |\n"
+             "|---|---|---|---|---|---|---|---|---|---|\n",
+             result.repetitions);
+  for (const QuadsRow& row : result.rows) {
+    for (const QuadsWay* way : {&row.runs, &row.dense}) {
+      fmt::print(out, "| {} | {} | {} | {} | {:.0f} | {:.1f} | {} | {:.1f} | {:.1f} | {} |\n",
+                 row.world, row.edge, row.chunks, way->name, way->bytes, way->stage_us[0],
+                 way == &row.runs ? "–" : fmt::format("{:.1f}", way->stage_us[1]),
+                 way->stage_us[2], way->total(),
+                 way == &row.runs ? fmt::format("{:.2f}; {:.2f}", row.gain_mean, row.gain_sums)
+                                  : "1.00; 1.00");
+    }
+  }
+  fmt::print(out, "\n");
+  write_targets(result.targets(), out);
+}
+
+void write_json(const QuadsResult& result, std::ostream& out) {
+  const auto json_of_way = [](const QuadsWay& way) {
+    return nlohmann::ordered_json{{"bytes", way.bytes},
+                                  {"unpack_us", way.stage_us[0]},
+                                  {"grid_us", way.stage_us[1]},
+                                  {"mesh_us", way.stage_us[2]},
+                                  {"total_us", way.total()}};
+  };
+  nlohmann::ordered_json json = {{"machine", json_of(result.machine)},
+                                 {"repetitions", result.repetitions},
+                                 {"rows", nlohmann::ordered_json::array()}};
+  for (const QuadsRow& row : result.rows) {
+    json["rows"].push_back({{"world", row.world},
+                            {"edge", row.edge},
+                            {"chunks", row.chunks},
+                            {"runs", json_of_way(row.runs)},
+                            {"dense", json_of_way(row.dense)},
+                            {"gain_mean", row.gain_mean},
+                            {"gain_sums", row.gain_sums}});
+  }
+  out << json.dump(1) << '\n';
+}
+
+}  // namespace runstone::bench
