@@ -56,12 +56,14 @@ struct Evening : TitleBench {
     if (found) newest = line;
     return found;
   }
-  /// Clicks until an edit comes. Where a click changes nothing, it aims beside.
+  /// Clicks until an edit comes. Where a click changes nothing, it aims beside, with another
+  /// material: what it aims at may be of the chosen one.
   void click_for_edit(const std::string& button, const std::string& part) {
     for (int attempt = 0; attempt < 8; ++attempt) {
       hand({"click", button});
       if (has_edit(part, std::chrono::seconds(5))) return;
-      turn(12, 8);
+      turn(12, attempt % 2 == 0 ? 8 : -8);
+      press({std::to_string(2 + attempt % 4)});
     }
     FAIL("no click made an edit: " << part << "; newest edit: " << newest
                                    << "; log: " << text_in(log));
