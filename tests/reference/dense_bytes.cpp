@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "common/core/assert.hpp"
 #include "common/runs/dense.hpp"
@@ -14,7 +15,7 @@ using Word = std::uint64_t;
 
 /// What a border needs of one id of a neighbour.
 struct Seen {
-  PaletteId id = 0;                             // of the chunk, if it has the material
+  PaletteId id = 0;                                // of the chunk, if it has the material
   bool is_opaque = false, is_transparent = false;  // is_transparent: and the chunk has the material
 };
 
@@ -37,8 +38,8 @@ class BorderFill {
   /// Writes the border line at (m, s), which lies beyond the chunk, from a neighbour's line.
   void line(const DenseBytes& of, const PaletteId* from, std::ptrdiff_t m, std::ptrdiff_t s) {
     const std::size_t word = word_at(m, s);
-    out_.mask.opaque[word] = ids_below(from, e_.f, of.transparent_first) &
-                             ~ids_below(from, e_.f, of.opaque_first);
+    out_.mask.opaque[word] =
+        ids_below(from, e_.f, of.transparent_first) & ~ids_below(from, e_.f, of.opaque_first);
     out_.mask.transparent[word] = 0;
     if (!out_.mask.any_transparent || of.transparent_first == of.materials.size()) return;
     PaletteId* const to = out_.grid.line(m, s);
@@ -94,7 +95,8 @@ void set_flags(const DenseBytes& chunk, OccupancyMask& mask) {
   mask.one_opaque = opaque <= 1;
   mask.one_transparent = transparent <= 1;
   mask.opaque_material = mask.any_opaque ? chunk.materials[chunk.opaque_first] : kEmpty;
-  mask.transparent_material = mask.any_transparent ? chunk.materials[chunk.transparent_first] : kEmpty;
+  mask.transparent_material =
+      mask.any_transparent ? chunk.materials[chunk.transparent_first] : kEmpty;
 }
 
 }  // namespace
@@ -114,8 +116,8 @@ std::optional<DenseBytes> dense_bytes(const RunChunk& chunk, const VisibilityTab
            : visibility[material] == Visibility::opaque ? 1
                                                         : 2;
   };
-  std::stable_sort(out.materials.begin(), out.materials.end(),
-                   [&](Material a, Material b) { return rank(a) < rank(b); });
+  std::sort(out.materials.begin(), out.materials.end(),
+            [&](Material a, Material b) { return std::pair(rank(a), a) < std::pair(rank(b), b); });
   const auto first_of = [&](int wanted) {
     return static_cast<std::uint16_t>(
         std::count_if(out.materials.begin(), out.materials.end(),
@@ -162,11 +164,13 @@ void fill_volume(const DenseBytes& chunk, const DenseNeighbours& neighbours,
       border.ends(of->ids.data() + (is_behind ? 0 : n.f - 1), n.f, is_behind);
     } else if (axis == axes[1]) {
       for (std::uint32_t s = 0; s < e.s; ++s)
-        border.line(*of, of->ids.data() + std::size_t{s} * n.layer() + (is_behind ? 0 : n.m - 1) * n.f,
+        border.line(*of,
+                    of->ids.data() + std::size_t{s} * n.layer() + (is_behind ? 0 : n.m - 1) * n.f,
                     is_behind ? std::ptrdiff_t{e.m} : -1, s);
     } else {
       for (std::uint32_t m = 0; m < e.m; ++m)
-        border.line(*of, of->ids.data() + std::size_t{is_behind ? 0 : n.s - 1} * n.layer() + m * n.f, m,
+        border.line(*of,
+                    of->ids.data() + std::size_t{is_behind ? 0 : n.s - 1} * n.layer() + m * n.f, m,
                     is_behind ? std::ptrdiff_t{e.s} : -1);
     }
   }

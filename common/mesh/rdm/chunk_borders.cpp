@@ -88,8 +88,11 @@ void ChunkBorders::keep_side(const RunChunk& chunk, Direction direction, Axis bi
     std::size_t to = words_.size();
     words_.resize(to + std::size_t{side.row_words} * side.row_count);
     for (std::size_t r = 0; r < side.row_count; ++r) {
-      for (unsigned w = 0; w < side.row_words; ++w)
-        words_[to++] = static_cast<std::uint32_t>(from[r] >> 32 * w);
+      auto row = from[r];
+      for (unsigned w = 0; w < side.row_words; ++w) {
+        words_[to++] = static_cast<std::uint32_t>(row);
+        if constexpr (sizeof(row) > sizeof(std::uint32_t)) row >>= 32;
+      }
     }
   };
   append(rows.opaque);

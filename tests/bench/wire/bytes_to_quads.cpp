@@ -134,9 +134,8 @@ class DensePath {
         neighbours[d] = chunk.dense_beside[d] ? &*chunk.dense_beside[d] : nullptr;
       const std::size_t volume = chunk.volume->scene.chunk.volume();
       std::uint64_t at = now_ns();
-      const std::size_t size =
-          ZSTD_decompressDCtx(decompressor_.get(), chunk.dense.ids.data(), volume,
-                              chunk.frame.data(), chunk.frame.size());
+      const std::size_t size = ZSTD_decompressDCtx(decompressor_.get(), chunk.dense.ids.data(),
+                                                   volume, chunk.frame.data(), chunk.frame.size());
       at = end_stage(chunk.dense_times, 0, at);
       reference::fill_volume(chunk.dense, neighbours, visibility, scratch_.volume);
       at = end_stage(chunk.dense_times, 1, at);
@@ -153,7 +152,7 @@ class DensePath {
 };
 
 QuadsWay way_of(std::string name, const std::vector<WireChunk>& chunks,
-               StageTimes WireChunk::* times, Bytes WireChunk::* bytes) {
+                StageTimes WireChunk::* times, Bytes WireChunk::* bytes) {
   QuadsWay out;
   out.name = std::move(name);
   const auto count = static_cast<double>(chunks.size());
@@ -213,7 +212,7 @@ std::vector<Target> QuadsResult::targets() const {
 }
 
 Result<QuadsResult, std::string> run_bytes_to_quads(const BenchOptions& options,
-                                               std::ostream& progress) {
+                                                    std::ostream& progress) {
   const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
   if (!worlds) return Unexpected<std::string>{worlds.error()};
   QuadsResult out;
@@ -241,8 +240,8 @@ void write_table(const QuadsResult& result, std::ostream& out) {
     for (const QuadsWay* way : {&row.runs, &row.dense}) {
       fmt::print(out, "| {} | {} | {} | {} | {:.0f} | {:.1f} | {} | {:.1f} | {:.1f} | {} |\n",
                  row.world, row.edge, row.chunks, way->name, way->bytes, way->stage_us[0],
-                 way == &row.runs ? "–" : fmt::format("{:.1f}", way->stage_us[1]),
-                 way->stage_us[2], way->total(),
+                 way == &row.runs ? "–" : fmt::format("{:.1f}", way->stage_us[1]), way->stage_us[2],
+                 way->total(),
                  way == &row.runs ? fmt::format("{:.2f}; {:.2f}", row.gain_mean, row.gain_sums)
                                   : "1.00; 1.00");
     }

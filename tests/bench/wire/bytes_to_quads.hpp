@@ -45,7 +45,8 @@ struct QuadsResult {
 };
 
 /// Fails if the Luanti world cannot be read. Aborts if a chunk does not come back as it was.
-Result<QuadsResult, std::string> run_bytes_to_quads(const BenchOptions& options, std::ostream& progress);
+Result<QuadsResult, std::string> run_bytes_to_quads(const BenchOptions& options,
+                                                    std::ostream& progress);
 
 void write_table(const QuadsResult& result, std::ostream& out);
 void write_json(const QuadsResult& result, std::ostream& out);
