@@ -24,7 +24,7 @@ def duration_text(seconds):
 
 class Runner:
     def __init__(self, bench, out, luanti, quick, again):
-        self.bench, self.luanti, self.quick, self.again = Path(bench), luanti, quick, again
+        self.bench, self.luanti, self.quick, self.again = Path(bench).resolve(), luanti, quick, again
         self.out, self.data = Path(out), Path(out) / "data"
 
     def call(self, arguments, log):

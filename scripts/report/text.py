@@ -3,7 +3,12 @@ import math
 
 
 def number_text(value):
-    """Returns three significant digits, with commas between thousands: 0.31, 4.2, 63, 1,940."""
+    """Returns three significant digits, with commas between thousands: 0.31, 4.2, 63, 1,940.
+
+    An infinite value is what never happened; NaN was not measured.
+    """
+    if value == math.inf:
+        return "never"
     if not math.isfinite(value):
         return "–"
     size = abs(value)

@@ -5,6 +5,7 @@ from ..charts import Axis, Bar, Series, Span, bars, dots, lines
 from ..figure import Figure, Section
 from ..meshers import mesher
 from ..statistics import Interval, exactly, geometric_mean_interval
+from ..rows import number_of
 from ..steps import FLEET_SIZES, PROFILES
 from ..style import INK, OTHER, QUIET
 from ..text import count_text, interval_text, number_text
@@ -255,14 +256,17 @@ def siege_charts(rows):
 
 def _siege(evidence):
     rows = evidence.here.rows("siege")
-    worst = max(((r["value"], r["case"]) for r in rows.where(figure="p99_ms")), default=(math.nan, "none"))
+    values = [(number_of(r["value"]), r["case"]) for r in rows.where(figure="p99_ms")]
+    worst = max((v for v in values if not math.isnan(v[0])), default=(math.nan, "none"))
+    at_worst = (
+        f"Under the worst one ({worst[1]}), edits of builders never arrive."
+        if math.isinf(worst[0])
+        else f"The worst p99 of the builders is {number_text(worst[0])} ms ({worst[1]})."
+    )
     return Figure(
         "siege",
         "A siege: builders under attack",
-        (
-            f"All attacks take turns against one server. The worst p99 of the builders is {number_text(worst[0])} ms"
-            f" ({worst[1]})."
-        ),
+        f"All attacks take turns against one server. {at_worst}",
         ("siege",),
         NET_COLUMNS,
         _net_table(rows),
