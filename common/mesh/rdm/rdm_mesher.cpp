@@ -192,8 +192,7 @@ void use_kept_border(const ChunkBorders& kept, Direction touching, const rdm::La
     // A single transparent material is meshed as a single opaque one.
     std::transform(hiding.begin(), hiding.end(), known.begin(), hiding.begin(), std::bit_or<>());
   } else {
-    borders.meets[at] =
-        std::any_of(known.begin(), known.end(), [](Row row) { return row != 0; });
+    borders.meets[at] = std::any_of(known.begin(), known.end(), [](Row row) { return row != 0; });
   }
 }
 
