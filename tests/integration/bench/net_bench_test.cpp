@@ -168,7 +168,6 @@ TEST_CASE(
   CHECK(figure(testbed, "attack", "quiet", "attacker_connections") == 0);
   CHECK(figure(testbed, "attack", "teleports", "attacker_received_mb") > 0);
   CHECK(figure(testbed, "attack", "spread-views", "attacker_received_mb") > 0);
-  CHECK(figure(testbed, "attack", "tiny-chunks", "disk_kb_s_per_attacker") > 0);
   CHECK(testbed["bars"].size() == 5);
   if (endings(testbed, "attack", "absurd-views").contains("malformed_message")) {
     CHECK(figure(testbed, "attack", "absurd-views", "logged malformed_message") > 0);
