@@ -50,7 +50,7 @@ struct ApplyScratch {
   std::vector<std::uint32_t> ending;    // chains of parts by the layer where they end
   std::vector<LineEntry> entries;       // of the current layer
   LayerPlan plan;                       // of the layer painter
-  LayerCanvas canvas;
+  LayerCanvas canvas, canvas_before;
   std::vector<std::uint32_t> program;  // parts to be evaluated over a stretch, bottom first
   MaterialFactors factors;
 };

@@ -10,10 +10,13 @@
 
 #include <hwy/highway.h>
 
+#include <array>
 #include <cstdint>
+#include <cstring>
 
 #include "common/core/ids.hpp"
 #include "common/edits/apply/layer_canvas.hpp"
+#include "common/edits/apply/line_bits.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -74,6 +77,27 @@ class Brush {
 inline void fill_ahead(Material* from, const Material* stop, Material material) {
   const auto v = hn::Set(Voxels(), material);
   for (; from < stop; from += Brush::lanes()) hn::StoreU(v, Voxels(), from);
+}
+
+/// Returns the voxels i < count for which a[i] != b[i], as differing_plain() does. Reads whole
+/// vectors, so both must be lines of a canvas, or begin one voxel before one.
+inline LineBits differing_lanes(const Material* a, const Material* b, std::uint32_t count) {
+  std::array<std::uint64_t, 2> word{};
+  for (std::uint32_t i = 0; i < count; i += static_cast<std::uint32_t>(Brush::lanes())) {
+    const auto same = hn::Eq(hn::LoadU(Voxels(), a + i), hn::LoadU(Voxels(), b + i));
+    std::array<std::uint8_t, 8> bytes{};
+    hn::StoreMaskBits(Voxels(), hn::Not(same), bytes.data());
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, bytes.data(), sizeof bits);
+    word[i / 64] |= bits << (i % 64);
+  }
+  return LineBits{word[0], word[1]} & bits_below(count);
+}
+
+/// Copies a line of `count` voxels from canvas to canvas, and its padding.
+inline void copy_line(const Material* from, Material* to, std::uint32_t count) {
+  for (std::uint32_t i = 0; i < count; i += static_cast<std::uint32_t>(Brush::lanes()))
+    hn::Store(hn::Load(Voxels(), from + i), Voxels(), to + i);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -16,11 +16,6 @@ using m61::Wide;
 // bits.
 constexpr std::uint32_t kOpenTermsPerReduction = 8;
 
-// Returns the factor of one coordinate along an axis.
-std::uint64_t factor_at(std::size_t lane, Axis axis, std::uint32_t i) {
-  return digest_axis_sum(static_cast<int>(lane), axis, i, i + 1);
-}
-
 // Returns layers first .. last - 1 of `count`. A `last` beyond the count continues from 0.
 LineBits layers_around(std::uint32_t first, std::uint32_t last, std::uint32_t count) {
   if (last - first >= count) return bits_below(count);
@@ -35,11 +30,15 @@ ChangeTally::ChangeTally(const RunChunk& shape, std::vector<Change>& changes,
     : want_(want),
       shape_(shape),
       extent_(ordered(shape.extent, shape.order)),
-      axes_(axes_of(shape.order)),
       changes_(changes),
       factors_(factors),
-      line_digest_(axes_[0]) {
+      line_digest_(axes_of(shape.order)[0]) {
   RUNSTONE_DASSERT(changes.empty());
+  const auto axes = axes_of(shape.order);
+  for (std::size_t rank = 0; rank < 3; ++rank) {
+    for (std::size_t lane = 0; lane < kDigestLanes; ++lane)
+      prefixes_[rank][lane] = digest_axis_prefix(static_cast<int>(lane), axes[rank]).data();
+  }
 }
 
 void ChangeTally::open_line(VoxelIndex first) {
@@ -55,7 +54,7 @@ void ChangeTally::close_line() {
   const std::uint32_t m = line - s * extent_.m;
   const LineDigest::Lanes sum = line_digest_.take();
   for (std::size_t k = 0; k < kDigestLanes; ++k) {
-    const std::uint64_t across = m61::mul(factor_at(k, axes_[1], m), factor_at(k, axes_[2], s));
+    const std::uint64_t across = m61::mul(factor_at(k, 1, m), factor_at(k, 2, s));
     digest_.lane[k] = m61::add(digest_.lane[k], m61::mul(sum[k], across));
   }
   dirty_[1] = dirty_[1] | bits_between(m, m + 1);
@@ -80,10 +79,7 @@ void ChangeTally::line(std::uint32_t m, std::uint32_t s, LineBits changed, LineB
   }
   const VoxelIndex begin = (s * extent_.m + m) * extent_.f;
   if (want_ == Want::changes) return note_line(begin, changed, cuts, after);
-  std::array<const std::uint64_t*, kDigestLanes> prefix;
-  for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
-    prefix[lane] = digest_axis_prefix(static_cast<int>(lane), axes_[0]).data();
-  }
+  const Prefixes prefix = prefixes_[0];
   std::array<Wide, kDigestLanes> sum{};
   std::uint32_t terms = 0;
   dirty_[0] = dirty_[0] | changed;
@@ -109,7 +105,7 @@ void ChangeTally::line(std::uint32_t m, std::uint32_t s, LineBits changed, LineB
   }
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
     layer_sum_[lane] =
-        m61::add(layer_sum_[lane], m61::mul(reduce_wide(sum[lane]), factor_at(lane, axes_[1], m)));
+        m61::add(layer_sum_[lane], m61::mul(reduce_wide(sum[lane]), factor_at(lane, 1, m)));
   }
 }
 
@@ -128,7 +124,7 @@ void ChangeTally::note_line(VoxelIndex begin, LineBits changed, LineBits cuts,
 void ChangeTally::close_layer() {
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
     digest_.lane[lane] =
-        m61::add(digest_.lane[lane], m61::mul(layer_sum_[lane], factor_at(lane, axes_[2], layer_)));
+        m61::add(digest_.lane[lane], m61::mul(layer_sum_[lane], factor_at(lane, 2, layer_)));
     layer_sum_[lane] = 0;
   }
 }
@@ -152,8 +148,9 @@ void ChangeTally::finish() {
 
 DirtyLayers ChangeTally::dirty() const {
   DirtyLayers out;
+  const auto axes = axes_of(shape_.order);
   for (std::size_t i = 0; i < 3; ++i)
-    out.layer[static_cast<std::size_t>(axes_[i])] = dirty_[i].to_bitset();
+    out.layer[static_cast<std::size_t>(axes[i])] = dirty_[i].to_bitset();
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/core/digest.hpp"
+#include "common/core/m61.hpp"
 #include "common/edits/apply/apply_scratch.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/apply/line_bits.hpp"
@@ -70,13 +71,18 @@ class ChangeTally {
   }
   /// Notes the stretches of a line, as line() does.
   void note_line(VoxelIndex begin, LineBits changed, LineBits cuts, const Material* after);
+  /// Returns the factor of one place along the axis of this rank: 0 for f, 1 for m, 2 for s.
+  std::uint64_t factor_at(std::size_t lane, std::size_t rank, std::uint32_t i) const {
+    return m61::sub(prefixes_[rank][lane][i + 1], prefixes_[rank][lane][i]);
+  }
   void in_line(std::uint32_t first, std::uint32_t last, Material before, Material after);
   void across_lines(VoxelIndex first, VoxelIndex last, Material before, Material after);
 
   const Want want_;
   const RunChunk& shape_;
   const OrderedExtent extent_;
-  const std::array<Axis, 3> axes_;
+  using Prefixes = std::array<const std::uint64_t*, kDigestLanes>;
+  std::array<Prefixes, 3> prefixes_;  // of the places along f, m and s
   std::vector<Change>& changes_;
   MaterialFactors& factors_;
   VoxelIndex line_begin_ = 0, line_end_ = 0;  // the line in which the last stretch began

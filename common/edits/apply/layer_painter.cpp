@@ -34,12 +34,13 @@ class Painter {
         stack_(scratch.stack),
         plan_(scratch.plan),
         canvas_(scratch.canvas),
+        before_(scratch.canvas_before),
         tally_(tally),
-        base_(runs),
-        compared_(runs) {}
+        cursor_(runs) {}
 
   void run() {
     canvas_.fit(extent_);
+    before_.fit(extent_);
     for (std::uint32_t first = 0; first < extent_.s; first += LayerPlan::kBand) {
       band_first_ = first;
       band_last_ = std::min(first + LayerPlan::kBand, extent_.s);
@@ -115,8 +116,10 @@ class Painter {
     LineBits met;
     for (const LayerPiece& piece : pieces) met = met | bits_between(piece.m_first, piece.m_last);
     const VoxelIndex begin = s * extent_.layer();
-    for_each_line(met,
-                  [&](std::uint32_t m) { unpack(base_, begin + m * extent_.f, canvas_.line(m)); });
+    for_each_line(met, [&](std::uint32_t m) {
+      starts_[m] = unpack(begin + m * extent_.f, before_.line(m));
+      copy_line(before_.line(m), canvas_.line(m), extent_.f);
+    });
     for (const LayerPiece& piece : pieces) paint(piece);
     for_each_line(met, [&](std::uint32_t m) { compare(m, s); });
   }
@@ -157,26 +160,26 @@ class Painter {
   }
 
   // Passes the differences between the canvas and the runs of a line to the tally.
-  void compare(std::uint32_t m, std::uint32_t s) {
-    Material* const before = before_.data();
-    Material* const after = canvas_.line(m);
-    const LineBits cuts = unpack(compared_, (s * extent_.m + m) * extent_.f, before);
-    const LineBits changed = differing(before, after, extent_.f);
+  void compare(std::uint32_t m, std::uint32_t s) const {
+    const Material* const before = before_.line(m);
+    const Material* const after = canvas_.line(m);
+    const LineBits changed = differing_lanes(before, after, extent_.f);
     if (!changed.any()) return;
-    tally_.line(m, s, changed, cuts | differing(after, after - 1, extent_.f), before, after);
+    tally_.line(m, s, changed, starts_[m] | differing_lanes(after, after - 1, extent_.f), before,
+                after);
   }
 
   // Returns the places where runs begin in the line.
-  LineBits unpack(RunCursor<Runs>& cursor, VoxelIndex begin, Material* out) const {
+  LineBits unpack(VoxelIndex begin, Material* out) {
     LineBits starts;
-    cursor.seek(begin);
+    cursor_.seek(begin);
     const VoxelIndex end = begin + extent_.f;
     for (VoxelIndex at = begin; at < end;) {
-      const VoxelIndex stop = std::min(cursor.end(), end);
-      fill_ahead(out + (at - begin), out + (stop - begin), cursor.material());
+      const VoxelIndex stop = std::min(cursor_.end(), end);
+      fill_ahead(out + (at - begin), out + (stop - begin), cursor_.material());
       starts = starts | bits_between(at - begin, at - begin + 1);
       at = stop;
-      if (at < end) cursor.next();
+      if (at < end) cursor_.next();
     }
     return starts;
   }
@@ -185,9 +188,10 @@ class Painter {
   const std::vector<StackPart>& stack_;
   LayerPlan& plan_;
   LayerCanvas& canvas_;
+  LayerCanvas& before_;  // the layer as the runs have it
   ChangeTally& tally_;
-  RunCursor<Runs> base_, compared_;
-  alignas(64) std::array<Material, kSideMax + LayerCanvas::kBlock> before_;
+  RunCursor<Runs> cursor_;
+  std::array<LineBits, kSideMax> starts_;  // where runs begin in the lines of the layer
   std::uint32_t band_first_ = 0, band_last_ = 0, row_count_ = 0;
 };
 

@@ -34,27 +34,12 @@ bool may_meet(const Axes3& start, const Axes3& along, std::int32_t r, const Axes
   return true;
 }
 
-// Most edits are single voxels. They do not need the boxes of the general case.
-std::optional<OrderedShape> voxel_of(VoxelPos at, VoxelPos origin, Extent extent, AxisOrder order) {
-  const std::array<std::uint32_t, 3> place = {static_cast<std::uint32_t>(at.x - origin.x),
-                                              static_cast<std::uint32_t>(at.y - origin.y),
-                                              static_cast<std::uint32_t>(at.z - origin.z)};
-  if (place[0] >= extent.x || place[1] >= extent.y || place[2] >= extent.z) return std::nullopt;
-  std::optional<OrderedShape> out(std::in_place);
-  const auto axes = axes_of(order);
-  for (std::size_t i = 0; i < 3; ++i) {
-    out->first[i] = place[static_cast<std::size_t>(axes[i])];
-    out->last[i] = out->first[i] + 1;
-  }
-  return out;
-}
-
 }  // namespace
 
 std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent,
                                  AxisOrder order) {
   if (const auto* one = std::get_if<SetVoxel>(&edit.shape))
-    return voxel_of(one->at, origin, extent, order);
+    return clip_voxel(one->at, origin, extent, order);
   const VoxelBox chunk = {origin, {origin.x + extent.x, origin.y + extent.y, origin.z + extent.z}};
   const VoxelBox box = intersect(bounding_box(edit), chunk);
   if (box.empty()) return std::nullopt;

@@ -55,6 +55,20 @@ struct OrderedShape {
 std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent,
                                  AxisOrder order);
 
+/// Does the same for a single voxel. Most edits are single voxels, so it has no boxes and is inline.
+inline std::optional<OrderedShape> clip_voxel(VoxelPos at, VoxelPos origin, Extent extent,
+                                              AxisOrder order) {
+  const auto x = static_cast<std::uint32_t>(at.x - origin.x);
+  const auto y = static_cast<std::uint32_t>(at.y - origin.y);
+  const auto z = static_cast<std::uint32_t>(at.z - origin.z);
+  if (x >= extent.x || y >= extent.y || z >= extent.z) return std::nullopt;
+  const auto along = [&](Axis axis) { return axis == Axis::x ? x : axis == Axis::y ? y : z; };
+  const auto axes = axes_of(order);
+  const std::array<std::uint32_t, 3> place = {along(axes[0]), along(axes[1]), along(axes[2])};
+  return OrderedShape{
+      place, {place[0] + 1, place[1] + 1, place[2] + 1}, {}, {}, 0, OrderedShape::Form::box};
+}
+
 /// Returns the segment from point `i` of the stroke to the next one, clipped to a box of voxels,
 /// relative to the box's first voxel. Returns nullopt if the segment misses the box. For a few
 /// segments that miss it closely, the result has no rows instead. Cost: O(1).
@@ -100,6 +114,10 @@ void for_each_pasted_box(const Paste& paste, const VoxelBox& chunk, AxisOrder or
 template <class F>
 void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order,
                    F&& part) {
+  if (const auto* one = std::get_if<SetVoxel>(&edit.shape)) {
+    if (const auto shape = clip_voxel(one->at, origin, extent, order)) part(*shape, edit.material);
+    return;
+  }
   const VoxelBox chunk = {origin, {origin.x + extent.x, origin.y + extent.y, origin.z + extent.z}};
   if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
     for (std::size_t i = 0; i + 1 < stroke->points.size(); ++i) {
