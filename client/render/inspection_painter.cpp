@@ -143,7 +143,7 @@ void InspectionPainter::update_bits(bool exact) {
 }
 
 void InspectionPainter::begin(const Inspection& inspection, const glm::mat4& clip,
-                              const QuadBuffer& quads, bool exact) {
+                              const DepthRange& depth, const QuadBuffer& quads, bool exact) {
   shown_ = &inspection;
   update_bits(exact);
   glUseProgram(program_.get());
@@ -155,12 +155,12 @@ void InspectionPainter::begin(const Inspection& inspection, const glm::mat4& cli
   quads.bind(program_, kInspectedQuadUnit);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
-  glDepthFunc(GL_LEQUAL);
+  glDepthFunc(depth.not_farther());
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(-1.0F, -2.0F);
+  depth.pull_polygons();
 }
 
 bool InspectionPainter::place(const ChunkKey& key, const glm::vec3& origin, std::int32_t edge) {
@@ -205,12 +205,12 @@ bool InspectionPainter::place_flash(const ChunkKey& key) const {
   return true;
 }
 
-void InspectionPainter::end() {
+void InspectionPainter::end(const DepthRange& depth) {
   glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDepthMask(GL_TRUE);
-  glDepthFunc(GL_LESS);
+  glDepthFunc(depth.nearer());
 }
 
 }  // namespace runstone

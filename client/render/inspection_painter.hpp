@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 
+#include "client/render/depth_range.hpp"
 #include "client/render/gl_handle.hpp"
 #include "client/render/inspection.hpp"
 #include "client/render/quad_buffer.hpp"
@@ -21,12 +22,12 @@ class InspectionPainter {
   /// Begins a pass over chunks. `clip` maps eye-relative coordinates to clip space. `inspection`
   /// must outlive the pass. The starts of runs are uploaded for at most kUploadsMax chunks, or for
   /// all with `exact`.
-  void begin(const Inspection& inspection, const glm::mat4& clip, const QuadBuffer& quads,
-             bool exact);
+  void begin(const Inspection& inspection, const glm::mat4& clip, const DepthRange& depth,
+             const QuadBuffer& quads, bool exact);
   /// Sets the chunk whose quads are drawn next. `origin` is relative to the eye, `edge` in voxels.
   /// Returns false if nothing is shown of it.
   bool place(const ChunkKey& key, const glm::vec3& origin, std::int32_t edge);
-  static void end();
+  static void end(const DepthRange& depth);
 
   static constexpr int kUploadsMax = 16;
 

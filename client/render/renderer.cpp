@@ -19,10 +19,10 @@ namespace runstone {
 namespace {
 
 /// The far plane lies beyond the distance at which fog hides everything, as a factor of it.
-constexpr float kFarPlane = 1.1F;
+constexpr double kFarPlane = 1.1;
 
 /// Returns the map from eye-relative coordinates to clip space.
-glm::mat4 clip_of(const Camera& camera, int width, int height) {
+glm::mat4 clip_of(const Camera& camera, const DepthRange& depth, int width, int height) {
   const glm::vec3 forward{static_cast<float>(std::sin(camera.yaw) * std::cos(camera.pitch)),
                           static_cast<float>(std::sin(camera.pitch)),
                           static_cast<float>(std::cos(camera.yaw) * std::cos(camera.pitch))};
@@ -32,10 +32,7 @@ glm::mat4 clip_of(const Camera& camera, int width, int height) {
                                        static_cast<float>(std::cos(camera.yaw))}
                            : glm::vec3{0, 1, 0};
   const glm::mat4 view = glm::lookAt(glm::vec3{0}, forward, up);
-  const glm::mat4 projection = glm::perspective(
-      static_cast<float>(camera.fov_y), static_cast<float>(width) / static_cast<float>(height),
-      static_cast<float>(camera.near), static_cast<float>(camera.far) * kFarPlane);
-  return projection * view;
+  return depth.projection(camera.fov_y, static_cast<double>(width) / height) * view;
 }
 
 /// Loads the functions of OpenGL before the members of Renderer::State use them.
@@ -86,18 +83,18 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   const auto scaled = [&contents](int side) {
     return std::max(1, static_cast<int>(std::lround(side * contents.look.scale)));
   };
-  FrameView view;
+  const double far = camera.far * kFarPlane;
+  FrameView view{.far = far, .depth = {camera.near, far}};
   view.eye = {camera.x, camera.y, camera.z};
-  view.clip = clip_of(camera, width, height);
-  view.near = camera.near;
-  view.far = camera.far * static_cast<double>(kFarPlane);
+  view.clip = clip_of(camera, view.depth, width, height);
   view.pixel = 2 * std::tan(camera.fov_y / 2) / scaled(height);
   view.light = day_light(contents.look.time_of_day, camera.far);
   view.look = contents.look;
 
-  glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
+  DepthRange::reset();
   s.terrain.update_light(view);
+  view.depth.use();
   if (contents.at_eye != kEmpty && s.materials.knows(contents.at_eye)) {
     view.light =
         light_inside(s.materials[contents.at_eye], view.light, s.terrain.light_at(view, view.eye));
@@ -118,6 +115,7 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   s.terrain.draw_inspection(view, contents.inspection);
   s.terrain.draw_ghosts(view, contents.ghosts);
   s.markers.draw(contents.markers, view.eye, view.clip);
+  DepthRange::reset();
   s.is_scaled = s.target.width() != width || s.target.height() != height;
   if (s.is_scaled) {
     s.stretched.bind(width, height);

@@ -241,7 +241,7 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
   has_transparent_ = false;
   // Grain fades out before a pixel is larger than this part of a voxel (kTerrainFragmentShader).
   const double fine_distance = 0.0625 / view.pixel;
-  const Frustum frustum(view.clip);
+  const Frustum frustum(view.clip, view.depth.is_reversed());
   for (const auto& [key, chunk] : chunks_) {
     const glm::dvec3 origin = origin_in_world(key, chunk.edge) - view.eye;
     const glm::vec3 at(origin);
@@ -341,7 +341,7 @@ void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
     };
     glUniform1f(at("seconds"), static_cast<float>(view.look.seconds));
     glUniform1f(at("seam"), 0);  // quads that overlap would be blended twice
-    glUniform2f(at("depth_range"), static_cast<float>(view.near), static_cast<float>(view.far));
+    glUniform3fv(at("distance_terms"), 1, glm::value_ptr(view.depth.distance_terms()));
     glUniform1i(at("scene_depth"), kDepthUnit);
   });
   glEnable(GL_BLEND);
@@ -366,7 +366,7 @@ void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
 void Terrain::draw_inspection(const FrameView& view, const Inspection& inspection) {
   if (!inspection.modes.any()) return inspection_.reset();
   if (!inspection_) inspection_.emplace();
-  inspection_->begin(inspection, view.clip, quads_, view.look.exact);
+  inspection_->begin(inspection, view.clip, view.depth, quads_, view.look.exact);
   for (const Visible& chunk : visible_) {
     spans_.clear();
     chunk.chunk->opaque.append_facing(chunk.eye, spans_);
@@ -374,7 +374,7 @@ void Terrain::draw_inspection(const FrameView& view, const Inspection& inspectio
     if (!spans_.empty() && inspection_->place(chunk.key, chunk.origin, chunk.chunk->edge))
       quads_.draw(spans_);
   }
-  InspectionPainter::end();
+  InspectionPainter::end(view.depth);
 }
 
 QuadSpan Terrain::ghost_quads(const std::shared_ptr<const ChunkMesh>& mesh) {
@@ -415,7 +415,7 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
   glDepthMask(GL_FALSE);
   // A ghost of removed voxels has the faces of the world, and must lie in front of them.
   glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(-1.0F, -2.0F);
+  view.depth.pull_polygons();
   const auto draw = [&](const GhostChunk& ghost, const std::shared_ptr<const ChunkMesh>& mesh,
                         const glm::vec4& tint, float opaque) {
     if (!mesh || mesh->empty()) return;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "client/render/day_light.hpp"
+#include "client/render/depth_range.hpp"
 #include "client/render/frame_look.hpp"
 #include "client/render/ghost.hpp"
 #include "client/render/inspection_painter.hpp"
@@ -32,10 +33,11 @@ namespace runstone {
 struct FrameView {
   glm::dvec3 eye{0};  // world voxels
   glm::mat4 clip{1};  // clip space from eye-relative space
-  double near = 0.1, far = 1000;
+  double far = 1000;  // what is farther is not drawn
+  DepthRange depth;
   double pixel = 0.002;  // the side of a pixel at distance 1
-  DayLight light;
-  FrameLook look;
+  DayLight light{};
+  FrameLook look{};
 };
 
 struct TerrainStats {

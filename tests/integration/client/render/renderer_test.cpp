@@ -22,11 +22,13 @@ namespace {
 constexpr std::int32_t kEdge = 32;
 constexpr Material kRed = 1;
 constexpr Material kGlass = 2;
+constexpr Material kBlue = 3;
 
-MaterialTable red_and_glass() {
+MaterialTable red_glass_and_blue() {
   MaterialTable table;
   REQUIRE(table.add({"red", {220, 30, 30, 255}, Visibility::opaque, {}}).has_value());
   REQUIRE(table.add({"glass", {40, 80, 255, 128}, Visibility::transparent, {}}).has_value());
+  REQUIRE(table.add({"blue", {40, 80, 255, 255}, Visibility::opaque, {}}).has_value());
   return table;
 }
 
@@ -91,6 +93,18 @@ std::array<int, 3> pixel(const Image& image, double u, double v) {
 bool reddish(const std::array<int, 3>& p) { return p[0] > 1.5 * p[1] && p[0] > 1.5 * p[2]; }
 bool is_sky(const std::array<int, 3>& p) { return p[2] >= p[0] && p[2] > 120; }
 
+/// Returns a mesh with a red face a voxel before a blue wall, seen from below z, and another one seen
+/// from above z. Quads of a direction are drawn in the order of z, so one red face is drawn before
+/// its wall and the other one after it.
+ChunkMesh faces_before_walls() {
+  ChunkMesh mesh;
+  add(mesh.opaque, {12, 12, 4, 8, 8, Direction::neg_z, kRed});
+  add(mesh.opaque, {0, 0, 5, 32, 32, Direction::neg_z, kBlue});
+  add(mesh.opaque, {0, 0, 24, 32, 32, Direction::pos_z, kBlue});
+  add(mesh.opaque, {12, 12, 25, 8, 8, Direction::pos_z, kRed});
+  return mesh;
+}
+
 Camera above() {
   Camera camera;
   camera.x = 8;
@@ -105,7 +119,7 @@ using MakeContext = std::unique_ptr<GlContext> (*)(std::string&);
 Image draw_with(GlContext& context, const Camera& camera, const ChunkMesh& mesh,
                 RenderStats* stats = nullptr) {
   Renderer renderer(context.loader());
-  renderer.set_materials(red_and_glass());
+  renderer.set_materials(red_glass_and_blue());
   renderer.upload({0, {0, 0, 0}}, kEdge, mesh);
   const RenderStats s = renderer.draw(camera, 160, 120);
   if (stats != nullptr) *stats = s;
@@ -191,6 +205,31 @@ TEST_CASE("every direction faces outward: a cube looks closed from all six sides
   }
 }
 
+TEST_CASE(
+    "faces a voxel apart are told apart from 10 to 32,768 voxels away, on every headless path",
+    "[render]") {
+  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_osmesa_context);
+  const auto context = context_or_warn(make);
+  if (!context) return;
+  const ChunkMesh mesh = faces_before_walls();
+  for (const double distance : {10.0, 100.0, 2'048.0, 32'768.0}) {
+    for (const bool from_below : {true, false}) {
+      CAPTURE(context->name(), distance, from_below);
+      Camera camera;
+      camera.x = camera.y = 16;
+      camera.z = from_below ? 4 - distance : 26 + distance;
+      camera.yaw = from_below ? 0 : M_PI;
+      camera.fov_y = 2 * std::atan(11 / (distance + 1));
+      camera.far = 4 * 32'768;  // no fog
+      const Image image = draw_with(*context, camera, mesh);
+      CHECK(reddish(pixel(image, 0.5, 0.5)));
+      const auto wall = pixel(image, 0.12, 0.5);
+      CHECK_FALSE(reddish(wall));
+      CHECK(wall[2] > 1.5 * wall[0]);
+    }
+  }
+}
+
 TEST_CASE("transparent quads blend over what lies behind them", "[render]") {
   const auto context = context_or_warn(&make_egl_surfaceless_context);
   if (!context) return;
@@ -210,7 +249,7 @@ TEST_CASE("an empty mesh removes a chunk, and far worlds do not jitter", "[rende
   const auto context = context_or_warn(&make_egl_surfaceless_context);
   if (!context) return;
   Renderer renderer(context->loader());
-  renderer.set_materials(red_and_glass());
+  renderer.set_materials(red_glass_and_blue());
   const ChunkKey far_key{0, {(1 << 28) / kEdge, 0, -((1 << 28) / kEdge)}};
   renderer.upload(far_key, kEdge, slab());
   Camera camera = above();
@@ -318,7 +357,7 @@ TEST_CASE("corners are dark next to opaque voxels, however the faces are cut int
   const auto context = context_or_warn(&make_egl_surfaceless_context);
   if (!context) return;
   // A floor with scattered blocks, across two chunks.
-  const VisibilityTable visibility(visibilities(red_and_glass()));
+  const VisibilityTable visibility(visibilities(red_glass_and_blue()));
   SplitMix64 rng(9);
   std::array<RunChunk, 2> chunks = {uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::xzy),
                                     uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::yzx)};
@@ -336,7 +375,7 @@ TEST_CASE("corners are dark next to opaque voxels, however the faces are cut int
   }
   const auto picture = [&](bool cut, bool with_voxels) {
     Renderer renderer(context->loader());
-    renderer.set_materials(red_and_glass());
+    renderer.set_materials(red_glass_and_blue());
     RdmScratch scratch;
     for (int i = 0; i < 2; ++i) {
       ChunkMesh mesh;
@@ -374,7 +413,7 @@ TEST_CASE("an inspection is drawn over the faces that it is about, and leaves no
   const auto voxels = std::make_shared<const RunChunk>(chunk);
   const ChunkKey key{0, {0, 0, 0}};
   Renderer renderer(context->loader());
-  MaterialTable materials = red_and_glass();
+  MaterialTable materials = red_glass_and_blue();
   REQUIRE(materials.add({"maroon", {200, 30, 30, 255}, Visibility::opaque, {}}).has_value());
   renderer.set_materials(materials);
   RdmScratch scratch;
@@ -450,7 +489,7 @@ TEST_CASE("a wall throws a shadow away from the sun, and an edit takes it away",
   const auto context = context_or_warn(&make_egl_surfaceless_context);
   if (!context) return;
   Renderer renderer(context->loader());
-  renderer.set_materials(red_and_glass());
+  renderer.set_materials(red_glass_and_blue());
   ChunkMesh floor;
   add(floor.opaque, {0, 0, 0, 32, 32, Direction::pos_y, kRed});
   ChunkMesh wall = floor;
@@ -481,7 +520,7 @@ TEST_CASE("in a window, shadows of many quads follow an edit within some frames"
   const auto context = context_or_warn(&make_egl_surfaceless_context);
   if (!context) return;
   Renderer renderer(context->loader());
-  renderer.set_materials(red_and_glass());
+  renderer.set_materials(red_glass_and_blue());
   ChunkMesh floor;  // three chunks of it have more quads than a frame draws into a shadow map
   for (std::uint8_t x = 0; x < 32; ++x) {
     for (std::uint8_t z = 0; z < 32; ++z)
@@ -521,7 +560,7 @@ TEST_CASE("a ghost shows removed voxels in red and placed ones in their colour",
   const auto context = context_or_warn(&make_egl_surfaceless_context);
   if (!context) return;
   Renderer renderer(context->loader());
-  renderer.set_materials(red_and_glass());
+  renderer.set_materials(red_glass_and_blue());
   ChunkMesh placed;
   add(placed.transparent, {4, 4, 4, 8, 8, Direction::pos_y, kGlass});
   ChunkMesh removed;
