@@ -42,7 +42,8 @@ SettingsForm::Result SettingsForm::build(double scale) {
   quality_control(s.quality);
   slider("field of view", s.field_of_view, 30, 110, "%.0f degrees");
   int radius = s.view_radius, memory = static_cast<int>(s.memory_mib);
-  if (ImGui::SliderInt("view radius", &radius, 1, 32, "%d chunks", ImGuiSliderFlags_AlwaysClamp))
+  if (ImGui::SliderInt("view radius", &radius, 1, int{kViewRadiusMax}, "%d chunks",
+                       ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic))
     s.view_radius = static_cast<std::uint8_t>(radius);
   if (ImGui::SliderInt("memory", &memory, 64, 65'536, "%d MiB",
                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
