@@ -1,13 +1,15 @@
 """Verdict: the first screen of the page. One sentence, the decisive chart, and what speaks against it."""
+import math
 from dataclasses import dataclass
+from operator import truediv
 
 from .charts import Axis, Series, dots
 from .comparison import DECISIVE, OURS, compare
 from .figures.meshers import MesherTotals
-from .figures.network import WAYS, WORLDS, transfer_ms
+from .figures.network import WAYS, transfer_ms
 from .meshers import MESHERS, mesher
-from .statistics import UNKNOWN, exactly, geometric_mean_interval
-from .text import count_text, interval_text, number_text, time_text
+from .statistics import UNKNOWN, exactly, geometric_mean_interval, measured
+from .text import count_text, interval_text, number_text, quantity_text, time_text
 
 SCENARIOS, REAL_WORLD = MAIN_WORLDS = ("thesis' scenarios", "a real world")
 STEPS = ("meshers", "landscapes", "adversaries")
@@ -182,12 +184,17 @@ def _machines_sentence(evidence):
 
 
 def best_of(candidates, text):
-    """Returns the candidates (name, interval, value) whose intervals overlap that of the least, and the others."""
-    measured = sorted((c for c in candidates if c[1].is_known), key=lambda c: c[1].middle)
-    if not measured:
+    """Returns the candidates (name, interval, value) whose intervals overlap that of the least, and the others.
+
+    Returns None if no candidate was measured. One with an infinite interval is never among the best.
+    """
+    ranked = sorted((c for c in candidates if c[1].is_measured), key=lambda c: c[1].middle)
+    if not ranked:
         return None
-    equal = [c for c in measured if c[1].overlaps(measured[0][1])]
-    rest = [c for c in measured if c not in equal]
+    equal = [c for c in ranked if c[1].is_finite and c[1].overlaps(ranked[0][1])]
+    rest = [c for c in ranked if c not in equal]
+    if not equal:
+        return "none completed", ""
     best = " and ".join(f"{name}: {text(value)}" for name, _, value in equal) + (
         " (intervals overlap)" if len(equal) > 1 else ""
     )
@@ -255,20 +262,29 @@ def _answers(evidence):
         "Fewest bytes of a real chunk on the wire",
         "bytes",
         [(name, exactly(size), size) for form, name in forms for size in (rows.where(form=form).number("bytes"),)],
-        lambda v: f"{number_text(v)} B",
+        lambda v: quantity_text(v, "B"),
     )
     for profile, title in (
         ("loopback", "Soonest sent and meshed, on loopback"),
         ("broadband", "The same over broadband"),
     ):
         net = evidence.here.rows(f"transfer-{profile}")
-        candidates = []
-        for form, name, _, _ in WAYS:
-            ratios = [
-                transfer_ms(net, profile, f"{w} {form}") / transfer_ms(net, profile, f"{w} packed") for w in WORLDS
-            ]
-            candidates.append((name, geometric_mean_interval(ratios), transfer_ms(net, profile, f"luanti {form}")))
-        answer(title, "transfers", candidates, lambda v: f"{number_text(v)} ms")
+        times = {name: transfer_ms(net, profile, form) for form, name, _, _ in WAYS}
+        answer(title, "transfers", _transfer_candidates(times), lambda v: quantity_text(v, "ms"))
+    return out
+
+
+def _transfer_candidates(times):
+    """Returns each way with its ratio to the first way that completed all worlds, and with its time in the real world.
+
+    Ratio and time of a way that never completed a world are infinite. A way that was not measured is left out.
+    """
+    slowest = {name: max(measured(t.values()), default=math.nan) for name, t in times.items()}
+    out = [(name, exactly(math.inf), math.inf) for name, ms in slowest.items() if math.isinf(ms)]
+    complete = [name for name, ms in slowest.items() if math.isfinite(ms)]
+    for name in complete:
+        ratio = geometric_mean_interval(map(truediv, times[name].values(), times[complete[0]].values()))
+        out.append((name, ratio, times[name]["luanti"]))
     return out
 
 

@@ -89,13 +89,13 @@ class Intervals(unittest.TestCase):
 
     def test_unknown_values_are_left_out(self):
         self.assertAlmostEqual(mean_interval([1, math.nan, 3]).middle, 2)
-        self.assertFalse(mean_interval([]).is_known)
-        self.assertFalse(geometric_mean_interval([0, -1]).is_known)
-        self.assertFalse(sum_ratio_interval([math.nan], [1]).is_known)
+        self.assertFalse(mean_interval([]).is_measured)
+        self.assertFalse(geometric_mean_interval([0, -1]).is_measured)
+        self.assertFalse(sum_ratio_interval([math.nan], [1]).is_measured)
 
     def test_a_ratio_takes_the_widest_ends(self):
         self.assertEqual(ratio_of(Interval(8, 10, 12), Interval(1, 2, 4)), Interval(2, 5, 12))
-        self.assertFalse(ratio_of(exactly(1), exactly(math.nan)).is_known)
+        self.assertFalse(ratio_of(exactly(1), exactly(math.nan)).is_measured)
 
 
 class Ranks(unittest.TestCase):
