@@ -107,7 +107,9 @@ void MeshPipeline::take_results() {
 void MeshPipeline::take_result(MeshResult result) {
   (result.layers_only ? layers_ns_ : whole_ns_).add(result.mesh_ns);
   open_job_bytes_.erase(result.number);
-  if (!planner_.finish(result.key, result.number, result.mesh, std::move(result.borders))) return;
+  if (!planner_.finish(result.key, result.number, result.mesh, result.chunk,
+                       std::move(result.borders)))
+    return;
   recorder_.meshed(result.key, result.serial, result.meshed_us);
   join_.done(result.key, result.meshed_us);
   if (!draw_thread_) return;

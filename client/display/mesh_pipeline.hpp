@@ -49,7 +49,7 @@ class MeshPipeline {
   void set_mesh_bytes_max(std::size_t bytes) { mesh_bytes_max_ = bytes; }
   /// Returns the number of chunks that were meshed so far.
   std::uint64_t meshed_count() const { return planner_.chunks_meshed(); }
-  /// Returns the memory of the newest meshes of all chunks.
+  /// Returns the memory of the newest meshes of all chunks, and of kept borders.
   std::size_t mesh_bytes() const { return planner_.kept_bytes(); }
   /// Returns the memory of the chunks that were queued for upload and not removed since.
   std::size_t gpu_bytes() const { return gpu_bytes_.total(); }

@@ -24,11 +24,12 @@ struct SnapshotStats {
 
 /// Meshes made.
 struct MeshStats {
-  Histogram whole_ns;            // per mesh of a whole chunk
-  Histogram layers_ns;           // per mesh of the layers that changed since the chunk's last mesh
-  std::uint64_t jobs = 0;        // meshes of either kind
-  std::uint64_t chunks = 0;      // chunks meshed at least once
-  std::uint64_t kept_bytes = 0;  // the newest meshes of all chunks in view, at the end
+  Histogram whole_ns;        // per mesh of a whole chunk
+  Histogram layers_ns;       // per mesh of the layers that changed since the chunk's last mesh
+  std::uint64_t jobs = 0;    // meshes of either kind
+  std::uint64_t chunks = 0;  // chunks meshed at least once
+  std::uint64_t kept_bytes =
+      0;  // the newest meshes of all chunks in view, and kept borders, at the end
 };
 
 /// Frames drawn by the draw thread.

@@ -17,8 +17,8 @@ using BordersPtr = std::shared_ptr<const ChunkBorders>;
 
 class KeptBorders {
  public:
-  /// Replaces the borders of a chunk. `of`: the runs from which they were made. Cost: O(log chunks),
-  /// as that of the next two functions.
+  /// Replaces the borders of a chunk. `of`: the runs from which they were made. Cost of this
+  /// function and the next two: O(log chunks).
   void keep(const ChunkKey& key, const ShownPtr& of, BordersPtr borders);
   /// Returns the borders of a chunk, or null if there are none of these runs.
   BordersPtr find(const ChunkKey& key, const ShownPtr& of) const;

@@ -99,7 +99,6 @@ void MeshPlanner::mark_whole(const ChunkKey& key, State& state) {
   keep(state, nullptr);
   if (std::exchange(state.job, 0) != 0)
     state.urgency = std::max(state.urgency, state.urgency_in_job);
-  state.job_runs = nullptr;
   mark(key, state);
 }
 
@@ -155,7 +154,6 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
     state.order = job.chunk->order;
     state.open_sides = open_sides;
     state.job = job.number;
-    state.job_runs = job.chunk;
     if (!std::exchange(state.counted, true)) ++chunks_;
     state.dirty = false;
     state.urgency_in_job = job.urgency = std::exchange(state.urgency, Urgency::terrain);
@@ -166,11 +164,10 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
 }
 
 bool MeshPlanner::finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh,
-                         BordersPtr borders) {
+                         const ShownPtr& runs, BordersPtr borders) {
   const auto it = states_.find(key);
   if (it == states_.end() || number != it->second.job) return false;
   keep(it->second, std::move(mesh));
-  const ShownPtr runs = std::exchange(it->second.job_runs, nullptr);
   if (borders && replica_.shown(key) == runs) borders_.keep(key, runs, std::move(borders));
   it->second.job = 0;
   place(key, it->second);

@@ -87,11 +87,11 @@ class MeshPlanner {
   /// Returns the next job of this size, or nullopt while every chunk left waits for a neighbour or
   /// a result. Pass its mesh to finish(), unless forget_meshes() made the job void.
   std::optional<MeshJob> next(JobSize size = JobSize::any);
-  /// Takes and keeps the mesh of a finished job, and the borders of its chunk if it made them.
-  /// Returns true if the mesh should be drawn. Returns false if the chunk has left the view since,
-  /// even if it came back, or if the job was made void.
+  /// Takes and keeps the mesh of a finished job, and the borders of its chunk `runs` if it made
+  /// them. Returns true if the mesh should be drawn. Returns false if the chunk has left the view
+  /// since, even if it came back, or if the job was made void.
   bool finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh,
-              BordersPtr borders = nullptr);
+              const ShownPtr& runs = nullptr, BordersPtr borders = nullptr);
   /// Drops all meshes and makes all open jobs void, because materials look different now. Every
   /// chunk is meshed again.
   void forget_meshes();
@@ -117,7 +117,6 @@ class MeshPlanner {
     Urgency urgency_in_job = Urgency::terrain;  // those of the job, which count again if it is void
     bool counted = false;                       // counted in chunks_
     std::uint64_t job = 0;                      // number of the open job; 0: none
-    ShownPtr job_runs;                          // the chunk of the open job
     std::uint64_t serial = 0;                   // of the newest change
     ChangedLayers changed;                      // since the newest job was made
     // The sources of the newest job, and its mesh. The mesh is null while the job is open or void.

@@ -57,15 +57,15 @@ class Input {
   SplitMix64 rng_;
 };
 
-/// One long side suffices for rows of two words, and keeps a scene small.
+/// One long side suffices for longer rows, and keeps a scene small.
 Extent read_extent(Input& in) {
   bool long_side = false;
   const auto side = [&]() -> std::uint8_t {
-    constexpr std::array<std::uint8_t, 4> kLong = {33, 64, 65, 128};
+    constexpr std::array<std::uint8_t, 5> kLong = {32, 33, 64, 65, 128};
     const std::uint8_t byte = in.next();
-    if (byte < 252 || long_side) return static_cast<std::uint8_t>(kSideMin + byte % 9);
+    if (byte < 251 || long_side) return static_cast<std::uint8_t>(kSideMin + byte % 9);
     long_side = true;
-    return kLong[byte - 252u];
+    return kLong[byte - 251u];
   };
   const std::uint8_t x = side();
   const std::uint8_t y = side();

@@ -1,6 +1,7 @@
 #include "tests/reference/dense_bytes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <utility>
 
@@ -13,56 +14,50 @@ namespace {
 
 using Word = std::uint64_t;
 
-/// What a border needs of one id of a neighbour.
-struct Seen {
-  PaletteId id = 0;                                // of the chunk, if it has the material
-  bool is_opaque = false, is_transparent = false;  // is_transparent: and the chunk has the material
-};
-
-/// The ids of one neighbour as the chunk sees them.
-std::array<Seen, BytePalette::kIdsMax> seen_ids(const DenseBytes& of, const BytePalette& palette) {
-  std::array<Seen, BytePalette::kIdsMax> out{};
-  for (std::size_t id = 0; id < of.materials.size(); ++id) {
-    const auto known = palette.known(of.materials[id]);
-    out[id] = {known.value_or(0), id >= of.opaque_first && id < of.transparent_first,
-               known && id >= of.transparent_first};
-  }
-  return out;
+/// Returns the opaque voxels of a line, and those that are transparent.
+Word opaque_of(const DenseBytes& of, const PaletteId* line, std::uint32_t count) {
+  return ids_below(line, count, of.transparent_first) & ~ids_below(line, count, of.opaque_first);
+}
+Word transparent_of(const DenseBytes& of, const PaletteId* line, std::uint32_t count) {
+  return ~ids_below(line, count, of.transparent_first) & low_bits(count);
 }
 
+/// Writes the voxels around a chunk into the grid and the mask of its volume.
 class BorderFill {
  public:
-  BorderFill(const DenseBytes& chunk, PaletteVolume& out)
-      : e_(ordered(chunk.extent, chunk.order)), out_(out) {}
+  explicit BorderFill(PaletteVolume& out) : e_(out.grid.sides()), out_(out) {}
 
   /// Writes the border line at (m, s), which lies beyond the chunk, from a neighbour's line.
   void line(const DenseBytes& of, const PaletteId* from, std::ptrdiff_t m, std::ptrdiff_t s) {
     const std::size_t word = word_at(m, s);
-    out_.mask.opaque[word] =
-        ids_below(from, e_.f, of.transparent_first) & ~ids_below(from, e_.f, of.opaque_first);
+    out_.mask.opaque[word] = opaque_of(of, from, e_.f);
     out_.mask.transparent[word] = 0;
-    if (!out_.mask.any_transparent || of.transparent_first == of.materials.size()) return;
-    PaletteId* const to = out_.grid.line(m, s);
-    for (std::uint32_t f = 0; f < e_.f; ++f) {
-      const Seen& seen = seen_[from[f]];
-      out_.mask.transparent[word] |= Word{seen.is_transparent} << f;
-      to[f] = seen.id;
+    if (!out_.mask.any_transparent) return;
+    for (Word left = transparent_of(of, from, e_.f); left != 0; left &= left - 1) {
+      const int f = std::countr_zero(left);
+      const auto known = out_.palette.known(of.materials[from[f]]);
+      if (!known) continue;
+      out_.mask.transparent[word] |= Word{1} << f;
+      out_.grid.line(m, s)[f] = *known;
     }
   }
-  /// Writes the voxels before or behind all lines from the last or the first voxels of a
-  /// neighbour's lines, which have `side` voxels.
-  void ends(const PaletteId* from, std::uint32_t side, bool is_behind) {
+  /// Writes the voxels before or behind all lines. `from` is the one beside the first line, and the
+  /// next ones are `step` ids further.
+  void ends(const DenseBytes& of, const PaletteId* from, std::uint32_t step, bool is_behind) {
     for (std::uint32_t s = 0; s < e_.s; ++s) {
-      for (std::uint32_t m = 0; m < e_.m; ++m, from += side) {
-        const Seen& seen = seen_[*from];
-        std::uint8_t& ends = out_.mask.ends[word_at(m, s)];
-        ends = static_cast<std::uint8_t>(ends | seen.is_opaque << (is_behind ? 1 : 0) |
-                                         seen.is_transparent << (is_behind ? 3 : 2));
-        out_.grid.line(m, s)[is_behind ? static_cast<std::ptrdiff_t>(e_.f) : -1] = seen.id;
+      std::uint8_t* const ends = out_.mask.ends.data() + word_at(0, s);
+      for (std::uint32_t m = 0; m < e_.m; ++m, from += step) {
+        const PaletteId id = *from;
+        const bool is_opaque = id >= of.opaque_first && id < of.transparent_first;
+        ends[m] = static_cast<std::uint8_t>(ends[m] | (is_opaque ? 1 : 0) << (is_behind ? 1 : 0));
+        if (!out_.mask.any_transparent || id < of.transparent_first) continue;
+        const auto known = out_.palette.known(of.materials[id]);
+        if (!known) continue;
+        ends[m] = static_cast<std::uint8_t>(ends[m] | 1 << (is_behind ? 3 : 2));
+        out_.grid.line(m, s)[is_behind ? static_cast<std::ptrdiff_t>(e_.f) : -1] = *known;
       }
     }
   }
-  void see(const DenseBytes& neighbour) { seen_ = seen_ids(neighbour, out_.palette); }
   std::size_t word_at(std::ptrdiff_t m, std::ptrdiff_t s) const {
     return static_cast<std::size_t>((m + 1) + (static_cast<std::ptrdiff_t>(e_.m) + 2) * (s + 1));
   }
@@ -70,7 +65,6 @@ class BorderFill {
  private:
   const OrderedExtent e_;
   PaletteVolume& out_;
-  std::array<Seen, BytePalette::kIdsMax> seen_{};
 };
 
 void fill_inside(const DenseBytes& chunk, const BorderFill& places, PaletteVolume& out) {
@@ -80,9 +74,8 @@ void fill_inside(const DenseBytes& chunk, const BorderFill& places, PaletteVolum
     for (std::uint32_t m = 0; m < e.m; ++m, from += e.f) {
       std::memcpy(out.grid.line(m, s), from, e.f);
       const std::size_t word = places.word_at(m, s);
-      const Word seen_through = ids_below(from, e.f, chunk.transparent_first);
-      out.mask.opaque[word] = seen_through & ~ids_below(from, e.f, chunk.opaque_first);
-      out.mask.transparent[word] = ~seen_through & low_bits(e.f);
+      out.mask.opaque[word] = opaque_of(chunk, from, e.f);
+      out.mask.transparent[word] = transparent_of(chunk, from, e.f);
     }
   }
 }
@@ -149,7 +142,7 @@ void fill_volume(const DenseBytes& chunk, const DenseNeighbours& neighbours,
   out.mask.transparent.assign(lines, 0);
   out.mask.ends.assign(lines, 0);
   set_flags(chunk, out.mask);
-  BorderFill border(chunk, out);
+  BorderFill border(out);
   fill_inside(chunk, border, out);
   const auto axes = axes_of(chunk.order);
   for (std::size_t d = 0; d < kDirectionCount; ++d) {
@@ -159,9 +152,8 @@ void fill_volume(const DenseBytes& chunk, const DenseNeighbours& neighbours,
     const Axis axis = axis_of(static_cast<Direction>(d));
     const bool is_behind = is_positive(static_cast<Direction>(d));
     const OrderedExtent n = ordered(of->extent, of->order);
-    border.see(*of);
     if (axis == axes[0]) {
-      border.ends(of->ids.data() + (is_behind ? 0 : n.f - 1), n.f, is_behind);
+      border.ends(*of, of->ids.data() + (is_behind ? 0 : n.f - 1), n.f, is_behind);
     } else if (axis == axes[1]) {
       for (std::uint32_t s = 0; s < e.s; ++s)
         border.line(*of,

@@ -22,6 +22,14 @@ struct LayerPlace {
   constexpr Axis row_axis() const {
     return static_cast<Axis>(3 - static_cast<int>(axis) - static_cast<int>(bit_axis));
   }
+  /// Returns the place in the chunk of bit `bit` of row `row`.
+  constexpr LocalPos voxel(std::uint32_t bit, std::uint32_t row) const {
+    std::array<std::uint8_t, 3> out{};
+    out[static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(at);
+    out[static_cast<std::size_t>(bit_axis)] = static_cast<std::uint8_t>(bit);
+    out[static_cast<std::size_t>(row_axis())] = static_cast<std::uint8_t>(row);
+    return {out[0], out[1], out[2]};
+  }
 };
 
 /// One layer as rows of bits: one plane per bit of the indices that `to_index(material)` returns.

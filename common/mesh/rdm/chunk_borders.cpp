@@ -6,7 +6,6 @@
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/border_rows.hpp"
 #include "common/mesh/rdm/side_axes.hpp"
-#include "common/runs/layer.hpp"
 
 namespace runstone {
 
@@ -37,22 +36,23 @@ void ChunkBorders::read_sides(const RunChunk& chunk, const VisibilityTable& visi
   for (const rdm::SideAxes& axes : rdm::side_axes(chunk.order)) {
     for (const bool positive : {false, true}) {
       const std::uint32_t at = positive ? rdm::side_of(chunk, axes.layer) - 1 : 0;
-      rdm::read_layer_rows(chunk, {axes.layer, axes.bit, at}, planes,
+      const rdm::LayerPlace place{axes.layer, axes.bit, at};
+      rdm::read_layer_rows(chunk, place, planes,
                            [of = visibility.data()](Material material) -> rdm::PaletteIndex {
                              static_assert(static_cast<int>(Visibility::opaque) == 1 &&
                                            static_cast<int>(Visibility::transparent) == 2);
                              return static_cast<rdm::PaletteIndex>(of[material]);
                            });
-      layer_.clear();
-      if (std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; })) {
-        layer_.resize(std::size_t{rdm::side_of(chunk, axes.bit)} * rdm::side_of(chunk, axes.row));
-        read_layer(chunk, axes.layer, at, axes.bit, layer_);
-        std::erase_if(layer_, [&visibility](Material material) {
-          return visibility[material] != Visibility::transparent;
-        });
+      const auto& transparent = planes[1];
+      const bool any =
+          std::any_of(transparent.begin(), transparent.end(), [](Row row) { return row != 0; });
+      Side& side = begin_side(chunk, rdm::direction_of(axes.layer, positive), axes.bit, axes.row,
+                              planes[0], any ? &transparent : nullptr);
+      for (std::uint32_t r = 0; any && r < side.row_count; ++r) {
+        for (Row left = transparent[r]; left != 0; left &= left - 1)
+          materials_.push_back(material_at(chunk, place.voxel(lowest_bit(left), r)));
       }
-      keep_side<std::array<Row, kRowBits<Row>>>(chunk, rdm::direction_of(axes.layer, positive),
-                                                axes.bit, axes.row, {planes[0], planes[1], layer_});
+      end_side(side);
     }
   }
 }
@@ -64,7 +64,11 @@ void ChunkBorders::keep(const RunChunk& chunk,
   const auto axes = rdm::side_axes(chunk.order);
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const rdm::SideAxes& a = axes[i / 2];
-    keep_side(chunk, rdm::direction_of(a.layer, i % 2 != 0), a.bit, a.row, sides[i]);
+    const SideRows<Rows>& rows = sides[i];
+    Side& side = begin_side(chunk, rdm::direction_of(a.layer, i % 2 != 0), a.bit, a.row,
+                            rows.opaque, rows.materials.empty() ? nullptr : &rows.transparent);
+    materials_.insert(materials_.end(), rows.materials.begin(), rows.materials.end());
+    end_side(side);
   }
 }
 template void ChunkBorders::keep(
@@ -75,36 +79,37 @@ template void ChunkBorders::keep(
     const RunChunk&, const std::array<SideRows<std::array<Row128, 128>>, kDirectionCount>&);
 
 template <class Rows>
-void ChunkBorders::keep_side(const RunChunk& chunk, Direction direction, Axis bit_axis,
-                             Axis row_axis, const SideRows<Rows>& rows) {
+ChunkBorders::Side& ChunkBorders::begin_side(const RunChunk& chunk, Direction direction,
+                                             Axis bit_axis, Axis row_axis, const Rows& opaque,
+                                             const Rows* transparent) {
   Side& side = sides_[static_cast<std::size_t>(direction)];
   side.bit_axis = bit_axis;
   side.row_words = static_cast<std::uint8_t>((rdm::side_of(chunk, bit_axis) + 31) / 32);
   side.row_count = static_cast<std::uint8_t>(rdm::side_of(chunk, row_axis));
   side.first = static_cast<std::uint16_t>(words_.size());
-  RUNSTONE_ASSERT(side.row_count <= rows.opaque.size() &&
-                  side.row_words * 32u <= sizeof(rows.opaque[0]) * 8);
-  const auto append = [this, &side](const Rows& from) {
+  side.first_material = static_cast<std::uint32_t>(materials_.size());
+  RUNSTONE_ASSERT(side.row_count <= opaque.size() && side.row_words * 32u <= sizeof(opaque[0]) * 8);
+  for (const Rows* rows : {&opaque, transparent}) {
+    if (rows == nullptr) continue;
     std::size_t to = words_.size();
     words_.resize(to + std::size_t{side.row_words} * side.row_count);
     for (std::size_t r = 0; r < side.row_count; ++r) {
-      auto row = from[r];
+      auto row = (*rows)[r];
       for (unsigned w = 0; w < side.row_words; ++w) {
         words_[to++] = static_cast<std::uint32_t>(row);
         if constexpr (sizeof(row) > sizeof(std::uint32_t)) row >>= 32;
       }
     }
-  };
-  append(rows.opaque);
-  side.first_material = static_cast<std::uint32_t>(materials_.size());
-  side.materials = 0;
-  if (rows.materials.empty()) return;
-  append(rows.transparent);
-  const bool is_single = std::adjacent_find(rows.materials.begin(), rows.materials.end(),
-                                            std::not_equal_to<>()) == rows.materials.end();
-  const auto kept = rows.materials.first(is_single ? 1 : rows.materials.size());
-  materials_.insert(materials_.end(), kept.begin(), kept.end());
-  side.materials = static_cast<std::uint16_t>(kept.size());
+  }
+  return side;
+}
+
+void ChunkBorders::end_side(Side& side) {
+  const auto first = materials_.begin() + static_cast<std::ptrdiff_t>(side.first_material);
+  const bool is_single =
+      std::adjacent_find(first, materials_.end(), std::not_equal_to<>()) == materials_.end();
+  if (is_single && first != materials_.end()) materials_.erase(first + 1, materials_.end());
+  side.materials = static_cast<std::uint16_t>(materials_.size() - side.first_material);
 }
 
 }  // namespace runstone

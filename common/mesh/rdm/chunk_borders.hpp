@@ -1,8 +1,8 @@
-// ChunkBorders: which voxels of the six outermost layers of a chunk are opaque, which are transparent,
-// and of which materials the transparent ones are. It is the helper structure for borders that
-// thesis 9.1 proposes: a chunk whose neighbours have it is meshed without reading their runs. A mesh
-// of a chunk makes the chunk's own borders at little cost (mesh_rdm()). The client keeps them beside
-// the meshes (client/schedule/mesh_planner.hpp).
+// ChunkBorders: the six outermost layers of a chunk: the opaque voxels, the transparent voxels, and
+// the materials of the transparent ones. It is the helper structure for borders that thesis 9.1
+// proposes. If the neighbours of a chunk have it, the chunk is meshed without reading their runs.
+// mesh_rdm() makes the borders of the chunk that it meshes at little cost. The client keeps them
+// beside the meshes (client/schedule/mesh_planner.hpp).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,8 +19,8 @@ class ChunkBorders {
  public:
   /// Replaces all six sides by those of `chunk`. For a chunk of one material nothing is kept,
   /// because its single run is a shorter summary. The contents hold for this version of the chunk
-  /// and this table. Allocates only to grow. Cost: O(runs), and O(voxels of a side) for each side
-  /// with transparent voxels.
+  /// and this table. Allocates only to grow. Cost: O(runs), and O(log runs) for each transparent
+  /// voxel.
   void read(const RunChunk& chunk, const VisibilityTable& visibility);
 
   /// The voxels of one side as rows of bits, in any type of unsigned integer.
@@ -55,8 +55,8 @@ class ChunkBorders {
   const std::uint32_t* transparent_rows(Direction side) const {
     return rows(side) + row_words(side) * row_count(side);
   }
-  /// Returns the materials of a side's transparent voxels: one if all are of one material, otherwise
-  /// one for each voxel, in the order of rows and bits.
+  /// Returns the materials of a side's transparent voxels, in the order of rows and bits; or a single
+  /// material if all of them have it.
   std::span<const Material> transparent_materials(Direction side) const {
     return std::span(materials_).subspan(at(side).first_material, at(side).materials);
   }
@@ -77,13 +77,16 @@ class ChunkBorders {
   void begin(const RunChunk& chunk);
   template <class Row>
   void read_sides(const RunChunk& chunk, const VisibilityTable& visibility);
+  /// Begins a side with its opaque and, if there are any, its transparent voxels. Their materials
+  /// are appended to materials_ afterwards.
   template <class Rows>
-  void keep_side(const RunChunk& chunk, Direction direction, Axis bit_axis, Axis row_axis,
-                 const SideRows<Rows>& rows);
+  Side& begin_side(const RunChunk& chunk, Direction direction, Axis bit_axis, Axis row_axis,
+                   const Rows& opaque, const Rows* transparent);
+  /// Ends a side. Keeps one material if all are equal.
+  void end_side(Side& side);
 
   std::vector<std::uint32_t> words_;  // of each side: the opaque rows, then the transparent ones
   std::vector<Material> materials_;
-  std::vector<Material> layer_;  // scratch of read()
   Extent extent_;
   AxisOrder order_{};
   std::array<Side, kDirectionCount> sides_;

@@ -3,8 +3,8 @@
 // occur. Opaque and transparent materials are counted apart, and all empty ones have index 0.
 //   opaque        1, 2, ...
 //   transparent   kTransparentBit + 0, 1, ...
-// The indices of a chunk with few materials are also kept as bytes; then the highest bit of the
-// byte replaces kTransparentBit.
+// The indices of a chunk with few materials are kept as bytes; then the highest bit of the byte
+// replaces kTransparentBit.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,7 +20,8 @@ using PaletteIndex = std::uint32_t;
 using BytePaletteIndex = std::uint8_t;
 inline constexpr PaletteIndex kTransparentBit = PaletteIndex{1} << 31;
 
-/// Returns an index in the type Index. BytePaletteIndex requires ChunkPalette::fit_bytes().
+/// Returns an index in the type Index. As a BytePaletteIndex it is valid only if the palette fits
+/// into bytes once it is complete (ChunkPalette::fit_bytes()).
 template <class Index>
 constexpr Index index_as(PaletteIndex index) {
   return static_cast<Index>(sizeof(Index) == 1 ? index | index >> 24 : index);

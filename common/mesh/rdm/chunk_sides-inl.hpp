@@ -26,7 +26,6 @@ template <class Traits>
 class ChunkSides {
   using Lanes = typename Traits::Lanes;
   using Row = typename Traits::Row;
-
   using Index = typename Traits::Index;
 
  public:
@@ -36,7 +35,7 @@ class ChunkSides {
         e_(input.extent),
         mixed_(Traits::kManyMaterials && input.palette->has_transparent()),
         lists_materials_(mixed_ && input.palette->transparent_count() > 1) {
-    for (OwnSide<Row>& side : st_.own_sides) {
+    for (ChunkSide<Row>& side : st_.chunk_sides) {
       side.has_transparent = false;
       side.materials.clear();
     }
@@ -71,15 +70,15 @@ class ChunkSides {
   Row last_column(const Row* rows) const {
     return column_of<Lanes, Row>(rows, e_.m, Row{1} << (e_.f - 1));
   }
-  OwnSide<Row>& side(Side side) { return st_.own_sides[at(side)]; }
+  ChunkSide<Row>& side(Side side) { return st_.chunk_sides[at(side)]; }
   /// Sets a row of transparent voxels. The index of bit i is indices[i * step].
   void add(Side side, std::uint32_t row, Row clear, const Index* indices, std::uint32_t step) {
-    OwnSide<Row>& own = this->side(side);
-    own.transparent[row] = clear;
-    own.has_transparent |= clear != 0;
+    ChunkSide<Row>& to = this->side(side);
+    to.transparent[row] = clear;
+    to.has_transparent |= clear != 0;
     if (!lists_materials_) return;
     for (; clear != 0; clear &= clear - 1)
-      own.materials.push_back(palette_->material(indices[lowest_bit(clear) * step]));
+      to.materials.push_back(palette_->material(indices[lowest_bit(clear) * step]));
   }
 
   SweepState<Row>& st_;

@@ -24,12 +24,6 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// Where the rows of a layer are written, as SweepState names them.
-template <class Row>
-struct LayerMarks {
-  Row *solid, *hiding, *transparent, *fast, *mid, *slow;
-};
-
 /// Traits: a SweepTraits.
 template <class Traits>
 class LayerBuilder {
@@ -77,22 +71,40 @@ class LayerBuilder {
   /// Writes the indices and the rows of the current layer s from the runs that lie in it.
   void build(std::uint32_t s, LayerPair layers) {
     decode(s, indices_[layers.current].data());
-    const Index* const first = indices_[layers.current].data();
-    const LayerMarks<Row> marks = {st_.solid[layers.current].data(),
-                                   st_.hiding[layers.current].data(),
-                                   st_.transparent.data(),
-                                   st_.cut_fast[layers.current].data(),
-                                   st_.cut_mid[layers.current].data(),
-                                   st_.cut_slow.data()};
-    mark_lines(first, indices_[layers.previous].data(), marks);
+    const Index* line = indices_[layers.current].data();
+    const Index* line_previous = indices_[layers.previous].data();
+    Row* const solid = st_.solid[layers.current].data();
+    Row* const hiding = st_.hiding[layers.current].data();
+    Row* const transparent = st_.transparent.data();
+    Row* const fast = st_.cut_fast[layers.current].data();
+    Row* const mid = st_.cut_mid[layers.current].data();
+    Row* const slow = st_.cut_slow.data();
     const std::uint32_t count = e_.m;
-    std::fill_n(marks.solid + count, Rows::kBehind, Row{0});
-    if constexpr (kManyMaterials) {
-      marks.mid[0] = marks.mid[count] = ~Row{0};
-      if (s == 0) std::fill_n(marks.slow, count, ~Row{0});
+    Line above = Line::at(line - e_.f);
+    for (std::uint32_t m = 0; m < count; ++m, line += e_.f, line_previous += e_.f) {
+      const Line current = Line::at(line);
+      const Row faced = current.solid() & valid_;
+      solid[m] = faced;
+      hiding[m] = faced;
+      if constexpr (kManyMaterials) {
+        if (mixed_) {
+          transparent[m] = current.transparent() & valid_;
+          hiding[m] = faced & ~transparent[m];
+        }
+        fast[m] = differing(current, Line::at(line - 1)) | 1;
+        mid[m] = differing(current, above);
+        slow[m] = differing(current, Line::at(line_previous));
+        above = current;
+      }
     }
-    marks.hiding[-1] = hide_middle(Side::mid_neg, s, first);
-    marks.hiding[count] = hide_middle(Side::mid_pos, s, first + (count - 1) * e_.f);
+    std::fill_n(solid + count, Rows::kBehind, Row{0});
+    if constexpr (kManyMaterials) {
+      mid[0] = mid[count] = ~Row{0};
+      if (s == 0) std::fill_n(slow, count, ~Row{0});
+    }
+    hiding[-1] = hide_middle(Side::mid_neg, s, indices_[layers.current].data());
+    hiding[count] =
+        hide_middle(Side::mid_pos, s, indices_[layers.current].data() + (count - 1) * e_.f);
   }
 
   /// Writes the voxels beyond a slow side into the hiding rows of slot `slot`, as if they were a
@@ -129,7 +141,8 @@ class LayerBuilder {
   void decode(std::uint32_t s, Index* first) {
     const std::uint32_t begin = s * e_.layer();
     const std::uint32_t end = begin + e_.layer();
-    const IndexedRuns runs = runs_;  // a copy: the compiler takes written bytes for its members
+    // A copy in registers: for the compiler, a write of bytes may change the members.
+    const IndexedRuns runs = runs_;
     Index* to = first;
     std::size_t run = run_;
     for (std::uint32_t run_end; (run_end = runs.end(run)) < end; ++run) {
@@ -139,27 +152,6 @@ class LayerBuilder {
     }
     IndexLanes::template fill<Row>(to, first + e_.layer(), runs.template index<Index>(run));
     run_ = run;
-  }
-
-  /// Writes the rows of a layer from its indices and those of the previous layer.
-  void mark_lines(const Index* line, const Index* line_previous, const LayerMarks<Row>& to) {
-    Line above = Line::at(line - e_.f);
-    for (std::uint32_t m = 0; m < e_.m; ++m, line += e_.f, line_previous += e_.f) {
-      const Line current = Line::at(line);
-      const Row faced = current.solid() & valid_;
-      to.solid[m] = faced;
-      to.hiding[m] = faced;
-      if constexpr (kManyMaterials) {
-        if (mixed_) {
-          to.transparent[m] = current.transparent() & valid_;
-          to.hiding[m] = faced & ~to.transparent[m];
-        }
-        to.fast[m] = differing(current, Line::at(line - 1)) | 1;
-        to.mid[m] = differing(current, above);
-        to.slow[m] = differing(current, Line::at(line_previous));
-        above = current;
-      }
-    }
   }
 
   /// Returns the bits that hide the faces of a middle side in layer s. `line` is the chunk's line

@@ -160,16 +160,12 @@ void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
   if (!dense && !looks_up) read_voxels();
   auto& indices = borders.indices[at];
   indices.resize(std::size_t{bits} * rows);
-  std::array<std::uint8_t, 3> voxel{};
-  voxel[static_cast<std::size_t>(place.axis)] = static_cast<std::uint8_t>(place.at);
   for (std::uint32_t r = 0; r < rows; ++r) {
-    voxel[static_cast<std::size_t>(place.row_axis())] = static_cast<std::uint8_t>(r);
     for (Row left = planes[1][r]; left != 0; left &= left - 1) {
       const std::uint32_t bit = lowest_bit(left);
-      voxel[static_cast<std::size_t>(place.bit_axis)] = static_cast<std::uint8_t>(bit);
       const std::size_t i = std::size_t{r} * bits + bit;
-      indices[i] = palette.transparent_index(
-          looks_up ? material_at(neighbour, {voxel[0], voxel[1], voxel[2]}) : voxels[i]);
+      indices[i] = palette.transparent_index(looks_up ? material_at(neighbour, place.voxel(bit, r))
+                                                      : voxels[i]);
     }
   }
 }
@@ -252,18 +248,19 @@ void keep_borders(const RunChunk& chunk, const rdm::ChunkPalette& palette,
   const auto axes = side_axes(chunk.order);
   const bool single_transparent = palette.solid_count() == 1 && palette.has_transparent();
   const auto side = [&](std::size_t i) -> ChunkBorders::SideRows<Rows> {
-    const rdm::OwnSide<Row>& own = sweep.own_sides[i];
+    const rdm::ChunkSide<Row>& found = sweep.chunk_sides[i];
     std::span<const Material> materials;
     if (single_transparent) {
       // The sweep took this material for an opaque one.
       const std::uint32_t rows = side_of(chunk, axes[i / 2].row);
-      if (std::any_of(own.opaque.begin(), own.opaque.begin() + rows, [](Row r) { return r != 0; }))
+      if (std::any_of(found.opaque.begin(), found.opaque.begin() + rows,
+                      [](Row r) { return r != 0; }))
         materials = palette.transparent();
-      return {kNone, own.opaque, materials};
+      return {kNone, found.opaque, materials};
     }
-    if (own.has_transparent)
-      materials = palette.transparent_count() == 1 ? palette.transparent() : own.materials;
-    return {own.opaque, own.transparent, materials};
+    if (found.has_transparent)
+      materials = palette.transparent_count() == 1 ? palette.transparent() : found.materials;
+    return {found.opaque, found.transparent, materials};
   };
   out.keep<Rows>(chunk, {side(0), side(1), side(2), side(3), side(4), side(5)});
 }
@@ -352,7 +349,7 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
   const auto mesh_in = [&](auto& rows) {
     mesh_chunk(chunk, runs, neighbours, borders, chunk_borders, visibility, state, rows);
   };
-  // The plain path has no rows of 32 bits: it is not fast anyway.
+  // The plain path uses rows of 64 bits for all sides up to 64. Its speed does not matter.
   if (longest <= 32 && !state.plain) {
     mesh_in(state.rows_32);
   } else if (longest <= 64) {

@@ -52,10 +52,10 @@ class RdmScratch {
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out);
 
-/// Makes the same mesh with kept borders of neighbours, whose runs are not read then. Requires
-/// borders that match `neighbours` as they are now. If `chunk_borders` is not null, it becomes the
-/// result of chunk_borders->read(chunk, visibility), at little cost, because the sweep visits all of
-/// its voxels.
+/// Makes the same mesh with kept borders of neighbours. The runs of such a neighbour are not read,
+/// except the single run of a uniform one. Requires borders that match `neighbours` as they are now.
+/// If `chunk_borders` is not null, it becomes the result of chunk_borders->read(chunk, visibility).
+/// That costs little, because the sweep visits all voxels of the chunk anyway.
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out,
               ChunkBorders* chunk_borders = nullptr);

@@ -18,8 +18,8 @@
 
 namespace runstone::rdm {
 
-/// The runs of a chunk as the sweep reads them: the ends where the chunk keeps them, and a palette
-/// index for each run.
+/// Gives the end and the palette index of each run of a chunk. The ends are read from the chunk's
+/// list of runs.
 class IndexedRuns {
  public:
   IndexedRuns() = default;
@@ -92,8 +92,8 @@ struct Borders {
   std::array<Rows, 6> transparent;
   /// True if a side has such voxels. Always false for a chunk of one material.
   std::array<bool, 6> meets{};
-  /// The palette indices of `transparent`, row by row, or one that all of them have. Empty unless
-  /// the chunk has more than one transparent material.
+  /// One palette index for each voxel of the side, row by row; or a single index if all voxels of
+  /// `transparent` have it. Empty unless the chunk has more than one transparent material.
   std::array<std::vector<PaletteIndex>, 6> indices;
 };
 
@@ -105,7 +105,7 @@ struct SweepInput {
   std::array<QuadShape, 6> shape;        // by Side
   QuadBuckets* opaque = nullptr;
   QuadBuckets* transparent = nullptr;
-  bool chunk_sides = false;  // true if SweepState::own_sides are needed
+  bool chunk_sides = false;  // true if SweepState::chunk_sides are needed
 };
 
 }  // namespace runstone::rdm

@@ -42,7 +42,7 @@ struct LayerPair {
 
 /// One of the six outermost layers of the chunk itself, laid out as in Borders.
 template <class Row>
-struct OwnSide {
+struct ChunkSide {
   std::array<Row, kRowBits<Row>> opaque{}, transparent{};
   bool has_transparent = false;  // `transparent` is set only if it is true
   /// The materials of the transparent voxels, by row and bit. Empty if the chunk has one of them.
@@ -90,7 +90,7 @@ struct SweepState {
   std::array<std::array<std::uint8_t, kPlaces>, 2> start_layer;
 
   // The part that ChunkSides writes, by Side.
-  std::array<OwnSide<Row>, 6> own_sides;
+  std::array<ChunkSide<Row>, 6> chunk_sides;
 
   /// Returns the palette indices in the type Index. Allocates for the first chunk that needs full
   /// ones.

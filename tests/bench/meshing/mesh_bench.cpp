@@ -80,7 +80,11 @@ void measure_volume(const BenchOptions& options, const Volume& volume,
     return std::nullopt;
   };
   const auto decode = median_of("decode_binary"), mask = median_of("mask_binary");
+  const bool has_faces =
+      std::all_of(result.rows.begin() + static_cast<std::ptrdiff_t>(first), result.rows.end(),
+                  [](const MeshRow& row) { return row.timing.mesh.triangles != 0; });
   for (std::size_t i = first; i < result.rows.size(); ++i) {
+    result.rows[i].has_faces = has_faces;
     const double ours = result.rows[i].timing.median_ns;
     if (decode) result.rows[i].against_decode = *decode / ours;
     if (mask) result.rows[i].against_mask = *mask / ours;

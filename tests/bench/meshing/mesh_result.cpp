@@ -116,6 +116,7 @@ struct Group {
 std::vector<Group> groups_of(const std::vector<MeshRow>& rows) {
   std::vector<Group> out;
   for (const MeshRow& row : rows) {
+    if (!row.has_faces) continue;
     const std::string& order = row.rank == "between" ? row.order : row.rank;
     const auto same = [&](const Group& g) {
       return g.world == row.world && g.edge == row.edge && g.order == order;

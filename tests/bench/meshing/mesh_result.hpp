@@ -26,6 +26,9 @@ struct MeshRow {
   /// The median of decode_binary or mask_binary in the same cell, divided by this row's median.
   /// Above 1 this row is faster.
   std::optional<double> against_decode, against_mask;
+  /// False if a mesher of the cell made no triangles, because the chunk has no exposed face. Such a
+  /// cell is in no mean.
+  bool has_faces = true;
 
   double ns_per_run() const { return timing.median_ns / static_cast<double>(runs); }
   std::string cell() const;  // world, part, edge and order as text
@@ -43,8 +46,8 @@ struct MeshResult {
 void write_csv(const MeshResult& result, std::ostream& out);
 void write_json(const MeshResult& result, std::ostream& out);
 
-/// Prints a table for each world, edge and rank of order: means over its volumes, and ratios as
-/// geometric mean and as ratio of sums.
+/// Prints a table for each world, edge and rank of order: means over its volumes with exposed faces,
+/// and ratios as geometric mean and as ratio of sums.
 void write_tables(const MeshResult& result, std::ostream& out);
 
 /// Prints one table with a line of the product for each of those tables.

@@ -28,10 +28,9 @@ struct ViewPane {
 std::vector<std::string> view_mesher_names();
 
 /// Meshes all chunks with culled faces, binary greedy meshing and RDM, or with the one that `only`
-/// names. RDM begins with the stored
-/// runs; the others decode them first, which their time contains. In each repetition the meshers take
-/// turns. Times are those of the thread's processor. Requires repetitions > 0 and an edge of at most
-/// 64.
+/// names. RDM begins with the stored runs. The others decode them first, which their time contains.
+/// In each repetition the meshers take turns. Times are those of the thread's processor. Requires
+/// repetitions > 0 and an edge of at most 64.
 std::vector<ViewPane> view_panes(const FramesWorld& world, unsigned repetitions,
                                  std::string_view only = {});
 

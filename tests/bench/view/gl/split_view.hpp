@@ -14,8 +14,8 @@ namespace runstone::bench {
 
 class SplitView {
  public:
-  /// Uploads the meshes. Pictures show the edges of quads if `has_edges`. Throws std::runtime_error if a shader does not compile or the GPU has no
-  /// memory left.
+  /// Uploads the meshes. Pictures show the edges of quads if `has_edges`. Throws std::runtime_error
+  /// if a shader does not compile or the GPU has no memory left.
   SplitView(GlContextLoader loader, const FramesWorld& world, const MaterialTable& materials,
             std::span<const ViewPane> panes, bool has_edges);
 

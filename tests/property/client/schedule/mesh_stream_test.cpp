@@ -327,7 +327,7 @@ class MeshStream {
     if (result.layers_only && job.changed.beyond != ChangedLayers{}.beyond) ++counts_.beyond;
     const auto is_kept = [](const BordersPtr& borders) { return borders != nullptr; };
     if (!result.layers_only && std::ranges::any_of(job.borders, is_kept)) ++counts_.bordered;
-    if (planner_.finish(result.key, result.number, result.mesh, result.borders)) {
+    if (planner_.finish(result.key, result.number, result.mesh, result.chunk, result.borders)) {
       drawn_.insert_or_assign(result.key, std::pair(job, result.mesh));
     } else {
       ++counts_.refused;

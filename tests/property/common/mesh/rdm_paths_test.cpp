@@ -16,38 +16,43 @@ struct Trial {
   MeshScene scene;
   const VisibilityTable* visibility;
   ChunkMesh plain;
-  void mesh(RdmScratch& scratch, ChunkMesh& out) const {
-    mesh_rdm(scene.chunk, scene.pointers(), *visibility, scratch, out);
+  ChunkBorders borders;
+  void mesh(RdmScratch& scratch, ChunkMesh& out, ChunkBorders& chunk_borders) const {
+    mesh_rdm(scene.chunk, scene.pointers(), MeshBorders{}, *visibility, scratch, out,
+             &chunk_borders);
   }
 };
 
-TEST_CASE("every instruction set gives the quads of the plain path", "[mesh][property]") {
+TEST_CASE("every instruction set gives the quads and the borders of the plain path",
+          "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 7);
   std::vector<Trial> trials;
   for (int i = 0; i < 400; ++i) {
     const unsigned side_max = i % 20 == 0 ? 64 : i % 20 == 10 ? 128 : 20;
-    trials.push_back({random_scene(rng, side_max), &mesh_visibility(), {}});
+    trials.push_back({random_scene(rng, side_max), &mesh_visibility(), {}, {}});
   }
-  for (const Extent extent :
-       {Extent{12, 9, 11}, Extent{64, 8, 33}, Extent{65, 9, 12}, Extent{8, 128, 10}}) {
+  for (const Extent extent : {Extent{12, 9, 11}, Extent{32, 8, 17}, Extent{64, 8, 33},
+                              Extent{65, 9, 12}, Extent{8, 128, 10}}) {
     for (int i = 0; i < 5; ++i) {
-      trials.push_back({scene_of_many_materials(rng, extent), &many_visibility(), {}});
+      trials.push_back({scene_of_many_materials(rng, extent), &many_visibility(), {}, {}});
     }
   }
   RdmScratch plain_scratch;
   plain_scratch.use_plain_path(true);
-  for (Trial& trial : trials) trial.mesh(plain_scratch, trial.plain);
+  for (Trial& trial : trials) trial.mesh(plain_scratch, trial.plain, trial.borders);
   const auto targets = hwy::SupportedAndGeneratedTargets();
   REQUIRE_FALSE(targets.empty());
   RdmScratch scratch;
   ChunkMesh mesh;
+  ChunkBorders borders;
   for (const auto target : targets) {
     hwy::SetSupportedTargetsForTest(target);
     for (std::size_t i = 0; i < trials.size(); ++i) {
-      trials[i].mesh(scratch, mesh);
+      trials[i].mesh(scratch, mesh, borders);
       CAPTURE(Catch::rngSeed(), hwy::TargetName(target), i);
       require_equal(mesh.opaque, trials[i].plain.opaque);
       require_equal(mesh.transparent, trials[i].plain.transparent);
+      REQUIRE(equal_borders(trials[i].scene.chunk, borders, trials[i].borders));
     }
   }
   hwy::SetSupportedTargetsForTest(0);

@@ -74,8 +74,8 @@ TEST_CASE_METHOD(PlannerBench, "a job has the borders that earlier meshes beside
   REQUIRE(middle);
   REQUIRE(middle->key.at == ChunkCoord{0, 0, 0});
   const BordersPtr borders = borders_of(*middle->chunk);
-  REQUIRE(
-      planner.finish(middle->key, middle->number, std::make_shared<const ChunkMesh>(), borders));
+  REQUIRE(planner.finish(middle->key, middle->number, std::make_shared<const ChunkMesh>(),
+                         middle->chunk, borders));
   drain();
   const auto seen_from_beside = [this] {
     commit({kBenchEdge + 5, 5, 5}, static_cast<Material>(2 + edits));
@@ -83,9 +83,29 @@ TEST_CASE_METHOD(PlannerBench, "a job has the borders that earlier meshes beside
   };
   CHECK(seen_from_beside() == borders);
   SECTION("until the chunk changes") { commit({6, 5, 5}, 2); }
-  SECTION("until materials look different") { planner.forget_meshes(); }
+  SECTION("until all materials look different") { planner.forget_meshes(); }
+  SECTION("until one of its materials does") { planner.mesh_again_from(2); }
+  SECTION("until the chunk has left the view") {
+    replica.set_view({2, {1, 0, 0}, 0, 0});
+    pass_changes();
+    replica.set_view({3, {0, 0, 0}, 1, 0});
+    load_all();
+  }
   drain();
   CHECK(seen_from_beside() == nullptr);
+}
+
+TEST_CASE_METHOD(PlannerBench, "borders of runs that changed during the mesh are not kept",
+                 "[schedule]") {
+  load_all();
+  commit({5, 5, 5}, 2);
+  const auto job = planner.next();
+  REQUIRE(job);
+  commit({6, 5, 5}, 2);
+  const std::size_t before = planner.kept_bytes();
+  REQUIRE(planner.finish(job->key, job->number, std::make_shared<const ChunkMesh>(), job->chunk,
+                         borders_of(*job->chunk)));
+  CHECK(planner.kept_bytes() == before);
 }
 
 }  // namespace

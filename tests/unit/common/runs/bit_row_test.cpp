@@ -50,7 +50,8 @@ void check_rows() {
   }
 }
 
-TEST_CASE("rows of both widths are searched, prefix-summed and transposed bit by bit", "[mesh]") {
+TEST_CASE("rows of all widths are searched, prefix-summed and transposed bit by bit", "[mesh]") {
+  check_rows<Row32>();
   check_rows<Row64>();
   check_rows<Row128>();
 }

@@ -53,6 +53,10 @@ TEST_CASE("rows of every layer are its voxels in every orientation", "[mesh]") {
     check_layers<Row64>(random_chunk(rng, random_extent(rng, 20),
                                      kAxisOrders[static_cast<std::size_t>(round % 6)], 8));
   }
+  for (const Extent extent : {Extent{32, 8, 31}, Extent{9, 32, 8}, Extent{32, 32, 32}}) {
+    for (const AxisOrder order : kAxisOrders)
+      check_layers<Row32>(random_chunk(rng, extent, order, 8));
+  }
   for (const Extent extent : {Extent{64, 8, 63}, Extent{9, 64, 8}, Extent{8, 62, 64}}) {
     for (const AxisOrder order : kAxisOrders)
       check_layers<Row64>(random_chunk(rng, extent, order, 8));

@@ -31,12 +31,13 @@ MeshScene scene_of_transparents(Extent extent) {
   return scene;
 }
 
-/// Scenes that together use every buffer: both widths of rows, both types of indices, borders where
+/// Scenes that together use every buffer: all widths of rows, both types of indices, borders where
 /// transparent voxels meet.
 std::vector<Place> places(SplitMix64& rng) {
   std::vector<Place> out;
   for (int i = 0; i < 40; ++i) out.push_back({random_scene(rng, 20)});
-  for (const Extent extent : {Extent{128, 9, 12}, Extent{8, 128, 9}, Extent{10, 8, 128}}) {
+  for (const Extent extent : {Extent{128, 9, 12}, Extent{8, 128, 9}, Extent{10, 8, 128},
+                              Extent{64, 9, 12}, Extent{8, 33, 9}}) {
     out.push_back({scene_of_extent(rng, extent, random_order(rng))});
     out.push_back({scene_of_many_materials(rng, extent), &many_visibility()});
     out.push_back({scene_of_transparents(extent)});
