@@ -135,10 +135,10 @@ def _mark(axes, series, at, ends, size):
         axes.annotate(
             number_text(math.inf),
             (x, y),
-            xytext=(-6, 0) if arrow == ">" else (0, -6),
+            xytext=(3, 3) if arrow == ">" else (0, -6),
             textcoords="offset points",
             ha="right" if arrow == ">" else "center",
-            va="center" if arrow == ">" else "top",
+            va="bottom" if arrow == ">" else "top",
             color=series.colour,
             fontsize=FONT - 1,
         )
