@@ -10,6 +10,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from report.command import main
+from report.results import ResultError
+from report.runner import Runner
 from report.steps import PictureStep, report_steps
 
 from .sample_data import MACHINE, ROOT, _results
@@ -91,6 +93,38 @@ class Command(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("bench is missing", text)
 
+    def assert_one_line(self, text, *parts):
+        self.assertEqual(len(text.splitlines()), 1, text)
+        self.assertTrue(text.startswith("make-report: "), text)
+        for part in parts:
+            self.assertIn(str(part), text)
+
+    def test_a_program_that_cannot_run_is_named(self):
+        self.bench.chmod(0o644)
+        code, text, _ = self.run_report("--steps", "facts")
+        self.assertEqual(code, 1)
+        self.assert_one_line(text, self.bench, "Permission denied")
+
+    def test_a_folder_that_is_a_file_is_named(self):
+        (self.folder / "out").write_text("")
+        code, text, _ = self.run_report("--steps", "facts")
+        self.assertEqual(code, 1)
+        self.assert_one_line(text, self.folder / "out", "File exists")
+
+    def test_a_folder_that_cannot_be_written_is_named(self):
+        # Root may write into every folder, so a file stands in the place of a folder.
+        self.write_page.side_effect = NotADirectoryError(20, "Not a directory", "out/csv/crowds.csv")
+        code, text, _ = self.run_report("--page-only")
+        self.assertEqual(code, 1)
+        self.assert_one_line(text, "out/csv/crowds.csv: Not a directory")
+
+    def test_a_step_that_does_not_end_is_named(self):
+        with unittest.mock.patch("report.runner.subprocess.run", side_effect=[subprocess.TimeoutExpired("x", 1)]):
+            runner = Runner(self.bench, self.folder, self.folder, False, False)
+            with self.assertRaises(ResultError) as caught:
+                runner.call("siege", 660, ["net"], io.StringIO())
+        self.assertEqual(str(caught.exception), "bench net of the step siege did not end in 120.0 min")
+
 
 @unittest.skipUnless(os.environ.get("RUNSTONE_BENCH"), "RUNSTONE_BENCH does not name runstone-bench")
 class WithRunstoneBench(unittest.TestCase):
@@ -118,26 +152,52 @@ class WithRunstoneBench(unittest.TestCase):
 
 
 class Siege(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.file = self.folder / "net.json"
+        self.write({"window 0 quiet": 2, "window 1 views": 9})
+
+    def write(self, p99_by_case):
+        figures = [
+            {"experiment": "siege", "profile": "loopback", "case": case, "figure": figure, "value": value}
+            for case, p99 in p99_by_case.items()
+            for figure, value in (
+                ("from_s", p99),
+                ("to_s", p99 + 5),
+                ("p50_ms", 1),
+                ("p99_ms", p99),
+                ("server_resident_mb", 50),
+                ("disk_kb_s", 3),
+            )
+        ]
+        self.file.write_text(json.dumps({"figures": figures}))
+
+    def draw(self, file, folder):
+        return subprocess.run(
+            [ROOT / "scripts/report/draw-siege", file, folder], capture_output=True, text=True, check=False
+        )
+
     def test_the_charts_of_a_siege_are_files_of_their_own(self):
-        with tempfile.TemporaryDirectory() as folder:
-            cases = {"window 0 quiet": 2, "window 1 views": 9}
-            figures = [
-                {"experiment": "siege", "profile": "loopback", "case": case, "figure": figure, "value": value}
-                for case, p99 in cases.items()
-                for figure, value in (
-                    ("from_s", p99),
-                    ("to_s", p99 + 5),
-                    ("p50_ms", 1),
-                    ("p99_ms", p99),
-                    ("server_resident_mb", 50),
-                    ("disk_kb_s", 3),
-                )
-            ]
-            file = Path(folder) / "net.json"
-            file.write_text(json.dumps({"figures": figures}))
-            subprocess.run([ROOT / "scripts/report/draw-siege", file, folder], check=True)
-            for name in ("siege-p99", "siege-memory", "siege-disk"):
-                text = (Path(folder) / f"{name}.svg").read_text()
-                self.assertTrue(text.startswith("<svg "))
-                self.assertIn(">views</text>", text)
-                self.assertIn("prefers-color-scheme:dark", text)
+        self.assertEqual(self.draw(self.file, self.folder).returncode, 0)
+        for name in ("siege-p99", "siege-memory", "siege-disk"):
+            text = (self.folder / f"{name}.svg").read_text()
+            self.assertTrue(text.startswith("<svg "))
+            self.assertIn(">views</text>", text)
+            self.assertIn("prefers-color-scheme:dark", text)
+
+    def assert_fails(self, file, folder, *parts):
+        done = self.draw(file, folder)
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        for part in parts:
+            self.assertIn(str(part), done.stderr)
+
+    def test_a_file_that_cannot_be_used_is_named_in_one_line(self):
+        missing = self.folder / "missing.json"
+        self.assert_fails(missing, self.folder, f"{missing} is missing")
+        self.assert_fails(self.folder, self.folder, f"{self.folder}: Is a directory")
+        self.assert_fails(self.file, self.file, self.file, "File exists")
+        self.write({"sample": 2})
+        self.assert_fails(self.file, self.folder, f"{self.file} has no windows of a siege")
