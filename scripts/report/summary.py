@@ -48,7 +48,7 @@ def summary_of(evidence, verdict):
         _table(evidence),
         "What speaks against it:\n" + "\n".join(_wrapped(a, "- ", "  ") for a in verdict.against),
     ]
-    blocks += [_wrapped(f"Doubt: {d}") for d in evidence.here.doubts(verdict.steps)]
+    blocks += [_wrapped(f"Doubt: {d}") for d in evidence.doubts(verdict.steps)]
     blocks.append(
         _wrapped(
             f"{found.machine.text()}; one core; real world {found.luanti}; a {'quick' if found.quick else 'full'} run. "
