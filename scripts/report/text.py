@@ -28,7 +28,9 @@ def quantity_text(value, unit):
 
 
 def after_text(ms):
-    """Returns "after 4.2 ms"; "never" for an infinite time."""
+    """Returns "after 4.2 ms"; "never" for an infinite time; "after an unknown time" if it was not measured."""
+    if math.isnan(ms):
+        return "after an unknown time"
     return "never" if ms == math.inf else f"after {quantity_text(ms, 'ms')}"
 
 

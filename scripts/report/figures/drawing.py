@@ -212,10 +212,8 @@ def _storage(evidence):
     means = {(s, c): geometric_mean(rows.where(store=s).numbers(c)) for s in stores for c, _ in columns}
     least = {c: min((means[s, c] for s in stores if math.isfinite(means[s, c])), default=math.nan) for c, _ in columns}
     most = {c: max((means[s, c] for s in stores if math.isfinite(means[s, c])), default=math.nan) for c, _ in columns}
-    best = (
-        "; ".join(f"{name}: {min(stores, key=lambda s: means[s, c])}" for c, name in columns)
-        if stores
-        else "not measured"
+    best = "; ".join(
+        f"{name}: {next((s for s in stores if means[s, c] == least[c]), 'not measured')}" for c, name in columns
     )
     return Figure(
         "storage",

@@ -32,9 +32,9 @@ class MesherTotals:
         self._cells = {(r["mesher"], r["part"]): r for r in self.rows}
 
     def empty_note(self):
-        """Returns which scenarios are in no mean and why."""
+        """Returns which scenarios are in no mean and why; an empty text if none was measured."""
         if not self.empty:
-            return "Every scenario has quads."
+            return "Every scenario has quads." if self.parts else ""
         names = list_text(self.empty)
         return (
             f"The chunk in the middle of scenario{'s' if len(self.empty) > 1 else ''} {names} has no quads, so it is in"
@@ -64,6 +64,9 @@ class MesherTotals:
 
 
 def _time(totals):
+    def mean_text(key):
+        return time_text(totals.mean_ns(key)) if totals.is_whole(key) else "a time that was not measured"
+
     keys = sorted((k for k in totals.keys if totals.is_whole(k)), key=totals.mean_ns)
     ratios = [totals.against_ours(k) for k in keys]
     ranks = [place_text(p) for p in places(ratios)]
@@ -75,10 +78,9 @@ def _time(totals):
         "meshers-time",
         "All meshers: time",
         (
-            f"From compressed runs ours takes {time_text(totals.mean_ns(OURS))}, and decoding with binary greedy"
-            f" meshing {time_text(totals.mean_ns('decode_binary'))} (geometric means of {len(totals.parts)} scenarios)."
-            " With the grid and its mask ready, binary greedy meshing takes"
-            f" {time_text(totals.mean_ns('mask_binary'))}."
+            f"From compressed runs ours takes {mean_text(OURS)}, and decoding with binary greedy meshing"
+            f" {mean_text('decode_binary')} (geometric means of {len(totals.parts)} scenarios). With the grid and"
+            f" its mask ready, binary greedy meshing takes {mean_text('mask_binary')}."
         ),
         STEPS,
         ["mesher", "geometric mean us", "times ours", "low", "high", "place", "sum us"],
@@ -201,8 +203,19 @@ def _counts(totals, id_, title, field, label, log, sentence, notes=()):
 
 
 def _triangles(totals):
-    best = totals.sum("optimal_greedy", "triangles")
-    ours = totals.sum(OURS, "triangles")
+    ours, best, rle = (totals.sum(key, "triangles") for key in (OURS, "optimal_greedy", "rle_rdm"))
+    sentences = []
+    if math.isnan(ours):
+        sentences.append("Ours was not measured in every scenario.")
+    elif math.isfinite(best):
+        sentences.append(
+            "No mesher that draws the exposed faces as rectangles can use fewer than"
+            f" {count_text(best)} triangles. Ours uses {ours / best:.3f} times that."
+        )
+    else:
+        sentences.append(f"Ours uses {count_text(ours)} triangles. The least possible number was not measured.")
+    if math.isfinite(rle / ours):
+        sentences.append(f"The thesis' RLE RDM uses {number_text(rle / ours)} times as many as ours.")
     return _counts(
         totals,
         "meshers-triangles",
@@ -210,11 +223,7 @@ def _triangles(totals):
         "triangles",
         "triangles, sum over the scenarios",
         True,
-        (
-            f"No mesher that draws the exposed faces as rectangles can use fewer than {count_text(best)} triangles. "
-            f"Ours uses {ours / best:.3f} times that, and the thesis' RLE RDM "
-            f"{number_text(totals.sum('rle_rdm', 'triangles') / ours)} times as many as ours."
-        ),
+        " ".join(sentences),
         [
             "Monotone and Poly2Tri draw polygons, and run strips over hidden faces draw more than is exposed: the "
             "optimum does not bind them."
@@ -224,7 +233,7 @@ def _triangles(totals):
 
 def _t_junctions(totals):
     def count(key):
-        return count_text(totals.sum(key, "t_junctions"))
+        return count_text(totals.sum(key, "t_junctions")) if totals.is_whole(key) else "not measured"
 
     return _counts(
         totals,
@@ -304,8 +313,8 @@ def meshers_section(evidence):
         "meshers",
         "All meshers",
         (
-            "Every algorithm of the thesis' chapter 4.2, rebuilt and checked with the same oracle, on "
-            f"the same chunks. {totals.empty_note()}"
-        ),
+            "Every algorithm of the thesis' chapter 4.2, rebuilt and checked with the same oracle, on"
+            f" the same chunks. {totals.empty_note()}"
+        ).strip(),
         figures,
     )

@@ -40,8 +40,15 @@ def _bytes(evidence):
     rows = every.where(world="luanti", set="all")
     size = {form: rows.where(form=form).number("bytes") for form, _, _ in FORMS}
 
-    def share(of):
-        return number_text(100 * size["packed"] / size[of])
+    shares = [
+        f"{number_text(100 * size['packed'] / size[form])} % of {name}"
+        for form, name in (
+            ("dense_zstd", "dense voxels under zstd"),
+            ("luanti", "Luanti's form"),
+            ("minecraft", "Minecraft's"),
+        )
+        if math.isfinite(size["packed"] / size[form])
+    ]
 
     all_bars = [
         Bar(
@@ -59,8 +66,8 @@ def _bytes(evidence):
         "bytes",
         "A chunk on the wire",
         (
-            f"Packed runs take {share('dense_zstd')} % of dense voxels under zstd, {share('luanti')} % of Luanti's form"
-            f" and {share('minecraft')} % of Minecraft's. Dense and plain they would be 65,536 bytes."
+            f"Packed runs take {list_text(shares) if shares else 'an unknown share of the other forms'}."
+            " Dense and plain they would be 65,536 bytes."
         ),
         ("bytes",),
         ["world", "chunks", "form", "bytes", "encode us", "decode us"],
@@ -85,6 +92,16 @@ def _never_completed(times):
     return out
 
 
+def _not_measured(rows, times):
+    """Returns a sentence for each measured link of which worlds have no result."""
+    out = []
+    for profile in rows.kinds("profile"):
+        found = [w for w in WORLDS if any(math.isnan(times[profile][form][w]) for form in ("packed", "dense_zstd"))]
+        if found:
+            out.append(f"Over {profile} no ratio was measured of {list_text(found)}.")
+    return out
+
+
 def _transfers(evidence):
     steps = tuple(f"transfer-{p}" for p in PROFILES)
     rows = evidence.here.all_rows(steps)
@@ -101,12 +118,13 @@ def _transfers(evidence):
     never = _never_completed(times)
     if without:
         never.append(f"So there is no ratio for {list_text(without)}.")
+    never += _not_measured(rows, times)
     return Figure(
         "transfers",
         "Send, unpack, mesh: under each link (9.2)",
         (
             "Until everything is meshed, dense voxels under zstd take this many times as long as packed runs"
-            f" (geometric mean of five worlds): {ratios or 'not measured'}. On slow links bytes decide, on fast ones"
+            f" (geometric mean over worlds): {ratios or 'not measured'}. On slow links bytes decide, on fast ones"
             f" the meshing. {' '.join(never)}"
         ).strip(),
         steps,
@@ -132,7 +150,7 @@ def _transfers(evidence):
             ),
         ],
         notes=[
-            "Lines and brackets show 95 % bootstrap intervals over the five worlds. Each time is the median of few"
+            "Lines and brackets show 95 % bootstrap intervals over the worlds. Each time is the median of few"
             " repetitions."
         ],
     )
@@ -198,6 +216,8 @@ def _crowds(evidence):
         return rows.where(case=f"{clients} clients", figure=figure).number("value")
 
     most = max((n for n in FLEET_SIZES if not math.isnan(value(n, "seen_p99_ms"))), default=1)
+    counts = (("samples", "samples"), ("never", "never arrived"), ("disconnects", "disconnects"))
+    counted = [f"{count_text(n)} {name}" for figure, name in counts if not math.isnan(n := value(most, figure))]
     p50, p99 = value(most, "seen_p50_ms"), value(most, "seen_p99_ms")
     if math.isinf(p50):
         arrival = "At least half of their edits never arrived at the others"
@@ -218,9 +238,10 @@ def _crowds(evidence):
         "crowds",
         "Crowds: 1 to 1,000 clients",
         (
-            f"{count_text(most)} clients in one place use one server, on the same {cores} cores. {arrival}:"
-            f" {count_text(value(most, 'samples'))} samples, {count_text(value(most, 'never'))} never arrived,"
-            f" {count_text(value(most, 'disconnects'))} disconnects."
+            f"{count_text(most)} clients in one place use one server, on the same {cores} cores. {arrival}"
+            f"{': ' if counted else ''}{', '.join(counted)}."
+            if most > 1
+            else "No crowd of two or more clients was measured."
         ),
         steps,
         NET_COLUMNS,
@@ -285,12 +306,13 @@ def siege_charts(rows):
 def _siege(evidence):
     rows = evidence.here.rows("siege")
     values = [(number_of(r["value"]), r["case"]) for r in rows.where(figure="p99_ms")]
-    worst = max((v for v in values if not math.isnan(v[0])), default=(math.nan, "none"))
-    at_worst = (
-        f"Under the worst one ({worst[1]}), edits of builders never arrive."
-        if math.isinf(worst[0])
-        else f"The worst p99 of the builders is {quantity_text(worst[0], 'ms')} ({worst[1]})."
-    )
+    ms, case = max((v for v in values if not math.isnan(v[0])), default=(math.nan, ""))
+    if math.isnan(ms):
+        at_worst = "No latency was measured."
+    elif math.isinf(ms):
+        at_worst = f"Under the worst one ({case}), edits of builders never arrive."
+    else:
+        at_worst = f"The worst p99 of the builders is {quantity_text(ms, 'ms')} ({case})."
     return Figure(
         "siege",
         "A siege: builders under attack",

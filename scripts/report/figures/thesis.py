@@ -1,10 +1,9 @@
 """The thesis' figures, with our numbers beside the thesis'. Its own numbers have hollow marks."""
-import math
-
 from ..charts import Axis, Part, Series, dots, lines, points, stacks
 from ..comparison import OURS
 from ..figure import Figure, Section
 from ..meshers import THESIS_MESHERS, mesher
+from ..rows import number_of
 from ..statistics import Interval, exactly, mean, mean_interval
 from ..style import PHASES
 from ..steps import SCENARIOS
@@ -15,7 +14,7 @@ GROUPS = {1: ("general models", range(1, 18)), 2: ("random voxels", range(18, 23
 THESIS_GRID_BYTES, GRID_BYTES = 262_144, 65_536  # 32³ voxels of 8 bytes in the thesis, of 2 bytes here
 SIDES = (8, 16, 32, 64, 128)
 MS = 1e6  # ns
-MIDDLE_NOTE = "Times are over the chunks that have quads; counts of vertices are the thesis' mean over all 27 chunks."
+TIMES_NOTE = "Times are over the chunks that have quads; counts of vertices are the thesis' mean over all 27 chunks."
 
 
 class ThesisFigures:
@@ -25,10 +24,10 @@ class ThesisFigures:
         self._times = {(r["scenario"], r["mesher"]): r for r in evidence.here.rows("thesis")}
 
     def fact(self, scenario, name):
-        return float(self._facts.get(scenario, {}).get(name, math.nan))
+        return number_of(self._facts.get(scenario, {}).get(name))
 
     def time(self, scenario, key, name):
-        return float(self._times.get((scenario, key), {}).get(name, math.nan))
+        return number_of(self._times.get((scenario, key), {}).get(name))
 
     def memory(self, group):
         name, scenarios = GROUPS[group]
@@ -157,7 +156,7 @@ class ThesisFigures:
             ],
             notes=[
                 "The brackets hold 95 % bootstrap intervals of the arithmetic mean over the scenarios.",
-                MIDDLE_NOTE,
+                TIMES_NOTE,
                 *self.thesis.notes(scenarios),
                 VOXEL_PLUGIN_EVENTS,
             ],
@@ -203,7 +202,7 @@ class ThesisFigures:
                     Axis("µs of a chunk: least, median and greatest", True),
                 )
             ],
-            notes=[MIDDLE_NOTE, *self.thesis.notes(scenarios)],
+            notes=[TIMES_NOTE, *self.thesis.notes(scenarios)],
         )
 
     def chunk_sizes(self, scenario):
@@ -327,7 +326,7 @@ class ThesisFigures:
             ],
             notes=[
                 "The lines are 95 % bootstrap intervals over the scenarios.",
-                MIDDLE_NOTE,
+                TIMES_NOTE,
                 MEANS_NOTE,
                 VOXEL_PLUGIN_CHUNKS,
                 "The thesis' points were measured on a Xeon E3-1240 v5 inside Unreal Engine 5.4.",

@@ -7,13 +7,15 @@ from pathlib import Path
 from report.charts import Axis, Bar, Part, Series, bars, dots, lines, points, stacks
 from report.evidence import Evidence
 from report.figure import Figure, csv_of
+from report.figures.meshers import MesherTotals, _t_junctions, _time, _triangles
 from report.figures.network import _crowds, _latency, _siege, _transfers
 from report.results import write_result
+from report.rows import Rows
 from report.statistics import Interval, exactly, geometric_mean_interval, mean_interval, places, sum_ratio_interval
 from report.text import after_text, count_text, interval_text, number_text, quantity_text, time_text
 from report.verdict import _answers, best_of
 
-from .sample_data import STEPS, _net, step_result, thesis
+from .sample_data import STEPS, _net, mesh_rows, step_result, thesis, without_drawing
 
 NEVER = exactly(math.inf)
 
@@ -70,6 +72,11 @@ class Charts(unittest.TestCase):
 
 
 class Figures(unittest.TestCase):
+    def setUp(self):
+        drawing = without_drawing()
+        drawing.start()
+        self.addCleanup(drawing.stop)
+
     def evidence(self, results):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -92,7 +99,9 @@ class Figures(unittest.TestCase):
             self.assertIn(f"Over loopback these worlds never completed: noise as {name}.", figure.sentence)
             self.assertIn("So there is no ratio for loopback.", figure.sentence)
             self.assertNotIn("loopback 2", figure.sentence)
-        self.assertIn("loopback 2.", _transfers(self.transfers("none")).sentence)
+        sentence = _transfers(self.transfers("none")).sentence
+        self.assertIn("loopback 2.", sentence)
+        self.assertIn("Over loopback no ratio was measured of terrain, caves and town.", sentence)
 
     def test_a_way_that_never_completes_is_not_the_best(self):
         (answer,) = _answers(self.transfers("packed"))
@@ -108,7 +117,6 @@ class Figures(unittest.TestCase):
         figure = _crowds(crowd(5, "inf"))
         self.assertIn("1,000 clients", figure.sentence)
         self.assertIn("after 5 ms (p50), but at least 1 % of the edits never arrived", figure.sentence)
-        self.assertIn(">never</text>", figure.charts[0])
         self.assertIn("At least half of their edits never arrived", _crowds(crowd("inf", "inf")).sentence)
 
     def test_a_latency_that_is_infinite_has_no_unit(self):
@@ -120,3 +128,25 @@ class Figures(unittest.TestCase):
     def test_edits_of_a_siege_that_never_arrive_are_the_worst(self):
         cases = [("quiet", "p99_ms", 3.0), ("flood", "p99_ms", "inf")]
         self.assertIn("(flood), edits of builders never arrive", _siege(self.evidence({"siege": ("", cases)})).sentence)
+
+    def test_what_was_not_measured_is_named(self):
+        evidence = self.evidence(
+            {
+                "crowd-1": ("loopback", [("1 clients", "seen_p99_ms", None)]),
+                "latency-loopback": ("loopback", [("idle", "x", 1)]),
+                "siege": ("", [("quiet", "p50_ms", 1)]),
+            }
+        )
+        self.assertEqual(_crowds(evidence).sentence, "No crowd of two or more clients was measured.")
+        self.assertIn("On loopback it is meshed after an unknown time", _latency(evidence).sentence)
+        self.assertIn("No latency was measured.", _siege(evidence).sentence)
+
+    def test_a_mesher_that_was_not_measured_is_in_no_ratio(self):
+        rows = [r for r in mesh_rows("scenarios", ["2"], {}) if r["mesher"] not in ("optimal_greedy", "mask_binary")]
+        totals = MesherTotals(Rows(rows))
+        self.assertIn("The least possible number was not measured.", _triangles(totals).sentence)
+        self.assertIn("takes a time that was not measured.", _time(totals).sentence)
+        self.assertEqual(totals.empty_note(), "Every scenario has quads.")
+        self.assertEqual(MesherTotals(Rows()).empty_note(), "")
+        for figure in (_triangles(totals), _time(totals), _t_junctions(totals)):
+            self.assertNotIn("nan", figure.sentence)
