@@ -1,7 +1,8 @@
 """Charts: dots, bars, lines, stacks and points, each from plain numbers to one SVG element.
 
-A value that was not measured (NaN) is left out. An infinite value is an arrow at the end of its axis with the word
-"never". Without any value there is no chart, but an empty text. An interval is drawn as a thin line through its mark.
+A value that was not measured (NaN) is left out. An infinite value is an arrow at the end of its
+axis with the word "never". Without any value there is no chart, but an empty text. An interval is
+drawn as a thin line through its mark.
 """
 import math
 from dataclasses import dataclass, field
@@ -119,7 +120,10 @@ def _shown(value):
 
 
 def _mark(axes, series, at, ends, size):
-    """Draws the mark of a series at a point. `ends` has the place of an infinite coordinate on each axis."""
+    """Draws the mark of a series at a point.
+
+    `ends` has the place of an infinite coordinate on each axis.
+    """
     x, y = (min(v, end) for v, end in zip(at, ends))
     arrow = ">" if math.isinf(at[0]) else "^" if math.isinf(at[1]) else ""
     axes.plot(
@@ -263,7 +267,10 @@ def lines(name, title, series, x, y, spans=()):
 
 
 def stacks(name, title, rows, parts, axis):
-    """Draws a bar of parts for each row. A row with an infinite part has the word "never" in its name."""
+    """Draws a bar of parts for each row.
+
+    A row with an infinite part has the word "never" in its name.
+    """
     if all(math.isnan(v) for part in parts for v in part.values):
         return ""
     canvas, axes = new_canvas(0.6 + ROW * len(rows))

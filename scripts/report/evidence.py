@@ -42,7 +42,9 @@ class Results:
         return any(step in self._found for step in steps)
 
     def doubts(self, steps):
-        """Returns what a reader must know about these results: missing, failed, broken, other machine."""
+        """Returns what a reader must know about these results: missing, failed, broken, other
+        machine.
+        """
         out, absent = [], []
         for step in steps:
             found = self.find(step)
@@ -84,7 +86,10 @@ class Evidence:
         return [e for r in (self.here, *self.others) for e in r.errors.values()]
 
     def doubts(self, steps):
-        """Returns the doubts about the results of all machines. The folder of another machine is named."""
+        """Returns the doubts about the results of all machines.
+
+        The folder of another machine is named.
+        """
         out = self.here.doubts(steps)
         for results in self.others:
             if results.common or results.errors:

@@ -19,7 +19,10 @@ class NotMeasured(ResultError):
 
 
 def error_text(error):
-    """Returns one line about an error of a result or of the system. It names the file, if the error has one."""
+    """Returns one line about an error of a result or of the system.
+
+    It names the file, if the error has one.
+    """
     if isinstance(error, OSError) and error.filename is not None:
         return f"{error.filename}: {error.strerror}"
     return str(error)
@@ -95,7 +98,10 @@ def result_file(folder, step_name):
 
 
 def read_json(file):
-    """Returns what a JSON file contains. Raises NotMeasured if there is no file, ResultError if it is broken."""
+    """Returns what a JSON file contains.
+
+    Raises NotMeasured if there is no file, ResultError if it is broken.
+    """
     try:
         return json.loads(Path(file).read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -107,7 +113,10 @@ def read_json(file):
 
 
 def read_result(folder, step):
-    """Returns the result of a step. Raises NotMeasured if there is no file, ResultError if it is broken."""
+    """Returns the result of a step.
+
+    Raises NotMeasured if there is no file, ResultError if it is broken.
+    """
     file = result_file(folder, step.name)
     content = read_json(file)
     if field_of(content, "format", int, file) != FORMAT:

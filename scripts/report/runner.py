@@ -41,7 +41,8 @@ class Runner:
     def call(self, step_name, seconds, arguments, log):
         """Runs runstone-bench, which is expected to take so many seconds.
 
-        Raises ResultError with its last line if it fails, or if it does not end in far more than these seconds.
+        Raises ResultError with its last line if it fails, or if it does not end in far more than
+        these seconds.
         """
         limit = 10 * seconds + 600
         try:
@@ -121,7 +122,10 @@ class Runner:
         return seconds
 
     def run(self, steps, failures, err=sys.stderr):
-        """Measures what is not measured yet. Adds the errors of the steps that fail to `failures`, by name."""
+        """Measures what is not measured yet.
+
+        Adds the errors of the steps that fail to `failures`, by name.
+        """
         machine = self.machine()
         left = sum(step.seconds for step in steps)
         for i, step in enumerate(steps):

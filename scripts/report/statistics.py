@@ -1,7 +1,7 @@
 """Means and intervals. An interval is a measured value with the range that it may also have.
 
-NaN is a value that was not measured: means leave it out. An infinite value was measured and is, for example, the time
-of something that never happened: it makes a mean infinite.
+NaN is a value that was not measured: means leave it out. An infinite value was measured and is, for
+example, the time of something that never happened: it makes a mean infinite.
 """
 import math
 from dataclasses import dataclass
@@ -56,13 +56,17 @@ def mean(values):
 
 
 def _logs(values):
-    """Returns the logarithms of the measured values; none if one of them is not positive and so has no logarithm."""
+    """Returns the logarithms of the measured values; none if one of them is not positive and so has
+    no logarithm.
+    """
     values = measured(values)
     return [math.log(v) for v in values] if all(v > 0 for v in values) else []
 
 
 def geometric_mean(values):
-    """Returns the geometric mean of the measured values; NaN if there are none or one is not positive."""
+    """Returns the geometric mean of the measured values; NaN if there are none or one is not
+    positive.
+    """
     logs = _logs(values)
     return math.exp(sum(logs) / len(logs)) if logs else math.nan
 
@@ -79,7 +83,10 @@ def _percentiles(samples):
 
 
 def mean_interval(values):
-    """Returns the mean of the measured values with its bootstrap interval. Without values it is unknown."""
+    """Returns the mean of the measured values with its bootstrap interval.
+
+    Without values it is unknown.
+    """
     values = numpy.array(measured(values))
     if not len(values):
         return UNKNOWN
@@ -101,7 +108,8 @@ def geometric_mean_interval(values):
 def sum_ratio_interval(numerators, denominators):
     """Returns the ratio of two sums over the same volumes with its bootstrap interval.
 
-    A volume without one of the two is left out. The ratio is unknown if no volume is left or a value is infinite.
+    A volume without one of the two is left out. The ratio is unknown if no volume is left or a
+    value is infinite.
     """
     pairs = [(a, b) for a, b in zip(numerators, denominators) if not (math.isnan(a) or math.isnan(b))]
     if not pairs or not numpy.isfinite(pairs).all():
@@ -118,7 +126,10 @@ def repetitions_of(row):
 
 
 def ratio_of(numerator, denominator):
-    """Returns the ratio of two intervals: the widest that their ends allow. It is unknown if an end is not finite."""
+    """Returns the ratio of two intervals: the widest that their ends allow.
+
+    It is unknown if an end is not finite.
+    """
     if not (numerator.is_finite and denominator.is_finite) or denominator.low <= 0:
         return UNKNOWN
     return Interval(
@@ -140,7 +151,8 @@ def with_quads(rows):
 def places(intervals):
     """Returns the first and the last place that each interval may have; the least value is first.
 
-    Intervals that overlap are not ranked against each other. An interval that was not measured has no place (None).
+    Intervals that overlap are not ranked against each other. An interval that was not measured has
+    no place (None).
     """
     out = []
     for one in intervals:

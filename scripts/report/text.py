@@ -5,8 +5,8 @@ import math
 def number_text(value):
     """Returns three significant digits, with commas between thousands: 0.31, 4.2, 63, 1,940.
 
-    Returns "never" for an infinite value, since a time is infinite if its event never happened. Returns "–" for NaN,
-    which was not measured.
+    Returns "never" for an infinite value, since a time is infinite if its event never happened.
+    Returns "–" for NaN, which was not measured.
     """
     if value == math.inf:
         return "never"
@@ -28,7 +28,9 @@ def quantity_text(value, unit):
 
 
 def after_text(ms):
-    """Returns "after 4.2 ms"; "never" for an infinite time; "after an unknown time" if it was not measured."""
+    """Returns "after 4.2 ms"; "never" for an infinite time; "after an unknown time" if it was not
+    measured.
+    """
     if math.isnan(ms):
         return "after an unknown time"
     return "never" if ms == math.inf else f"after {quantity_text(ms, 'ms')}"

@@ -1,4 +1,7 @@
-"""Verdict: the first screen of the page. One sentence, the decisive chart, and what speaks against it."""
+"""Verdict: the first screen of the page.
+
+One sentence, the decisive chart, and what speaks against it.
+"""
 import math
 from dataclasses import dataclass
 from operator import truediv
@@ -49,7 +52,9 @@ def world_rows(results):
 
 
 def _comparisons(evidence):
-    """Returns (results, world, {mesher: Comparison}) for each world of each machine, the main worlds first."""
+    """Returns (results, world, {mesher: Comparison}) for each world of each machine, the main
+    worlds first.
+    """
     out = []
     for results in evidence.machines:
         for world, rows in world_rows(results).items():
@@ -95,8 +100,9 @@ def _sentence(scenarios, real):
         )
     )
     out = (
-        f"{beginning}: decoding and binary greedy meshing, the fastest dense mesher, takes {interval_text(gain)} times"
-        f" as long over the {len(scenarios.volumes)} scenarios of the thesis that have quads"
+        f"{beginning}: decoding and binary greedy meshing, the fastest dense mesher, takes"
+        f" {interval_text(gain)} times as long over the {len(scenarios.volumes)} scenarios of the"
+        " thesis that have quads"
     )
     if real:
         out += f", and {interval_text(real.gain)} times over {len(real.volumes)} volumes of a real world"
@@ -136,8 +142,9 @@ def _against_worlds(by_world):
     rle = scenarios.get("rle_rdm")
     if rle and (rle.slower or rle.sums.low < 1):
         out.append(
-            f"{_count_sentence(f'The {RLE_RDM}', rle, 'scenarios')} {_mean_sentence(f'the {RLE_RDM}', rle)}"
-            f" The {RLE_RDM} emits {number_text(rle.triangles)} times the triangles."
+            f"{_count_sentence(f'The {RLE_RDM}', rle, 'scenarios')}"
+            f" {_mean_sentence(f'the {RLE_RDM}', rle)} The {RLE_RDM} emits"
+            f" {number_text(rle.triangles)} times the triangles."
         )
     if decisive := scenarios.get(DECISIVE):
         out.append(
@@ -147,8 +154,9 @@ def _against_worlds(by_world):
         ready = by_world.get(world, {}).get("mask_binary")
         if ready and ready.gain.low < 1:
             out.append(
-                f"A program that has the grid and its mask ready meshes {title} in {interval_text(ready.gain)} times"
-                " the time of ours: there, runs save memory and bytes, not time."
+                f"A program that has the grid and its mask ready meshes {title} in"
+                f" {interval_text(ready.gain)} times the time of ours: there, runs save memory and"
+                " bytes, not time."
             )
     slow = [
         f"{w} {interval_text(f[DECISIVE].gain)}"
@@ -157,14 +165,17 @@ def _against_worlds(by_world):
     ]
     if slow:
         out.append(
-            "In these worlds decoding first is faster, or the interval of its time divided by ours contains 1:"
-            f" {'; '.join(slow)}."
+            "In these worlds decoding first is faster, or the interval of its time divided by"
+            f" ours contains 1: {'; '.join(slow)}."
         )
     return out
 
 
 def _against(evidence, comparisons):
-    """Returns what a sceptic would say, each in a sentence or two. Sentences about other machines name them."""
+    """Returns what a sceptic would say, each in a sentence or two.
+
+    Sentences about other machines name them.
+    """
     out = []
     for results in evidence.machines:
         said = _against_worlds({w: found for r, w, found in comparisons if r is results})
@@ -195,9 +206,11 @@ def _machines_sentence(evidence, comparisons):
 
 
 def best_of(candidates, text):
-    """Returns the candidates (name, interval, value) whose intervals overlap that of the least, and the others.
+    """Returns the candidates (name, interval, value) whose intervals overlap that of the least, and
+    the others.
 
-    Returns None if no candidate was measured. One with an infinite interval is never among the best.
+    Returns None if no candidate was measured. One with an infinite interval is never among the
+    best.
     """
     ranked = sorted((c for c in candidates if c[1].is_measured), key=lambda c: c[1].middle)
     if not ranked:
@@ -286,9 +299,11 @@ def _answers(evidence):
 
 
 def _transfer_candidates(times):
-    """Returns each way with its ratio to the first way that completed all worlds, and with its time in the real world.
+    """Returns each way with its ratio to the first way that completed all worlds, and with its time
+    in the real world.
 
-    Ratio and time of a way that never completed a world are infinite. A way that was not measured is left out.
+    Ratio and time of a way that never completed a world are infinite. A way that was not measured
+    is left out.
     """
     slowest = {name: max(measured(t.values()), default=math.nan) for name, t in times.items()}
     out = [(name, exactly(math.inf), math.inf) for name, ms in slowest.items() if math.isinf(ms)]

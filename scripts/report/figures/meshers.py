@@ -37,8 +37,8 @@ class MesherTotals:
             return "Every scenario has quads." if self.parts else ""
         names = list_text(self.empty)
         return (
-            f"The chunk in the middle of scenario{'s' if len(self.empty) > 1 else ''} {names} has no quads, so it is in"
-            " no mean."
+            f"The chunk in the middle of scenario{'s' if len(self.empty) > 1 else ''} {names} has"
+            " no quads, so it is in no mean."
         )
 
     def cell(self, key, part):
@@ -78,9 +78,10 @@ def _time(totals):
         "meshers-time",
         "All meshers: time",
         (
-            f"From compressed runs ours takes {mean_text(OURS)}, and decoding with binary greedy meshing"
-            f" {mean_text('decode_binary')} (geometric means of {len(totals.parts)} scenarios). With the grid and"
-            f" its mask ready, binary greedy meshing takes {mean_text('mask_binary')}."
+            f"From compressed runs ours takes {mean_text(OURS)}, and decoding with binary greedy"
+            f" meshing {mean_text('decode_binary')} (geometric means of {len(totals.parts)}"
+            " scenarios). With the grid and its mask ready, binary greedy meshing takes"
+            f" {mean_text('mask_binary')}."
         ),
         STEPS,
         ["mesher", "geometric mean us", "times ours", "low", "high", "place", "sum us"],
@@ -94,7 +95,10 @@ def _time(totals):
             )
         ],
         notes=[
-            "The lines are 95 % bootstrap intervals over the scenarios. Meshers whose intervals overlap share places.",
+            (
+                "The lines are 95 % bootstrap intervals over the scenarios. Meshers whose"
+                " intervals overlap share places."
+            ),
             totals.empty_note(),
             "The chunk in the middle of 27; one core; runs in their cheapest axis order.",
             "Meshers marked 'grid ready' are not charged for making the grid out of what is stored.",
@@ -141,9 +145,9 @@ def _scenarios_chart(totals):
         table.append((part, line))
     against = compare(totals.rows, "decode_binary")
     counts = (
-        f"In {len(against.faster)} of {len(against.volumes)} scenarios meshing from runs is faster than decoding and"
-        f" binary greedy meshing, in {len(against.slower)} slower, and in {len(against.undecided)} the repetitions"
-        " overlap."
+        f"In {len(against.faster)} of {len(against.volumes)} scenarios meshing from runs is faster"
+        f" than decoding and binary greedy meshing, in {len(against.slower)} slower, and in"
+        f" {len(against.undecided)} the repetitions overlap."
         if against
         else "Decoding was not measured."
     )
@@ -176,7 +180,10 @@ def _scenarios_chart(totals):
         ],
         HeatTable("µs", [mesher(k).short for k in totals.keys], table),
         [
-            "The lines reach from the fastest repetition to the 90th percentile. Empty cells took longer than 5 s.",
+            (
+                "The lines reach from the fastest repetition to the 90th percentile. Empty cells"
+                " took longer than 5 s."
+            ),
             totals.empty_note(),
             "In the table a darker cell is slower within its scenario.",
         ],
@@ -225,8 +232,8 @@ def _triangles(totals):
         True,
         " ".join(sentences),
         [
-            "Monotone and Poly2Tri draw polygons, and run strips over hidden faces draw more than is exposed: the "
-            "optimum does not bind them."
+            "Monotone and Poly2Tri draw polygons, and run strips over hidden faces draw more than"
+            " is exposed: the optimum does not bind them."
         ],
     )
 
@@ -243,9 +250,10 @@ def _t_junctions(totals):
         "T-junctions, sum over the scenarios",
         False,
         (
-            "A vertex inside another polygon's edge can flicker as a seam. Merging makes them: ours has "
-            f"{count(OURS)}, the culled mesher {count('culled')}. Monotone ({count('monotone')}) and Poly2Tri "
-            f"({count('poly2tri')}) lessen them within a plane and keep them between planes."
+            "A vertex inside another polygon's edge can flicker as a seam. Merging makes them:"
+            f" ours has {count(OURS)}, the culled mesher {count('culled')}. Monotone"
+            f" ({count('monotone')}) and Poly2Tri ({count('poly2tri')}) lessen them within a plane"
+            " and keep them between planes."
         ),
     )
 
@@ -288,17 +296,18 @@ def _gallery(evidence, totals):
         "scenarios",
         "The 37 scenarios",
         (
-            "The thesis' models as our client draws them: all 27 chunks, from outside. The share of solid voxels is of"
-            " all chunks, and the times are of the chunk in the middle, divided by ours. A blue edge marks scenarios in"
-            " which ours is faster than decoding first, an orange edge those in which it is slower."
+            "The thesis' models as our client draws them: all 27 chunks, from outside. The share"
+            " of solid voxels is of all chunks, and the times are of the chunk in the middle,"
+            " divided by ours. A blue edge marks scenarios in which ours is faster than decoding"
+            " first, an orange edge those in which it is slower."
         ),
         ("pictures", "facts", "meshers"),
         ["scenario", "name", "solid, %", "decode + binary: times ours", "low", "high", "RLE RDM: times ours"],
         rows,
         cards=cards,
         notes=[
-            "The brackets hold the range that the repetitions of both meshers allow. Where it contains 1, the edge is"
-            " grey."
+            "The brackets hold the range that the repetitions of both meshers allow. Where it"
+            " contains 1, the edge is grey."
         ],
     )
 

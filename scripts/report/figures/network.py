@@ -56,8 +56,9 @@ def _bytes(evidence):
             colour,
             exactly(size[form]),
             (
-                f"{number_text(size[form])} B; write {number_text(rows.where(form=form).number('encode_us'))}, "
-                f"read {number_text(rows.where(form=form).number('decode_us'))} µs"
+                f"{number_text(size[form])} B; write"
+                f" {number_text(rows.where(form=form).number('encode_us'))}, read"
+                f" {number_text(rows.where(form=form).number('decode_us'))} µs"
             ),
         )
         for form, name, colour in FORMS
@@ -78,7 +79,9 @@ def _bytes(evidence):
 
 
 def transfer_ms(rows, profile, form):
-    """Returns for each world the time until all its chunks are meshed: infinite if that never happened."""
+    """Returns for each world the time until all its chunks are meshed: infinite if that never
+    happened.
+    """
     return {w: rows.where(profile=profile, case=f"{w} {form}", figure="complete_ms").number("value") for w in WORLDS}
 
 
@@ -123,9 +126,9 @@ def _transfers(evidence):
         "transfers",
         "Send, unpack, mesh: under each link (9.2)",
         (
-            "Until everything is meshed, dense voxels under zstd take this many times as long as packed runs"
-            f" (geometric mean over worlds): {ratios or 'not measured'}. On slow links bytes decide, on fast ones"
-            f" the meshing. {' '.join(never)}"
+            "Until everything is meshed, dense voxels under zstd take this many times as long as"
+            f" packed runs (geometric mean over worlds): {ratios or 'not measured'}. On slow links"
+            f" bytes decide, on fast ones the meshing. {' '.join(never)}"
         ).strip(),
         steps,
         NET_COLUMNS,
@@ -150,8 +153,8 @@ def _transfers(evidence):
             ),
         ],
         notes=[
-            "Lines and brackets show 95 % bootstrap intervals over the worlds. Each time is the median of few"
-            " repetitions."
+            "Lines and brackets show 95 % bootstrap intervals over the worlds. Each time is the"
+            " median of few repetitions."
         ],
     )
 
@@ -180,11 +183,11 @@ def _latency(evidence):
         "latency",
         "Latency plus mesh, by link",
         (
-            "The local edit is predicted, so its mesh does not wait for the network. On loopback it is meshed"
-            f" {after_p50('loopback', 'local_predicted_meshed')}, on broadband"
-            f" {after_p50('broadband', 'local_predicted_meshed')} (p50). A remote edit waits for the network: on"
-            f" loopback it is meshed {after_p50('loopback', 'remote_meshed')}, on broadband"
-            f" {after_p50('broadband', 'remote_meshed')}."
+            "The local edit is predicted, so its mesh does not wait for the network. On loopback"
+            f" it is meshed {after_p50('loopback', 'local_predicted_meshed')}, on broadband"
+            f" {after_p50('broadband', 'local_predicted_meshed')} (p50). A remote edit waits for"
+            f" the network: on loopback it is meshed {after_p50('loopback', 'remote_meshed')}, on"
+            f" broadband {after_p50('broadband', 'remote_meshed')}."
         ),
         steps,
         NET_COLUMNS,
@@ -238,8 +241,8 @@ def _crowds(evidence):
         "crowds",
         "Crowds: 1 to 1,000 clients",
         (
-            f"{count_text(most)} clients in one place use one server, on the same {cores} cores. {arrival}"
-            f"{': ' if counted else ''}{', '.join(counted)}."
+            f"{count_text(most)} clients in one place use one server, on the same {cores} cores."
+            f" {arrival}{': ' if counted else ''}{', '.join(counted)}."
             if most > 1
             else "No crowd of two or more clients was measured."
         ),
@@ -333,8 +336,8 @@ def network_section(evidence):
         "network",
         "Under networked conditions",
         (
-            "Real programs, simulated links: delay, jitter, rate and loss. Nothing here was asked of the "
-            "thesis' prototype."
+            "Real programs, simulated links: delay, jitter, rate and loss. Nothing here was asked"
+            " of the thesis' prototype."
         ),
         figures,
     )

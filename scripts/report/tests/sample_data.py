@@ -1,4 +1,6 @@
-"""A small report folder: three scenarios, a real world of two volumes, and one row or two of the rest."""
+"""A small report folder: three scenarios, a real world of two volumes, and one row or two of the
+rest.
+"""
 import unittest.mock
 from pathlib import Path
 
@@ -15,7 +17,10 @@ PIXEL = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgG
 
 
 def without_drawing():
-    """Returns a patch: each chart is built, but its SVG is empty. Writing the SVG takes most of the time of a page."""
+    """Returns a patch: each chart is built, but its SVG is empty.
+
+    Writing the SVG takes most of the time of a page.
+    """
 
     def empty_svg(_, name, title):
         return f'<svg viewBox="0 0 1 1" aria-label="{title}"><desc>{name}</desc></svg>'

@@ -1,4 +1,7 @@
-"""make-report as a program. A small script takes the place of runstone-bench, except in the last tests."""
+"""make-report as a program.
+
+A small script takes the place of runstone-bench, except in the last tests.
+"""
 import io
 import json
 import os
