@@ -1,7 +1,8 @@
 """Charts: dots, bars, lines, stacks and points, each from plain numbers to one SVG element.
 
-Values that are no numbers are left out; without any number there is no chart, but an empty text. An
-interval is drawn as a thin line through its mark.
+A value that was not measured (NaN) is left out. An infinite value is an arrow at the end of its
+axis with the word "never". Without any value there is no chart, but an empty text. An interval is
+drawn as a thin line through its mark.
 """
 import math
 from dataclasses import dataclass, field
@@ -9,7 +10,7 @@ from dataclasses import dataclass, field
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from .statistics import UNKNOWN, Interval
+from .statistics import Interval
 from .style import FONT, GRID, INK, PAPER, QUIET, new_canvas, svg_of
 from .text import number_text
 
@@ -22,6 +23,11 @@ class Axis:
     label: str
     log: bool = False
     mark: float = None  # where a line shows a value that matters, such as "as fast"
+
+    def end_for(self, intervals):
+        """Returns where infinite values are drawn: beyond the greatest finite value."""
+        most = max((v for i in intervals for v in (i.low, i.middle, i.high) if math.isfinite(v)), default=1)
+        return most * (3 if self.log else 1.2)
 
 
 @dataclass(frozen=True)
@@ -110,15 +116,46 @@ def _handle(series, line="none"):
 
 
 def _shown(value):
-    return math.isfinite(value.middle)
+    return not math.isnan(value.middle)
+
+
+def _mark(axes, series, at, ends, size):
+    """Draws the mark of a series at a point.
+
+    `ends` has the place of an infinite coordinate on each axis.
+    """
+    x, y = (min(v, end) for v, end in zip(at, ends))
+    arrow = ">" if math.isinf(at[0]) else "^" if math.isinf(at[1]) else ""
+    axes.plot(
+        [x],
+        [y],
+        color=series.colour,
+        marker=arrow or series.marker,
+        markersize=size,
+        markerfacecolor=PAPER if series.hollow else series.colour,
+        linestyle="none",
+    )
+    if arrow:
+        axes.annotate(
+            number_text(math.inf),
+            (x, y),
+            xytext=(3, 3) if arrow == ">" else (0, -6),
+            textcoords="offset points",
+            ha="right" if arrow == ">" else "center",
+            va="bottom" if arrow == ">" else "top",
+            color=series.colour,
+            fontsize=FONT - 1,
+        )
 
 
 def dots(name, title, rows, series, axis):
     """Draws a mark for each series in each row, with its interval."""
-    if not any(_shown(v) for one in series for v in one.values):
+    values = [v for one in series for v in one.values if _shown(v)]
+    if not values:
         return ""
+    ends = axis.end_for(values), math.inf
     step = min(0.22, 0.6 / max(1, len(series)))
-    canvas, (axes,) = new_canvas(
+    canvas, axes = new_canvas(
         0.6 + ROW * len(rows) * (1 if len(series) < 4 else 1.25) * (1 + 0.4 * any("\n" in r for r in rows))
     )
     for i, one in enumerate(series):
@@ -127,18 +164,10 @@ def dots(name, title, rows, series, axis):
             if not _shown(value) or (axis.log and value.middle <= 0):
                 continue
             if value.low < value.high:
-                axes.plot(
-                    [value.low, value.high], [row + shift] * 2, color=one.colour, linewidth=1.3, solid_capstyle="butt"
-                )
-            axes.plot(
-                [value.middle],
-                [row + shift],
-                color=one.colour,
-                marker=one.marker,
-                markersize=4.6,
-                markerfacecolor=PAPER if one.hollow else one.colour,
-                linestyle="none",
-            )
+                limits = [min(v, ends[0]) for v in (value.low, value.high)]
+                axes.plot(limits, [row + shift] * 2, color=one.colour, linewidth=1.3, solid_capstyle="butt")
+            for at in {value.middle, math.inf} if math.isinf(value.high) else {value.middle}:
+                _mark(axes, one, (at, row + shift), ends, 4.6)
     axes.set_yticks(range(len(rows)), rows)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     _set_axis(axis, "x", axes)
@@ -148,22 +177,25 @@ def dots(name, title, rows, series, axis):
 
 def bars(name, title, all_bars, axis):
     """Draws a bar for each value, on a logarithmic axis a dot, with a note behind it."""
-    if not any(_shown(bar.value) for bar in all_bars):
+    values = [b.value for b in all_bars if _shown(b.value)]
+    if not values:
         return ""
-    canvas, (axes,) = new_canvas(0.6 + ROW * len(all_bars))
-    most = max((b.value.high for b in all_bars if _shown(b.value)), default=1)
+    ends = axis.end_for(values), math.inf
+    canvas, axes = new_canvas(0.6 + ROW * len(all_bars))
     for row, bar in enumerate(all_bars):
         if not _shown(bar.value):
             continue
-        if axis.log:  # a bar's length would depend on where the axis begins
-            axes.plot([bar.value.middle], [row], color=bar.colour, marker="o", markersize=6, linestyle="none")
+        # On a logarithmic axis a bar's length would depend on where the axis begins.
+        if axis.log or math.isinf(bar.value.middle):
+            _mark(axes, Series(bar.name, bar.colour, []), (bar.value.middle, row), ends, 6)
         else:
             axes.barh(row, bar.value.middle, height=0.62, color=bar.colour)
-        if bar.value.low < bar.value.high:
-            axes.plot([bar.value.low, bar.value.high], [row, row], color=bar.colour if axis.log else INK, linewidth=1.3)
+        limits = [min(v, ends[0]) for v in (bar.value.low, bar.value.high)]
+        if limits[0] < limits[1]:
+            axes.plot(limits, [row, row], color=bar.colour if axis.log else INK, linewidth=1.3)
         axes.annotate(
             bar.note,
-            (bar.value.high, row),
+            (limits[1], row),
             xytext=(6, 0),
             textcoords="offset points",
             va="center",
@@ -172,8 +204,9 @@ def bars(name, title, all_bars, axis):
         )
     axes.set_yticks(range(len(all_bars)), [b.name for b in all_bars])
     axes.set_ylim(len(all_bars) - 0.4, -0.6)
+    most = max(min(v.high, ends[0]) for v in values)
     if axis.log:
-        least = min((b.value.low for b in all_bars if _shown(b.value) and b.value.low > 0), default=1)
+        least = min((min(v.low, ends[0]) for v in values if v.low > 0), default=1)
         axes.set_xlim(least / 2, most * 6)
     else:
         axes.set_xlim(0, most * 1.35)
@@ -184,21 +217,26 @@ def bars(name, title, all_bars, axis):
 
 def lines(name, title, series, x, y, spans=()):
     """Draws a line for each series; an interval is a band around it."""
-    if not any(_shown(v) for one in series for _, v in one.values):
+    values = [v for one in series for _, v in one.values if _shown(v)]
+    if not values:
         return ""
-    canvas, (axes,) = new_canvas(3.1)
+    ends = math.inf, y.end_for(values)
+    canvas, axes = new_canvas(3.1)
     for one in series:
-        known = [(at, v) for at, v in one.values if _shown(v)]
-        if not known:
+        shown = [(at, v) for at, v in one.values if _shown(v)]
+        if not shown:
             continue
-        xs = [at for at, _ in known]
-        if any(v.low < v.high for _, v in known):
-            axes.fill_between(
-                xs, [v.low for _, v in known], [v.high for _, v in known], color=one.colour, alpha=0.16, linewidth=0
-            )
+        xs = [at for at, _ in shown]
+        if any(v.low < v.high for _, v in shown):
+            low, high = ([min(limit, ends[1]) for limit in of] for of in zip(*((v.low, v.high) for _, v in shown)))
+            axes.fill_between(xs, low, high, color=one.colour, alpha=0.16, linewidth=0)
+        for at, v in shown:
+            if math.isinf(v.middle):
+                _mark(axes, one, (at, v.middle), ends, 5)
+        # matplotlib interrupts a line at NaN.
         axes.plot(
             xs,
-            [v.middle for _, v in known],
+            [v.middle if math.isfinite(v.middle) else math.nan for _, v in shown],
             color=one.colour,
             marker=one.marker,
             markersize=4,
@@ -219,9 +257,9 @@ def lines(name, title, series, x, y, spans=()):
             color=QUIET,
         )
     _set_axis(x, "x", axes)
-    measured = sorted({at for one in series for at, v in one.values if _shown(v)})
-    if x.log and len(measured) < 8:
-        axes.set_xticks(measured)
+    ticks = sorted({at for one in series for at, v in one.values if _shown(v)})
+    if x.log and len(ticks) < 8:
+        axes.set_xticks(ticks)
         axes.xaxis.set_minor_locator(NullLocator())
     _set_axis(y, "y", axes)
     _legend(canvas, [_handle(s, "--" if s.hollow else "-") for s in series])
@@ -229,16 +267,21 @@ def lines(name, title, series, x, y, spans=()):
 
 
 def stacks(name, title, rows, parts, axis):
-    """Draws a bar of parts for each row."""
-    if not any(math.isfinite(v) for part in parts for v in part.values):
+    """Draws a bar of parts for each row.
+
+    A row with an infinite part has the word "never" in its name.
+    """
+    if all(math.isnan(v) for part in parts for v in part.values):
         return ""
-    canvas, (axes,) = new_canvas(0.6 + ROW * len(rows))
+    canvas, axes = new_canvas(0.6 + ROW * len(rows))
     left = [0.0] * len(rows)
     for part in parts:
         values = [v if math.isfinite(v) else 0 for v in part.values]
         axes.barh(range(len(rows)), values, left=left, height=0.62, color=part.colour)
         left = [a + b for a, b in zip(left, values)]
-    axes.set_yticks(range(len(rows)), rows)
+    endless = [math.inf in (part.values[row] for part in parts) for row in range(len(rows))]
+    names = [f"{row} ({number_text(math.inf)})" if is_endless else row for row, is_endless in zip(rows, endless)]
+    axes.set_yticks(range(len(rows)), names)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     _set_axis(axis, "x", axes)
     axes.grid(axis="y", visible=False)
@@ -248,34 +291,18 @@ def stacks(name, title, rows, parts, axis):
 
 def points(name, title, series, x, y):
     """Draws one point (x, y) of each series with both intervals. The lower left is the best."""
-    if not any(_shown(v) for one in series for v in one.values[0]):
+    shown = [(one, *one.values[0]) for one in series if all(map(_shown, one.values[0]))]
+    if not shown:
         return ""
-    canvas, (axes,) = new_canvas(3.6)
-    for one in series:
-        ((across, up),) = one.values
-        if not (_shown(across) and _shown(up)):
-            continue
-        for low_high, is_across in ((across, True), (up, False)):
-            ends = [low_high.low, low_high.high]
-            axes.plot(
-                ends if is_across else [across.middle] * 2,
-                [up.middle] * 2 if is_across else ends,
-                color=one.colour,
-                linewidth=1.1,
-            )
-        axes.plot(
-            [across.middle],
-            [up.middle],
-            color=one.colour,
-            marker=one.marker,
-            markersize=6,
-            markerfacecolor=PAPER if one.hollow else one.colour,
-            linestyle="none",
-        )
+    x_end, y_end = x.end_for(across for _, across, _ in shown), y.end_for(up for _, _, up in shown)
+    canvas, axes = new_canvas(3.6)
+    for one, across, up in shown:
+        at = min(across.middle, x_end), min(up.middle, y_end)
+        limits = [[min(v, x_end) for v in (across.low, across.high)], [min(v, y_end) for v in (up.low, up.high)]]
+        axes.plot(limits[0], [at[1]] * 2, color=one.colour, linewidth=1.1)
+        axes.plot([at[0]] * 2, limits[1], color=one.colour, linewidth=1.1)
+        _mark(axes, one, (across.middle, up.middle), (x_end, y_end), 6)
     _set_axis(x, "x", axes)
     _set_axis(y, "y", axes)
     _legend(canvas, [_handle(s) for s in series])
     return svg_of(canvas, name, title)
-
-
-__all__ = ["Axis", "Bar", "Part", "Series", "Span", "UNKNOWN", "bars", "dots", "lines", "points", "stacks"]

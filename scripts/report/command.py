@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from .page import write_page
-from .results import ResultError
+from .results import ResultError, error_text
 from .runner import Runner
 from .steps import report_steps
 from .thesis import Thesis
@@ -20,33 +20,19 @@ def _options(arguments):
             "FOLDER/index.html. The same command continues a run that was interrupted."
         ),
     )
-    parser.add_argument(
-        "--out",
-        required=True,
-        metavar="FOLDER",
-        type=Path,
-        help="folder of the page, its tables (csv/) and results (data/)",
-    )
+
+    def add_path(name, metavar, default, help_text):
+        parser.add_argument(name, metavar=metavar, type=Path, default=default, required=default is None, help=help_text)
+
+    add_path("--out", "FOLDER", None, "folder of the page, its tables (csv/) and results (data/)")
     parser.add_argument("--quick", action="store_true", help="all figures with few repetitions: some five minutes")
-    parser.add_argument(
-        "--luanti",
-        metavar="DIR",
-        type=Path,
-        default=ROOT / "tests/data/luanti_v7_small",
-        help="folder of a Luanti world",
-    )
+    add_path("--luanti", "DIR", ROOT / "tests/data/luanti_v7_small", "folder of a Luanti world")
     parser.add_argument("--steps", metavar="S,...", help="measure only these steps; all but siege by default")
     parser.add_argument(
         "--page-only", action="store_true", help="measure nothing: write the page from the existing results"
     )
     parser.add_argument("--again", action="store_true", help="measure steps again that have a result")
-    parser.add_argument(
-        "--bench",
-        metavar="FILE",
-        type=Path,
-        default=ROOT / "build/release/bin/runstone-bench",
-        help="the program to measure with",
-    )
+    add_path("--bench", "FILE", ROOT / "build/release/bin/runstone-bench", "the program to measure with")
     return parser, parser.parse_args(arguments)
 
 
@@ -86,8 +72,8 @@ def main(arguments=None, err=None):
                 print("interrupted: the same command continues", file=err)
                 failures["the rest"] = "interrupted"
         evidence = write_page(options.out, list(shown.values()), thesis, failures)
-    except ResultError as error:
-        print(f"make-report: {error}", file=err)
+    except (ResultError, OSError) as error:
+        print(f"make-report: {error_text(error)}", file=err)
         return 1
     for error in evidence.errors():
         print(f"make-report: {error}", file=err)

@@ -14,6 +14,7 @@ from .statistics import (
 
 OURS = "rdm"
 DECISIVE = "decode_binary"
+VOLUME_FIELDS = ("world", "part", "edge", "order")
 
 
 @dataclass(frozen=True)
@@ -40,15 +41,22 @@ class Comparison:
         return [name for name, ratio in self.volumes.items() if ratio.low <= 1 <= ratio.high]
 
 
+def _names(volumes):
+    """Returns a name for each volume: its part, and the other fields in which these volumes differ."""
+    shown = [i for i, f in enumerate(VOLUME_FIELDS) if f == "part" or len({v[i] for v in volumes}) > 1]
+    return [" ".join(str(volume[i]) for i in shown) for volume in volumes]
+
+
 def compare(rows, other, ours=OURS):
     """Compares over the volumes that have quads and that both meshed. Returns None if there are none."""
     cells = {}
     for row in with_quads(rows):
         if row.get("rank") == "best":
-            cells.setdefault((row["world"], row["part"], row["edge"]), {})[row["mesher"]] = row
-    both = {at[1]: (cell[ours], cell[other]) for at, cell in cells.items() if ours in cell and other in cell}
-    if not both:
+            cells.setdefault(tuple(row[f] for f in VOLUME_FIELDS), {})[row["mesher"]] = row
+    cells = {at: (cell[ours], cell[other]) for at, cell in cells.items() if ours in cell and other in cell}
+    if not cells:
         return None
+    both = dict(zip(_names(list(cells)), cells.values()))
     volumes = {name: ratio_of(repetitions_of(b), repetitions_of(a)) for name, (a, b) in both.items()}
     ours_ns = [a["median_ns"] for a, _ in both.values()]
     other_ns = [b["median_ns"] for _, b in both.values()]
@@ -67,8 +75,3 @@ def compare(rows, other, ours=OURS):
         mean(other_ns) / 1000,
         sum(b["triangles"] for _, b in both.values()) / triangles if triangles else UNKNOWN.middle,
     )
-
-
-def gains_by_world(rows, other):
-    """Returns a comparison for each world."""
-    return {world: compare(rows.where(world=world), other) for world in rows.kinds("world")}

@@ -42,7 +42,9 @@ class Results:
         return any(step in self._found for step in steps)
 
     def doubts(self, steps):
-        """Returns what a reader must know about these results: missing, failed, broken, other machine."""
+        """Returns what a reader must know about these results: missing, failed, broken, other
+        machine.
+        """
         out, absent = [], []
         for step in steps:
             found = self.find(step)
@@ -69,8 +71,9 @@ class Evidence:
         data = Path(out) / "data"
         self.steps, self.thesis = steps, thesis
         self.here = Results(data, steps, failures)
-        others = [Results(f, steps) for f in sorted(data.iterdir()) if f.is_dir()] if data.is_dir() else []
-        self.machines = [r for r in (self.here, *others) if r.common]
+        folders = sorted(f for f in data.iterdir() if f.is_dir()) if data.is_dir() else []
+        self.others = [Results(f, steps) for f in folders]
+        self.machines = [r for r in (self.here, *self.others) if r.common]
 
     def machine_name(self, results):
         """Returns a name for a row of a chart: the processor, and the folder if two have the same."""
@@ -79,4 +82,16 @@ class Evidence:
         return f"{cpu} ({results.folder.name})" if twice and results is not self.here else cpu
 
     def errors(self):
-        return [e for r in (self.here, *self.machines[1:]) for e in r.errors.values()]
+        """Returns the errors of all results, also of a machine of which no result can be read."""
+        return [e for r in (self.here, *self.others) for e in r.errors.values()]
+
+    def doubts(self, steps):
+        """Returns the doubts about the results of all machines.
+
+        The folder of another machine is named.
+        """
+        out = self.here.doubts(steps)
+        for results in self.others:
+            if results.common or results.errors:
+                out += [f"In data/{results.folder.name}: {doubt}" for doubt in results.doubts(steps)]
+        return out

@@ -43,13 +43,16 @@ def shade_of(value, least, most):
     return math.log(value / least) / math.log(most / least)
 
 
+def _csv_cell(value):
+    """Returns six significant digits of a float, "inf" if it is infinite, and an empty text for NaN."""
+    if not isinstance(value, float):
+        return value
+    return "" if math.isnan(value) else f"{value:.6g}"
+
+
 def csv_of(figure):
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(figure.columns)
-    for row in figure.rows:
-        writer.writerow(
-            "" if isinstance(v, float) and not math.isfinite(v) else f"{v:.6g}" if isinstance(v, float) else v
-            for v in row
-        )
+    writer.writerows([_csv_cell(v) for v in row] for row in figure.rows)
     return out.getvalue()

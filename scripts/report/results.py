@@ -8,7 +8,6 @@ from .rows import Rows
 
 FORMAT = 2
 MACHINE_FIELDS = {"cpu": str, "cores": int, "compiler": str, "commit": str, "simd": str}
-NOT_MEASURED = "not measured"
 
 
 class ResultError(Exception):
@@ -16,7 +15,17 @@ class ResultError(Exception):
 
 
 class NotMeasured(ResultError):
-    pass
+    """The file of a result does not exist."""
+
+
+def error_text(error):
+    """Returns one line about an error of a result or of the system.
+
+    It names the file, if the error has one.
+    """
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)
 
 
 @dataclass(frozen=True)
@@ -89,16 +98,25 @@ def result_file(folder, step_name):
 
 
 def read_json(file):
+    """Returns what a JSON file contains.
+
+    Raises NotMeasured if there is no file, ResultError if it is broken.
+    """
     try:
         return json.loads(Path(file).read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise NotMeasured(NOT_MEASURED) from None
-    except (OSError, ValueError) as error:
+        raise NotMeasured(f"{file} is missing") from None
+    except OSError as error:
+        raise ResultError(error_text(error)) from None
+    except ValueError as error:
         raise ResultError(f"{file}: {error}") from None
 
 
 def read_result(folder, step):
-    """Returns the result of a step. Raises NotMeasured if there is no file, ResultError if it is broken."""
+    """Returns the result of a step.
+
+    Raises NotMeasured if there is no file, ResultError if it is broken.
+    """
     file = result_file(folder, step.name)
     content = read_json(file)
     if field_of(content, "format", int, file) != FORMAT:
@@ -120,7 +138,7 @@ def read_result(folder, step):
 
 
 def write_atomically(file, text):
-    """Replaces a file. It is never left half written."""
+    """Replaces a file. The file is never left half written."""
     file = Path(file)
     file.parent.mkdir(parents=True, exist_ok=True)
     unfinished = file.with_name(file.name + ".part")

@@ -1,14 +1,25 @@
 """Runner: measures steps with runstone-bench and continues an interrupted run."""
 import base64
-import json
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-from .results import Machine, ResultError, StepResult, read_json, read_machine, read_result, rows_of, write_result
+from .results import (
+    Machine,
+    ResultError,
+    StepResult,
+    error_text,
+    read_json,
+    read_machine,
+    read_result,
+    rows_of,
+    write_result,
+)
 from .steps import PictureStep
+
+MACHINE_SECONDS = 1
 
 
 def world_name(folder):
@@ -27,9 +38,21 @@ class Runner:
         self.bench, self.luanti, self.quick, self.again = Path(bench).resolve(), luanti, quick, again
         self.out, self.data = Path(out), Path(out) / "data"
 
-    def call(self, arguments, log):
-        """Runs runstone-bench. Raises ResultError with its last line if it fails."""
-        done = subprocess.run([self.bench, *arguments], stdout=log, stderr=subprocess.PIPE, text=True, check=False)
+    def call(self, step_name, seconds, arguments, log):
+        """Runs runstone-bench, which is expected to take so many seconds.
+
+        Raises ResultError with its last line if it fails, or if it does not end in far more than
+        these seconds.
+        """
+        limit = 10 * seconds + 600
+        try:
+            done = subprocess.run(
+                [self.bench, *arguments], stdout=log, stderr=subprocess.PIPE, text=True, check=False, timeout=limit
+            )
+        except subprocess.TimeoutExpired:
+            raise ResultError(
+                f"{self.bench.name} {arguments[0]} of the step {step_name} did not end in {duration_text(limit)}"
+            ) from None
         log.write(done.stderr)
         log.flush()
         if done.returncode != 0:
@@ -40,7 +63,7 @@ class Runner:
         """Returns the machine and the commit of runstone-bench."""
         with tempfile.TemporaryDirectory() as folder, open(self.out / "run.log", "a", encoding="utf-8") as log:
             file = Path(folder) / "machine.json"
-            self.call(["machine", "--json", file], log)
+            self.call("machine", MACHINE_SECONDS, ["machine", "--json", file], log)
             return read_machine(read_json(file), file, "")
 
     def is_measured(self, step, machine: Machine):
@@ -70,14 +93,14 @@ class Runner:
     def _measure_json(self, step, folder, log):
         file = Path(folder) / "result.json"
         luanti = ["--luanti", self.luanti] if step.uses_luanti else []
-        self.call([*step.arguments, *luanti, "--json", file], log)
+        self.call(step.name, step.seconds, [*step.arguments, *luanti, "--json", file], log)
         return read_json(file)
 
     def _measure_pictures(self, step, folder, log):
         rows = []
         for scenario in step.scenarios:
             file = Path(folder) / f"{scenario}.png"
-            self.call([*step.picture_arguments(scenario), "--out", file], log)
+            self.call(step.name, step.seconds, [*step.picture_arguments(scenario), "--out", file], log)
             rows.append({"scenario": scenario, "png": base64.b64encode(file.read_bytes()).decode("ascii")})
         return {"rows": rows}
 
@@ -99,7 +122,10 @@ class Runner:
         return seconds
 
     def run(self, steps, failures, err=sys.stderr):
-        """Measures what is not measured yet. Adds the errors of the steps that fail to `failures`, by name."""
+        """Measures what is not measured yet.
+
+        Adds the errors of the steps that fail to `failures`, by name.
+        """
         machine = self.machine()
         left = sum(step.seconds for step in steps)
         for i, step in enumerate(steps):
@@ -112,6 +138,6 @@ class Runner:
                 continue
             try:
                 print(duration_text(self.measure(step, machine)), file=err)
-            except (ResultError, OSError, json.JSONDecodeError) as error:
-                failures[step.name] = str(error)
-                print(f"failed: {error}", file=err)
+            except (ResultError, OSError) as error:
+                failures[step.name] = error_text(error)
+                print(f"failed: {failures[step.name]}", file=err)

@@ -1,4 +1,8 @@
-"""Means and intervals. An interval is a measured value with the range that it may also have."""
+"""Means and intervals. An interval is a measured value with the range that it may also have.
+
+NaN is a value that was not measured: means leave it out. An infinite value was measured and is, for
+example, the time of something that never happened: it makes a mean infinite.
+"""
 import math
 from dataclasses import dataclass
 
@@ -23,7 +27,12 @@ class Interval:
         return Interval(self.low * factor, self.middle * factor, self.high * factor)
 
     @property
-    def is_known(self):
+    def is_measured(self):
+        """Returns True if no value is NaN."""
+        return not any(math.isnan(v) for v in (self.low, self.middle, self.high))
+
+    @property
+    def is_finite(self):
         return all(math.isfinite(v) for v in (self.low, self.middle, self.high))
 
 
@@ -35,19 +44,30 @@ def exactly(value):
     return Interval(value, value, value)
 
 
-def known(values):
-    return [v for v in values if math.isfinite(v)]
+def measured(values):
+    """Returns the values without NaN."""
+    return [v for v in values if not math.isnan(v)]
 
 
 def mean(values):
-    """Returns the mean of the known values; NaN if there are none."""
-    values = known(values)
+    """Returns the mean of the measured values; NaN if there are none."""
+    values = measured(values)
     return sum(values) / len(values) if values else math.nan
 
 
+def _logs(values):
+    """Returns the logarithms of the measured values; none if one of them is not positive and so has
+    no logarithm.
+    """
+    values = measured(values)
+    return [math.log(v) for v in values] if all(v > 0 for v in values) else []
+
+
 def geometric_mean(values):
-    """Returns the geometric mean of the known positive values; NaN if there are none."""
-    logs = [math.log(v) for v in known(values) if v > 0]
+    """Returns the geometric mean of the measured values; NaN if there are none or one is not
+    positive.
+    """
+    logs = _logs(values)
     return math.exp(sum(logs) / len(logs)) if logs else math.nan
 
 
@@ -63,24 +83,36 @@ def _percentiles(samples):
 
 
 def mean_interval(values):
-    """Returns the mean with its bootstrap interval over the values."""
-    values = numpy.array(known(values))
+    """Returns the mean of the measured values with its bootstrap interval.
+
+    Without values it is unknown.
+    """
+    values = numpy.array(measured(values))
     if not len(values):
         return UNKNOWN
+    if not numpy.isfinite(values).all():
+        return exactly(float(values.mean()))
     low, high = _percentiles(values[_resampled(len(values))].mean(axis=1))
     return Interval(low, float(values.mean()), high)
 
 
 def geometric_mean_interval(values):
-    """Returns the geometric mean with its bootstrap interval over the values."""
-    logs = mean_interval([math.log(v) for v in known(values) if v > 0])
-    return Interval(*(math.exp(v) for v in (logs.low, logs.middle, logs.high))) if logs.is_known else UNKNOWN
+    """Returns the geometric mean of the measured values with its bootstrap interval.
+
+    It is unknown if there are no values or one is not positive.
+    """
+    logs = mean_interval(_logs(values))
+    return Interval(*(math.exp(v) for v in (logs.low, logs.middle, logs.high)))
 
 
 def sum_ratio_interval(numerators, denominators):
-    """Returns the ratio of two sums over the same volumes with its bootstrap interval."""
-    pairs = [(a, b) for a, b in zip(numerators, denominators) if math.isfinite(a) and math.isfinite(b)]
-    if not pairs:
+    """Returns the ratio of two sums over the same volumes with its bootstrap interval.
+
+    A volume without one of the two is left out. The ratio is unknown if no volume is left or a
+    value is infinite.
+    """
+    pairs = [(a, b) for a, b in zip(numerators, denominators) if not (math.isnan(a) or math.isnan(b))]
+    if not pairs or not numpy.isfinite(pairs).all():
         return UNKNOWN
     a, b = numpy.array(pairs).T
     index = _resampled(len(pairs))
@@ -88,14 +120,17 @@ def sum_ratio_interval(numerators, denominators):
     return Interval(low, float(a.sum() / b.sum()), high)
 
 
-def repetitions_of(row, unit=1000):
+def repetitions_of(row):
     """Returns the median of a cell with the least and the 90th percentile of its repetitions, in µs."""
-    return Interval(row["min_ns"] / unit, row["median_ns"] / unit, row["p90_ns"] / unit)
+    return Interval(row["min_ns"] / 1000, row["median_ns"] / 1000, row["p90_ns"] / 1000)
 
 
 def ratio_of(numerator, denominator):
-    """Returns the ratio of two intervals: the widest that their ends allow."""
-    if not (numerator.is_known and denominator.is_known) or denominator.low <= 0:
+    """Returns the ratio of two intervals: the widest that their ends allow.
+
+    It is unknown if an end is not finite.
+    """
+    if not (numerator.is_finite and denominator.is_finite) or denominator.low <= 0:
         return UNKNOWN
     return Interval(
         numerator.low / denominator.high, numerator.middle / denominator.middle, numerator.high / denominator.low
@@ -116,14 +151,15 @@ def with_quads(rows):
 def places(intervals):
     """Returns the first and the last place that each interval may have; the least value is first.
 
-    Intervals that overlap are not ranked against each other. An unknown interval has no place (None).
+    Intervals that overlap are not ranked against each other. An interval that was not measured has
+    no place (None).
     """
     out = []
     for one in intervals:
-        others = [o for o in intervals if o is not one and o.is_known]
+        others = [o for o in intervals if o is not one and o.is_measured]
         better = sum(o.high < one.low for o in others)
         worse = sum(o.low > one.high for o in others)
-        out.append((1 + better, 1 + len(others) - worse) if one.is_known else None)
+        out.append((1 + better, 1 + len(others) - worse) if one.is_measured else None)
     return out
 
 

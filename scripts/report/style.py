@@ -68,11 +68,10 @@ def colour_css():
     return f":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n"
 
 
-def new_canvas(height, columns=1):
+def new_canvas(height):
     """Returns a figure of the page's width and its axes."""
     canvas = Canvas(figsize=(WIDTH, height), layout="constrained")
-    axes = canvas.subplots(1, columns, squeeze=False)[0]
-    return canvas, axes
+    return canvas, canvas.subplots()
 
 
 def svg_of(canvas, name, title):

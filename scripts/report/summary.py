@@ -22,8 +22,8 @@ def _table(evidence):
     keys = sorted((k for k in SHOWN if k in totals.keys and totals.is_whole(k)), key=totals.mean_ns)
     out = [
         (
-            f"| mesher, {len(totals.parts)} scenarios of the thesis, 32³ | µs a chunk, geometric mean | times ours (95"
-            " %) | µs a chunk, arithmetic mean | triangles (sum) |"
+            f"| mesher, {len(totals.parts)} scenarios of the thesis, 32³ | µs a chunk, geometric"
+            " mean | times ours (95 %) | µs a chunk, arithmetic mean | triangles (sum) |"
         ),
         "|---|---|---|---|---|",
     ]
@@ -48,11 +48,12 @@ def summary_of(evidence, verdict):
         _table(evidence),
         "What speaks against it:\n" + "\n".join(_wrapped(a, "- ", "  ") for a in verdict.against),
     ]
-    blocks += [_wrapped(f"Doubt: {d}") for d in evidence.here.doubts(verdict.steps)]
+    blocks += [_wrapped(f"Doubt: {d}") for d in evidence.doubts(verdict.steps)]
     blocks.append(
         _wrapped(
-            f"{found.machine.text()}; one core; real world {found.luanti}; a {'quick' if found.quick else 'full'} run. "
-            f"{MesherTotals(evidence.here.rows('meshers')).empty_note()}"
+            f"{found.machine.text()}; one core; real world {found.luanti}; a"
+            f" {'quick' if found.quick else 'full'} run."
+            f" {MesherTotals(evidence.here.rows('meshers')).empty_note()}"
         )
     )
     return "\n\n".join(blocks) + "\n"

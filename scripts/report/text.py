@@ -5,7 +5,8 @@ import math
 def number_text(value):
     """Returns three significant digits, with commas between thousands: 0.31, 4.2, 63, 1,940.
 
-    An infinite value is what never happened; NaN was not measured.
+    Returns "never" for an infinite value, since a time is infinite if its event never happened.
+    Returns "–" for NaN, which was not measured.
     """
     if value == math.inf:
         return "never"
@@ -21,24 +22,37 @@ def number_text(value):
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
+def quantity_text(value, unit):
+    """Returns a number with its unit. "never" and "–" have no unit."""
+    return f"{number_text(value)} {unit}" if math.isfinite(value) else number_text(value)
+
+
+def after_text(ms):
+    """Returns "after 4.2 ms"; "never" for an infinite time; "after an unknown time" if it was not
+    measured.
+    """
+    if math.isnan(ms):
+        return "after an unknown time"
+    return "never" if ms == math.inf else f"after {quantity_text(ms, 'ms')}"
+
+
 def count_text(value):
-    return f"{value:,.0f}" if math.isfinite(value) else "–"
+    return f"{value:,.0f}" if math.isfinite(value) else number_text(value)
 
 
 def time_text(ns):
     """Returns a time with its unit."""
     for unit, name in ((1e9, "s"), (1e6, "ms"), (1e3, "µs")):
         if ns >= unit:
-            return f"{number_text(ns / unit)} {name}"
-    return f"{number_text(ns)} ns"
+            return quantity_text(ns / unit, name)
+    return quantity_text(ns, "ns")
 
 
-def interval_text(interval, unit=""):
+def interval_text(interval):
     """Returns "2.1 (1.6 to 2.8)", or the value alone if it has no error."""
-    tail = f" {unit}" if unit else ""
-    if not interval.is_known or interval.low == interval.high:
-        return number_text(interval.middle) + tail
-    return f"{number_text(interval.middle)} ({number_text(interval.low)} to {number_text(interval.high)}){tail}"
+    low, middle, high = (number_text(v) for v in (interval.low, interval.middle, interval.high))
+    is_alone = math.isnan(interval.low) or math.isnan(interval.high) or interval.low == interval.high
+    return middle if is_alone else f"{middle} ({low} to {high})"
 
 
 def list_text(items):

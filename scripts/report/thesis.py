@@ -6,8 +6,9 @@ from pathlib import Path
 from .results import ResultError
 
 MEANS_NOTE = (
-    "The thesis averages by v = round((v + new) / 2), in which the last chunk weighs half. Here its raw "
-    "events are averaged plainly. Scenarios whose data contradict each other (12, 18, 31) are in these means."
+    "The thesis averages by v = round((v + new) / 2), in which the last chunk weighs half. Here"
+    " its raw events are averaged plainly. Scenarios whose data contradict each other (12, 18,"
+    " 31) are in these means."
 )
 VOXEL_PLUGIN_CHUNKS = (
     "Voxel Plugin: the mean over its chunks with voxels, some 27 of the 484 events it logs a scenario. "
@@ -16,7 +17,8 @@ VOXEL_PLUGIN_CHUNKS = (
 VOXEL_PLUGIN_EVENTS = (
     "Voxel Plugin: phases are means over all 484 events it logs a scenario, of which some 27 are chunks with voxels."
 )
-# Defects of single files of its logs, which the table of defects does not have, since no golden test needs them.
+# Defects of single files of its logs, which the table of defects does not have, since no golden
+# test needs them.
 LOG_DEFECTS = {
     18: "Voxel Plugin's time is ten times the usual per vertex, likely another model's",
     21: "the RLE meshing file holds events of other sessions; its phases are left out",

@@ -1,17 +1,22 @@
-"""Verdict: the first screen of the page. One sentence, the decisive chart, and what speaks against it."""
+"""Verdict: the first screen of the page.
+
+One sentence, the decisive chart, and what speaks against it.
+"""
+import math
 from dataclasses import dataclass
+from operator import truediv
 
 from .charts import Axis, Series, dots
 from .comparison import DECISIVE, OURS, compare
 from .figures.meshers import MesherTotals
-from .figures.network import WAYS, WORLDS, transfer_ms
+from .figures.network import WAYS, transfer_ms
 from .meshers import MESHERS, mesher
-from .statistics import UNKNOWN, exactly, geometric_mean_interval
-from .text import count_text, interval_text, number_text, time_text
+from .statistics import UNKNOWN, exactly, geometric_mean_interval, measured
+from .text import count_text, interval_text, number_text, quantity_text, time_text
 
 SCENARIOS, REAL_WORLD = MAIN_WORLDS = ("thesis' scenarios", "a real world")
 STEPS = ("meshers", "landscapes", "adversaries")
-THESIS_MESHER = "The thesis' own RLE RDM"
+RLE_RDM = MESHERS["rle_rdm"].name
 BASELINES = (DECISIVE, "mask_binary", "rle_rdm")
 COLUMNS = ["machine", "world", "volumes", "mesher", "times ours", "low", "high", "sums: times ours", "low", "high"]
 
@@ -47,22 +52,25 @@ def world_rows(results):
 
 
 def _comparisons(evidence):
-    """Returns (machine, world, {mesher: Comparison}) for each row of the decisive chart."""
+    """Returns (results, world, {mesher: Comparison}) for each world of each machine, the main
+    worlds first.
+    """
     out = []
     for results in evidence.machines:
         for world, rows in world_rows(results).items():
-            if world not in MAIN_WORLDS and results is not evidence.here:
-                continue
             found = {k: c for k in BASELINES if (c := compare(rows, k))}
             if found:
-                out.append((evidence.machine_name(results), world, found))
+                out.append((results, world, found))
     return sorted(out, key=lambda r: (r[1] != SCENARIOS, r[1] != REAL_WORLD))
 
 
 def _chart(evidence, comparisons):
+    """Draws the worlds of this machine and the main worlds of the others."""
     several = len(evidence.machines) > 1
+    comparisons = [c for c in comparisons if c[0] is evidence.here or c[1] in MAIN_WORLDS]
     rows = []
-    for machine, world, found in comparisons:
+    for results, world, found in comparisons:
+        machine = evidence.machine_name(results)
         count = len(next(iter(found.values())).volumes)
         rows.append(f"{world} ({count})" + (f"\n{machine}" if several and world in MAIN_WORLDS else ""))
     series = [
@@ -92,8 +100,9 @@ def _sentence(scenarios, real):
         )
     )
     out = (
-        f"{beginning}: decoding and binary greedy meshing, the fastest dense mesher, takes {interval_text(gain)} times"
-        f" as long over the {len(scenarios.volumes)} scenarios of the thesis that have quads"
+        f"{beginning}: decoding and binary greedy meshing, the fastest dense mesher, takes"
+        f" {interval_text(gain)} times as long over the {len(scenarios.volumes)} scenarios of the"
+        " thesis that have quads"
     )
     if real:
         out += f", and {interval_text(real.gain)} times over {len(real.volumes)} volumes of a real world"
@@ -118,59 +127,74 @@ def _count_sentence(who, found, of):
     return "; ".join(parts) + "." if parts else ""
 
 
-def _mean_sentence(found):
+def _mean_sentence(who, found):
     return (
-        f"By the arithmetic mean, in which slow scenarios weigh most, {mesher(found.other).name} takes"
-        f" {number_text(found.other_mean_us)} µs and ours {number_text(found.our_mean_us)} µs. The ratio is"
-        f" {interval_text(found.sums)}."
+        f"By the arithmetic mean, in which slow scenarios weigh most, {who} takes"
+        f" {quantity_text(found.other_mean_us, 'µs')} and ours {quantity_text(found.our_mean_us, 'µs')}."
+        f" The ratio is {interval_text(found.sums)}."
     )
 
 
-def _against(evidence, comparisons):
-    """Returns what a sceptic would say, each in a sentence or two."""
-    here = (
-        [(w, f) for m, w, f in comparisons if m == evidence.machine_name(evidence.here)] if evidence.here.common else []
-    )
-    by_world = dict(here)
+def _against_worlds(by_world):
+    """Returns what a sceptic would say about the comparisons of one machine."""
     out = []
     scenarios = by_world.get(SCENARIOS, {})
-    if rle := scenarios.get("rle_rdm"):
-        if rle.slower or rle.sums.low < 1:
-            out.append(
-                f"{_count_sentence(THESIS_MESHER, rle, 'scenarios')} {_mean_sentence(rle)} RLE RDM emits "
-                f"{number_text(rle.triangles)} times the triangles."
-            )
+    rle = scenarios.get("rle_rdm")
+    if rle and (rle.slower or rle.sums.low < 1):
+        out.append(
+            f"{_count_sentence(f'The {RLE_RDM}', rle, 'scenarios')}"
+            f" {_mean_sentence(f'the {RLE_RDM}', rle)} The {RLE_RDM} emits"
+            f" {number_text(rle.triangles)} times the triangles."
+        )
     if decisive := scenarios.get(DECISIVE):
-        out.append(f"{_count_sentence('Decoding first', decisive, 'scenarios')} {_mean_sentence(decisive)}".strip())
+        out.append(
+            f"{_count_sentence('Decoding first', decisive, 'scenarios')} {_mean_sentence('decoding first', decisive)}"
+        )
     for world, title in ((SCENARIOS, "in the scenarios"), (REAL_WORLD, "in the real world")):
         ready = by_world.get(world, {}).get("mask_binary")
         if ready and ready.gain.low < 1:
             out.append(
-                f"A program that has the grid and its mask ready meshes {title} in {interval_text(ready.gain)} times"
-                " the time of ours: there, runs save memory and bytes, not time."
+                f"A program that has the grid and its mask ready meshes {title} in"
+                f" {interval_text(ready.gain)} times the time of ours: there, runs save memory and"
+                " bytes, not time."
             )
     slow = [
         f"{w} {interval_text(f[DECISIVE].gain)}"
-        for w, f in here
+        for w, f in by_world.items()
         if DECISIVE in f and f[DECISIVE].gain.low < 1 and w != SCENARIOS
     ]
     if slow:
         out.append(
-            "In these worlds decoding first is faster, or the interval of its time divided by ours contains 1:"
-            f" {'; '.join(slow)}."
+            "In these worlds decoding first is faster, or the interval of its time divided by"
+            f" ours contains 1: {'; '.join(slow)}."
         )
-    out.append(_machines_sentence(evidence))
+    return out
+
+
+def _against(evidence, comparisons):
+    """Returns what a sceptic would say, each in a sentence or two.
+
+    Sentences about other machines name them.
+    """
+    out = []
+    for results in evidence.machines:
+        said = _against_worlds({w: found for r, w, found in comparisons if r is results})
+        if results.common.quick:
+            said.append("This is a quick run: few repetitions, wide errors.")
+        name = "" if results is evidence.here else f"{evidence.machine_name(results)}: "
+        out += [name + sentence.strip() for sentence in said]
+    out.append(_machines_sentence(evidence, comparisons))
     drawn = evidence.here.find("frames")
     if drawn and isinstance(drawn.result, dict) and drawn.result.get("gl", {}).get("software"):
         out.append("The frames were drawn by software, not by a GPU.")
-    if evidence.here.common and evidence.here.common.quick:
-        out.append("This is a quick run: few repetitions, wide errors.")
     return [" ".join(o.split()) for o in out if o.strip()]
 
 
-def _machines_sentence(evidence):
+def _machines_sentence(evidence, comparisons):
     gains = [
-        (evidence.machine_name(r), c.gain) for r in evidence.machines if (c := compare(r.rows("meshers"), DECISIVE))
+        (evidence.machine_name(r), found[DECISIVE].gain)
+        for r, world, found in comparisons
+        if world == SCENARIOS and DECISIVE in found
     ]
     if len(gains) > 1:
         return (
@@ -182,12 +206,19 @@ def _machines_sentence(evidence):
 
 
 def best_of(candidates, text):
-    """Returns the candidates (name, interval, value) whose intervals overlap that of the least, and the others."""
-    measured = sorted((c for c in candidates if c[1].is_known), key=lambda c: c[1].middle)
-    if not measured:
+    """Returns the candidates (name, interval, value) whose intervals overlap that of the least, and
+    the others.
+
+    Returns None if no candidate was measured. One with an infinite interval is never among the
+    best.
+    """
+    ranked = sorted((c for c in candidates if c[1].is_measured), key=lambda c: c[1].middle)
+    if not ranked:
         return None
-    equal = [c for c in measured if c[1].overlaps(measured[0][1])]
-    rest = [c for c in measured if c not in equal]
+    equal = [c for c in ranked if c[1].is_finite and c[1].overlaps(ranked[0][1])]
+    rest = [c for c in ranked if c not in equal]
+    if not equal:
+        return "none completed", ""
     best = " and ".join(f"{name}: {text(value)}" for name, _, value in equal) + (
         " (intervals overlap)" if len(equal) > 1 else ""
     )
@@ -255,30 +286,41 @@ def _answers(evidence):
         "Fewest bytes of a real chunk on the wire",
         "bytes",
         [(name, exactly(size), size) for form, name in forms for size in (rows.where(form=form).number("bytes"),)],
-        lambda v: f"{number_text(v)} B",
+        lambda v: quantity_text(v, "B"),
     )
     for profile, title in (
         ("loopback", "Soonest sent and meshed, on loopback"),
         ("broadband", "The same over broadband"),
     ):
         net = evidence.here.rows(f"transfer-{profile}")
-        candidates = []
-        for form, name, _, _ in WAYS:
-            ratios = [
-                transfer_ms(net, profile, f"{w} {form}") / transfer_ms(net, profile, f"{w} packed") for w in WORLDS
-            ]
-            candidates.append((name, geometric_mean_interval(ratios), transfer_ms(net, profile, f"luanti {form}")))
-        answer(title, "transfers", candidates, lambda v: f"{number_text(v)} ms")
+        times = {name: transfer_ms(net, profile, form) for form, name, _, _ in WAYS}
+        answer(title, "transfers", _transfer_candidates(times), lambda v: quantity_text(v, "ms"))
+    return out
+
+
+def _transfer_candidates(times):
+    """Returns each way with its ratio to the first way that completed all worlds, and with its time
+    in the real world.
+
+    Ratio and time of a way that never completed a world are infinite. A way that was not measured
+    is left out.
+    """
+    slowest = {name: max(measured(t.values()), default=math.nan) for name, t in times.items()}
+    out = [(name, exactly(math.inf), math.inf) for name, ms in slowest.items() if math.isinf(ms)]
+    complete = [name for name, ms in slowest.items() if math.isfinite(ms)]
+    for name in complete:
+        ratio = geometric_mean_interval(map(truediv, times[name].values(), times[complete[0]].values()))
+        out.append((name, ratio, times[name]["luanti"]))
     return out
 
 
 def verdict_of(evidence):
     comparisons = _comparisons(evidence)
-    here = evidence.machine_name(evidence.here) if evidence.here.common else None
-    found = {w: f.get(DECISIVE) for m, w, f in comparisons if m == here}
+    found = {w: f.get(DECISIVE) for r, w, f in comparisons if r is evidence.here}
     rows = [
-        [m, w, len(c.volumes), k, c.gain.middle, c.gain.low, c.gain.high, c.sums.middle, c.sums.low, c.sums.high]
-        for m, w, f in comparisons
+        [evidence.machine_name(r), w, len(c.volumes), k]
+        + [v for one in (c.gain, c.sums) for v in (one.middle, one.low, one.high)]
+        for r, w, f in comparisons
         for k, c in f.items()
     ]
     return Verdict(

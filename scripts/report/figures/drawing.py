@@ -51,7 +51,8 @@ class Frames:
         gl = self.setting.get("gl", {})
         out = [
             f"Drawn by {gl.get('renderer', 'an unknown renderer')}, {self.setting.get('width')} by"
-            f" {self.setting.get('height')} pixels, {self.setting.get('frames')} frames of each mesher in each world."
+            f" {self.setting.get('height')} pixels, {self.setting.get('frames')} frames of each"
+            " mesher in each world."
         ]
         if gl.get("software"):
             out.append("The processor draws here, so a frame is bound by vertices far more than on a GPU.")
@@ -97,9 +98,9 @@ def _frame_times(frames):
         "frames",
         "Frame time by mesher (8.5)",
         (
-            f"The same chunks, shader and vertex format: only the polygons differ. A frame takes {ms('rdm')} ms with"
-            f" our mesh (geometric mean of {len(frames.worlds)} worlds), {ms('culled')} with culled faces,"
-            f" {ms('rle_rdm')} with the thesis' RLE RDM."
+            "The same chunks, shader and vertex format: only the polygons differ. A frame takes"
+            f" {ms('rdm')} ms with our mesh (geometric mean of {len(frames.worlds)} worlds),"
+            f" {ms('culled')} with culled faces, {ms('rle_rdm')} with the thesis' RLE RDM."
         ),
         ("frames",),
         columns,
@@ -113,7 +114,10 @@ def _frame_times(frames):
             )
         ],
         notes=[
-            "The lines are 95 % bootstrap intervals over the worlds. Meshers whose intervals overlap share places.",
+            (
+                "The lines are 95 % bootstrap intervals over the worlds. Meshers whose intervals"
+                " overlap share places."
+            ),
             *frames.notes(),
         ],
     )
@@ -145,10 +149,11 @@ def _thesis_frames(evidence, frames):
         "fps",
         "Frames a second in the thesis' four scenarios (figure 8.14)",
         (
-            f"In scenario 23 our mesh gives {number_text(fps(23, 'rdm'))} frames a second here, the rebuilt Grid RDM "
-            f"{number_text(fps(23, 'grid_rdm'))} and culled faces {number_text(fps(23, 'culled'))}. The thesis has "
-            f"{number_text(evidence.thesis.value(23, 'Grid', 'fps_mean'))} with Grid RDM and "
-            f"{number_text(evidence.thesis.value(23, 'RLE', 'fps_mean'))} with its RLE RDM."
+            f"In scenario 23 our mesh gives {number_text(fps(23, 'rdm'))} frames a second here,"
+            f" the rebuilt Grid RDM {number_text(fps(23, 'grid_rdm'))} and culled faces"
+            f" {number_text(fps(23, 'culled'))}. The thesis has"
+            f" {number_text(evidence.thesis.value(23, 'Grid', 'fps_mean'))} with Grid RDM and"
+            f" {number_text(evidence.thesis.value(23, 'RLE', 'fps_mean'))} with its RLE RDM."
         ),
         ("frames",),
         ["scenario", *(s.name for s in ours), *(s.name for s in theirs)],
@@ -165,7 +170,10 @@ def _thesis_frames(evidence, frames):
         ],
         notes=[
             *frames.notes(),
-            "The thesis' empty scene ran at 77 frames a second. Voxel Plugin drew lower levels of detail farther away.",
+            (
+                "The thesis' empty scene ran at 77 frames a second. Voxel Plugin drew lower"
+                " levels of detail farther away."
+            ),
         ],
     )
 
@@ -182,10 +190,12 @@ def _seams(frames):
         "seams",
         "T-junctions and thin triangles on screen (4.2.1, 4.2.2)",
         (
-            f"Pixels inside a plane that differ from the picture of culled faces: {interval_text(pixels('rdm'))} a"
-            f" picture with our mesh, {interval_text(pixels('poly2tri'))} with Poly2Tri. A GPU shades in blocks of 2 x"
-            f" 2, so it shades more lanes than fragments along every edge: {number_text(lanes('rdm').middle)} lanes a"
-            f" fragment with our mesh, {number_text(lanes('culled').middle)} with culled faces."
+            "Pixels inside a plane that differ from the picture of culled faces:"
+            f" {interval_text(pixels('rdm'))} a picture with our mesh,"
+            f" {interval_text(pixels('poly2tri'))} with Poly2Tri. A GPU shades in blocks of 2 x 2,"
+            " so it shades more lanes than fragments along every edge:"
+            f" {number_text(lanes('rdm').middle)} lanes a fragment with our mesh,"
+            f" {number_text(lanes('culled').middle)} with culled faces."
         ),
         ("frames",),
         columns,
@@ -212,10 +222,8 @@ def _storage(evidence):
     means = {(s, c): geometric_mean(rows.where(store=s).numbers(c)) for s in stores for c, _ in columns}
     least = {c: min((means[s, c] for s in stores if math.isfinite(means[s, c])), default=math.nan) for c, _ in columns}
     most = {c: max((means[s, c] for s in stores if math.isfinite(means[s, c])), default=math.nan) for c, _ in columns}
-    best = (
-        "; ".join(f"{name}: {min(stores, key=lambda s: means[s, c])}" for c, name in columns)
-        if stores
-        else "not measured"
+    best = "; ".join(
+        f"{name}: {next((s for s in stores if means[s, c] == least[c]), 'not measured')}" for c, name in columns
     )
     return Figure(
         "storage",
@@ -241,8 +249,8 @@ def _storage(evidence):
         notes=[
             "Runs are ours, in their cheapest order. A brush is a sphere of radius 5; times are of a whole edit.",
             (
-                f"Means of {number_text(mean([len(rows.where(store=s)) for s in stores]))} volumes. A volume without"
-                " quads is stored like any other."
+                f"Means of {number_text(mean([len(rows.where(store=s)) for s in stores]))}"
+                " volumes. A volume without quads is stored like any other."
             ),
         ],
     )

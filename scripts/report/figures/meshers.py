@@ -32,13 +32,13 @@ class MesherTotals:
         self._cells = {(r["mesher"], r["part"]): r for r in self.rows}
 
     def empty_note(self):
-        """Returns which scenarios are in no mean and why."""
+        """Returns which scenarios are in no mean and why; an empty text if none was measured."""
         if not self.empty:
-            return "Every scenario has quads."
+            return "Every scenario has quads." if self.parts else ""
         names = list_text(self.empty)
         return (
-            f"The chunk in the middle of scenario{'s' if len(self.empty) > 1 else ''} {names} has no quads, so it is in"
-            " no mean."
+            f"The chunk in the middle of scenario{'s' if len(self.empty) > 1 else ''} {names} has"
+            " no quads, so it is in no mean."
         )
 
     def cell(self, key, part):
@@ -64,6 +64,9 @@ class MesherTotals:
 
 
 def _time(totals):
+    def mean_text(key):
+        return time_text(totals.mean_ns(key)) if totals.is_whole(key) else "a time that was not measured"
+
     keys = sorted((k for k in totals.keys if totals.is_whole(k)), key=totals.mean_ns)
     ratios = [totals.against_ours(k) for k in keys]
     ranks = [place_text(p) for p in places(ratios)]
@@ -75,10 +78,10 @@ def _time(totals):
         "meshers-time",
         "All meshers: time",
         (
-            f"From compressed runs ours takes {time_text(totals.mean_ns(OURS))}, and decoding with binary greedy"
-            f" meshing {time_text(totals.mean_ns('decode_binary'))} (geometric means of {len(totals.parts)} scenarios)."
-            " With the grid and its mask ready, binary greedy meshing takes"
-            f" {time_text(totals.mean_ns('mask_binary'))}."
+            f"From compressed runs ours takes {mean_text(OURS)}, and decoding with binary greedy"
+            f" meshing {mean_text('decode_binary')} (geometric means of {len(totals.parts)}"
+            " scenarios). With the grid and its mask ready, binary greedy meshing takes"
+            f" {mean_text('mask_binary')}."
         ),
         STEPS,
         ["mesher", "geometric mean us", "times ours", "low", "high", "place", "sum us"],
@@ -92,7 +95,10 @@ def _time(totals):
             )
         ],
         notes=[
-            "The lines are 95 % bootstrap intervals over the scenarios. Meshers whose intervals overlap share places.",
+            (
+                "The lines are 95 % bootstrap intervals over the scenarios. Meshers whose"
+                " intervals overlap share places."
+            ),
             totals.empty_note(),
             "The chunk in the middle of 27; one core; runs in their cheapest axis order.",
             "Meshers marked 'grid ready' are not charged for making the grid out of what is stored.",
@@ -139,9 +145,9 @@ def _scenarios_chart(totals):
         table.append((part, line))
     against = compare(totals.rows, "decode_binary")
     counts = (
-        f"In {len(against.faster)} of {len(against.volumes)} scenarios meshing from runs is faster than decoding and"
-        f" binary greedy meshing, in {len(against.slower)} slower, and in {len(against.undecided)} the repetitions"
-        " overlap."
+        f"In {len(against.faster)} of {len(against.volumes)} scenarios meshing from runs is faster"
+        f" than decoding and binary greedy meshing, in {len(against.slower)} slower, and in"
+        f" {len(against.undecided)} the repetitions overlap."
         if against
         else "Decoding was not measured."
     )
@@ -174,7 +180,10 @@ def _scenarios_chart(totals):
         ],
         HeatTable("µs", [mesher(k).short for k in totals.keys], table),
         [
-            "The lines reach from the fastest repetition to the 90th percentile. Empty cells took longer than 5 s.",
+            (
+                "The lines reach from the fastest repetition to the 90th percentile. Empty cells"
+                " took longer than 5 s."
+            ),
             totals.empty_note(),
             "In the table a darker cell is slower within its scenario.",
         ],
@@ -201,8 +210,19 @@ def _counts(totals, id_, title, field, label, log, sentence, notes=()):
 
 
 def _triangles(totals):
-    best = totals.sum("optimal_greedy", "triangles")
-    ours = totals.sum(OURS, "triangles")
+    ours, best, rle = (totals.sum(key, "triangles") for key in (OURS, "optimal_greedy", "rle_rdm"))
+    sentences = []
+    if math.isnan(ours):
+        sentences.append("Ours was not measured in every scenario.")
+    elif math.isfinite(best):
+        sentences.append(
+            "No mesher that draws the exposed faces as rectangles can use fewer than"
+            f" {count_text(best)} triangles. Ours uses {ours / best:.3f} times that."
+        )
+    else:
+        sentences.append(f"Ours uses {count_text(ours)} triangles. The least possible number was not measured.")
+    if math.isfinite(rle / ours):
+        sentences.append(f"The thesis' RLE RDM uses {number_text(rle / ours)} times as many as ours.")
     return _counts(
         totals,
         "meshers-triangles",
@@ -210,21 +230,17 @@ def _triangles(totals):
         "triangles",
         "triangles, sum over the scenarios",
         True,
-        (
-            f"No mesher that draws the exposed faces as rectangles can use fewer than {count_text(best)} triangles. "
-            f"Ours uses {ours / best:.3f} times that, and the thesis' RLE RDM "
-            f"{number_text(totals.sum('rle_rdm', 'triangles') / ours)} times as many as ours."
-        ),
+        " ".join(sentences),
         [
-            "Monotone and Poly2Tri draw polygons, and run strips over hidden faces draw more than is exposed: the "
-            "optimum does not bind them."
+            "Monotone and Poly2Tri draw polygons, and run strips over hidden faces draw more than"
+            " is exposed: the optimum does not bind them."
         ],
     )
 
 
 def _t_junctions(totals):
     def count(key):
-        return count_text(totals.sum(key, "t_junctions"))
+        return count_text(totals.sum(key, "t_junctions")) if totals.is_whole(key) else "not measured"
 
     return _counts(
         totals,
@@ -234,9 +250,10 @@ def _t_junctions(totals):
         "T-junctions, sum over the scenarios",
         False,
         (
-            "A vertex inside another polygon's edge can flicker as a seam. Merging makes them: ours has "
-            f"{count(OURS)}, the culled mesher {count('culled')}. Monotone ({count('monotone')}) and Poly2Tri "
-            f"({count('poly2tri')}) lessen them within a plane and keep them between planes."
+            "A vertex inside another polygon's edge can flicker as a seam. Merging makes them:"
+            f" ours has {count(OURS)}, the culled mesher {count('culled')}. Monotone"
+            f" ({count('monotone')}) and Poly2Tri ({count('poly2tri')}) lessen them within a plane"
+            " and keep them between planes."
         ),
     )
 
@@ -279,17 +296,18 @@ def _gallery(evidence, totals):
         "scenarios",
         "The 37 scenarios",
         (
-            "The thesis' models as our client draws them: all 27 chunks, from outside. The share of solid voxels is of"
-            " all chunks, and the times are of the chunk in the middle, divided by ours. A blue edge marks scenarios in"
-            " which ours is faster than decoding first, an orange edge those in which it is slower."
+            "The thesis' models as our client draws them: all 27 chunks, from outside. The share"
+            " of solid voxels is of all chunks, and the times are of the chunk in the middle,"
+            " divided by ours. A blue edge marks scenarios in which ours is faster than decoding"
+            " first, an orange edge those in which it is slower."
         ),
         ("pictures", "facts", "meshers"),
         ["scenario", "name", "solid, %", "decode + binary: times ours", "low", "high", "RLE RDM: times ours"],
         rows,
         cards=cards,
         notes=[
-            "The brackets hold the range that the repetitions of both meshers allow. Where it contains 1, the edge is"
-            " grey."
+            "The brackets hold the range that the repetitions of both meshers allow. Where it"
+            " contains 1, the edge is grey."
         ],
     )
 
@@ -304,8 +322,8 @@ def meshers_section(evidence):
         "meshers",
         "All meshers",
         (
-            "Every algorithm of the thesis' chapter 4.2, rebuilt and checked with the same oracle, on "
-            f"the same chunks. {totals.empty_note()}"
-        ),
+            "Every algorithm of the thesis' chapter 4.2, rebuilt and checked with the same oracle, on"
+            f" the same chunks. {totals.empty_note()}"
+        ).strip(),
         figures,
     )

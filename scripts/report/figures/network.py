@@ -1,14 +1,15 @@
 """The same voxels under networked conditions: bytes, transfers, latency, crowds, a siege."""
 import math
+from operator import truediv
 
 from ..charts import Axis, Bar, Series, Span, bars, dots, lines
 from ..figure import Figure, Section
 from ..meshers import mesher
-from ..statistics import Interval, exactly, geometric_mean_interval
 from ..rows import number_of
+from ..statistics import UNKNOWN, Interval, exactly, geometric_mean_interval
 from ..steps import FLEET_SIZES, PROFILES
 from ..style import INK, OTHER, QUIET
-from ..text import count_text, interval_text, number_text
+from ..text import after_text, count_text, interval_text, list_text, number_text, quantity_text
 
 OURS, BINARY = mesher("rdm").light, mesher("decode_binary").light
 FORMS = (
@@ -39,8 +40,15 @@ def _bytes(evidence):
     rows = every.where(world="luanti", set="all")
     size = {form: rows.where(form=form).number("bytes") for form, _, _ in FORMS}
 
-    def share(of):
-        return number_text(100 * size["packed"] / size[of])
+    shares = [
+        f"{number_text(100 * size['packed'] / size[form])} % of {name}"
+        for form, name in (
+            ("dense_zstd", "dense voxels under zstd"),
+            ("luanti", "Luanti's form"),
+            ("minecraft", "Minecraft's"),
+        )
+        if math.isfinite(size["packed"] / size[form])
+    ]
 
     all_bars = [
         Bar(
@@ -48,8 +56,9 @@ def _bytes(evidence):
             colour,
             exactly(size[form]),
             (
-                f"{number_text(size[form])} B; write {number_text(rows.where(form=form).number('encode_us'))}, "
-                f"read {number_text(rows.where(form=form).number('decode_us'))} µs"
+                f"{number_text(size[form])} B; write"
+                f" {number_text(rows.where(form=form).number('encode_us'))}, read"
+                f" {number_text(rows.where(form=form).number('decode_us'))} µs"
             ),
         )
         for form, name, colour in FORMS
@@ -58,8 +67,8 @@ def _bytes(evidence):
         "bytes",
         "A chunk on the wire",
         (
-            f"Packed runs take {share('dense_zstd')} % of dense voxels under zstd, {share('luanti')} % of Luanti's form"
-            f" and {share('minecraft')} % of Minecraft's. Dense and plain they would be 65,536 bytes."
+            f"Packed runs take {list_text(shares) if shares else 'an unknown share of the other forms'}."
+            " Dense and plain they would be 65,536 bytes."
         ),
         ("bytes",),
         ["world", "chunks", "form", "bytes", "encode us", "decode us"],
@@ -69,28 +78,58 @@ def _bytes(evidence):
     )
 
 
-def transfer_ms(rows, profile, case):
-    return rows.where(profile=profile, case=case, figure="complete_ms").number("value")
+def transfer_ms(rows, profile, form):
+    """Returns for each world the time until all its chunks are meshed: infinite if that never
+    happened.
+    """
+    return {w: rows.where(profile=profile, case=f"{w} {form}", figure="complete_ms").number("value") for w in WORLDS}
+
+
+def _never_completed(times):
+    """Returns a sentence for each link that has worlds whose transfer never completed."""
+    out = []
+    for profile, by_form in times.items():
+        found = [f"{w} as {name}" for form, name, _, _ in WAYS for w, ms in by_form[form].items() if math.isinf(ms)]
+        if found:
+            out.append(f"Over {profile} these worlds never completed: {', '.join(found)}.")
+    return out
+
+
+def _not_measured(rows, times):
+    """Returns a sentence for each measured link of which worlds have no result."""
+    out = []
+    for profile in rows.kinds("profile"):
+        found = [w for w in WORLDS if any(math.isnan(times[profile][form][w]) for form in ("packed", "dense_zstd"))]
+        if found:
+            out.append(f"Over {profile} no ratio was measured of {list_text(found)}.")
+    return out
 
 
 def _transfers(evidence):
     steps = tuple(f"transfer-{p}" for p in PROFILES)
     rows = evidence.here.all_rows(steps)
-    gains = {
-        p: geometric_mean_interval(
-            [transfer_ms(rows, p, f"{w} dense_zstd") / transfer_ms(rows, p, f"{w} packed") for w in WORLDS]
-        )
-        for p in PROFILES
-    }
-    ratios = "; ".join(f"{p} {interval_text(g)}" for p, g in gains.items() if g.is_known)
+    times = {p: {form: transfer_ms(rows, p, form) for form, _, _, _ in WAYS} for p in PROFILES}
+
+    def gain(profile):
+        """Returns how many times as long dense voxels take; unknown if a world never completed."""
+        dense, packed = (times[profile][form].values() for form in ("dense_zstd", "packed"))
+        return UNKNOWN if math.inf in (*dense, *packed) else geometric_mean_interval(map(truediv, dense, packed))
+
+    gains = {p: gain(p) for p in PROFILES}
+    ratios = "; ".join(f"{p} {interval_text(g)}" for p, g in gains.items() if g.is_measured)
+    without = [p for p in PROFILES if math.inf in (*times[p]["dense_zstd"].values(), *times[p]["packed"].values())]
+    never = _never_completed(times)
+    if without:
+        never.append(f"So there is no ratio for {list_text(without)}.")
+    never += _not_measured(rows, times)
     return Figure(
         "transfers",
         "Send, unpack, mesh: under each link (9.2)",
         (
-            "Until everything is meshed, dense voxels under zstd take this many times as long as packed runs"
-            f" (geometric mean of five worlds): {ratios or 'not measured'}. On slow links bytes decide, on fast ones"
-            " the meshing."
-        ),
+            "Until everything is meshed, dense voxels under zstd take this many times as long as"
+            f" packed runs (geometric mean over worlds): {ratios or 'not measured'}. On slow links"
+            f" bytes decide, on fast ones the meshing. {' '.join(never)}"
+        ).strip(),
         steps,
         NET_COLUMNS,
         _net_table(rows),
@@ -100,7 +139,7 @@ def _transfers(evidence):
                 "transfer and mesh",
                 list(PROFILES),
                 [
-                    Series(name, colour, [exactly(transfer_ms(rows, p, f"luanti {form}")) for p in PROFILES], hollow)
+                    Series(name, colour, [exactly(times[p][form]["luanti"]) for p in PROFILES], hollow)
                     for form, name, colour, hollow in WAYS
                 ],
                 Axis("ms until all 64 chunks are meshed, real world", True),
@@ -114,8 +153,8 @@ def _transfers(evidence):
             ),
         ],
         notes=[
-            "Lines and brackets show 95 % bootstrap intervals over the five worlds. Each time is the median of few"
-            " repetitions."
+            "Lines and brackets show 95 % bootstrap intervals over the worlds. Each time is the"
+            " median of few repetitions."
         ],
     )
 
@@ -137,17 +176,18 @@ def _latency(evidence):
         ("remote edit beside terrain, 20 clients", "streaming 20 clients", "remote_meshed", QUIET, True),
     )
 
-    def p50(profile, figure):
-        return number_text(value(profile, "idle", f"{figure}_p50_ms"))
+    def after_p50(profile, figure):
+        return after_text(value(profile, "idle", f"{figure}_p50_ms"))
 
     return Figure(
         "latency",
         "Latency plus mesh, by link",
         (
-            f"The local edit is predicted, so it is meshed after {p50('loopback', 'local_predicted_meshed')} ms on"
-            f" loopback and {p50('broadband', 'local_predicted_meshed')} on broadband alike (p50). A remote edit takes"
-            f" the network's delay in addition: {p50('loopback', 'remote_meshed')} and"
-            f" {p50('broadband', 'remote_meshed')}."
+            "The local edit is predicted, so its mesh does not wait for the network. On loopback"
+            f" it is meshed {after_p50('loopback', 'local_predicted_meshed')}, on broadband"
+            f" {after_p50('broadband', 'local_predicted_meshed')} (p50). A remote edit waits for"
+            f" the network: on loopback it is meshed {after_p50('loopback', 'remote_meshed')}, on"
+            f" broadband {after_p50('broadband', 'remote_meshed')}."
         ),
         steps,
         NET_COLUMNS,
@@ -164,7 +204,10 @@ def _latency(evidence):
                 Axis("ms from the click to the mesh", True),
             )
         ],
-        notes=["The lines reach from the median (p50) to the 99th percentile; the maximum is in the CSV."],
+        notes=[
+            "The lines reach from the median (p50) to the 99th percentile; the maximum is in the CSV.",
+            "An arrow marks a percentile that never arrived.",
+        ],
     )
 
 
@@ -175,7 +218,16 @@ def _crowds(evidence):
     def value(clients, figure):
         return rows.where(case=f"{clients} clients", figure=figure).number("value")
 
-    most = max((n for n in FLEET_SIZES if math.isfinite(value(n, "seen_p99_ms"))), default=1)
+    most = max((n for n in FLEET_SIZES if not math.isnan(value(n, "seen_p99_ms"))), default=1)
+    counts = (("samples", "samples"), ("never", "never arrived"), ("disconnects", "disconnects"))
+    counted = [f"{count_text(n)} {name}" for figure, name in counts if not math.isnan(n := value(most, figure))]
+    p50, p99 = value(most, "seen_p50_ms"), value(most, "seen_p99_ms")
+    if math.isinf(p50):
+        arrival = "At least half of their edits never arrived at the others"
+    elif math.isinf(p99):
+        arrival = f"They see each other's edits {after_text(p50)} (p50), but at least 1 % of the edits never arrived"
+    else:
+        arrival = f"They see each other's edits {after_text(p50)} (p50) and {after_text(p99)} (p99)"
     cores = evidence.here.common.machine.cores if evidence.here.common else 0
     series = [
         Series(name, colour, [(n, exactly(value(n, figure))) for n in FLEET_SIZES if n > 1], False, marker)
@@ -189,10 +241,10 @@ def _crowds(evidence):
         "crowds",
         "Crowds: 1 to 1,000 clients",
         (
-            f"{count_text(most)} clients on one server beside their bots on {cores} cores see each other's edits after"
-            f" {number_text(value(most, 'seen_p50_ms'))} ms (p50), {number_text(value(most, 'seen_p99_ms'))} (p99);"
-            f" {count_text(value(most, 'samples'))} samples, {number_text(value(most, 'never'))} never arrived,"
-            f" {number_text(value(most, 'disconnects'))} disconnects."
+            f"{count_text(most)} clients in one place use one server, on the same {cores} cores."
+            f" {arrival}{': ' if counted else ''}{', '.join(counted)}."
+            if most > 1
+            else "No crowd of two or more clients was measured."
         ),
         steps,
         NET_COLUMNS,
@@ -257,12 +309,13 @@ def siege_charts(rows):
 def _siege(evidence):
     rows = evidence.here.rows("siege")
     values = [(number_of(r["value"]), r["case"]) for r in rows.where(figure="p99_ms")]
-    worst = max((v for v in values if not math.isnan(v[0])), default=(math.nan, "none"))
-    at_worst = (
-        f"Under the worst one ({worst[1]}), edits of builders never arrive."
-        if math.isinf(worst[0])
-        else f"The worst p99 of the builders is {number_text(worst[0])} ms ({worst[1]})."
-    )
+    ms, case = max((v for v in values if not math.isnan(v[0])), default=(math.nan, ""))
+    if math.isnan(ms):
+        at_worst = "No latency was measured."
+    elif math.isinf(ms):
+        at_worst = f"Under the worst one ({case}), edits of builders never arrive."
+    else:
+        at_worst = f"The worst p99 of the builders is {quantity_text(ms, 'ms')} ({case})."
     return Figure(
         "siege",
         "A siege: builders under attack",
@@ -283,8 +336,8 @@ def network_section(evidence):
         "network",
         "Under networked conditions",
         (
-            "Real programs, simulated links: delay, jitter, rate and loss. Nothing here was asked of the "
-            "thesis' prototype."
+            "Real programs, simulated links: delay, jitter, rate and loss. Nothing here was asked"
+            " of the thesis' prototype."
         ),
         figures,
     )

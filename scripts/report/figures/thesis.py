@@ -1,10 +1,9 @@
 """The thesis' figures, with our numbers beside the thesis'. Its own numbers have hollow marks."""
-import math
-
 from ..charts import Axis, Part, Series, dots, lines, points, stacks
 from ..comparison import OURS
 from ..figure import Figure, Section
 from ..meshers import THESIS_MESHERS, mesher
+from ..rows import number_of
 from ..statistics import Interval, exactly, mean, mean_interval
 from ..style import PHASES
 from ..steps import SCENARIOS
@@ -15,7 +14,7 @@ GROUPS = {1: ("general models", range(1, 18)), 2: ("random voxels", range(18, 23
 THESIS_GRID_BYTES, GRID_BYTES = 262_144, 65_536  # 32³ voxels of 8 bytes in the thesis, of 2 bytes here
 SIDES = (8, 16, 32, 64, 128)
 MS = 1e6  # ns
-MIDDLE_NOTE = "Times are over the chunks that have quads; counts of vertices are the thesis' mean over all 27 chunks."
+TIMES_NOTE = "Times are over the chunks that have quads; counts of vertices are the thesis' mean over all 27 chunks."
 
 
 class ThesisFigures:
@@ -25,10 +24,10 @@ class ThesisFigures:
         self._times = {(r["scenario"], r["mesher"]): r for r in evidence.here.rows("thesis")}
 
     def fact(self, scenario, name):
-        return float(self._facts.get(scenario, {}).get(name, math.nan))
+        return number_of(self._facts.get(scenario, {}).get(name))
 
     def time(self, scenario, key, name):
-        return float(self._times.get((scenario, key), {}).get(name, math.nan))
+        return number_of(self._times.get((scenario, key), {}).get(name))
 
     def memory(self, group):
         name, scenarios = GROUPS[group]
@@ -42,9 +41,11 @@ class ThesisFigures:
             id_,
             f"Memory of group {group}, {name} (figures 8.4 to 8.9)",
             (
-                f"A chunk takes {number_text(a)} bytes of runs on average: {number_text(100 * (1 - a / GRID_BYTES))} %"
-                f" less than a flat array of 2 bytes a voxel. The thesis' RLE takes {number_text(b)},"
-                f" {number_text(100 * (1 - b / THESIS_GRID_BYTES))} % less than its own flat array of 8 bytes a voxel."
+                f"A chunk takes {number_text(a)} bytes of runs on average:"
+                f" {number_text(100 * (1 - a / GRID_BYTES))} % less than a flat array of 2 bytes a"
+                f" voxel. The thesis' RLE takes {number_text(b)},"
+                f" {number_text(100 * (1 - b / THESIS_GRID_BYTES))} % less than its own flat array"
+                " of 8 bytes a voxel."
             ),
             ("facts",),
             ["scenario", "thesis: RLE, 12 B a run, as logged", "ours: runs, cheapest axis order", "solid voxels, %"],
@@ -77,10 +78,12 @@ class ThesisFigures:
             id_,
             f"Vertices of group {group}, {name} (figures 8.11 to 8.13)",
             (
-                f"Ours needs {number_text(mean(ours))} vertices a chunk on average, the thesis' Grid RDM"
-                f" {number_text(mean(theirs['grid_rdm']))}, its RLE RDM {number_text(mean(theirs['rle_rdm']))} and"
-                f" Voxel Plugin {number_text(mean(theirs['culled']))}. Our rebuilt meshers give the thesis' mean: Grid"
-                f" RDM in {same['grid_rdm']} of {len(scenarios)}, RLE RDM in {same['rle_rdm']} of {len(scenarios)}."
+                f"Ours needs {number_text(mean(ours))} vertices a chunk on average, the thesis'"
+                f" Grid RDM {number_text(mean(theirs['grid_rdm']))}, its RLE RDM"
+                f" {number_text(mean(theirs['rle_rdm']))} and Voxel Plugin"
+                f" {number_text(mean(theirs['culled']))}. Our rebuilt meshers give the thesis'"
+                f" mean: Grid RDM in {same['grid_rdm']} of {len(scenarios)}, RLE RDM in"
+                f" {same['rle_rdm']} of {len(scenarios)}."
             ),
             ("thesis",),
             [
@@ -133,11 +136,12 @@ class ThesisFigures:
             id_,
             f"Where the time goes in group {group}, {name} (figures 8.16 to 8.19)",
             (
-                f"Ours meshes a chunk in {interval_text(total['rdm'])} µs, with no phase before it and none after:"
-                " quads are what the GPU reads. On the same machine the rebuilt Grid RDM takes"
-                f" {interval_text(total['grid_rdm'])} µs, RLE RDM {interval_text(total['rle_rdm'])}, and decoding first"
-                f" {interval_text(total['decode_binary'])}. Compare the thesis' milliseconds by their shares only:"
-                " another machine, and an engine around them."
+                f"Ours meshes a chunk in {interval_text(total['rdm'])} µs, with no phase before it"
+                " and none after: quads are what the GPU reads. On the same machine the rebuilt"
+                f" Grid RDM takes {interval_text(total['grid_rdm'])} µs, RLE RDM"
+                f" {interval_text(total['rle_rdm'])}, and decoding first"
+                f" {interval_text(total['decode_binary'])}. Compare the thesis' milliseconds by"
+                " their shares only: another machine, and an engine around them."
             ),
             ("thesis",),
             ["source", "mesher", "phase", "mean"],
@@ -157,7 +161,7 @@ class ThesisFigures:
             ],
             notes=[
                 "The brackets hold 95 % bootstrap intervals of the arithmetic mean over the scenarios.",
-                MIDDLE_NOTE,
+                TIMES_NOTE,
                 *self.thesis.notes(scenarios),
                 VOXEL_PLUGIN_EVENTS,
             ],
@@ -178,10 +182,11 @@ class ThesisFigures:
             id_,
             f"Meshing from runs in group {group}, {name}: least, median, greatest (figures 8.20 and 8.21)",
             (
-                f"Over the group a chunk takes ours {number_text(mean([v.middle for v in ours]))} µs, the rebuilt RLE"
-                f" RDM {number_text(mean([v.middle for v in rebuilt]))} µs on the same machine, and the thesis' RLE RDM"
-                f" {number_text(mean([v.middle for v in theirs]))} µs on its own, with Unreal's buffers (means of the"
-                " medians)."
+                f"Over the group a chunk takes ours {number_text(mean([v.middle for v in ours]))}"
+                f" µs, the rebuilt RLE RDM {number_text(mean([v.middle for v in rebuilt]))} µs on"
+                " the same machine, and the thesis' RLE RDM"
+                f" {number_text(mean([v.middle for v in theirs]))} µs on its own, with Unreal's"
+                " buffers (means of the medians)."
             ),
             ("thesis",),
             ["scenario", "mesher", "least us", "median us", "greatest us"],
@@ -203,7 +208,7 @@ class ThesisFigures:
                     Axis("µs of a chunk: least, median and greatest", True),
                 )
             ],
-            notes=[MIDDLE_NOTE, *self.thesis.notes(scenarios)],
+            notes=[TIMES_NOTE, *self.thesis.notes(scenarios)],
         )
 
     def chunk_sizes(self, scenario):
@@ -241,8 +246,8 @@ class ThesisFigures:
         ]
         if is_noise:
             notes.append(
-                "Scenario 5 is data of side 32 whose generator is not public. Ours is one chunk of our own noise"
-                " terrain."
+                "Scenario 5 is data of side 32 whose generator is not public. Ours is one chunk"
+                " of our own noise terrain."
             )
         else:
             notes.append("Ours: the chunk in the middle; the thesis: the mean of 27.")
@@ -256,9 +261,10 @@ class ThesisFigures:
             id_,
             f"Side of the chunk, scenario {scenario} (figures 8.23 to 8.25)",
             (
-                f"A chunk of 128³ takes ours {time_text(MS * at(128).middle)}. The thesis called that side unsuitable"
-                f" for real time ({theirs[0]} with Grid RDM, {theirs[1]} with RLE RDM). From 32 to 128 the voxels grow"
-                f" 64 times and our time {number_text(at(128).middle / at(32).middle)} times."
+                f"A chunk of 128³ takes ours {time_text(MS * at(128).middle)}. The thesis called"
+                f" that side unsuitable for real time ({theirs[0]} with Grid RDM, {theirs[1]} with"
+                " RLE RDM). From 32 to 128 the voxels grow 64 times and our time"
+                f" {number_text(at(128).middle / at(32).middle)} times."
             ),
             (step,),
             ["mesher", "side", "ms", "low", "high"],
@@ -310,8 +316,9 @@ class ThesisFigures:
             "efficiency",
             "Efficiency: time against vertices (figure 8.26)",
             (
-                f"The good corner is the lower left. Arithmetic means over the 37 scenarios: ours {both('rdm')}; decode"
-                f" + binary greedy {both('decode_binary')}; the rebuilt RLE RDM of the thesis {both('rle_rdm')}."
+                "The good corner is the lower left. Arithmetic means over the 37 scenarios: ours"
+                f" {both('rdm')}; decode + binary greedy {both('decode_binary')}; the rebuilt RLE"
+                f" RDM of the thesis {both('rle_rdm')}."
             ),
             ("thesis",),
             ["mesher", "mean ms", "low", "high", "mean vertices", "low", "high"],
@@ -327,7 +334,7 @@ class ThesisFigures:
             ],
             notes=[
                 "The lines are 95 % bootstrap intervals over the scenarios.",
-                MIDDLE_NOTE,
+                TIMES_NOTE,
                 MEANS_NOTE,
                 VOXEL_PLUGIN_CHUNKS,
                 "The thesis' points were measured on a Xeon E3-1240 v5 inside Unreal Engine 5.4.",

@@ -70,8 +70,9 @@ def _worlds(evidence, step, title):
             )
         ],
         notes=[
-            "The number after a name counts its volumes with quads. The lines are 95 % bootstrap intervals of the"
-            " geometric mean over the volumes; with one volume, the range that its repetitions allow."
+            "The number after a name counts its volumes with quads. The lines are 95 % bootstrap"
+            " intervals of the geometric mean over the volumes; with one volume, the range that"
+            " its repetitions allow."
         ],
     )
 
@@ -118,10 +119,11 @@ def _orders(evidence):
         "axis-orders",
         "Axis orders: compression rotation (9.2)",
         (
-            f"The cheapest of the six orders has {interval_text(geometric_mean_interval(fewer.values()))} times fewer"
-            " runs than the dearest (geometric mean over these worlds) and meshes"
-            f" {interval_text(geometric_mean_interval(faster.values()))} times faster. Which one it is differs by"
-            " chunk, so each holder picks it when a chunk is made."
+            "The cheapest of the six orders has"
+            f" {interval_text(geometric_mean_interval(fewer.values()))} times fewer runs than the"
+            " dearest (geometric mean over these worlds) and meshes"
+            f" {interval_text(geometric_mean_interval(faster.values()))} times faster. Which one"
+            " it is differs by chunk, so each holder picks it when a chunk is made."
         ),
         ("orders",),
         ["world", "order", "volumes", "runs", "ours us", "decode_binary us"],
@@ -157,9 +159,9 @@ def _dirty_layers(evidence):
         "dirty-layers",
         "Dirty layers: what an edit costs to mesh",
         (
-            "After one voxel changed, the runs are spliced and only the layers it touched are meshed, neighbours"
-            f" included: {number_text(mean(layers))} µs on average, where meshing the chunks whole takes"
-            f" {number_text(mean(whole))} µs."
+            "After one voxel changed, the runs are spliced and only the layers it touched are"
+            f" meshed, neighbours included: {number_text(mean(layers))} µs on average, where"
+            f" meshing the chunks whole takes {number_text(mean(whole))} µs."
         ),
         ("dirty-layers",),
         ["world", "edge", "changed layers us", "whole chunk us", "bytes a voxel"],
@@ -205,8 +207,8 @@ def _stacks(evidence):
         "stacks",
         "Stacked edits (9.2): one sweep instead of many",
         (
-            f"A thousand edits of one chunk by hand take {us(cases[0][1])} µs as one stack and {us(cases[1][1])} µs one"
-            f" by one; by brush {us(cases[2][1])} and {us(cases[3][1])}."
+            f"A thousand edits of one chunk by hand take {us(cases[0][1])} µs as one stack and"
+            f" {us(cases[1][1])} µs one by one; by brush {us(cases[2][1])} and {us(cases[3][1])}."
         ),
         ("edits",),
         ["case", "edits", "median us", "p90 us"],

@@ -1,4 +1,7 @@
-"""A small report folder: three scenarios, a real world of two volumes, and one row or two of the rest."""
+"""A small report folder: three scenarios, a real world of two volumes, and one row or two of the
+rest.
+"""
+import unittest.mock
 from pathlib import Path
 
 from report.meshers import MESHERS
@@ -11,6 +14,18 @@ MACHINE = Machine("Sample CPU", 2, "g++ 12.2.0", "0123abcd", "AVX2")
 STEPS = {step.name: step for step in report_steps(False)}
 # A PNG picture of one pixel.
 PIXEL = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
+
+
+def without_drawing():
+    """Returns a patch: each chart is built, but its SVG is empty.
+
+    Writing the SVG takes most of the time of a page.
+    """
+
+    def empty_svg(_, name, title):
+        return f'<svg viewBox="0 0 1 1" aria-label="{title}"><desc>{name}</desc></svg>'
+
+    return unittest.mock.patch("report.charts.svg_of", empty_svg)
 
 
 def thesis():
@@ -68,10 +83,8 @@ def _results():
         for key in ("rdm", "decode_binary")
         for side in (32, 128)
     ]
-    facts = [
-        {"scenario": s, "group": 1, "voxels": 32768, "opaque": 100, "run_bytes": 40, "thesis_bytes": 60}
-        for s in (1, 2, 3)
-    ]
+    fact = {"group": 1, "voxels": 32768, "opaque": 100, "run_bytes": 40, "thesis_bytes": 60}
+    facts = [{"scenario": s, **fact} for s in (1, 2, 3)]
     thesis_rows = [
         {
             "scenario": s,
@@ -83,10 +96,8 @@ def _results():
             "min_ns": 800,
             "max_ns": 2000,
             "vertices": 24,
-            "decode_ns": 0,
-            "octree_ns": 0,
-            "mask_ns": 0,
             "mesh_ns": 1000,
+            **dict.fromkeys(("decode_ns", "octree_ns", "mask_ns"), 0),
         }
         for s in (2, 3)
         for key in ("rdm", "decode_binary", "grid_rdm", "rle_rdm", "culled")
@@ -125,17 +136,8 @@ def _results():
         },
         "storage": {
             "rows": [
-                {
-                    "world": "hills",
-                    "part": "0",
-                    "store": store,
-                    "bytes": n,
-                    "read_ns": n,
-                    "walk_ns": n,
-                    "edit_ns": n,
-                    "brush_ns": n,
-                    "build_ns": n,
-                }
+                {"world": "hills", "part": "0", "store": store}
+                | dict.fromkeys(("bytes", "read_ns", "walk_ns", "edit_ns", "brush_ns", "build_ns"), n)
                 for store, n in (("runs", 10), ("flat", 30))
             ]
         },

@@ -2,6 +2,7 @@ import csv
 import re
 import tempfile
 import unittest
+import unittest.mock
 import xml.etree.ElementTree as ElementTree
 from html.parser import HTMLParser
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 from report.page import write_page
 from report.style import colour_css
 
-from .sample_data import MACHINE, STEPS, thesis, write_report
+from .sample_data import MACHINE, STEPS, mesh_rows, step_result, thesis, without_drawing, write_report, write_result
 
 # The figures that docs/reproduce.md names.
 FIGURES = (
@@ -88,7 +89,9 @@ class Page(unittest.TestCase):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = Path(cls.temporary.name)
         write_report(cls.folder)
-        write_page(cls.folder, list(STEPS.values()), thesis())
+        # Half of the time of a drawing is its layout, which no test of the page reads.
+        with unittest.mock.patch("matplotlib.layout_engine.do_constrained_layout"):
+            write_page(cls.folder, list(STEPS.values()), thesis())
         cls.text, cls.page = page_of(cls.folder)
 
     @classmethod
@@ -146,6 +149,11 @@ class Page(unittest.TestCase):
 
 
 class OtherPages(unittest.TestCase):
+    def setUp(self):
+        drawing = without_drawing()
+        drawing.start()
+        self.addCleanup(drawing.stop)
+
     def test_a_page_without_results_says_so(self):
         with tempfile.TemporaryDirectory() as folder:
             write_page(folder, list(STEPS.values()), thesis())
@@ -168,9 +176,23 @@ class OtherPages(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as copied:
             write_report(folder)
             write_report(copied, other, only=("meshers",))
+            caves = {"rows": mesh_rows("caves", ["a"], {"rdm": 3000, "decode_binary": 2000})}
+            write_result(Path(copied) / "data", step_result("landscapes", caves, other, quick=True))
+            (Path(copied) / "data/adversaries.json").write_text("{}")
             (Path(copied) / "data").rename(Path(folder) / "data/other")
-            write_page(folder, list(STEPS.values()), thesis())
+            (Path(folder) / "data/broken").mkdir()
+            (Path(folder) / "data/broken/meshers.json").write_text("{")
+            evidence = write_page(folder, list(STEPS.values()), thesis())
             text, _ = page_of(folder)
+            self.assertEqual(len(evidence.errors()), 2)
+            for file in ("broken/meshers.json", "other/adversaries.json"):
+                self.assertTrue(any(file in error for error in evidence.errors()), file)
+            first = text[: text.index('id="answers"')]
+            self.assertIn("In data/other: The result of the step adversaries cannot be used", first)
+            self.assertIn("In data/other: The step landscapes was measured differently from the rest", first)
+            self.assertIn("In data/broken: The result of the step meshers cannot be used", first)
+            self.assertIn("Other CPU: A program that has the grid and its mask ready meshes in the scenarios", first)
+            self.assertIn("contains 1: caves 0.667", first)
             self.assertIn("moves between machines: Sample CPU 2; Other CPU 2", text)
             self.assertIn("Also measured on: Other CPU", text)
             with open(Path(folder) / "csv/verdict.csv", encoding="utf-8") as lines:

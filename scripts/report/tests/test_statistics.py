@@ -55,6 +55,20 @@ class Means(unittest.TestCase):
         self.assertAlmostEqual(found.sums.middle, 104 / 101)
         self.assertEqual((found.faster, found.slower, found.undecided), (["a"], [], ["b"]))
 
+    def test_volumes_of_different_worlds_edges_and_orders_are_different(self):
+        rows = [
+            mesh_row(world, "a", key, ns * factor, edge=edge) | {"order": order}
+            for world, edge, order, factor in (("v", 32, "xyz", 2), ("w", 32, "xyz", 3), ("w", 16, "zyx", 4))
+            for key, ns in (("rdm", 1), ("x", factor))
+        ]
+        found = compare(Rows(rows), "x")
+        self.assertEqual(
+            {name: round(ratio.middle) for name, ratio in found.volumes.items()},
+            {"v a 32 xyz": 2, "w a 32 xyz": 3, "w a 16 zyx": 4},
+        )
+        self.assertAlmostEqual(found.sums.middle, (4 + 9 + 16) / (2 + 3 + 4))
+        self.assertEqual(list(compare(Rows(rows).where(world="v"), "x").volumes), ["a"])
+
     def test_nothing_to_compare_is_none(self):
         self.assertIsNone(compare(Rows(), "decode_binary"))
         self.assertIsNone(compare(Rows([mesh_row("w", "a", "rdm", 1)]), "decode_binary"))
@@ -89,13 +103,13 @@ class Intervals(unittest.TestCase):
 
     def test_unknown_values_are_left_out(self):
         self.assertAlmostEqual(mean_interval([1, math.nan, 3]).middle, 2)
-        self.assertFalse(mean_interval([]).is_known)
-        self.assertFalse(geometric_mean_interval([0, -1]).is_known)
-        self.assertFalse(sum_ratio_interval([math.nan], [1]).is_known)
+        self.assertFalse(mean_interval([]).is_measured)
+        self.assertFalse(geometric_mean_interval([0, -1]).is_measured)
+        self.assertFalse(sum_ratio_interval([math.nan], [1]).is_measured)
 
     def test_a_ratio_takes_the_widest_ends(self):
         self.assertEqual(ratio_of(Interval(8, 10, 12), Interval(1, 2, 4)), Interval(2, 5, 12))
-        self.assertFalse(ratio_of(exactly(1), exactly(math.nan)).is_known)
+        self.assertFalse(ratio_of(exactly(1), exactly(math.nan)).is_measured)
 
 
 class Ranks(unittest.TestCase):
