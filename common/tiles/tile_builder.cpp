@@ -1,11 +1,12 @@
 #include "common/tiles/tile_builder.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "common/runs/reorder.hpp"
+#include "common/runs/line_starts.hpp"
 #include "common/runs/run_cursor.hpp"
 #include "common/tiles/exposure.hpp"
 #include "common/tiles/layer_rows.hpp"
@@ -19,7 +20,8 @@ struct TileScratch::State {
   tiles::ExposureSweep sweep;
   tiles::MostExposed most_exposed;
   tiles::RunSink sink;
-  RunChunk empty;  // for children that are null
+  RunChunk empty;                         // for children that are null
+  std::array<LineStarts, 8> line_starts;  // of the children in another axis order
 };
 
 TileScratch::TileScratch() : state_(std::make_unique<State>()) {}
@@ -59,15 +61,22 @@ struct LineRow {
   }
 };
 
+/// A child, read line by line: its runs, or the starts of its lines if it has another axis order.
+template <class Runs>
+struct ChildReader {
+  RunCursor<Runs> cursor;
+  const LineStarts* lines;  // null: the runs
+};
+
 /// Reads the layers of eight children, in order, into bit rows.
 template <unsigned kEdge, class Runs>
 class LayerReader {
  public:
   static constexpr std::size_t kWords = (2 * kEdge + 63) / 64;
 
-  LayerReader(std::array<RunCursor<Runs>, 8> cursors, AxisOrder order,
+  LayerReader(std::array<ChildReader<Runs>, 8> children, AxisOrder order,
               const VisibilityTable& visibility)
-      : cursors_(cursors), visibility_(visibility) {
+      : children_(children), visibility_(visibility) {
     const auto axes = axes_of(order);
     for (std::size_t i = 0; i < 3; ++i) step_[i] = std::size_t{1} << static_cast<unsigned>(axes[i]);
   }
@@ -75,85 +84,127 @@ class LayerReader {
   /// Reads the next layer.
   void read(LayerRows& out) {
     const std::size_t half = layer_ / kEdge * step_[2];
-    const std::uint32_t base = layer_ % kEdge * kEdge * kEdge;
+    const std::uint32_t layer = layer_ % kEdge;
     ++layer_;
-    const std::array<RunCursor<Runs>*, 4> parts = {&cursors_[half], &cursors_[half + step_[0]],
-                                                   &cursors_[half + step_[1]],
-                                                   &cursors_[half + step_[0] + step_[1]]};
-    bool is_uniform = true;
-    for (RunCursor<Runs>* part : parts) {
-      if (part->end() == base) part->next();
-      is_uniform = is_uniform && part->end() >= base + kEdge * kEdge &&
-                   part->material() == parts[0]->material();
-    }
-    if (is_uniform) return out.make_uniform(parts[0]->material());
+    const std::array<ChildReader<Runs>*, 4> parts = {&children_[half], &children_[half + step_[0]],
+                                                     &children_[half + step_[1]],
+                                                     &children_[half + step_[0] + step_[1]]};
+    std::array<std::optional<Material>, 4> only;
+    for (std::size_t i = 0; i < 4; ++i) only[i] = only_material(*parts[i], layer);
+    const bool is_uniform =
+        only[0] && only[0] == only[1] && only[0] == only[2] && only[0] == only[3];
+    if (is_uniform) return out.make_uniform(*only[0]);
     out.is_uniform = out.has_same_before = false;
     out.has_rows = true;
     out.transparent = {};
-    out_ = &out;
-    segments_ = 0;
-    read_half(base, 0, *parts[0], *parts[1]);
-    read_half(base, kEdge, *parts[2], *parts[3]);
+    end_ = out.materials.data();
+    read_half(layer, 0, *parts[0], *parts[1], out);
+    read_half(layer, kEdge, *parts[2], *parts[3], out);
     out.find_same_in_layer();
   }
 
  private:
-  /// Reads the lines [first_line, first_line + kEdge) of the layer from two children.
-  void read_half(std::uint32_t base, std::size_t first_line, RunCursor<Runs>& low,
-                 RunCursor<Runs>& high) {
-    for (std::size_t line = 0; line < kEdge;) {
-      const std::uint32_t start = base + static_cast<std::uint32_t>(line) * kEdge;
-      if (low.end() == start) low.next();
-      if (high.end() == start) high.next();
-      const std::size_t first_segment = segments_;
+  /// Returns the material of a layer of a child if one run, or lines of one segment, show that it
+  /// has only one.
+  static std::optional<Material> only_material(ChildReader<Runs>& child, std::uint32_t layer) {
+    if (child.lines != nullptr) {
+      const auto starts = child.lines->lines(std::size_t{layer} * kEdge, kEdge);
+      if (starts.size() != kEdge) return std::nullopt;
+      const Material first = starts[0].material;
+      for (const LineStart& start : starts) {
+        if (start.material != first) return std::nullopt;
+      }
+      return first;
+    }
+    const std::uint32_t begin = layer * kEdge * kEdge;
+    if (child.cursor.end() == begin) child.cursor.next();
+    if (child.cursor.end() < begin + kEdge * kEdge) return std::nullopt;
+    return child.cursor.material();
+  }
+
+  /// The state of the inner loop, as local variables.
+  struct Segments {
+    const Visibility* visibility;
+    Material* end;  // behind the last segment
+    TransparentMaterials transparent;
+
+    void add(LineRow<kWords>& row, unsigned at, Material material) {
+      const Visibility kind = visibility[material];
+      row.add(at, kind);
+      *end++ = material;
+      if (kind == Visibility::transparent) transparent.add(material);
+    }
+    /// Adds the segments of line `line` of a child (numbered over all layers) from place `at` of
+    /// the row on.
+    void add_part(LineRow<kWords>& row, std::size_t line, unsigned at, ChildReader<Runs>& child) {
+      if (child.lines != nullptr) {
+        const auto starts = child.lines->line(line);
+        if (at == 0 || end[-1] != starts[0].material) add(row, at, starts[0].material);
+        for (const LineStart& start : starts.subspan(1)) add(row, start.at + at, start.material);
+        return;
+      }
+      RunCursor<Runs>& cursor = child.cursor;
+      const auto start = static_cast<std::uint32_t>(line) * kEdge;
+      if (cursor.end() == start) cursor.next();
+      if (at == 0 || end[-1] != cursor.material()) add(row, at, cursor.material());
+      for (std::uint32_t next = cursor.end(); next < start + kEdge; next = cursor.end()) {
+        cursor.next();
+        add(row, next - start + at, cursor.material());
+      }
+    }
+  };
+
+  /// Returns how many lines from `line` on one run of the child covers.
+  static std::size_t covered_lines(ChildReader<Runs>& child, std::size_t line) {
+    if (child.lines != nullptr) return 0;
+    const auto start = static_cast<std::uint32_t>(line) * kEdge;
+    if (child.cursor.end() == start) child.cursor.next();
+    return (child.cursor.end() - start) / kEdge;
+  }
+
+  /// Reads the lines [first_line, first_line + kEdge) of the layer from two children, of which it
+  /// is layer `layer`.
+  void read_half(std::uint32_t layer, std::size_t first_line, ChildReader<Runs>& low_child,
+                 ChildReader<Runs>& high_child, LayerRows& out) {
+    Segments segments{visibility_.data(), end_, out.transparent};
+    ChildReader<Runs> low = low_child, high = high_child;
+    const std::size_t first_of_child = std::size_t{layer} * kEdge;
+    for (std::size_t i = 0; i < kEdge;) {
+      const std::size_t line = first_of_child + i;
+      const auto first_segment = static_cast<std::uint32_t>(segments.end - out.materials.data());
       LineRow<kWords> row;
       // Lines that single runs of both children cover are equal.
-      const std::uint32_t covered = std::min(low.end(), high.end()) - start;
-      std::size_t count = 1;
-      if (covered >= kEdge) {
-        count = std::min<std::size_t>(covered / kEdge, kEdge - line);
-        add(row, 0, low.material());
-        if (high.material() != low.material()) add(row, kEdge, high.material());
+      std::size_t count = std::min(covered_lines(low, line), covered_lines(high, line));
+      if (count != 0) {
+        count = std::min<std::size_t>(count, kEdge - i);
+        segments.add(row, 0, low.cursor.material());
+        if (high.cursor.material() != low.cursor.material())
+          segments.add(row, kEdge, high.cursor.material());
       } else {
-        read_part(row, start, 0, low);
-        read_part(row, start, kEdge, high);
+        count = 1;
+        segments.add_part(row, line, 0, low);
+        segments.add_part(row, line, kEdge, high);
       }
-      for (; count > 0; --count, ++line) {
-        out_->first_segment[first_line + line] = static_cast<std::uint32_t>(first_segment);
+      for (; count > 0; --count, ++i) {
+        out.first_segment[first_line + i] = first_segment;
         for (std::size_t w = 0; w < kWords; ++w) {
-          out_->changes.at(first_line + line, w) = row.changes[w];
-          out_->opaque.at(first_line + line, w) = row.opaque[w];
-          out_->solid.at(first_line + line, w) = row.solid[w];
+          out.changes.at(first_line + i, w) = row.changes[w];
+          out.opaque.at(first_line + i, w) = row.opaque[w];
+          out.solid.at(first_line + i, w) = row.solid[w];
         }
       }
     }
+    low_child = low;
+    high_child = high;
+    end_ = segments.end;
+    out.transparent = segments.transparent;
   }
 
-  /// Adds the segments of one child to the line from `at` on.
-  void read_part(LineRow<kWords>& row, std::uint32_t start, unsigned at, RunCursor<Runs>& cursor) {
-    const std::uint32_t end = start + kEdge;
-    if (at == 0 || out_->materials[segments_ - 1] != cursor.material())
-      add(row, at, cursor.material());
-    while (cursor.end() < end) {
-      const std::uint32_t next = cursor.end() - start + at;
-      cursor.next();
-      add(row, next, cursor.material());
-    }
-  }
-
-  void add(LineRow<kWords>& row, unsigned at, Material material) {
-    const Visibility kind = visibility_[material];
-    row.add(at, kind);
-    out_->materials[segments_++] = material;
-    if (kind == Visibility::transparent) out_->transparent.add(material);
-  }
-
-  std::array<RunCursor<Runs>, 8> cursors_;
+  std::array<ChildReader<Runs>, 8> children_;
   const VisibilityTable& visibility_;
   std::array<std::size_t, 3> step_{};  // in the number of a child, along each axis of the order
   std::uint32_t layer_ = 0;
-  LayerRows* out_ = nullptr;
-  std::size_t segments_ = 0;  // in out_->materials
+  Material* end_ = nullptr;  // behind the last segment of the layer
 };
 
 /// Writes the layers of a tile from the most exposed voxels of their cells.
@@ -228,18 +279,20 @@ class LayerWriter {
 template <unsigned kEdge, class Runs>
 void build_layers(const TileChildren& children, AxisOrder order, const VisibilityTable& visibility,
                   TileScratch::State& state) {
-  const auto cursor = [&](std::size_t i) {
-    return children[i]->runs.visit([](auto runs) -> RunCursor<Runs> {
+  const auto child = [&](std::size_t i) -> ChildReader<Runs> {
+    const bool is_turned = children[i]->order != order && !children[i]->is_uniform();
+    if (is_turned) state.line_starts[i].read(*children[i], order);
+    return children[i]->runs.visit([&](auto runs) -> ChildReader<Runs> {
       if constexpr (std::is_same_v<decltype(runs), Runs>) {
-        return RunCursor<Runs>(runs);
+        return {RunCursor<Runs>(runs), is_turned ? &state.line_starts[i] : nullptr};
       } else {
         assertion_failed("runs in the form of their volume", __FILE__, __LINE__);
       }
     });
   };
   LayerReader<kEdge, Runs> reader(
-      {cursor(0), cursor(1), cursor(2), cursor(3), cursor(4), cursor(5), cursor(6), cursor(7)},
-      order, visibility);
+      {child(0), child(1), child(2), child(3), child(4), child(5), child(6), child(7)}, order,
+      visibility);
   LayerWriter<kEdge> writer(state.sink);
   for (LayerRows& layer : state.layers) layer.reset(kEdge);
   state.outside.reset(kEdge);
@@ -285,17 +338,10 @@ RunChunk build_tile(const TileChildren& children, unsigned edge, AxisOrder order
   TileScratch::State& state = scratch.state();
   if (state.empty.extent != extent || state.empty.runs.size() == 0)
     state.empty = uniform_chunk(extent, kEmpty);
-  std::array<RunChunk, 8> reordered;
   TileChildren all = children;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i] == nullptr) {
-      all[i] = &state.empty;
-      continue;
-    }
-    RUNSTONE_ASSERT(all[i]->extent == extent);
-    if (all[i]->order == order || all[i]->is_uniform()) continue;
-    reordered[i] = reorder(*all[i], order);
-    all[i] = &reordered[i];
+  for (const RunChunk*& child : all) {
+    if (child == nullptr) child = &state.empty;
+    RUNSTONE_ASSERT(child->extent == extent);
   }
   if (tiles::is_uniform(all)) return uniform_chunk(extent, all[0]->runs.material(0), order);
   switch (edge) {

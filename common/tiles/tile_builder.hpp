@@ -37,11 +37,12 @@ class TileScratch {
 };
 
 /// Returns the tile of `children` in axis order `order`. Requires `edge` 16, 32, 64 or 128, and
-/// valid children that are cubes of that edge. Thread: any, with one scratch each. In a steady
-/// state only the result allocates. Children in another axis order are reordered first, which
-/// allocates. Cost:
+/// valid children that are cubes of that edge, in any axis order. Thread: any, with one scratch
+/// each. In a steady state only the result allocates. Cost:
 ///   - O(runs and lines of the children + runs of the tile);
 ///   - a few instructions for 64 voxels of each line in layers that are not uniform;
+///   - for a child in another axis order, also O(segments of its lines along that order), which is
+///     about as much again;
 ///   - O(layers) for uniform children.
 RunChunk build_tile(const TileChildren& children, unsigned edge, AxisOrder order,
                     const VisibilityTable& visibility, TileScratch& scratch);
