@@ -65,7 +65,8 @@ void LineStarts::read(const RunChunk& chunk, AxisOrder order) {
 
   // A counting sort by line. The starts of each line arrive in ascending order.
   ends_.assign(to.m * to.s, 0);
-  unsorted_.clear();
+  std::uint32_t* const counts = ends_.data();
+  std::size_t found = 0;
   chunk.runs.visit([&](const auto& runs) {
     for_each_start(runs, e, rank,
                    [&](std::uint32_t line, std::uint32_t f0, std::uint32_t f1, Material material) {
@@ -73,9 +74,12 @@ void LineStarts::read(const RunChunk& chunk, AxisOrder order) {
                      const std::uint32_t along = rank == 0 ? f0 : rank == 1 ? m : s;
                      const LineStart start{static_cast<std::uint16_t>(along), material};
                      std::uint32_t at = m * step[1] + s * step[2] + f0 * step[0];
+                     if (unsorted_.size() < found + (f1 - f0)) unsorted_.resize(2 * found + e.f);
+                     Unsorted* out = unsorted_.data() + found;
+                     found += f1 - f0;
                      for (std::uint32_t f = f0; f < f1; ++f, at += step[0]) {
-                       ++ends_[at];
-                       unsorted_.push_back({at, start});
+                       ++counts[at];
+                       *out++ = {at, start};
                      }
                    });
   });
@@ -85,8 +89,8 @@ void LineStarts::read(const RunChunk& chunk, AxisOrder order) {
     end = sum;  // the begin, until the starts are in place
     sum += count;
   }
-  starts_.resize(unsorted_.size());
-  for (const Unsorted& each : unsorted_) starts_[ends_[each.line]++] = each.start;
+  starts_.resize(found);
+  for (std::size_t i = 0; i < found; ++i) starts_[counts[unsorted_[i].line]++] = unsorted_[i].start;
 }
 
 }  // namespace runstone

@@ -41,7 +41,7 @@ class LineStarts {
   };
   std::vector<std::uint32_t> ends_;  // of the lines, in starts_
   std::vector<LineStart> starts_;
-  std::vector<Unsorted> unsorted_;
+  std::vector<Unsorted> unsorted_;  // scratch; its size is its capacity
 };
 
 }  // namespace runstone

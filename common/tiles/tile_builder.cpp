@@ -207,6 +207,15 @@ class LayerReader {
   Material* end_ = nullptr;  // behind the last segment of the layer
 };
 
+/// Returns the number of set bits. On processors without an instruction for it, bit_count() is a
+/// call, which costs a tenth of the time of a tile. Source: Hacker's Delight, 5-1.
+constexpr unsigned count_bits(Row64 row) {
+  row -= row >> 1 & 0x5555'5555'5555'5555;
+  row = (row & 0x3333'3333'3333'3333) + (row >> 2 & 0x3333'3333'3333'3333);
+  row = (row + (row >> 4)) & 0x0f0f'0f0f'0f0f'0f0f;
+  return static_cast<unsigned>(row * 0x0101'0101'0101'0101 >> 56);
+}
+
 /// Writes the layers of a tile from the most exposed voxels of their cells.
 template <unsigned kEdge>
 class LayerWriter {
@@ -258,7 +267,7 @@ class LayerWriter {
         const unsigned at = lowest_bit(cells);
         const auto line = static_cast<std::size_t>((along_m >> at & 1) | (along_s >> at & 1) << 1);
         const unsigned voxel = at + static_cast<unsigned>(f >> at & 1);
-        const unsigned segment = bit_count(changes[line][w] & (~Row64{0} >> (63 - voxel)));
+        const unsigned segment = count_bits(changes[line][w] & (~Row64{0} >> (63 - voxel)));
         // materials[line] is one segment before the first one that begins in this word, or behind.
         const auto cell = static_cast<std::uint32_t>(w * 32 + at / 2);
         sink_.append(start + cell, *(materials[line] + segment - 1));
@@ -268,7 +277,7 @@ class LayerWriter {
       carry_m = along_m >> 62 & 1;
       carry_s = along_s >> 62 & 1;
       if constexpr (kWords > 1) {
-        for (std::size_t i = 0; i < 4; ++i) materials[i] += bit_count(changes[i][w]);
+        for (std::size_t i = 0; i < 4; ++i) materials[i] += count_bits(changes[i][w]);
       }
     }
   }
