@@ -26,7 +26,9 @@ struct TilesRow {
   std::size_t runs = 0, veiled_runs = 0;
   std::size_t bytes = 0, veiled_bytes = 0;  // packed
   std::size_t quads = 0;                    // without neighbours
-  double build_us = 0, veil_us = 0;
+  double build_us = 0;                      // from the children in their own axis orders
+  double build_one_order_us = 0;  // from the same children, reordered before the time starts
+  double veil_us = 0;
   double decode_us = 0;  // of the packed bytes of these tiles, veiled
   double mesh_us = 0;    // without neighbours
   /// The time to decode the children of these tiles: decode_us of the level below.
