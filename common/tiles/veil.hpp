@@ -1,5 +1,5 @@
-// Veil: replaces the materials of enclosed voxels of a tile, so that its runs are long. Nobody sees
-// the inside of a tile, and tiles are never edited, so their inside need not be true.
+// Veil: replaces the materials of enclosed voxels of a tile, so that its runs are long. Tiles are
+// never edited, so enclosed voxels are never shown and their materials do not matter.
 //
 // The rule: an opaque voxel whose six neighbours are all opaque takes the material of its
 // predecessor in index order, after that one was veiled. Voxels on the border of the tile keep
