@@ -18,6 +18,7 @@
 #include "tests/bench/network/net_bench.hpp"
 #include "tests/bench/storage/storage_bench.hpp"
 #include "tests/bench/thesis/scenario_bench.hpp"
+#include "tests/bench/tiles/tiles_bench.hpp"
 #include "tests/bench/view/view_bench.hpp"
 #include "tests/bench/wire/bytes_bench.hpp"
 #include "tests/bench/wire/bytes_to_quads.hpp"
@@ -111,6 +112,13 @@ int bytes_to_quads(const BenchOptions& options, std::ostream& out, std::ostream&
   });
 }
 
+int tiles(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_tiles_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
+}
+
 int frames(const FramesOptions& options, std::ostream& out, std::ostream& err) {
   return finish(run_frames_bench(options, err), options, err, [&](const auto& result) {
     write_machine(result.machine, out);
@@ -186,6 +194,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return bytes(options.bench, out, err);
     case Command::bytes_to_quads:
       return bytes_to_quads(options.bench, out, err);
+    case Command::tiles:
+      return tiles(options.bench, out, err);
     case Command::log:
       return log(options.bench, out, err);
     case Command::edits:

@@ -7,6 +7,7 @@
 #include "tests/bench/meshing/mesh_options.hpp"
 #include "tests/bench/storage/storage_options.hpp"
 #include "tests/bench/thesis/scenario_bench.hpp"
+#include "tests/bench/tiles/tiles_options.hpp"
 #include "tests/bench/wire/bytes_options.hpp"
 
 namespace runstone::bench {
@@ -27,7 +28,7 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 11> kSubcommands = {
+constexpr std::array<Subcommand, 12> kSubcommands = {
     {{Command::mesh, add_mesh_command},
      {Command::chunk_edge, add_chunk_edge_command},
      {Command::edits, add_edits_command},
@@ -35,6 +36,7 @@ constexpr std::array<Subcommand, 11> kSubcommands = {
      {Command::bytes, add_bytes_command},
      {Command::bytes_to_quads, add_bytes_to_quads_command},
      {Command::storage, add_storage_command},
+     {Command::tiles, add_tiles_command},
      {Command::mesh_once, add_mesh_once_command},
      {Command::scenario_facts, add_scenario_facts_command},
      {Command::scenario_times, add_scenario_times_command},

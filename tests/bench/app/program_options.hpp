@@ -20,6 +20,7 @@ enum class Command {
   bytes,
   bytes_to_quads,
   storage,
+  tiles,
   net,
   frames,
   view,

@@ -330,6 +330,29 @@ TEST_CASE("runstone-bench bytes-to-quads takes both ways over the same chunks", 
   }
 }
 
+TEST_CASE("runstone-bench tiles measures each level of a world", "[bench]") {
+  const test::TempFolder folder;
+  const std::string json = folder / "tiles.json";
+  const BenchOutput output =
+      run_bench({"tiles", "--min-runs", "1", "--worlds", "luanti", "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  CHECK(output.out.find("build and veil of all tiles") != std::string::npos);
+  const auto document = nlohmann::json::parse(text_of(json));
+  const auto& rows = document.at("rows");
+  REQUIRE(rows.size() == 5);
+  for (std::size_t level = 0; level < rows.size(); ++level) {
+    CAPTURE(level);
+    const auto& row = rows[level];
+    CHECK(row.at("level") == level);
+    CHECK(row.at("tiles") > 0);
+    CHECK(row.at("veiled_runs") <= row.at("runs"));
+    CHECK((row.at("build_us") > 0) == (level > 0));
+    if (level > 0) CHECK(row.at("tiles") <= rows[level - 1].at("tiles"));
+  }
+  CHECK(document.at("targets").size() == 1);
+}
+
 TEST_CASE("runstone-bench scenario-facts counts all chunks of the thesis' scenarios", "[bench]") {
   const test::TempFolder folder;
   const std::string json = folder / "facts.json";

@@ -1,0 +1,36 @@
+// Veil: replaces the materials of enclosed voxels of a tile, so that its runs are long. Tiles are
+// never edited, so enclosed voxels are never shown and their materials do not matter.
+//
+// The rule: an opaque voxel whose six neighbours are all opaque takes the material of its
+// predecessor in index order, after that one was veiled. Voxels on the border of the tile keep
+// their material, because the voxels beyond it are not known. No face that is drawn changes, with
+// any neighbours of the tile.
+#pragma once
+#include <memory>
+
+#include "common/mesh/visibility.hpp"
+#include "common/runs/run_chunk.hpp"
+
+namespace runstone {
+
+/// The buffers that calls reuse. A scratch belongs to one thread, and callers do not use its
+/// contents.
+class VeilScratch {
+ public:
+  VeilScratch();
+  ~VeilScratch();
+  VeilScratch(VeilScratch&&) noexcept;
+  VeilScratch& operator=(VeilScratch&&) noexcept;
+  struct State;
+  State& state() { return *state_; }
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+/// Veils a tile in its axis order. Returns true if any voxel changed. The tile never gets more runs.
+/// Repeating it changes nothing. Requires a valid tile of any extent. Thread: any, with one scratch
+/// each. In a steady state only the new run list allocates. Cost: O(lines + runs).
+bool veil(RunChunk& tile, const VisibilityTable& visibility, VeilScratch& scratch);
+
+}  // namespace runstone
