@@ -5,7 +5,7 @@ namespace {
 
 /// Clears the bits of `x` (one of `same`'s rows, for line `line_a` of `a`) at which line `line_a` of
 /// `a` and line `line_b` of `b` differ in material. Cost: O(words + segments of both lines).
-void keep_equal(LineBits& same, std::size_t line, const LayerRows& a, std::size_t line_a,
+void keep_equal(LayerBits& same, std::size_t line, const LayerRows& a, std::size_t line_a,
                 const LayerRows& b, std::size_t line_b) {
   const Material* material_a = a.materials.data() + a.first_segment[line_a];
   const Material* material_b = b.materials.data() + b.first_segment[line_b];
@@ -27,7 +27,7 @@ void keep_equal(LineBits& same, std::size_t line, const LayerRows& a, std::size_
   }
 }
 
-bool is_zero(const LineBits& bits, std::size_t line, std::size_t words) {
+bool is_zero(const LayerBits& bits, std::size_t line, std::size_t words) {
   Row64 any = 0;
   for (std::size_t w = 0; w < words; ++w) any |= bits.at(line, w);
   return any == 0;
@@ -39,7 +39,7 @@ void LayerRows::reset(unsigned edge) {
   const std::size_t side = 2 * std::size_t{edge};
   words_ = (side + 63) / 64;
   if (lines() != side) {
-    for (LineBits* bits : {&changes, &opaque, &solid, &same_along, &same_across, &same_before})
+    for (LayerBits* bits : {&changes, &opaque, &solid, &same_along, &same_across, &same_before})
       bits->reset(side, words_, 0);
     // The lines beside the layer lie outside of the children and hide the faces towards them.
     opaque.fill(~Row64{0});

@@ -7,7 +7,7 @@
 
 #include "common/core/ids.hpp"
 #include "common/mesh/visibility.hpp"
-#include "common/tiles/line_bits.hpp"
+#include "common/tiles/layer_bits.hpp"
 
 namespace runstone::tiles {
 
@@ -29,12 +29,13 @@ struct TransparentMaterials {
 };
 
 struct LayerRows {
-  LineBits changes;  // the voxel differs in material from the one before it; bit 0 of a line is set
-  LineBits opaque;
-  LineBits solid;  // not empty: opaque or transparent
+  LayerBits
+      changes;  // the voxel differs in material from the one before it; bit 0 of a line is set
+  LayerBits opaque;
+  LayerBits solid;  // not empty: opaque or transparent
   /// Voxels of the same transparent material: bit i is set if voxel i has a neighbour of its own
   /// material at i + 1 of its line, at i of the next line, or at i of the layer before.
-  LineBits same_along, same_across, same_before;
+  LayerBits same_along, same_across, same_before;
 
   std::vector<std::uint32_t> first_segment;  // of each line, in `materials`
   std::vector<Material> materials;           // of the segments of the lines; lines may share them

@@ -1,4 +1,4 @@
-// LineBits: one bit for each voxel of a layer of lines, 64 voxels of a line in a word. Even and odd
+// LayerBits: one bit for each voxel of a layer of lines, 64 voxels of a line in a word. Even and odd
 // lines lie apart, so that a loop over pairs of lines reads consecutive words. Internal to tiles.
 #pragma once
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace runstone::tiles {
 
-class LineBits {
+class LayerBits {
  public:
   /// Makes room for `lines` lines of `words` words, and sets all words to `value`. Requires an even
   /// number of lines.
