@@ -4,6 +4,7 @@
 #pragma once
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <set>
@@ -25,12 +26,14 @@ class HonestBuilder {
     ordered_.erase(ordered_.upper_bound(durable_), ordered_.end());
     next_ = ordered_.empty() ? 1 : ordered_.rbegin()->second.seq + 1;
   }
-  /// Offers again what may be lost, and builds a voxel each millisecond.
+  /// Offers again what may be lost, and builds a voxel each millisecond: for `time`, and on until
+  /// an edit of this builder and one of another client are known to be durable, at most kPatience.
   void build(std::chrono::milliseconds time) {
     using std::chrono::steady_clock;
     const auto begin = steady_clock::now();
     const ClientSequence offered = offered_;
-    for (auto now = begin; now < begin + time && client_->is_open(); now = steady_clock::now()) {
+    for (auto now = begin; client_->is_open(); now = steady_clock::now()) {
+      if (now >= begin + (has_durable_edits() ? time : kPatience)) break;
       const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - begin);
       offered_ = offered + 1 + static_cast<ClientSequence>(elapsed.count());
       for (; next_ <= offered_; ++next_) client_->send(EditRequest{next_, 0, edit_of(next_)});
@@ -79,11 +82,19 @@ class HonestBuilder {
   static constexpr std::uint8_t kKey = 1;
   static constexpr ClientInstance kInstance = 33;
   static constexpr int kReadMs = 2;
+  // A slow machine under attack may need seconds for the first commit.
+  static constexpr std::chrono::milliseconds kPatience{60'000};
 
   /// Each edit sets another voxel near the origin.
   static EditDescriptor edit_of(ClientSequence seq) {
     const auto n = static_cast<std::int32_t>(seq);
     return {SetVoxel{{n % 64, n / 4096, n / 64 % 64}}, {}, static_cast<Material>(1 + seq % 5)};
+  }
+
+  bool has_durable_edits() const {
+    const auto end = ordered_.upper_bound(durable_);
+    const auto mine = static_cast<Sequence>(std::distance(ordered_.begin(), end));
+    return 0 < mine && mine < durable_;
   }
 
   void take(const Message& message) {
