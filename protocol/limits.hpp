@@ -25,10 +25,11 @@ inline constexpr std::uint64_t kFeatureMaterials = 64;    // MaterialsAdded
 inline constexpr std::uint64_t kFeatureLogMarks = 128;    // LogMarksRequest and LogMarks
 inline constexpr std::uint64_t kFeatureRestorePreview = 256;  // RestorePreview
 inline constexpr std::uint64_t kFeaturePreviews = 512;        // PreviewShare and PlayerPreview
+inline constexpr std::uint64_t kFeatureTiles = 1024;  // View.levels, and chunks with a level
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
-    kFeaturePreviews;
+    kFeaturePreviews | kFeatureTiles;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below

@@ -11,17 +11,20 @@ namespace {
 
 // Lists of chunks answer a view, and views are counted from 1.
 constexpr const char* kNoView = "chunks answer view 0";
+constexpr const char* kNoLevel = "chunks have a level of detail above 8";
 
 }  // namespace
 
 Result<Message> BodyReader::read(const wire::View& t) const {
-  View m{t.number(), {}, t.radius_h(), t.radius_v(), t.yaw(), t.pitch(), t.cone()};
+  View m{t.number(), {}, t.radius_h(), t.radius_v(), t.yaw(), t.pitch(), t.cone(),
+         t.levels()};
   if (m.number == 0) return bad("views are numbered from 1");
   if (m.cone > kViewConeMax) return bad("view cone exceeds half a turn");
   if (!take_coord(t.x(), t.y(), t.z(), key_edge(), m.centre))
     return bad("view centre is outside the world");
   if (m.radius_h > kViewRadiusMax || m.radius_v > kViewRadiusMax)
     return bad("view radius exceeds 64 chunks");
+  if (m.levels > kTileLevelMax) return bad("view has more than 8 levels of tiles");
   return m;
 }
 
@@ -39,14 +42,16 @@ Result<Message> BodyReader::read(const wire::CachedChunks& t) const {
 
 Result<Message> BodyReader::read(const wire::Chunks& t) const {
   if (t.view() == 0) return bad(kNoView);
-  auto chunks = decode_answers(view_of(t.chunks()), key_edge(), chunk_edge);
+  if (t.level() > kTileLevelMax) return bad(kNoLevel);
+  auto chunks = decode_answers(view_of(t.chunks()), t.level(), key_edge(), chunk_edge);
   if (!chunks) return Unexpected<Error>{chunks.error()};
   return Message{Chunks{t.view(), *std::move(chunks)}};
 }
 
 Result<Message> BodyReader::read(const wire::UniformChunks& t) const {
   if (t.view() == 0) return bad(kNoView);
-  auto chunks = decode_uniform(view_of(t.chunks()), key_edge());
+  if (t.level() > kTileLevelMax) return bad(kNoLevel);
+  auto chunks = decode_uniform(view_of(t.chunks()), t.level(), key_edge());
   if (!chunks) return Unexpected<Error>{chunks.error()};
   return Message{UniformChunks{t.view(), *std::move(chunks)}};
 }

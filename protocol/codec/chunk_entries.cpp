@@ -67,6 +67,8 @@ class EntryReader {
       in.reject(ErrorCode::unknown_kind, "unknown form of a chunk entry");
     const Version version = take_version(in);
     const Digest digest = take_digest(in);
+    if (key.lod != 0 && form == static_cast<std::uint8_t>(EntryForm::edits))
+      in.reject(ErrorCode::bad_value, "a tile is not a snapshot");
     if (!in.ok() || form == static_cast<std::uint8_t>(EntryForm::snapshot))
       return take_snapshot(in, key, version, digest);
     return take_edits(in, key, version, digest);
@@ -148,7 +150,8 @@ ChunkEntry encode_chunk_edits(const ChunkEdits& edits) {
 
 bool ChunksBuilder::fits(const ChunkEntry& entry) const {
   if (entries_.empty()) return true;
-  return entries_.size() < kChunksPerMessageMax && runs_ + entry.runs <= kRunsPerMessageMax &&
+  return entry.key.lod == entries_.front().key.lod && entries_.size() < kChunksPerMessageMax &&
+         runs_ + entry.runs <= kRunsPerMessageMax &&
          bytes_ + entry.bytes->size() <= kBytesMax &&
          std::none_of(
              entries_.begin(), entries_.end(),
@@ -181,7 +184,7 @@ Bytes list_of(std::span<const ChunkEntry> entries) {
   RUNSTONE_ASSERT(!entries.empty() && entries.size() <= kChunksPerMessageMax);
   Bytes list;
   ByteWriter out(list);
-  KeyWriter keys;
+  KeyWriter keys(entries.front().key.lod);
   std::size_t runs = 0;
   for (const ChunkEntry& entry : entries) {
     keys.put(out, entry.key);
@@ -192,9 +195,9 @@ Bytes list_of(std::span<const ChunkEntry> entries) {
   return list;
 }
 
-Result<std::vector<ChunkAnswer>> decode_answers(ByteView bytes, std::int32_t key_edge,
-                                                std::int32_t chunk_edge) {
-  KeyReader keys(key_edge);
+Result<std::vector<ChunkAnswer>> decode_answers(ByteView bytes, std::uint8_t level,
+                                                std::int32_t key_edge, std::int32_t chunk_edge) {
+  KeyReader keys(key_edge, level);
   const EntryReader entries(chunk_edge);
   std::size_t runs = 0;
   bool is_first = true;

@@ -6,7 +6,7 @@
 namespace runstone {
 
 void KeyWriter::put(ByteWriter& out, const ChunkKey& key) {
-  RUNSTONE_ASSERT(key.lod == 0 && (is_first_ || last_ < key.at));
+  RUNSTONE_ASSERT(key.lod == level_ && (is_first_ || last_ < key.at));
   is_first_ = false;
   out.svarint(std::int64_t{key.at.x} - last_.x);
   out.svarint(std::int64_t{key.at.y} - last_.y);
@@ -14,7 +14,8 @@ void KeyWriter::put(ByteWriter& out, const ChunkKey& key) {
   last_ = key.at;
 }
 
-KeyReader::KeyReader(std::int32_t edge) : reach_(kWorldLimit / edge) {}
+KeyReader::KeyReader(std::int32_t edge, std::uint8_t level)
+    : level_(level), reach_(kWorldLimit / edge >> level) {}
 
 ChunkKey KeyReader::take(ByteReader& in) {
   ChunkCoord at;
@@ -25,7 +26,7 @@ ChunkKey KeyReader::take(ByteReader& in) {
     in.reject(ErrorCode::not_canonical, "chunk keys do not ascend");
   is_first_ = false;
   last_ = at;
-  return {0, at};
+  return {level_, at};
 }
 
 std::int32_t KeyReader::next(ByteReader& in, std::int32_t before) const {

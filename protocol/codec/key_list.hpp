@@ -17,25 +17,28 @@
 namespace runstone {
 
 /// Writes the keys of one list: each axis as svarint of its difference to the key before, the first
-/// key to (0, 0, 0). Requires keys of level of detail 0, strictly ascending.
+/// key to (0, 0, 0). Requires keys of one level of detail, strictly ascending.
 class KeyWriter {
  public:
+  explicit KeyWriter(std::uint8_t level = 0) : level_(level) {}
   void put(ByteWriter& out, const ChunkKey& key);
 
  private:
+  std::uint8_t level_;
   ChunkCoord last_;
   bool is_first_ = true;
 };
 
-/// Reads the keys of one list. Rejects keys that do not ascend or lie outside the world. `edge` is
-/// that of the world's chunks, or the largest one.
+/// Reads the keys of one list, all of level of detail `level`. Rejects keys that do not ascend or lie
+/// outside the world. `edge` is that of the world's chunks, or the largest one.
 class KeyReader {
  public:
-  explicit KeyReader(std::int32_t edge);
+  explicit KeyReader(std::int32_t edge, std::uint8_t level = 0);
   ChunkKey take(ByteReader& in);
 
  private:
   std::int32_t next(ByteReader& in, std::int32_t before) const;
+  std::uint8_t level_;
   std::int32_t reach_;
   ChunkCoord last_;
   bool is_first_ = true;

@@ -68,7 +68,7 @@ struct BodyBuilder {
   Offset<wire::View> operator()(const View& m) {
     RUNSTONE_ASSERT(m.number != 0);
     return wire::CreateView(b, m.number, m.centre.x, m.centre.y, m.centre.z, m.radius_h, m.radius_v,
-                            m.yaw, m.pitch, m.cone);
+                            m.yaw, m.pitch, m.cone, m.levels);
   }
   Offset<wire::ChunkRequest> operator()(const ChunkRequest& m) {
     RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kChunkRequestKeysMax);
@@ -167,7 +167,8 @@ struct BodyBuilder {
     return wire::CreateReceiveAck(b, m.chunk_bytes);
   }
   Offset<wire::UniformChunks> operator()(const UniformChunks& m) {
-    return wire::CreateUniformChunks(b, m.view, bytes_of(b, encode_uniform(m.chunks)));
+    return wire::CreateUniformChunks(b, m.view, bytes_of(b, encode_uniform(m.chunks)),
+                                     m.chunks.front().key.lod);
   }
 
   Offset<wire::Permissions> operator()(const Permissions& m) {
@@ -306,7 +307,7 @@ struct BodyBuilder {
   }
   Offset<wire::Chunks> chunks(std::uint32_t view, std::span<const ChunkEntry> entries) {
     RUNSTONE_ASSERT(view != 0);
-    return wire::CreateChunks(b, view, bytes_of(b, list_of(entries)));
+    return wire::CreateChunks(b, view, bytes_of(b, list_of(entries)), entries.front().key.lod);
   }
   Offset<wire::Commit> commit(const CommitEncoder& edits, std::span<const std::uint32_t> which) {
     RUNSTONE_ASSERT(edits.epoch() != 0);

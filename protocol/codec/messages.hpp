@@ -20,6 +20,7 @@
 #include "common/core/ids.hpp"
 #include "common/core/public_key.hpp"
 #include "common/core/result.hpp"
+#include "common/core/tile_keys.hpp"
 #include "common/core/world_pos.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
@@ -107,6 +108,8 @@ struct View {
   /// Half the opening angle of the cone that the client sees; 65536 is a turn. 0 .. kViewConeMax; 0
   /// means all around.
   std::uint16_t cone = 0;
+  /// The client wants tiles of the levels 1 .. levels, too: 0 .. kTileLevelMax (view_tiles.hpp).
+  std::uint8_t levels = 0;
   friend bool operator==(const View&, const View&) = default;
   bool contains(ChunkCoord c) const {
     const std::int64_t dx = std::int64_t{c.x} - centre.x;
@@ -115,9 +118,10 @@ struct View {
     return dx * dx + dz * dz <= std::int64_t{radius_h} * radius_h && dy <= radius_v &&
            -dy <= radius_v;
   }
-  /// Returns true if both views contain the same chunks. Directions are ignored.
+  /// Returns true if both views contain the same chunks and tiles. Directions are ignored.
   bool same_chunks(const View& other) const {
-    return centre == other.centre && radius_h == other.radius_h && radius_v == other.radius_v;
+    return centre == other.centre && radius_h == other.radius_h && radius_v == other.radius_v &&
+           levels == other.levels;
   }
 };
 struct ChunkRequest {
@@ -156,7 +160,9 @@ struct Chunks {
   /// ignore chunks that it has forgotten and requested again since. The same holds for the fields
   /// of this name below.
   std::uint32_t view = 1;
-  std::vector<ChunkAnswer> chunks;  // 1 .. kChunksPerMessageMax, strictly ascending by key
+  /// 1 .. kChunksPerMessageMax, strictly ascending by key, all of one level of detail. Tiles come as
+  /// snapshots only.
+  std::vector<ChunkAnswer> chunks;
   friend bool operator==(const Chunks&, const Chunks&) = default;
 };
 /// The snapshot of a chunk of one material. Its digest follows from the material.
@@ -168,7 +174,8 @@ struct UniformChunk {
 };
 struct UniformChunks {
   std::uint32_t view = 1;
-  std::vector<UniformChunk> chunks;  // 1 .. kUniformChunksMax, strictly ascending by key
+  // 1 .. kUniformChunksMax, strictly ascending by key, all of one level of detail
+  std::vector<UniformChunk> chunks;
   friend bool operator==(const UniformChunks&, const UniformChunks&) = default;
 };
 

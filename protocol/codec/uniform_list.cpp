@@ -10,7 +10,7 @@ Bytes encode_uniform(const std::vector<UniformChunk>& chunks) {
   RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= kUniformChunksMax);
   Bytes out;
   ByteWriter w(out);
-  KeyWriter keys;
+  KeyWriter keys(chunks.front().key.lod);
   for (std::size_t first = 0; first < chunks.size();) {
     const UniformChunk& chunk = chunks[first];
     const ChunkCoord c = chunk.key.at;
@@ -31,10 +31,11 @@ Bytes encode_uniform(const std::vector<UniformChunk>& chunks) {
   return out;
 }
 
-Result<std::vector<UniformChunk>> decode_uniform(ByteView bytes, std::int32_t edge) {
-  const std::int64_t reach = kWorldLimit / edge;
+Result<std::vector<UniformChunk>> decode_uniform(ByteView bytes, std::uint8_t level,
+                                                 std::int32_t edge) {
+  const std::int64_t reach = kWorldLimit / edge >> level;
   ByteReader in(bytes);
-  KeyReader keys(edge);
+  KeyReader keys(edge, level);
   std::vector<UniformChunk> chunks;
   while (in.ok() && !in.at_end()) {
     UniformChunk chunk;

@@ -9,10 +9,11 @@
 
 namespace runstone {
 
-/// Encodes the list. Requires 1 .. kUniformChunksMax chunks, strictly ascending by key.
+/// Encodes the list. Requires 1 .. kUniformChunksMax chunks, strictly ascending by key and of one
+/// level of detail.
 Bytes encode_uniform(const std::vector<UniformChunk>& chunks);
-/// Decodes the list. `edge` is that of the world's chunks and bounds their coordinates. The list is
-/// not canonical: equal chunks may be several entries.
-Result<std::vector<UniformChunk>> decode_uniform(ByteView in, std::int32_t edge);
+/// Decodes the list. `edge` is that of the world's chunks and bounds their coordinates; `level` is
+/// that of all chunks. The list is not canonical: equal chunks may be several entries.
+Result<std::vector<UniformChunk>> decode_uniform(ByteView in, std::uint8_t level, std::int32_t edge);
 
 }  // namespace runstone

@@ -158,15 +158,20 @@ ClientAuth any_client_auth(SplitMix64& rng) {
   return m;
 }
 
-/// Returns strictly ascending keys, some of them neighbours.
-std::vector<ChunkKey> ascending_keys(SplitMix64& rng, std::size_t count_max) {
+/// Returns strictly ascending keys of one level of detail, some of them neighbours.
+std::vector<ChunkKey> ascending_keys(SplitMix64& rng, std::size_t count_max,
+                                     std::uint8_t level = 0) {
   std::set<ChunkKey> keys;
   ChunkCoord at = any_coord(rng);
   for (std::uint32_t i = 1 + rng.below(static_cast<std::uint32_t>(count_max)); i > 0; --i) {
     at = rng.below(3) == 0 ? any_coord(rng) : ChunkCoord{at.x, at.y, std::max(at.z - 1, -1000)};
-    keys.insert({0, at});
+    keys.insert({level, at});
   }
   return {keys.begin(), keys.end()};
+}
+
+std::uint8_t any_level(SplitMix64& rng) {
+  return static_cast<std::uint8_t>(rng.below(2) == 0 ? 0 : rng.below(kTileLevelMax + 1U));
 }
 
 std::uint32_t any_view_number(SplitMix64& rng) { return 1 + rng.below(1'000'000); }
@@ -178,7 +183,8 @@ View any_view(SplitMix64& rng) {
           static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1)),
           static_cast<std::uint16_t>(rng.next()),
           static_cast<std::int16_t>(rng.next()),
-          static_cast<std::uint16_t>(rng.below(kViewConeMax + 1U))};
+          static_cast<std::uint16_t>(rng.below(kViewConeMax + 1U)),
+          any_level(rng)};
 }
 
 ChunkRequest any_chunk_request(SplitMix64& rng) {
@@ -267,8 +273,9 @@ ChunkSnapshot any_snapshot(SplitMix64& rng, const ChunkKey& key) {
 Chunks any_chunks(SplitMix64& rng) {
   Chunks m;
   m.view = any_view_number(rng);
-  for (const ChunkKey& key : ascending_keys(rng, 6)) {
-    if (rng.below(3) == 0) {
+  const std::uint8_t level = any_level(rng);
+  for (const ChunkKey& key : ascending_keys(rng, 6, level)) {
+    if (level == 0 && rng.below(3) == 0) {
       m.chunks.emplace_back(any_chunk_edits(rng, key));
     } else {
       m.chunks.emplace_back(any_snapshot(rng, key));
@@ -282,7 +289,7 @@ UniformChunks any_uniform(SplitMix64& rng) {
   UniformChunks m;
   m.view = any_view_number(rng);
   const Version version = any_version(rng);
-  for (const ChunkKey& key : ascending_keys(rng, 40)) {
+  for (const ChunkKey& key : ascending_keys(rng, 40, any_level(rng))) {
     const auto material = static_cast<Material>(rng.below(4) == 0 ? rng.next() : rng.below(2));
     m.chunks.push_back({key, material, rng.below(4) == 0 ? any_version(rng) : version});
   }

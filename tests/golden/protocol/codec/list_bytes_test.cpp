@@ -49,7 +49,7 @@ TEST_CASE("a list of chunks has the bytes of the protocol page", "[protocol][gol
       encode_snapshot(snapshot.key, snapshot.chunk, ChunkEncoding::raw), encode_chunk_edits(edits)};
   const std::string bytes = page_example("chunks");
   CHECK(to_hex(list_of(entries)) == bytes);
-  check_read(decode_answers(from_hex(bytes), kEdge, kEdge),
+  check_read(decode_answers(from_hex(bytes), 0, kEdge, kEdge),
              std::vector<ChunkAnswer>{snapshot, edits});
 }
 
@@ -58,7 +58,7 @@ TEST_CASE("uniform chunks have the bytes of the protocol page", "[protocol][gold
       {{0, {1, -2, 3}}, 0, {}}, {{0, {1, -2, 4}}, 0, {}}, {{0, {2, 5, 3}}, 7, {3, 500}}};
   const std::string bytes = page_example("uniform-chunks");
   CHECK(to_hex(encode_uniform(chunks)) == bytes);
-  check_read(decode_uniform(from_hex(bytes), kEdge), chunks);
+  check_read(decode_uniform(from_hex(bytes), 0, kEdge), chunks);
 }
 
 TEST_CASE("cached and unmodified chunks have the bytes of the protocol page",

@@ -1,0 +1,44 @@
+// View tiles: the tiles that a view contains. At each level 1 .. View::levels, it contains a disc of
+// tiles around its centre whose radius in tiles is that of the view in chunks. So each level reaches
+// twice as far as the one before. docs/protocol.md specifies it.
+//
+// A tile or chunk of a view has its parent in the view, too, up to the highest level. For chunks this
+// holds up to 3 chunks above and below the centre. Proof for one axis: halving rounds each of two
+// coordinates down, so a distance d becomes at most (d + 1) / 2. In the plane, a distance r becomes
+// at most r / 2 + sqrt(2) / 2, which is at most r from r = 2 on.
+#pragma once
+#include <cstdint>
+
+#include "common/core/tile_keys.hpp"
+#include "protocol/codec/view_size.hpp"
+
+namespace runstone {
+
+/// The tiles of a level reach so many tiles above and below that of the centre.
+inline constexpr std::int32_t kTileRadiusV = 2;
+/// A view with a smaller horizontal radius contains no tiles.
+inline constexpr std::uint8_t kTileRadiusHMin = 2;
+
+/// Returns the highest level of the view's tiles, or 0 if it has none.
+constexpr std::uint8_t tile_levels(const View& view) {
+  return view.radius_h < kTileRadiusHMin ? std::uint8_t{0} : view.levels;
+}
+
+/// Returns true if the world has a place for this tile or chunk.
+constexpr bool has_place(CoordLimit world, const ChunkKey& key) {
+  return CoordLimit{world.limit >> key.lod}.contains(key.at);
+}
+
+/// Returns true if the view has this chunk or tile and the world has it too.
+inline bool has_key(const View& view, CoordLimit world, const ChunkKey& key) {
+  if (key.lod == 0) return has_chunk(view, world, key.at);
+  if (key.lod > tile_levels(view) || !has_place(world, key)) return false;
+  const ChunkCoord centre = tile_at(view.centre, key.lod);
+  const std::int64_t dx = std::int64_t{key.at.x} - centre.x;
+  const std::int64_t dy = std::int64_t{key.at.y} - centre.y;
+  const std::int64_t dz = std::int64_t{key.at.z} - centre.z;
+  return dx * dx + dz * dz <= std::int64_t{view.radius_h} * view.radius_h && dy <= kTileRadiusV &&
+         -dy <= kTileRadiusV;
+}
+
+}  // namespace runstone
