@@ -29,16 +29,21 @@ constexpr bool has_place(CoordLimit world, const ChunkKey& key) {
   return CoordLimit{world.limit >> key.lod}.contains(key.at);
 }
 
-/// Returns true if the view has this chunk or tile and the world has it too.
-inline bool has_key(const View& view, CoordLimit world, const ChunkKey& key) {
-  if (key.lod == 0) return has_chunk(view, world, key.at);
-  if (key.lod > tile_levels(view) || !has_place(world, key)) return false;
+/// Returns true if the view contains this chunk or tile.
+inline bool contains_key(const View& view, const ChunkKey& key) {
+  if (key.lod == 0) return view.contains(key.at);
+  if (key.lod > tile_levels(view)) return false;
   const ChunkCoord centre = tile_at(view.centre, key.lod);
   const std::int64_t dx = std::int64_t{key.at.x} - centre.x;
   const std::int64_t dy = std::int64_t{key.at.y} - centre.y;
   const std::int64_t dz = std::int64_t{key.at.z} - centre.z;
   return dx * dx + dz * dz <= std::int64_t{view.radius_h} * view.radius_h && dy <= kTileRadiusV &&
          -dy <= kTileRadiusV;
+}
+
+/// Returns true if the view contains this chunk or tile and the world has it too.
+inline bool has_key(const View& view, CoordLimit world, const ChunkKey& key) {
+  return contains_key(view, key) && has_place(world, key);
 }
 
 }  // namespace runstone

@@ -4,6 +4,7 @@
 
 #include "common/core/assert.hpp"
 #include "protocol/codec/message_table.hpp"
+#include "protocol/codec/view_tiles.hpp"
 
 namespace runstone {
 
@@ -133,7 +134,7 @@ bool SendQueue::take(Batch& batch, std::size_t chunk_body_max) {
 void SendQueue::forget_outside(const View& view) {
   Lane& mine = lane(FrameClass::chunks);
   const auto goes = [&](const Item& item) {
-    return item.is_place() && !view.contains(item.chunk.key.at);
+    return item.is_place() && !contains_key(view, item.chunk.key);
   };
   for (const Item& item : mine.items) {
     if (goes(item) && item.is_ready()) mine.bytes -= item.chunk.bytes->size();

@@ -5,6 +5,7 @@
 
 #include "server/world/cached_chunk_handlers.hpp"
 #include "server/world/quotas.hpp"
+#include "server/world/tile_handlers.hpp"
 #include "server/world/time_travel.hpp"
 
 namespace runstone {
@@ -13,10 +14,6 @@ namespace {
 // The most chunks that one task of the world strand sends, and that it collects. Either takes about
 // a millisecond, so that edits do not wait long for a task.
 constexpr std::size_t kChunksPerDelivery = 512, kReleasedPerTask = 4'096;
-
-bool is_stalled(const WorldState& world, const WorldSession& session, const Clocks& now) {
-  return session.stalled_us && now.steady_us - *session.stalled_us < world.config.retry_interval_us;
-}
 
 /// Leaves the chunk wanted because the session's queue is full.
 void put_off(WorldState& world, SessionId session, const ChunkKey& key, const Clocks& now) {
@@ -48,18 +45,6 @@ bool send_view_states(WorldState& world, SessionId session, const Clocks& now) {
   return true;
 }
 
-/// Queues a chunk of one material to be sent together with others. Returns false if too many wait.
-bool queue_uniform(WorldState& world, SessionId session, const ChunkKey& key, const Chunk& chunk,
-                   const Clocks& now) {
-  WorldSession& mine = *world.find(session);
-  const bool is_full =
-      mine.uniform.size() >= kUniformWaitingMax && !send_uniform(world, session, now);
-  if (is_full) return false;
-  mine.uniform.push_back({key, material_at(chunk.voxels, {0, 0, 0}), chunk.version});
-  if (mine.uniform.size() >= kUniformPerMessage) send_uniform(world, session, now);
-  return true;
-}
-
 /// Ends a delivery: sends the uniform chunks that are due unless loads under way may soon add more,
 /// and reports once that every chunk of the view was answered.
 void end_delivery(WorldState& world, SessionId session, const Clocks& now) {
@@ -76,6 +61,21 @@ void end_delivery(WorldState& world, SessionId session, const Clocks& now) {
 
 }  // namespace
 
+bool is_stalled(const WorldState& world, const WorldSession& session, const Clocks& now) {
+  return session.stalled_us && now.steady_us - *session.stalled_us < world.config.retry_interval_us;
+}
+
+bool queue_uniform(WorldState& world, SessionId session, const ChunkKey& key, const Chunk& chunk,
+                   const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  const bool is_full =
+      mine.uniform.size() >= kUniformWaitingMax && !send_uniform(world, session, now);
+  if (is_full) return false;
+  mine.uniform.push_back({key, material_at(chunk.voxels, {0, 0, 0}), chunk.version});
+  if (mine.uniform.size() >= kUniformPerMessage) send_uniform(world, session, now);
+  return true;
+}
+
 bool send_uniform(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (mine.uniform.empty()) return true;
@@ -85,17 +85,22 @@ bool send_uniform(WorldState& world, SessionId session, const Clocks& now) {
     return a.key != b.key ? a.key < b.key : b.version < a.version;
   };
   const auto same = [](const UniformChunk& a, const UniformChunk& b) { return a.key == b.key; };
-  UniformChunks message{view_in_force(world, session), mine.uniform};
-  std::sort(message.chunks.begin(), message.chunks.end(), before);
-  message.chunks.erase(std::unique(message.chunks.begin(), message.chunks.end(), same),
-                       message.chunks.end());
-  if (!world.environment.send(session, encode_message(message))) {
-    ++world.counters.queue_full;
-    mine.stalled_us = now.steady_us;
-    return false;
+  std::sort(mine.uniform.begin(), mine.uniform.end(), before);
+  mine.uniform.erase(std::unique(mine.uniform.begin(), mine.uniform.end(), same),
+                     mine.uniform.end());
+  while (!mine.uniform.empty()) {
+    const std::uint8_t level = mine.uniform.front().key.lod;
+    const auto end = std::find_if(mine.uniform.begin(), mine.uniform.end(),
+                                  [level](const UniformChunk& one) { return one.key.lod != level; });
+    const UniformChunks message{view_in_force(world, session), {mine.uniform.begin(), end}};
+    if (!world.environment.send(session, encode_message(message))) {
+      ++world.counters.queue_full;
+      mine.stalled_us = now.steady_us;
+      return false;
+    }
+    mine.uniform.erase(mine.uniform.begin(), end);
+    ++world.counters.uniform_messages;
   }
-  mine.uniform.clear();
-  ++world.counters.uniform_messages;
   return true;
 }
 
@@ -121,7 +126,8 @@ ViewState view_state(const WorldState& world, SessionId session, ViewPhase phase
 void forget_unsent(WorldState& world, SessionId session) {
   WorldSession& mine = *world.find(session);
   const SessionInterest& interest = *world.interest.find(session);
-  const auto is_void = [&interest](const auto& chunk) {
+  const auto is_void = [&](const auto& chunk) {
+    if (chunk.key.lod > 0) return mine.tiles->status(chunk.key) == TileStatus::unknown;
     const auto state = interest.state(chunk.key);
     return state != ChunkInterest::subscribed && state != ChunkInterest::history_sent;
   };
@@ -200,6 +206,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
     deliver_history(world, session, now);
     return end_delivery(world, session, now);
   }
+  request_tiles(world, session, now);
   WorldChunks& chunks = world.authority.chunks();
   const SessionInterest& interest = *world.interest.find(session);
   std::size_t sent = 0;

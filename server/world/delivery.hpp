@@ -13,9 +13,14 @@ namespace runstone {
 void deliver(WorldState& world, SessionId session, const Clocks& now);
 /// Calls deliver() for the next session of WorldState::deliveries. Sessions take turns.
 void deliver_next(WorldState& world, const Clocks& now);
-/// Sends the uniform chunks that are due for the session, in one message. Returns false if its
-/// queue is full; the chunks stay due.
+/// Sends the uniform chunks that are due for the session, in one message for each level of detail.
+/// Returns false if its queue is full; the chunks that are not sent stay due.
 bool send_uniform(WorldState& world, SessionId session, const Clocks& now);
+/// Returns true if the session's queue was full a moment ago.
+bool is_stalled(const WorldState& world, const WorldSession& session, const Clocks& now);
+/// Queues a chunk of one material to be sent together with others. Returns false if too many wait.
+bool queue_uniform(WorldState& world, SessionId session, const ChunkKey& key, const Chunk& chunk,
+                   const Clocks& now);
 /// Returns the number of the session's view in force, or 0 before the first one. Answers carry it.
 std::uint32_t view_in_force(const WorldState& world, SessionId session);
 /// Describes the state of the world that the session sees.

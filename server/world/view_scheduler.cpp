@@ -6,6 +6,7 @@
 #include "server/world/delivery.hpp"
 #include "server/world/protected_ground.hpp"
 #include "server/world/quotas.hpp"
+#include "server/world/tile_handlers.hpp"
 #include "server/world/time_travel.hpp"
 
 namespace runstone {
@@ -23,8 +24,10 @@ void apply_view(WorldState& world, SessionId id, const Clocks& now) {
   for (const ChunkKey& key : world.loads.cancel(id)) {
     world.interest.set_state(id, key, ChunkInterest::wanted);
   }
+  std::vector<View> skipped = mine.skipped_views;
+  if (mine.has_skipped_too_many) skipped.push_back({});  // it has no tiles
+  std::size_t visited = 1 + set_tile_view(world, id, *mine.next_view, skipped);
   const bool has_skipped = mine.has_skipped_too_many || !mine.skipped_views.empty();
-  std::size_t visited = 1;
   if (mine.has_skipped_too_many) {
     visited += world.interest.want_all_again(id);
   } else if (has_skipped) {
@@ -59,6 +62,7 @@ void on_view(WorldState& world, SessionId session, View view, const Clocks& now)
   const std::uint8_t radius_max = view_radius_max_of(world, mine.key);
   view.radius_h = std::min(view.radius_h, radius_max);
   view.radius_v = std::min(view.radius_v, radius_max);
+  limit_levels(world, mine, view);
   if (mine.next_view && !mine.next_view->same_chunks(view)) {
     // A client may drop chunks outside of any view that it sent, even one that never took effect
     // here. So chunks outside of a skipped view are sent again.

@@ -15,6 +15,8 @@ struct WorldCounters {
   std::uint64_t commit_bytes = 0;  // of the messages; sessions that get the same edits share one
   std::uint64_t commits_sent = 0;  // commit times session that got edits of it
   std::uint64_t snapshots_sent = 0;
+  // Tile times session, again after each change.
+  std::uint64_t tiles_sent = 0;
   // Messages that carry many uniform chunks each.
   std::uint64_t uniform_messages = 0;
   // Chunk times session: the client's copy had the same version and digest.

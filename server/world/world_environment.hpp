@@ -15,6 +15,7 @@
 #include "protocol/codec/messages.hpp"
 #include "server/world/chat_entry.hpp"
 #include "server/world/player_rows.hpp"
+#include "server/world/tile_request.hpp"
 
 namespace runstone {
 
@@ -113,6 +114,17 @@ class WorldEnvironment {
   /// Loads a chunk on a worker: its newest snapshot, else the base, else generated. Called at most
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().
   virtual void load_chunk(const ChunkKey& key) = 0;
+  /// Makes a tile on a worker. Called at most once for a tile until it is answered. Answer:
+  /// WorldServer::tiles_made(). Without tiles (WorldConfig::tile_levels_max is 0), neither this nor the
+  /// three calls below are made.
+  virtual void make_tile(TileRequest /*request*/) {}
+  /// Records that the newest edit of these chunks is `seq`, before any later make_tile(). Keys of
+  /// level of detail 0, ascending.
+  virtual void tiles_edited(std::span<const ChunkKey> /*chunks*/, Sequence /*seq*/) {}
+  /// Returns the newest edit below a tile that tiles_edited() recorded, or 0.
+  virtual Sequence newest_tile_edit(const ChunkKey& /*tile*/) const { return 0; }
+  /// Writes tiles to the folder, at a low priority. If the queue is full, they are not written.
+  virtual void save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> /*tiles*/) {}
   /// Finds the view of the past that a session requests, on a worker. Requires that request.to is
   /// not live. Called at most once for a session until it is answered. Answer:
   /// WorldServer::history_opened().

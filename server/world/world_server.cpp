@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/core/key_text.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "protocol/codec/invite_token.hpp"
 #include "protocol/codec/server_link.hpp"
 #include "server/world/broadcast.hpp"
@@ -25,6 +26,7 @@
 #include "server/world/request_handlers.hpp"
 #include "server/world/rights_handlers.hpp"
 #include "server/world/server_edits.hpp"
+#include "server/world/tile_handlers.hpp"
 #include "server/world/time_travel.hpp"
 #include "server/world/view_scheduler.hpp"
 #include "server/world/world_state.hpp"
@@ -108,6 +110,12 @@ WorldServer::~WorldServer() = default;
 
 void WorldServer::replay_onto_stack(const EditRecord& record) {
   state_->authority.replay_onto_stack(record);
+  if (state_->config.tile_levels_max > 0 && has_voxels(record.edit)) {
+    std::vector<ChunkKey> keys;
+    for (const ChunkCoord at : touched_chunks(record.edit, state_->config.chunk_edge))
+      keys.push_back({0, at});
+    state_->environment.tiles_edited(keys, record.version.seq);
+  }
 }
 
 void WorldServer::reconfigure(const WorldConfig& config) {
@@ -300,6 +308,7 @@ void WorldServer::tick(const Clocks& now) {
   collect_released(world);
   keep_memory_bounds(world);
   start_loads(world, now);  // of the chunks that waited for memory
+  start_tiles(world, now);
 }
 
 void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
@@ -340,6 +349,11 @@ void WorldServer::chunk_failed(const ChunkKey& key, LoadFailure failure, const s
   deliver_loaded(world, key, now);
   step_checkpointer(now);
   start_loads(world, now);
+}
+
+void WorldServer::tiles_made(const ChunkKey& key, const std::vector<MadeTile>& made,
+                             const Clocks& now) {
+  on_tiles_made(*state_, key, made, now);
 }
 
 void WorldServer::history_opened(SessionId session, std::uint32_t request,

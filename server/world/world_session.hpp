@@ -13,6 +13,7 @@
 #include "common/core/token_bucket.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/interest/cache_claims.hpp"
+#include "server/interest/tile_interest.hpp"
 #include "server/limits/followed_position.hpp"
 #include "server/world/world_environment.hpp"
 
@@ -100,6 +101,9 @@ struct WorldSession {
   std::vector<View> skipped_views;    // replaced before they took effect, at most kSkippedViewsMax
   bool has_skipped_too_many = false;  // there were more
   SentGround ground;
+  // Tiles (tile_handlers.hpp).
+  std::optional<TileInterest> tiles;  // nullopt: no view had tiles yet
+  std::size_t tile_debt = 0;          // chunks that the player is still to pay for
   // Cached chunks (cached_chunk_handlers.hpp).
   CacheClaims claims;
   std::vector<UnmodifiedChunk> not_modified_due;  // subscribed, and not answered yet

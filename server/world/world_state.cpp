@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/core/assert.hpp"
+#include "server/world/tile_handlers.hpp"
 
 namespace runstone {
 namespace {
@@ -72,6 +73,7 @@ void forget_session(WorldState& world, SessionId session) {
     world.player_list_changed = true;
     world.gone_authors.push_back(found->second.author);
   }
+  forget_tiles(world, session, found->second);
   const auto gone = world.sessions.extract(found);
   if (was_open) world.environment.player_left(visit_of(world, session, gone.mapped()));
   world.interest.close(session);

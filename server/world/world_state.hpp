@@ -20,6 +20,7 @@
 #include "server/world/load_retries.hpp"
 #include "server/world/name_claims.hpp"
 #include "server/world/players.hpp"
+#include "server/world/tile_queue.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
 #include "server/world/world_environment.hpp"
@@ -50,6 +51,18 @@ struct ListedEntry {
   friend bool operator==(const ListedEntry&, const ListedEntry&) = default;
 };
 
+/// The sessions that have a tile.
+struct TileReceivers {
+  std::vector<SessionId> sessions;  // ascending
+  std::optional<TimeUs> made_us;    // when it was made last
+};
+
+/// Tiles (tile_handlers.hpp).
+struct TileState {
+  TileQueue queue;
+  ChunkHashMap<TileReceivers> receivers;  // no entry is without sessions for long
+};
+
 struct WorldState {
   WorldState(WorldConfig config_, const WorldStart& start, WorldEnvironment& environment_,
              RandomBytes random_);
@@ -78,6 +91,7 @@ struct WorldState {
   RecentRefusals refusals;
   ChatState chat;
   LargeEditPace large_edits;
+  TileState tiles;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
   WorldCounters counters;

@@ -165,7 +165,7 @@ std::vector<ChunkKey> ascending_keys(SplitMix64& rng, std::size_t count_max,
   ChunkCoord at = any_coord(rng);
   for (std::uint32_t i = 1 + rng.below(static_cast<std::uint32_t>(count_max)); i > 0; --i) {
     at = rng.below(3) == 0 ? any_coord(rng) : ChunkCoord{at.x, at.y, std::max(at.z - 1, -1000)};
-    keys.insert({level, at});
+    keys.insert(tile_of(at, level));
   }
   return {keys.begin(), keys.end()};
 }

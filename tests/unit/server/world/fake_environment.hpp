@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/tile_keys.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/world/world_environment.hpp"
 
@@ -52,6 +53,9 @@ class FakeEnvironment : public WorldEnvironment {
     ChunkKey key;
   };
   std::vector<Save> saves;
+  std::deque<TileRequest> tile_requests;
+  std::map<ChunkKey, Sequence> tile_edits;  // the newest edit below each tile
+  std::vector<std::pair<ChunkKey, ChunkPtr>> saved_tiles;
   std::deque<std::pair<SessionId, HistoryRequest>> history_requests;
   std::deque<HistoryLoad> history_loads;
   std::deque<std::pair<SessionId, LogMarksRequest>> mark_requests;
@@ -114,6 +118,20 @@ class FakeEnvironment : public WorldEnvironment {
   }
   void log_chat(const ChatEntry& entry) override { chat.push_back(entry); }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
+  void make_tile(TileRequest request) override { tile_requests.push_back(std::move(request)); }
+  void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override {
+    for (const ChunkKey& chunk : chunks) {
+      for (std::uint8_t level = 1; level <= kTileLevelMax; ++level)
+        tile_edits[tile_of(chunk.at, level)] = seq;
+    }
+  }
+  Sequence newest_tile_edit(const ChunkKey& tile) const override {
+    const auto found = tile_edits.find(tile);
+    return found == tile_edits.end() ? 0 : found->second;
+  }
+  void save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) override {
+    saved_tiles.insert(saved_tiles.end(), tiles.begin(), tiles.end());
+  }
   void command(SessionId /*session*/, AuthorId /*author*/, const PublicKey& /*key*/,
                const std::string& text) override {
     commands.push_back(text);

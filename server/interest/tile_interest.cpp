@@ -1,0 +1,181 @@
+#include "server/interest/tile_interest.hpp"
+
+#include <algorithm>
+
+#include "common/core/assert.hpp"
+
+namespace runstone {
+namespace {
+
+/// Calls visit(key) for each tile of a level in the view, without those outside of the world.
+template <class Visit>
+void for_each_tile(const View& view, CoordLimit world, std::uint8_t level, const Visit& visit) {
+  const ChunkCoord centre = tile_at(view.centre, level);
+  const std::int32_t radius = view.radius_h;
+  for (std::int32_t dx = -radius; dx <= radius; ++dx) {
+    for (std::int32_t dz = -radius; dz <= radius; ++dz) {
+      if (dx * dx + dz * dz > radius * radius) continue;
+      for (std::int32_t dy = -kTileRadiusV; dy <= kTileRadiusV; ++dy) {
+        const ChunkKey key{level, {centre.x + dx, centre.y + dy, centre.z + dz}};
+        if (has_place(world, key)) visit(key);
+      }
+    }
+  }
+}
+
+bool has_same_tiles(const View& a, const View& b, std::uint8_t level) {
+  return level <= tile_levels(a) && level <= tile_levels(b) && a.radius_h == b.radius_h &&
+         tile_at(a.centre, level) == tile_at(b.centre, level);
+}
+
+bool is_with_client(TileStatus status) {
+  return status == TileStatus::waiting || status == TileStatus::sent ||
+         status == TileStatus::sent_empty;
+}
+
+}  // namespace
+
+TileInterest::Place TileInterest::place_of(const ChunkKey& key) const {
+  const ChunkCoord centre = tile_at(view_->centre, key.lod);
+  const std::int64_t dx = key.at.x - centre.x, dy = key.at.y - centre.y, dz = key.at.z - centre.z;
+  return {-int{key.lod}, dx * dx + dy * dy + dz * dz, key};
+}
+
+TileStatus TileInterest::status(const ChunkKey& key) const {
+  const auto found = tiles_.find(key);
+  return found == tiles_.end() ? TileStatus::unknown : found->second;
+}
+
+bool TileInterest::is_due(const ChunkKey& key) const {
+  return key.lod == tile_levels(*view_) || status(tile_parent(key)) == TileStatus::sent;
+}
+
+void TileInterest::set(const ChunkKey& key, TileStatus now) {
+  const TileStatus was = status(key);
+  if (was == TileStatus::wanted) queue_.erase(place_of(key));
+  if (was == TileStatus::waiting) --waiting_;
+  if (now == TileStatus::wanted) queue_.insert(place_of(key));
+  if (now == TileStatus::waiting) ++waiting_;
+  if (now == TileStatus::unknown) {
+    tiles_.erase(key);
+  } else {
+    tiles_.insert_or_assign(key, now);
+  }
+}
+
+void TileInterest::drop(const ChunkKey& key, std::vector<ChunkKey>& left) {
+  if (is_with_client(status(key))) left.push_back(key);
+  set(key, TileStatus::unknown);
+}
+
+void TileInterest::drop_below(const ChunkKey& key, std::vector<ChunkKey>& left) {
+  if (key.lod <= 1) return;
+  for (unsigned i = 0; i < kTileChildren; ++i) {
+    const ChunkKey child = tile_child(key, i);
+    if (status(child) == TileStatus::unknown) continue;
+    drop_below(child, left);
+    drop(child, left);
+  }
+}
+
+std::size_t TileInterest::want_level(std::uint8_t level, const std::optional<View>& before) {
+  std::size_t steps = 0;
+  for_each_tile(*view_, limit_, level, [&](const ChunkKey& key) {
+    ++steps;
+    if (before && has_key(*before, limit_, key)) return;
+    if (status(key) == TileStatus::unknown && is_due(key)) set(key, TileStatus::wanted);
+  });
+  return steps;
+}
+
+TileInterest::Moved TileInterest::set_view(const View& view, std::span<const View> skipped) {
+  Moved moved;
+  const std::optional<View> before = view_;
+  const std::uint8_t levels = tile_levels(view);
+  const std::uint8_t levels_before = before ? tile_levels(*before) : std::uint8_t{0};
+  // The places in the queue depend on the centre, so the queue is made anew at the end.
+  queue_.clear();
+  const auto leaves = [&](const ChunkKey& key) {
+    return !has_key(view, limit_, key) ||
+           std::any_of(skipped.begin(), skipped.end(),
+                       [&](const View& other) { return !has_key(other, limit_, key); });
+  };
+  std::vector<ChunkKey> leaving;
+  if (skipped.empty()) {
+    for (std::uint8_t level = 1; level <= levels_before; ++level) {
+      if (has_same_tiles(*before, view, level)) continue;
+      for_each_tile(*before, limit_, level, [&](const ChunkKey& key) {
+        ++moved.steps;
+        if (status(key) != TileStatus::unknown && leaves(key)) leaving.push_back(key);
+      });
+    }
+  } else {
+    moved.steps += tiles_.size();
+    for (const auto& [key, status] : tiles_) {
+      if (leaves(key)) leaving.push_back(key);
+    }
+    std::sort(leaving.begin(), leaving.end());
+  }
+  for (const ChunkKey& key : leaving) drop(key, moved.left);
+  view_ = view;
+  for (const auto& [key, status] : tiles_) {
+    if (status == TileStatus::wanted) queue_.insert(place_of(key));
+  }
+  moved.steps += queue_.size();
+  // Parents come first, because a tile is due only if its parent is sent.
+  for (std::uint8_t level = levels; level >= 1; --level) {
+    const bool is_root = level == levels && levels != levels_before;
+    if (skipped.empty() && before && !is_root) {
+      if (!has_same_tiles(*before, view, level)) moved.steps += want_level(level, before);
+    } else {
+      moved.steps += want_level(level, std::nullopt);
+    }
+  }
+  return moved;
+}
+
+std::optional<ChunkKey> TileInterest::next_wanted() const {
+  if (queue_.empty()) return std::nullopt;
+  return std::get<ChunkKey>(*queue_.begin());
+}
+
+void TileInterest::set_waiting(const ChunkKey& key) {
+  RUNSTONE_ASSERT(status(key) == TileStatus::wanted);
+  set(key, TileStatus::waiting);
+}
+
+void TileInterest::want_again(const ChunkKey& key) {
+  RUNSTONE_ASSERT(is_with_client(status(key)));
+  set(key, TileStatus::wanted);
+}
+
+std::vector<ChunkKey> TileInterest::set_sent(const ChunkKey& key, bool is_empty) {
+  RUNSTONE_ASSERT(is_with_client(status(key)));
+  std::vector<ChunkKey> left;
+  set(key, is_empty ? TileStatus::sent_empty : TileStatus::sent);
+  if (is_empty) {
+    drop_below(key, left);
+  } else if (key.lod > 1) {
+    for (unsigned i = 0; i < kTileChildren; ++i) {
+      const ChunkKey child = tile_child(key, i);
+      if (has_key(*view_, limit_, child) && status(child) == TileStatus::unknown)
+        set(child, TileStatus::wanted);
+    }
+  }
+  return left;
+}
+
+std::vector<ChunkKey> TileInterest::clear() {
+  std::vector<ChunkKey> left;
+  for (const auto& [key, status] : tiles_) {
+    if (is_with_client(status)) left.push_back(key);
+  }
+  std::sort(left.begin(), left.end());
+  tiles_.clear();
+  queue_.clear();
+  waiting_ = 0;
+  view_.reset();
+  return left;
+}
+
+}  // namespace runstone

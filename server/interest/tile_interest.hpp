@@ -1,0 +1,79 @@
+// TileInterest: the tiles that one session gets. A session gets every tile of its view's highest
+// level, and every other tile of its view whose parent is not empty: nothing is below an empty tile.
+// A tile is in one of these states:
+//   unknown   not in the view, or its parent is empty or not sent yet;
+//   wanted    in the queue: the coarsest level first, within a level the nearest to the centre of the
+//             view first;
+//   waiting   it is being made for the session;
+//   sent      the session has it. A changed one is sent again.
+// One thread.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <span>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
+
+#include "protocol/codec/messages.hpp"
+#include "protocol/codec/view_tiles.hpp"
+#include "server/interest/chunk_key_hash.hpp"
+
+namespace runstone {
+
+enum class TileStatus : std::uint8_t { unknown, wanted, waiting, sent, sent_empty };
+
+class TileInterest {
+ public:
+  explicit TileInterest(CoordLimit limit) : limit_(limit) {}
+
+  struct Moved {
+    std::vector<ChunkKey> left;  // tiles that were waiting or sent, and are unknown now
+    std::size_t steps = 0;       // tiles visited: the cost of the call
+  };
+  /// Sets the view. `skipped`: views that the client had in between; tiles outside of one of them are
+  /// sent again. Cost: O(tiles that change + discs of the levels whose centre or size changes), and
+  /// O(tiles of the view) if there are skipped views.
+  Moved set_view(const View& view, std::span<const View> skipped = {});
+
+  /// Returns the first wanted tile, or nullopt. It stays wanted.
+  std::optional<ChunkKey> next_wanted() const;
+  TileStatus status(const ChunkKey& key) const;
+  /// Makes a wanted tile waiting.
+  void set_waiting(const ChunkKey& key);
+  /// Makes a waiting or sent tile wanted again.
+  void want_again(const ChunkKey& key);
+  /// Reports that a waiting or sent tile was sent. If it is not empty, its children in the view become
+  /// wanted unless they are known. If it is empty, everything below it becomes unknown; returns those
+  /// of them that were waiting or sent.
+  std::vector<ChunkKey> set_sent(const ChunkKey& key, bool is_empty);
+  /// Makes all tiles unknown. Returns those that were waiting or sent.
+  std::vector<ChunkKey> clear();
+
+  std::size_t waiting_count() const { return waiting_; }
+  /// Returns the number of tiles that are wanted, waiting or sent.
+  std::size_t known_count() const { return tiles_.size(); }
+
+ private:
+  using Place = std::tuple<int, std::int64_t, ChunkKey>;
+  Place place_of(const ChunkKey& key) const;
+  /// Returns true if the session is to get this tile of the view.
+  bool is_due(const ChunkKey& key) const;
+  void set(const ChunkKey& key, TileStatus status);
+  /// Makes a tile unknown. Appends it to `left` if it was waiting or sent.
+  void drop(const ChunkKey& key, std::vector<ChunkKey>& left);
+  void drop_below(const ChunkKey& key, std::vector<ChunkKey>& left);
+  /// Makes unknown tiles of a level wanted if they are due. Visits the disc of the level but for the
+  /// tiles of `before`. Returns the number of visited tiles.
+  std::size_t want_level(std::uint8_t level, const std::optional<View>& before);
+
+  CoordLimit limit_;
+  std::optional<View> view_;
+  std::unordered_map<ChunkKey, TileStatus, ChunkKeyHash> tiles_;  // without the unknown ones
+  std::set<Place> queue_;                                         // the wanted tiles
+  std::size_t waiting_ = 0;
+};
+
+}  // namespace runstone

@@ -1,0 +1,196 @@
+#include "server/world/tile_handlers.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "common/core/tile_keys.hpp"
+#include "server/world/delivery.hpp"
+#include "server/world/quotas.hpp"
+
+namespace runstone {
+namespace {
+
+/// What a tile costs the player for whom it was made, in chunks: those that were loaded, and the
+/// tiles.
+std::size_t price_of(const std::vector<MadeTile>& made) {
+  std::size_t price = 0;
+  for (const MadeTile& one : made) {
+    if (!one.is_stored) price += one.key.lod == 1 ? 1 + kTileChildren : 1;
+  }
+  return price;
+}
+
+/// Takes what the session's player owes for tiles. Returns false if a budget is used up.
+bool pay_tiles(WorldState& world, WorldSession& session, const Clocks& now) {
+  for (; session.tile_debt > 0; --session.tile_debt) {
+    if (!pay_load(world, session, now)) return false;
+  }
+  return true;
+}
+
+void add_receiver(WorldState& world, const ChunkKey& key, SessionId session) {
+  std::vector<SessionId>& sessions = world.tiles.receivers[key].sessions;
+  const auto at = std::ranges::lower_bound(sessions, session);
+  if (at == sessions.end() || *at != session) sessions.insert(at, session);
+}
+
+/// Forgets tiles that a session does not wait for and does not have any more.
+void leave_tiles(WorldState& world, SessionId session, std::span<const ChunkKey> keys) {
+  for (const ChunkKey& key : keys) {
+    world.tiles.queue.cancel(key, session);
+    if (TileReceivers* receivers = world.tiles.receivers.find(key)) {
+      std::erase(receivers->sessions, session);
+      if (!receivers->sessions.empty()) continue;
+      world.tiles.receivers.erase(key);
+    }
+    if (!world.tiles.queue.is_waited_for(key)) world.tiles.queue.cancel_again(key);
+  }
+}
+
+/// Collects the chunks below a tile that are newer in memory than on disk. An absent one has edits
+/// that nobody has applied yet; then `head` is 0.
+TileRequest request_of(const WorldState& world, const ChunkKey& tile) {
+  const WorldChunks& chunks = world.authority.chunks();
+  TileRequest request{tile, world.authority.head(), {}};
+  const ChunkCoord first = first_chunk(tile);
+  const std::set<ChunkKey>& dirty = chunks.dirty();
+  for (auto at = dirty.lower_bound({0, first}); at != dirty.end(); ++at) {
+    if (at->at.x >> tile.lod != tile.at.x) break;
+    if (tile_of(at->at, tile.lod) != tile) continue;
+    if (ChunkPtr chunk = chunks.find(*at)) {
+      request.fresh.emplace_back(*at, std::move(chunk));
+    } else {
+      request.head = 0;
+    }
+  }
+  return request;
+}
+
+void make_again(WorldState& world, const ChunkKey& key, const TileReceivers& receivers,
+                const Clocks& now) {
+  const TimeUs pause = kTileRemakeUs << (key.lod - 1);
+  const TimeUs due = receivers.made_us ? *receivers.made_us + pause : now.steady_us;
+  world.tiles.queue.make_again(key, std::max(now.steady_us + kTileRemakeUs, due));
+}
+
+/// Sends a tile, unless the session wants it again after its queue was full: then a later request
+/// sends it.
+void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
+               const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  if (mine.tiles->status(key) == TileStatus::wanted) return;
+  const bool is_sent =
+      tile->voxels.is_uniform()
+          ? queue_uniform(world, session, key, *tile, now)
+          : world.environment.send_snapshot(session, view_in_force(world, session), key, tile);
+  if (!is_sent) {
+    ++world.counters.queue_full;
+    mine.stalled_us = now.steady_us;
+    mine.tiles->want_again(key);
+    return;
+  }
+  ++world.counters.tiles_sent;
+  const bool is_empty =
+      tile->voxels.is_uniform() && material_at(tile->voxels, {0, 0, 0}) == kEmpty;
+  leave_tiles(world, session, mine.tiles->set_sent(key, is_empty));
+  add_receiver(world, key, session);
+}
+
+void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
+  std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
+  for (const MadeTile& one : made) {
+    if (one.is_approximate || one.is_stored) continue;
+    if (world.environment.newest_tile_edit(one.key) > one.through) continue;
+    tiles.emplace_back(one.key, one.tile);
+  }
+  if (!tiles.empty() && !world.is_stopping && !world.disk_is_full)
+    world.environment.save_tiles(std::move(tiles));
+}
+
+}  // namespace
+
+void limit_levels(const WorldState& world, const WorldSession& session, View& view) {
+  const bool has_tiles = (session.features & kFeatureTiles) != 0;
+  view.levels = has_tiles ? std::min(view.levels, world.config.tile_levels_max) : std::uint8_t{0};
+}
+
+std::size_t set_tile_view(WorldState& world, SessionId session, const View& view,
+                          std::span<const View> skipped) {
+  WorldSession& mine = *world.find(session);
+  if (!mine.tiles) {
+    if (tile_levels(view) == 0) return 0;
+    mine.tiles.emplace(CoordLimit::of(world.config.chunk_edge));
+  }
+  const TileInterest::Moved moved = mine.tiles->set_view(view, skipped);
+  leave_tiles(world, session, moved.left);
+  return moved.steps;
+}
+
+void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  if (!mine.tiles || world.is_stopping || is_stalled(world, mine, now)) return;
+  while (mine.tiles->waiting_count() < kTilesWaitingMax) {
+    const auto key = mine.tiles->next_wanted();
+    if (!key || !pay_tiles(world, mine, now) || !pay_load(world, mine, now)) break;
+    mine.tiles->set_waiting(*key);
+    world.tiles.queue.want(*key, session);
+  }
+  start_tiles(world, now);
+}
+
+void start_tiles(WorldState& world, const Clocks& now) {
+  if (world.is_stopping) return;
+  while (const auto key = world.tiles.queue.next(now.steady_us, kTilesInFlightMax))
+    world.environment.make_tile(request_of(world, *key));
+}
+
+void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
+                   const Clocks& now) {
+  if (made.empty()) {
+    world.tiles.queue.failed(key, now.steady_us + kTileRetryUs);
+    if (!world.tiles.queue.is_waited_for(key) && !world.tiles.receivers.contains(key))
+      world.tiles.queue.cancel_again(key);
+    return;
+  }
+  const std::vector<SessionId> waiting = world.tiles.queue.finished(key);
+  const MadeTile& tile = made.back();
+  if (!waiting.empty()) world.find(waiting.front())->tile_debt += price_of(made);
+  std::vector<SessionId> receivers;
+  if (const TileReceivers* found = world.tiles.receivers.find(key)) receivers = found->sessions;
+  for (const SessionId session : waiting) {
+    if (std::ranges::find(receivers, session) == receivers.end()) receivers.push_back(session);
+  }
+  for (const SessionId session : receivers) send_tile(world, session, key, tile.tile, now);
+  if (TileReceivers* found = world.tiles.receivers.find(key)) {
+    found->made_us = now.steady_us;
+    if (world.environment.newest_tile_edit(key) > tile.through)
+      world.tiles.queue.make_again(key, now.steady_us + kTileRetryUs);
+  }
+  save_tiles(world, made);
+  for (const SessionId session : waiting) request_tiles(world, session, now);
+  start_tiles(world, now);
+}
+
+void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, Sequence seq,
+                  const Clocks& now) {
+  if (world.config.tile_levels_max == 0) return;
+  world.environment.tiles_edited(chunks, seq);
+  std::optional<ChunkKey> before;
+  for (const ChunkKey& chunk : chunks) {
+    for (std::uint8_t level = 1; level <= world.config.tile_levels_max; ++level) {
+      const ChunkKey key = tile_of(chunk.at, level);
+      // The chunk before has marked this tile and those above it.
+      if (before && tile_of(before->at, level) == key) break;
+      if (const TileReceivers* receivers = world.tiles.receivers.find(key))
+        make_again(world, key, *receivers, now);
+    }
+    before = chunk;
+  }
+}
+
+void forget_tiles(WorldState& world, SessionId session, WorldSession& mine) {
+  if (mine.tiles) leave_tiles(world, session, mine.tiles->clear());
+}
+
+}  // namespace runstone

@@ -1,0 +1,42 @@
+// Tile handlers: sessions get the tiles of their views, and get them again after edits. Workers make
+// the tiles. An edit makes the tiles above the touched chunks stale, in O(levels) for each chunk; a
+// stale tile that sessions have is made again after a pause that grows with its level, and sent to
+// them.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "server/world/tile_request.hpp"
+#include "server/world/world_state.hpp"
+
+namespace runstone {
+
+/// The tiles of level L are made again at most once in 2^(L - 1) of these times.
+inline constexpr TimeUs kTileRemakeUs = 1'000'000;
+/// After this time a tile is tried again that could not be made, or that lacks edits of chunks that
+/// are not in memory.
+inline constexpr TimeUs kTileRetryUs = 1'000'000;
+/// Tiles with the workers at a time.
+inline constexpr std::size_t kTilesInFlightMax = 4;
+
+/// Limits the levels of a view that the client sent to those that the server makes.
+void limit_levels(const WorldState& world, const WorldSession& session, View& view);
+/// Moves a session's tiles to its view. `skipped`: as in TileInterest::set_view(). Returns the cost.
+std::size_t set_tile_view(WorldState& world, SessionId session, const View& view,
+                          std::span<const View> skipped);
+/// Requests wanted tiles of the session, up to kTilesWaitingMax.
+void request_tiles(WorldState& world, SessionId session, const Clocks& now);
+/// Gives tiles to the workers. Call it on each tick and after requests.
+void start_tiles(WorldState& world, const Clocks& now);
+/// Sends a tile that workers made, the last one of `made`, to the sessions that wait for it or have it
+/// at an earlier state. Saves those that are worth it. `made` is empty if the tile could not be made.
+void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
+                   const Clocks& now);
+/// Makes the tiles above these chunks stale. The chunks are of level of detail 0, ascending.
+void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, Sequence seq,
+                  const Clocks& now);
+/// Forgets the tiles of a session that ends.
+void forget_tiles(WorldState& world, SessionId session, WorldSession& mine);
+
+}  // namespace runstone

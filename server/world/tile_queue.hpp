@@ -1,0 +1,66 @@
+// TileQueue: the tiles that workers are to make, and the sessions that wait for them. A tile that a
+// session waits for comes before a tile that sessions have and an edit has changed. Of those that are
+// waited for, the coarsest level comes first, within a level the earliest request. Of the changed ones,
+// that comes first which has been due for the longest time.
+// Bounds: the waited ones by kTilesWaitingMax for each session, the changed ones by the tiles that
+// sessions have. Thread: the world strand.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "common/core/ids.hpp"
+#include "server/interest/chunk_hash_map.hpp"
+
+namespace runstone {
+
+/// Tiles that a session may wait for at a time.
+inline constexpr std::size_t kTilesWaitingMax = 32;
+
+class TileQueue {
+ public:
+  /// Adds a session that waits for a tile. Requires that it does not wait for it yet.
+  void want(const ChunkKey& key, SessionId session);
+  /// Makes the tile due at this time, unless it is due before.
+  void make_again(const ChunkKey& key, TimeUs due_us);
+  /// Removes a session that waits for a tile. If nobody waits any more, the tile is not made for it.
+  void cancel(const ChunkKey& key, SessionId session);
+  /// Removes a tile that is to be made again, because no session has it any more.
+  void cancel_again(const ChunkKey& key);
+
+  /// Removes and returns the next tile. Returns nullopt if none is due or in_flight_max are under way.
+  /// A tile that is under way is not returned again before finished().
+  std::optional<ChunkKey> next(TimeUs now_us, std::size_t in_flight_max);
+  /// Ends a tile that next() returned. Returns the sessions that wait for it, in the order of their
+  /// requests. They wait no longer.
+  std::vector<SessionId> finished(const ChunkKey& key);
+  /// Ends a tile that next() returned and that could not be made. It is due again at this time; the
+  /// sessions go on waiting.
+  void failed(const ChunkKey& key, TimeUs due_us);
+
+  bool is_waited_for(const ChunkKey& key) const { return waiting_.contains(key); }
+  std::size_t in_flight() const { return in_flight_.size(); }
+  /// Returns the number of tiles that wait to be made.
+  std::size_t count() const { return wanted_.size() + due_.size(); }
+
+ private:
+  using Place = std::tuple<int, std::uint64_t, ChunkKey>;
+  struct Waiting {
+    std::vector<SessionId> sessions;
+    std::optional<Place> place;  // in wanted_; nullopt while it is under way or due again
+  };
+
+  std::uint64_t requests_ = 0;
+  ChunkHashMap<Waiting> waiting_;
+  std::set<Place> wanted_;
+  std::map<ChunkKey, TimeUs> again_;
+  std::set<std::pair<TimeUs, ChunkKey>> due_;  // the tiles of again_
+  std::set<ChunkKey> in_flight_;
+};
+
+}  // namespace runstone

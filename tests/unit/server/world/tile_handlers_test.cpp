@@ -1,0 +1,225 @@
+#include "server/world/tile_handlers.hpp"
+
+#include <set>
+
+#include "tests/unit/server/world/world_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+WorldConfig with_tiles() {
+  WorldConfig c = config();
+  c.tile_levels_max = 3;
+  return c;
+}
+
+/// A world whose ground is the layer of chunks at y = 0. Each tile that has ground is dotted.
+struct TileBench : WorldBench {
+  TileBench() : WorldBench(with_tiles()) { has_empty_base = true; }
+
+  void enter(SessionId session, std::uint8_t levels = 3, std::uint64_t features = kFeatureTiles) {
+    const auto who = static_cast<std::uint8_t>(session);
+    server.connected(session, now());
+    Hello h = hello(who);
+    h.features = features;
+    server.received(session, h, now());
+    const auto welcome = environment.messages<Welcome>(session, 0);
+    REQUIRE(welcome.size() == 1);
+    server.received(session, client_auth(who, h, welcome[0]), now());
+    look(session, levels, {});
+  }
+  void look(SessionId session, std::uint8_t levels, ChunkCoord at) {
+    View v;
+    v.centre = at;
+    v.radius_h = 2;
+    v.radius_v = 1;
+    v.levels = levels;
+    tick(100'000);
+    view(session, v);
+  }
+  MadeTile made(const ChunkKey& key, Sequence through) const {
+    const bool has_ground = key.at.y == 0;
+    Chunk tile = has_ground ? dotted_chunk(kEdge) : empty_chunk(kEdge);
+    tile.version = {};
+    return {key, std::make_shared<const Chunk>(std::move(tile)), through, false, false};
+  }
+  void answer(const TileRequest& request) {
+    server.tiles_made(request.key, {made(request.key, request.head)}, now());
+  }
+  /// Answers all requests, also those that follow. Returns them.
+  std::vector<TileRequest> answer_tiles() {
+    std::vector<TileRequest> requests;
+    while (!environment.tile_requests.empty()) {
+      const TileRequest request = environment.tile_requests.front();
+      environment.tile_requests.pop_front();
+      answer(request);
+      requests.push_back(request);
+    }
+    tick();
+    return requests;
+  }
+  /// Returns the tiles that the session was sent so far.
+  std::multiset<ChunkKey> tiles_of(SessionId session) const {
+    std::multiset<ChunkKey> keys;
+    for (const auto& sent : environment.snapshots) {
+      if (sent.session == session && sent.key.lod > 0) keys.insert(sent.key);
+    }
+    for (const UniformChunks& message : environment.messages<UniformChunks>(session, kEdge)) {
+      for (const UniformChunk& one : message.chunks) {
+        if (one.key.lod > 0) keys.insert(one.key);
+      }
+    }
+    return keys;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a session gets the tiles of its view, coarse ones first, and nothing below empty ones") {
+  TileBench bench;
+  bench.enter(1);
+  const std::vector<TileRequest> requests = bench.answer_tiles();
+  REQUIRE_FALSE(requests.empty());
+  CHECK(requests.front().key.lod == 3);
+  CHECK(requests.back().key.lod == 1);
+  const std::multiset<ChunkKey> tiles = bench.tiles_of(1);
+  // A disc of radius 2 has 13 columns. Level 3 has all five heights, the others those below y = 0.
+  CHECK(tiles.size() == 13 * (5 + 2 + 2));
+  CHECK(tiles.count({1, {0, 0, 0}}) == 1);
+  CHECK(tiles.count({1, {0, 1, 0}}) == 1);
+  CHECK(tiles.count({2, {0, 2, 0}}) == 0);
+}
+
+TEST_CASE("a client without the feature or without levels gets no tiles") {
+  TileBench bench;
+  bench.enter(1, 0);
+  CHECK(bench.environment.tile_requests.empty());
+  bench.enter(2, 3, 0);
+  CHECK(bench.environment.tile_requests.empty());
+}
+
+TEST_CASE("the server limits the levels of a view") {
+  TileBench bench;
+  bench.enter(1, 8);
+  CHECK(bench.answer_tiles().front().key.lod == 3);
+}
+
+TEST_CASE("an edit makes the tiles above it again, the coarser the later, for those who have them") {
+  TileBench bench;
+  bench.enter(1);
+  bench.enter(2, 0);
+  bench.answer_tiles();
+  const std::multiset<ChunkKey> before = bench.tiles_of(1);
+  bench.edit(1, 1, kAtOrigin);
+  bench.tick();
+  CHECK(bench.environment.tile_requests.empty());
+  std::vector<ChunkKey> made;
+  for (int n = 0; n < 30; ++n) {
+    bench.tick(500'000);
+    for (const TileRequest& request : bench.answer_tiles()) {
+      made.push_back(request.key);
+      CHECK(request.head == 1);
+      REQUIRE(request.fresh.size() == 1);
+      CHECK(request.fresh[0].first == ChunkKey{});
+      CHECK(request.fresh[0].second->version.seq == 1);
+    }
+  }
+  CHECK(made == std::vector<ChunkKey>{{1, {}}, {2, {}}, {3, {}}});
+  CHECK(bench.tiles_of(1).size() == before.size() + 3);
+  CHECK(bench.tiles_of(2).empty());
+}
+
+TEST_CASE("a tile that is edited while it is made is made once more and not saved") {
+  TileBench bench;
+  bench.enter(1);
+  const TileRequest first = bench.environment.tile_requests.front();
+  bench.environment.tile_requests.pop_front();
+  bench.edit(1, 1, kAtOrigin);
+  bench.tick();
+  bench.environment.tile_edits[first.key] = 1;
+  bench.answer(first);
+  for (const auto& [key, tile] : bench.environment.saved_tiles) CHECK(key != first.key);
+  bench.answer_tiles();
+  bench.tick(kTileRetryUs);
+  const std::vector<TileRequest> again = bench.answer_tiles();
+  CHECK(std::ranges::count(again, first.key, &TileRequest::key) == 1);
+}
+
+TEST_CASE("tiles are saved unless they are approximate or stored already") {
+  TileBench bench;
+  bench.enter(1);
+  const ChunkKey key = bench.environment.tile_requests.front().key;
+  bench.environment.tile_requests.pop_front();
+  MadeTile stored = bench.made({1, {9, 9, 9}}, 0), approximate = bench.made({1, {8, 9, 9}}, 0);
+  stored.is_stored = true;
+  approximate.is_approximate = true;
+  bench.server.tiles_made(key, {stored, approximate, bench.made({2, {7, 7, 7}}, 0), bench.made(key, 0)},
+                          bench.now());
+  REQUIRE(bench.environment.saved_tiles.size() == 2);
+  CHECK(bench.environment.saved_tiles[0].first == ChunkKey{2, {7, 7, 7}});
+  CHECK(bench.environment.saved_tiles[1].first == key);
+}
+
+TEST_CASE("a tile that could not be made is requested again after a pause") {
+  TileBench bench;
+  bench.enter(1);
+  const ChunkKey key = bench.environment.tile_requests.front().key;
+  bench.environment.tile_requests.pop_front();
+  bench.server.tiles_made(key, {}, bench.now());
+  bench.answer_tiles();
+  CHECK(bench.tiles_of(1).count(key) == 0);
+  bench.tick(kTileRetryUs);
+  bench.answer_tiles();
+  CHECK(bench.tiles_of(1).count(key) == 1);
+}
+
+TEST_CASE("a full queue delays tiles and loses none") {
+  TileBench bench;
+  bench.environment.full.insert(1);
+  bench.environment.snapshot_room[1] = 0;
+  bench.environment.full.clear();
+  bench.enter(1);
+  bench.answer_tiles();
+  CHECK(bench.tiles_of(1).count({3, {}}) == 0);
+  bench.environment.snapshot_room.clear();
+  for (int n = 0; n < 40; ++n) {
+    bench.server.drained(1, bench.now());
+    bench.answer_tiles();
+  }
+  CHECK(bench.tiles_of(1).size() == 13 * (5 + 2 + 2));
+}
+
+TEST_CASE("a session that leaves or moves away makes no work any more") {
+  TileBench bench;
+  bench.enter(1);
+  bench.answer_tiles();
+  bench.edit(1, 1, kAtOrigin);
+  bench.tick();
+  bench.look(1, 3, {1000, 0, 0});
+  for (const TileRequest& request : bench.answer_tiles()) CHECK(request.key.at.x > 100);
+  bench.edit(1, 2, SetVoxel{{1000 * kEdge, 1, 1}});
+  bench.tick();
+  bench.server.disconnected(1);
+  bench.tick(60'000'000);
+  CHECK(bench.environment.tile_requests.empty());
+}
+
+TEST_CASE("chunks with edits that are not in memory make a tile that is not complete") {
+  TileBench bench;
+  bench.enter(1);
+  bench.answer_tiles();
+  // Nobody sees this chunk, so it is not in memory. It lies below a tile of level 3 of the view.
+  bench.edit(1, 1, SetVoxel{{6 * kEdge, 1, 1}});
+  bench.tick();
+  REQUIRE(bench.server.find_chunk({0, {6, 0, 0}}) == nullptr);
+  bench.tick(5'000'000);
+  bool has_seen = false;
+  for (const TileRequest& request : bench.answer_tiles()) {
+    if (request.key != ChunkKey{3, {}}) continue;
+    CHECK(request.head == 0);
+    has_seen = true;
+  }
+  CHECK(has_seen);
+}
+
+}  // namespace runstone::test
