@@ -104,7 +104,8 @@ TEST_CASE("the server limits the levels of a view") {
   CHECK(bench.answer_tiles().front().key.lod == 3);
 }
 
-TEST_CASE("an edit makes the tiles above it again, the coarser the later, for those who have them") {
+TEST_CASE(
+    "an edit makes the tiles above it again, the coarser the later, for those who have them") {
   TileBench bench;
   bench.enter(1);
   bench.enter(2, 0);
@@ -153,8 +154,8 @@ TEST_CASE("tiles are saved unless they are approximate or stored already") {
   MadeTile stored = bench.made({1, {9, 9, 9}}, 0), approximate = bench.made({1, {8, 9, 9}}, 0);
   stored.is_stored = true;
   approximate.is_approximate = true;
-  bench.server.tiles_made(key, {stored, approximate, bench.made({2, {7, 7, 7}}, 0), bench.made(key, 0)},
-                          bench.now());
+  bench.server.tiles_made(
+      key, {stored, approximate, bench.made({2, {7, 7, 7}}, 0), bench.made(key, 0)}, bench.now());
   REQUIRE(bench.environment.saved_tiles.size() == 2);
   CHECK(bench.environment.saved_tiles[0].first == ChunkKey{2, {7, 7, 7}});
   CHECK(bench.environment.saved_tiles[1].first == key);
