@@ -44,8 +44,8 @@ std::optional<ChunkKey> TileQueue::next(TimeUs now_us, std::size_t in_flight_max
     waiting_.find(*key)->place.reset();
   } else {
     // A tile under way that is due again is made after it has finished.
-    const auto due =
-        std::ranges::find_if(due_, [&](const auto& one) { return !in_flight_.contains(one.second); });
+    const auto due = std::ranges::find_if(
+        due_, [&](const auto& one) { return !in_flight_.contains(one.second); });
     if (due == due_.end() || due->first > now_us) return std::nullopt;
     key = due->second;
   }

@@ -29,7 +29,8 @@ struct Ground {
     SplitMix64 rng(7);
     for (int n = 0; n < 400; ++n) {
       const ChunkCoord at{rng.between(-40, 40), rng.between(-6, 6), rng.between(-40, 40)};
-      for (std::uint8_t level = 1; level <= kTileLevelMax; ++level) solid.insert(tile_of(at, level));
+      for (std::uint8_t level = 1; level <= kTileLevelMax; ++level)
+        solid.insert(tile_of(at, level));
     }
   }
   bool is_empty(const ChunkKey& key) const { return !solid.contains(key); }
