@@ -9,6 +9,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/hex.hpp"
+#include "common/core/tile_keys.hpp"
 #include "protocol/rules/chat_text.hpp"
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
@@ -187,6 +188,8 @@ const std::vector<Field>& fields() {
       number("handshakes_per_address", &C::handshakes_per_address, 1, 65'536,
              "connections from one address that have not authenticated"),
       number("view_radius_max", &C::view_radius_max, 0, 64, "chunks; larger views are cut to it"),
+      number("tile_levels_max", &C::tile_levels_max, 0, kTileLevelMax,
+             "levels of detail that clients may see far ground in, 0: none"),
       number("view_interval_ms", &C::view_interval_ms, 0, 10'000,
              "milliseconds between two views of a session that take effect"),
       number("chunk_loads_per_second", &C::chunk_loads_per_second, 0, kBudgetPerSecondMax,

@@ -50,6 +50,7 @@ struct ServerConfig {
   std::uint64_t connections_per_second = 20;  // of one address, ten times at once, 0: no limit
   std::uint64_t handshakes_per_address = 32;  // unauthenticated connections, 1..65536
   std::uint64_t view_radius_max = 16;         // chunks, 0..64
+  std::uint64_t tile_levels_max = 8;          // levels of detail of far ground, 0..8; 0: none
   std::uint64_t view_interval_ms = 50;        // least time between two views of a session, 0..10000
   /// Chunks that are generated or read for a player, ten times as many at once, 0: no limit.
   std::uint64_t chunk_loads_per_second = 2'000;

@@ -50,6 +50,8 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, s
   world.operators = config.operators;
   world.link_address = link_address(config, port);
   world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
+  world.tile_levels_max = static_cast<std::uint8_t>(config.tile_levels_max);
+  if (world.tile_levels_max == 0) world.features &= ~kFeatureTiles;
   world.view_interval_us = static_cast<TimeUs>(config.view_interval_ms) * kUsPerMs;
   world.loads_in_flight_max = kLoadsPerWorker * config.worker_threads;
   world.edit_volume_max = config.edit_volume_max;

@@ -40,7 +40,8 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       chunks_(config.world, generator),
       sender_(threads.workers, chunks_),
       readers_(strand_, threads.workers, chunks_, config.world, generator),
-      environment_(sessions_, *listener_, sender_, readers_),
+      tiles_(strand_, chunks_, generator, store.meta().chunk_edge),
+      environment_(sessions_, *listener_, sender_, readers_, tiles_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
       stalls_(strand_, kStallInterval, [this] { close_stalled(); }),
@@ -215,6 +216,7 @@ StopState ServerCore::stop_state() const {
 
 void ServerCore::stop_writer() {
   readers_.stop();
+  tiles_.stop();
   if (chat_log_) chat_log_->stop();
   log_->stop();
 }

@@ -28,6 +28,7 @@
 #include "server/runtime/periodic_task.hpp"
 #include "server/runtime/server_environment.hpp"
 #include "server/runtime/stop_state.hpp"
+#include "server/runtime/tile_making.hpp"
 #include "server/runtime/world_readers.hpp"
 #include "server/runtime/world_strand.hpp"
 #include "server/store/world_folder.hpp"
@@ -138,6 +139,7 @@ class ServerCore final : public NetEvents {
   ChunkSource chunks_;
   ChunkSender sender_;
   WorldReaders readers_;
+  TileMaking tiles_;
   ServerEnvironment environment_;
   CommitScheduler commits_;
   PeriodicTask ticks_, stalls_, activity_, chat_retention_;

@@ -87,6 +87,25 @@ void ServerEnvironment::load_chunk(const ChunkKey& key) {
   });
 }
 
+void ServerEnvironment::make_tile(TileRequest request) {
+  tiles_.make(std::move(request), world_->materials(),
+              [this](const ChunkKey& key, const std::vector<MadeTile>& made) {
+                world_->tiles_made(key, made, read_clocks());
+              });
+}
+
+void ServerEnvironment::tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) {
+  tiles_.edited(chunks, seq);
+}
+
+Sequence ServerEnvironment::newest_tile_edit(const ChunkKey& tile) const {
+  return tiles_.newest_edit(tile);
+}
+
+void ServerEnvironment::save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) {
+  tiles_.save(std::move(tiles), log_->writer());
+}
+
 void ServerEnvironment::open_history(SessionId session, const HistoryRequest& request) {
   readers_.open_history(request, [this, session, request = request.request](
                                      const WorldReaders::OpenedHistoryResult& opened) {

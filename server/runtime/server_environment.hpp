@@ -15,6 +15,7 @@
 #include "server/runtime/connected_sessions.hpp"
 #include "server/runtime/durable_log.hpp"
 #include "server/runtime/operator_log.hpp"
+#include "server/runtime/tile_making.hpp"
 #include "server/runtime/world_readers.hpp"
 #include "server/world/world_environment.hpp"
 
@@ -24,8 +25,8 @@ class ServerEnvironment final : public WorldEnvironment {
  public:
   /// All must outlive the object.
   ServerEnvironment(ConnectedSessions& sessions, Listener& listener, ChunkSender& sender,
-                    WorldReaders& readers)
-      : sessions_(sessions), listener_(listener), sender_(sender), readers_(readers) {}
+                    WorldReaders& readers, TileMaking& tiles)
+      : sessions_(sessions), listener_(listener), sender_(sender), readers_(readers), tiles_(tiles) {}
 
   /// Connects the parts that are made after recovery, because they need the world. Call it once,
   /// before the first session connects. All must outlive the object.
@@ -60,6 +61,10 @@ class ServerEnvironment final : public WorldEnvironment {
   void log_names(std::vector<NameChange> changes) override;
   void log_chat(const ChatEntry& entry) override;
   void load_chunk(const ChunkKey& key) override;
+  void make_tile(TileRequest request) override;
+  void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override;
+  Sequence newest_tile_edit(const ChunkKey& tile) const override;
+  void save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) override;
   void open_history(SessionId session, const HistoryRequest& request) override;
   void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                           const ChunkKey& key) override;
@@ -77,6 +82,7 @@ class ServerEnvironment final : public WorldEnvironment {
   Listener& listener_;
   ChunkSender& sender_;
   WorldReaders& readers_;
+  TileMaking& tiles_;
   OperatorLog lines_;
   WorldServer* world_ = nullptr;
   DurableLog* log_ = nullptr;

@@ -63,12 +63,16 @@ void LogWriter::queue(Batch batch) {
 }
 
 bool LogWriter::save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint) {
-  return queue({std::move(chunks), checkpoint, 0, std::nullopt, {}});
+  return queue(Job{std::move(chunks), checkpoint, 0, std::nullopt, {}, false});
 }
 
 bool LogWriter::save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe,
-                              KeyframeDone done) {
-  return queue({std::move(chunks), std::nullopt, 0, keyframe, std::move(done)});
+                              JobDone done) {
+  return queue(Job{std::move(chunks), std::nullopt, 0, keyframe, std::move(done), false});
+}
+
+bool LogWriter::save_tiles(SnapshotChunks tiles, JobDone done) {
+  return queue(Job{std::move(tiles), std::nullopt, 0, std::nullopt, std::move(done), true});
 }
 
 bool LogWriter::queue(Job job) {
@@ -190,7 +194,9 @@ StoreResult<void> LogWriter::write_slice(Job& job) {
   const ChunkSpan slice(job.chunks.data() + job.written, count);
   const bool last = job.written + count == job.chunks.size();
   if (job.done) {
-    const auto saved = world_.save_keyframe(slice, last ? job.keyframe : std::nullopt);
+    const auto saved = job.is_of_tiles
+                           ? world_.save_tiles(slice)
+                           : world_.save_keyframe(slice, last ? job.keyframe : std::nullopt);
     job.written = saved ? job.written + count : job.chunks.size();  // an error ends the job
     if (saved && last && job.keyframe) {
       const std::lock_guard guard(mutex_);
@@ -236,7 +242,7 @@ void LogWriter::set_space(DiskSpace space, const std::string& reason) {
 bool LogWriter::wait_for_room(const StoreError& error, const Batch& group,
                               std::optional<Job>& job) {
   set_space(DiskSpace::full, error.message());
-  end_keyframes(error, job);
+  end_optional_jobs(error, job);
   std::unique_lock lock(mutex_);
   if (stopping_) {
     if (group.room > 0) return false;
@@ -246,14 +252,14 @@ bool LogWriter::wait_for_room(const StoreError& error, const Batch& group,
     job_is_running_ = false;
     return true;
   }
-  // A job for a keyframe ends the wait, so that its error does not wait.
-  const auto is_keyframe = [](const Job& one) { return one.done != nullptr; };
+  // A job that ends with an error ends the wait, so that its error does not wait.
+  const auto ends = [](const Job& one) { return one.done != nullptr; };
   work_.wait_for(lock, limits_.space_interval,
-                 [&] { return stopping_ || std::any_of(jobs_.begin(), jobs_.end(), is_keyframe); });
+                 [&] { return stopping_ || std::any_of(jobs_.begin(), jobs_.end(), ends); });
   return true;
 }
 
-void LogWriter::end_keyframes(const StoreError& error, std::optional<Job>& job) {
+void LogWriter::end_optional_jobs(const StoreError& error, std::optional<Job>& job) {
   std::deque<Job> ended;
   {
     const std::lock_guard guard(mutex_);
@@ -274,7 +280,7 @@ void LogWriter::fail(const StoreError& error, std::optional<Job>& job) {
     failed_ = true;
     batches_.clear();
   }
-  end_keyframes(error, job);
+  end_optional_jobs(error, job);
   if (callbacks_.on_failed) callbacks_.on_failed(error);
 }
 

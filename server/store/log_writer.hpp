@@ -1,23 +1,23 @@
 // LogWriter: the one thread that writes a world. It takes batches of records, and jobs for
-// snapshots and keyframes, from bounded queues.
+// snapshots, keyframes and tiles, from bounded queues.
 //   - Group commit: all batches that were queued during the last fsync become one transaction, and
 //     one call of on_durable. A slow disk makes larger groups, and so does
 //     commit_interval, because a commit writes some pages of the database however small it is.
 //   - Full: has_room() returns false, and the world rejects edits as busy. The queue of jobs does
-//     not fill in a server: the checkpointer and the keyframe thread each have at most one job
-//     under way. So a refused job means that the writer has failed or stopped. The job
+//     not fill in a server: the checkpointer, the keyframe thread and the tiles each have at most
+//     one job under way. So a refused job means that the writer has failed or stopped. The job
 //     is not offered again.
 //   - Order: records go before jobs, and a job is written in slices. A record therefore never waits
 //     for many chunks.
 //   - A full disk: what was to be written stays queued and is written again once a second, until
 //     there is room. has_room() returns false meanwhile. It also returns false while less space is
-//     free than the reserve: the reserve is for what is queued already. Jobs for keyframes end with
-//     an error while the disk is full, because a keyframe holds nothing that the log does not.
+//     free than the reserve: the reserve is for what is queued already. Jobs for keyframes and tiles
+//     end with an error while the disk is full, because they hold nothing that the log does not.
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
 //     batches are dropped. They were never acknowledged. The program must end and recover from the
-//     log. A keyframe that cannot be written ends only its job.
-// Threads: append(), change_names(), save_snapshots(), save_keyframe() and has_room() from any thread. The writer
-// thread calls the callbacks, which must return soon. The mutex is a leaf: no callback and no disk
+//     log. A keyframe or a tile that cannot be written ends only its job.
+// Threads: append(), change_names(), save_snapshots(), save_keyframe(), save_tiles() and has_room() from any
+// thread. The writer thread calls the callbacks, which must return soon. The mutex is a leaf: no callback and no disk
 // access happens while it is locked.
 #pragma once
 #include <atomic>
@@ -95,11 +95,14 @@ class LogWriter {
   /// Queues a job. Returns false, and takes nothing, if the queue of jobs is full or the writer has
   /// failed or stopped.
   bool save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint);
-  using KeyframeDone = std::function<void(StoreResult<void>)>;
+  using JobDone = std::function<void(StoreResult<void>)>;
   /// Queues a job that calls WorldSink::save_keyframe() for each slice of chunks, and passes the
   /// keyframe with the last one. The writer thread calls `done` when all of it is on disk, or has
   /// failed. Returns false as save_snapshots(); `done` is not called then.
-  bool save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, KeyframeDone done);
+  bool save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, JobDone done);
+  /// Queues a job that calls WorldSink::save_tiles() for each slice of tiles. `done` and the result are
+  /// as for save_keyframe().
+  bool save_tiles(SnapshotChunks tiles, JobDone done);
   /// Writes everything that is queued, calls the callbacks, and ends the thread. If the disk is
   /// full, it tries once more and gives up: Counters::queued_records are the records that are lost.
   /// Snapshots without room do not keep it from writing records.
@@ -122,9 +125,9 @@ class LogWriter {
     SnapshotChunks chunks;
     std::optional<Sequence> checkpoint;
     std::size_t written = 0;  // chunks that are on disk
-    // Both are set only in a job for a keyframe.
-    std::optional<Keyframe> keyframe;
-    KeyframeDone done;
+    std::optional<Keyframe> keyframe;  // only in a job for a keyframe
+    JobDone done;                      // in a job for a keyframe or for tiles
+    bool is_of_tiles = false;
     bool is_over() const { return written == chunks.size(); }
   };
 
@@ -148,8 +151,8 @@ class LogWriter {
   /// writer stops, it does not wait: it returns false if records found no room, and drops the
   /// snapshots otherwise.
   bool wait_for_room(const StoreError& error, const Batch& group, std::optional<Job>& job);
-  /// Ends the jobs for keyframes, `job` included, with an error.
-  void end_keyframes(const StoreError& error, std::optional<Job>& job);
+  /// Ends the jobs for keyframes and tiles, `job` included, with an error.
+  void end_optional_jobs(const StoreError& error, std::optional<Job>& job);
   /// Ends the writer. `job` is the one that is being written, if any.
   void fail(const StoreError& error, std::optional<Job>& job);
 

@@ -16,7 +16,7 @@ namespace {
 std::size_t price_of(const std::vector<MadeTile>& made) {
   std::size_t price = 0;
   for (const MadeTile& one : made) {
-    if (!one.is_stored) price += one.key.lod == 1 ? 1 + kTileChildren : 1;
+    if (!one.is_known) price += one.key.lod == 1 ? 1 + kTileChildren : 1;
   }
   return price;
 }
@@ -58,8 +58,9 @@ TileRequest request_of(const WorldState& world, const ChunkKey& tile) {
   for (auto at = dirty.lower_bound({0, first}); at != dirty.end(); ++at) {
     if (at->at.x >> tile.lod != tile.at.x) break;
     if (tile_of(at->at, tile.lod) != tile) continue;
-    if (ChunkPtr chunk = chunks.find(*at)) {
-      request.fresh.emplace_back(*at, std::move(chunk));
+    ChunkPtr chunk = chunks.find(*at);
+    if (chunk || chunks.residency(*at) == Residency::quarantined) {
+      request.fresh.emplace_back(at->at, std::move(chunk));
     } else {
       request.head = 0;
     }
@@ -91,8 +92,7 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
     return;
   }
   ++world.counters.tiles_sent;
-  const bool is_empty =
-      tile->voxels.is_uniform() && material_at(tile->voxels, {0, 0, 0}) == kEmpty;
+  const bool is_empty = tile->voxels.is_uniform() && material_at(tile->voxels, {0, 0, 0}) == kEmpty;
   leave_tiles(world, session, mine.tiles->set_sent(key, is_empty));
   add_receiver(world, key, session);
 }
@@ -100,7 +100,7 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
 void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
   std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
   for (const MadeTile& one : made) {
-    if (one.is_approximate || one.is_stored) continue;
+    if (!one.is_worth_storing()) continue;
     if (world.environment.newest_tile_edit(one.key) > one.through) continue;
     tiles.emplace_back(one.key, one.tile);
   }

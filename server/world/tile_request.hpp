@@ -15,17 +15,27 @@ struct TileRequest {
   ChunkKey key;
   /// Every edit up to it that touches a chunk below the tile is in `fresh` or in a snapshot on disk.
   Sequence head = 0;
-  /// The chunks below the tile whose newest voxels are only in memory, ascending.
-  std::vector<std::pair<ChunkKey, ChunkPtr>> fresh;
+  /// The chunks below the tile whose newest voxels are only in memory, ascending. A chunk that is null
+  /// cannot be shown: the tile shows nothing there.
+  std::vector<std::pair<ChunkCoord, ChunkPtr>> fresh;
 };
 
 /// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty.
 struct MadeTile {
   ChunkKey key;
-  ChunkPtr tile;
-  Sequence through = 0;         // it contains every edit below it up to this one
-  bool is_approximate = false;  // made without the chunks, or without some of them
-  bool is_stored = false;       // read from the folder as it is
+  ChunkPtr tile;         // its version is the greatest version of the chunks below it
+  Sequence through = 0;  // it contains every edit below it up to this one
+  /// A part of it is not made of chunks: the generator approximated it, or a chunk below it is
+  /// damaged and left out.
+  bool is_approximate = false;
+  /// It was read from the folder, or an earlier request made it.
+  bool is_known = false;
+
+  /// Returns true if the tile should be stored. A tile that contains some edits behind `through` may
+  /// lack others, and its version would not tell.
+  bool is_worth_storing() const {
+    return !is_approximate && !is_known && tile->version.seq <= through;
+  }
 };
 
 }  // namespace runstone

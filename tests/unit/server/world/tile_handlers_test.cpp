@@ -121,7 +121,7 @@ TEST_CASE(
       made.push_back(request.key);
       CHECK(request.head == 1);
       REQUIRE(request.fresh.size() == 1);
-      CHECK(request.fresh[0].first == ChunkKey{});
+      CHECK(request.fresh[0].first == ChunkCoord{});
       CHECK(request.fresh[0].second->version.seq == 1);
     }
   }
@@ -152,7 +152,7 @@ TEST_CASE("tiles are saved unless they are approximate or stored already") {
   const ChunkKey key = bench.environment.tile_requests.front().key;
   bench.environment.tile_requests.pop_front();
   MadeTile stored = bench.made({1, {9, 9, 9}}, 0), approximate = bench.made({1, {8, 9, 9}}, 0);
-  stored.is_stored = true;
+  stored.is_known = true;
   approximate.is_approximate = true;
   bench.server.tiles_made(
       key, {stored, approximate, bench.made({2, {7, 7, 7}}, 0), bench.made(key, 0)}, bench.now());

@@ -1,0 +1,65 @@
+// TileMaking: makes and saves tiles for the world strand. Tiles are made by threads of their own, so
+// that they delay neither chunks nor edits; the threads have a low priority. Tiles are saved by the
+// log writer, a few at a time.
+// Threads: the world strand, unless a call says otherwise. The threads end with stop().
+#pragma once
+#include <asio/thread_pool.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "common/generate/generator.hpp"
+#include "common/materials/material_table.hpp"
+#include "common/mesh/visibility.hpp"
+#include "server/history/chunk_source.hpp"
+#include "server/runtime/low_priority_threads.hpp"
+#include "server/runtime/world_strand.hpp"
+#include "server/store/log_writer.hpp"
+#include "server/tiles/tile_ledger.hpp"
+#include "server/tiles/tile_source.hpp"
+#include "server/world/tile_request.hpp"
+
+namespace runstone {
+
+class TileMaking {
+ public:
+  using Tiles = std::vector<std::pair<ChunkKey, ChunkPtr>>;
+  /// Brings the tiles of a request. They are empty if the tile could not be made.
+  using Then = std::function<void(const ChunkKey&, const std::vector<MadeTile>&)>;
+
+  /// All must outlive the object.
+  TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator& generator, std::int32_t edge);
+
+  /// Makes a tile. `materials` are those in force.
+  void make(TileRequest request, const MaterialTable& materials, Then then);
+  void edited(std::span<const ChunkKey> chunks, Sequence seq) { ledger_.edited(chunks, seq); }
+  Sequence newest_edit(const ChunkKey& tile) const { return ledger_.newest_edit(tile); }
+  /// Writes tiles when the earlier ones are written. Drops tiles if too many wait. The writer must not
+  /// call back after the strand has ended.
+  void save(Tiles tiles, LogWriter& writer);
+
+  /// Ends the threads. Waits for the tiles that are being made, and drops the requests that wait.
+  /// Thread: any but those of the strand.
+  void stop();
+
+ private:
+  static constexpr std::size_t kThreads = 2;
+  static constexpr std::size_t kUnsavedMax = 4'096;  // tiles
+  static constexpr std::size_t kSavedAtOnceMax = 256;
+
+  void save_next(LogWriter& writer);
+
+  WorldStrand& strand_;
+  TileLedger ledger_;
+  TileSource source_;
+  std::shared_ptr<const VisibilityTable> visibility_;
+  std::size_t materials_ = 0;  // rows that visibility_ has
+  Tiles unsaved_;
+  bool is_saving_ = false;
+  const std::unique_ptr<asio::thread_pool> threads_ = low_priority_threads(kThreads);
+};
+
+}  // namespace runstone

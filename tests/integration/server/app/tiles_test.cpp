@@ -1,0 +1,222 @@
+// A server makes tiles of far ground, keeps them current while players build, and stores them.
+#include <array>
+#include <catch2/catch.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/tile_keys.hpp"
+#include "common/edits/apply/edit_stack.hpp"
+#include "common/generate/generator.hpp"
+#include "common/mesh/visibility.hpp"
+#include "common/tiles/tile_builder.hpp"
+#include "common/tiles/veil.hpp"
+#include "protocol/codec/view_tiles.hpp"
+#include "tests/integration/server/app/raw_client.hpp"
+#include "tests/integration/server/app/server_bench.hpp"
+#include "tests/integration/server/app/session_messages.hpp"
+#include "tests/support/raw_sql.hpp"
+
+namespace runstone::test::tiles_test {
+namespace {
+
+constexpr std::int32_t kEdge = 16;
+constexpr Material kTower = 3;
+
+WorldCreation terrain_creation() {
+  WorldCreation creation;
+  creation.generator = "terrain";
+  creation.edge = kEdge;
+  creation.seed = 5;
+  return creation;
+}
+
+View far_view(ChunkCoord centre) {
+  View view;
+  view.centre = centre;
+  view.radius_h = 2;
+  view.radius_v = 1;
+  view.levels = 4;
+  return view;
+}
+
+bool is_empty(const Chunk& tile) {
+  return tile.voxels == uniform_chunk(tile.voxels.extent, kEmpty, tile.voxels.order);
+}
+
+/// A client that keeps the tiles of its view.
+class Watcher {
+ public:
+  Watcher(std::uint16_t port, std::uint8_t who, const View& view) : client_(port), view_(view) {
+    client_.features = kFeatureTiles;
+    REQUIRE(client_.join(who).has_value());
+    client_.send(view);
+  }
+  const std::map<ChunkKey, Chunk>& tiles() const { return tiles_; }
+  const Chunk* find(const ChunkKey& key) const {
+    const auto found = tiles_.find(key);
+    return found == tiles_.end() ? nullptr : &found->second;
+  }
+  /// Reads until every root of the view and every child of a tile with ground has arrived.
+  void read_all() {
+    while (!is_complete()) read_tile();
+  }
+  /// Reads until `is_done` returns true.
+  template <class IsDone>
+  void read_until(const IsDone& is_done) {
+    while (!is_done()) read_tile();
+  }
+  void send(const Message& message) { client_.send(message); }
+  RawClient& client() { return client_; }
+
+ private:
+  void read_tile() {
+    auto snapshot = client_.next_of<ChunkSnapshot>();
+    REQUIRE(snapshot.has_value());
+    if (snapshot->key.lod == 0) return;
+    CHECK(contains_key(view_, snapshot->key));
+    CHECK(digest_matches(*snapshot));
+    tiles_.insert_or_assign(snapshot->key, std::move(snapshot->chunk));
+  }
+  bool has_below(const ChunkKey& key) const {
+    const Chunk* tile = find(key);
+    if (tile == nullptr) return false;
+    if (key.lod == 1 || is_empty(*tile)) return true;
+    for (unsigned i = 0; i < kTileChildren; ++i) {
+      const ChunkKey child = tile_child(key, i);
+      if (contains_key(view_, child) && !has_below(child)) return false;
+    }
+    return true;
+  }
+  bool is_complete() const {
+    const ChunkCoord centre = tile_at(view_.centre, view_.levels);
+    for (std::int32_t x = -2; x <= 2; ++x) {
+      for (std::int32_t y = -kTileRadiusV; y <= kTileRadiusV; ++y) {
+        for (std::int32_t z = -2; z <= 2; ++z) {
+          const ChunkKey root{view_.levels, {centre.x + x, centre.y + y, centre.z + z}};
+          if (contains_key(view_, root) && !has_below(root)) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  RawClient client_;
+  View view_;
+  std::map<ChunkKey, Chunk> tiles_;
+};
+
+/// Makes tiles from the generator and from edits alone.
+class Expected {
+ public:
+  explicit Expected(const std::string& folder) {
+    const auto store = open_world(folder, StoreAccess::read_only);
+    REQUIRE(store.has_value());
+    const MaterialTable materials = (*store)->meta().materials;
+    visibility_.emplace(visibilities(materials));
+    auto made = make_generator((*store)->meta().generator, materials);
+    REQUIRE(made.has_value());
+    generator_ = *std::move(made);
+  }
+  void edit(const EditDescriptor& edit) { edits_.push_back(edit); }
+  RunChunk tile(const ChunkKey& key, AxisOrder order) {
+    if (key.lod == 0) return chunk(key.at);
+    std::array<RunChunk, kTileChildren> children;
+    TileChildren pointers{};
+    for (unsigned i = 0; i < kTileChildren; ++i) {
+      children[i] = tile(tile_child(key, i), order);
+      pointers[i] = &children[i];
+    }
+    RunChunk made = build_tile(pointers, kEdge, order, *visibility_, scratch_);
+    veil(made, *visibility_, veil_);
+    return made;
+  }
+
+ private:
+  RunChunk chunk(ChunkCoord at) const {
+    const VoxelPos origin = origin_of(at, kEdge);
+    RunChunk voxels = generator_->generate(origin, Extent::cube(kEdge));
+    Digest digest = digest_of(voxels);
+    ApplyScratch scratch;
+    apply_stack(voxels, digest, origin, edits_, scratch);
+    return voxels;
+  }
+
+  std::optional<VisibilityTable> visibility_;
+  std::unique_ptr<Generator> generator_;
+  std::vector<EditDescriptor> edits_;
+  TileScratch scratch_;
+  VeilScratch veil_;
+};
+
+/// Compares the tiles below the level from which on the generator may approximate them.
+void check_exact(const Watcher& watcher, Expected& expected) {
+  int compared = 0;
+  for (const auto& [key, tile] : watcher.tiles()) {
+    if (key.lod > 2) continue;
+    INFO("level " << int{key.lod} << " at " << key.at.x << " " << key.at.y << " " << key.at.z);
+    CHECK(digest_of(tile.voxels) == digest_of(expected.tile(key, tile.voxels.order)));
+    ++compared;
+  }
+  CHECK(compared > 20);
+}
+
+const std::array<EditDescriptor, 2> kTowers = {
+    EditDescriptor{FillBox{{{40, 0, 40}, {44, 150, 44}}}, {}, kTower},
+    EditDescriptor{FillBox{{{-50, 60, 8}, {-40, 90, 20}}}, {}, kTower}};
+
+}  // namespace
+
+TEST_CASE("a tower appears in the tiles of another client, and in those of the next start",
+          "[integration]") {
+  TempFolder folder;
+  const ServerConfig config = quiet_config(folder.path());
+  {
+    const auto server = start_server(config, terrain_creation());
+    Expected expected(folder.path());
+    Watcher watcher(server->port(), 1, far_view({0, 2, 0}));
+    watcher.read_all();
+    check_exact(watcher, expected);
+
+    RawClient builder(server->port());
+    REQUIRE(builder.join(2).has_value());
+    ClientSequence seq = 0;
+    for (const EditDescriptor& tower : kTowers) {
+      builder.send(EditRequest{++seq, 0, tower});
+      expected.edit(tower);
+    }
+    REQUIRE(builder.sees_durable(2));
+    const ChunkKey above = tile_of(chunk_of({40, 140, 40}, kEdge), 2);
+    watcher.read_until([&] {
+      const Chunk* tile = watcher.find(above);
+      return tile != nullptr && tile->version.seq == 2;
+    });
+    watcher.read_all();
+    const auto has_towers = [&] {
+      for (const EditDescriptor& tower : kTowers) {
+        const VoxelBox box = std::get<FillBox>(tower.shape).box;
+        for (std::uint8_t level = 1; level <= 2; ++level) {
+          const ChunkKey key = tile_of(chunk_of(box.min, kEdge), level);
+          const Chunk* tile = watcher.find(key);
+          if (contains_key(far_view({0, 2, 0}), key) && (tile == nullptr || tile->version.seq == 0))
+            return false;
+        }
+      }
+      return true;
+    };
+    watcher.read_until(has_towers);
+    server->stop();
+  }
+  const auto server = start_server(config, {});
+  Expected expected(folder.path());
+  for (const EditDescriptor& tower : kTowers) expected.edit(tower);
+  Watcher watcher(server->port(), 1, far_view({0, 2, 0}));
+  watcher.read_all();
+  check_exact(watcher, expected);
+  server->stop();
+  CHECK(raw_sql(folder / "world.sqlite", "SELECT count(*) FROM tile WHERE seq > 0") != "0");
+}
+
+}  // namespace runstone::test::tiles_test
