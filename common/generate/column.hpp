@@ -98,6 +98,35 @@ class Column {
     until(to, kEmpty);
   }
 
+  /// Appends `count` rows from y = `from` upwards, each 2^level voxels high. A row has the material
+  /// of its highest non-empty voxel, so a surface keeps its material. A row with voxels of `liquid`
+  /// above others has the material of the others: the ground below shallow water has more faces
+  /// that are drawn.
+  void emit_coarse(std::int32_t from, std::uint32_t count, std::uint8_t level, Material liquid,
+                   RunBuilder& out) const {
+    std::int32_t row = 0;  // the first that is not appended
+    const auto until = [&](std::int32_t end, Material material) {
+      end = std::min(end, static_cast<std::int32_t>(count));
+      if (end <= row) return;
+      out.append(static_cast<std::uint32_t>(end - row), material);
+      row = end;
+    };
+    Span below{0, kEmpty};  // the span before, in rows
+    std::int32_t begin = y_min_;
+    for (const Span& span : spans_) {
+      if (span.material != kEmpty) {
+        const std::int32_t first = (begin - from) >> level;
+        const bool covers = span.material != liquid;
+        until(covers ? std::min(below.end, first) : below.end, below.material);
+        until(first, kEmpty);
+        below = {((span.end - from - 1) >> level) + 1, span.material};
+      }
+      begin = span.end;
+    }
+    until(below.end, below.material);
+    until(static_cast<std::int32_t>(count), kEmpty);
+  }
+
  private:
   /// Does the same as paint() for an interval that begins at the lowest voxel, as nearly every
   /// layer of terrain does. It removes the covered spans in place.

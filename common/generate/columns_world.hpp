@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -25,6 +26,10 @@ class ColumnsWorld final : public Generator {
   static Result<std::unique_ptr<ColumnsWorld>> parse(std::string_view csv);
 
   RunChunk generate(VoxelPos origin, Extent extent) const override;
+  std::optional<RunChunk> coarse(VoxelPos origin, std::int32_t edge,
+                                 std::uint8_t level) const override {
+    return coarse_outside(bounds(), origin, edge, level);
+  }
   std::int32_t y_min() const override { return kBottom; }
   std::int32_t y_max() const override { return y_max_; }
   std::int32_t surface_y(std::int32_t x, std::int32_t z) const override;

@@ -38,4 +38,15 @@ RunChunk FlatGenerator::generate(VoxelPos origin, Extent extent) const {
   return out.finish();
 }
 
+std::optional<RunChunk> FlatGenerator::coarse(VoxelPos origin, std::int32_t edge,
+                                              std::uint8_t level) const {
+  const Extent extent = Extent::cube(static_cast<unsigned>(edge));
+  if (origin.y + (edge << level) <= y_min_ || origin.y >= y_max_)
+    return uniform_chunk(extent, kEmpty);
+  RunBuilder out(extent, AxisOrder::yxz);
+  for (std::int32_t i = 0; i < edge * edge; ++i)
+    column_.emit_coarse(origin.y, extent.y, level, kEmpty, out);
+  return out.finish();
+}
+
 }  // namespace runstone

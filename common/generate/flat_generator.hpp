@@ -16,6 +16,8 @@ class FlatGenerator final : public Generator {
   static std::unique_ptr<Generator> make_empty();
 
   RunChunk generate(VoxelPos origin, Extent extent) const override;
+  std::optional<RunChunk> coarse(VoxelPos origin, std::int32_t edge,
+                                 std::uint8_t level) const override;
   std::int32_t y_min() const override { return y_min_; }
   std::int32_t y_max() const override { return y_max_; }
   std::int32_t surface_y(std::int32_t, std::int32_t) const override { return y_max_; }

@@ -35,4 +35,16 @@ Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin,
   return TerrainGenerator::make(pin.seed, *parameters, materials);
 }
 
+std::optional<RunChunk> Generator::coarse(VoxelPos, std::int32_t, std::uint8_t) const {
+  return std::nullopt;
+}
+
+std::optional<RunChunk> coarse_outside(const VoxelBox& bounds, VoxelPos origin, std::int32_t edge,
+                                       std::uint8_t level) {
+  const std::int32_t width = edge << level;
+  const VoxelBox tile{origin, {origin.x + width, origin.y + width, origin.z + width}};
+  if (!intersect(bounds, tile).empty()) return std::nullopt;
+  return uniform_chunk(Extent::cube(static_cast<unsigned>(edge)), kEmpty);
+}
+
 }  // namespace runstone

@@ -107,14 +107,11 @@ void TerrainGenerator::paint_column(Column& column, Height&& height) const {
   if (water_) column.flood(sea_level_, *water_);
 }
 
-RunChunk TerrainGenerator::generate(VoxelPos origin, Extent extent) const {
-  const std::int32_t end = origin.y + extent.y;
-  if (end <= y_min_ || origin.y >= y_max_) return uniform_chunk(extent, kEmpty);
-  if (origin.y >= y_min_ && end <= solid_below_)
-    return uniform_chunk(extent, layers_.back().material);
-
-  const std::size_t columns = std::size_t{extent.x} * extent.z;
-  std::vector<double> heights;  // one plane per surface, in layer order
+std::vector<double> TerrainGenerator::heights_of(std::int32_t x, std::int32_t z,
+                                                 std::uint32_t width, std::uint32_t depth,
+                                                 std::int32_t stride) const {
+  const std::size_t columns = std::size_t{width} * depth;
+  std::vector<double> heights;
   heights.reserve(columns * layers_.size() * 2);
   for (const Layer& layer : layers_) {
     for (const Surface* surface : {&layer.surface, layer.reversed ? &*layer.reversed : nullptr}) {
@@ -122,16 +119,71 @@ RunChunk TerrainGenerator::generate(VoxelPos origin, Extent extent) const {
       const std::size_t at = heights.size();
       heights.resize(at + columns);
       const std::span<double> plane(heights.data() + at, columns);
-      surface->noise.fill(origin.x, origin.z, extent.x, extent.z, plane);
+      surface->noise.fill(x, z, width, depth, plane, stride);
       for (double& h : plane) h = surface->rule.distance + surface->rule.elevation * h;
     }
   }
+  return heights;
+}
+
+RunChunk TerrainGenerator::generate(VoxelPos origin, Extent extent) const {
+  const std::int32_t end = origin.y + extent.y;
+  if (end <= y_min_ || origin.y >= y_max_) return uniform_chunk(extent, kEmpty);
+  if (origin.y >= y_min_ && end <= solid_below_)
+    return uniform_chunk(extent, layers_.back().material);
+
+  const std::size_t columns = std::size_t{extent.x} * extent.z;
+  const std::vector<double> heights = heights_of(origin.x, origin.z, extent.x, extent.z, 1);
   RunBuilder out(extent, AxisOrder::yxz);
   Column column;
   for (std::size_t i = 0; i < columns; ++i) {
     paint_column(column,
                  [&](const Surface&, std::size_t plane) { return heights[plane * columns + i]; });
     column.emit(origin.y, extent.y, out);
+  }
+  return out.finish();
+}
+
+std::optional<RunChunk> TerrainGenerator::coarse(VoxelPos origin, std::int32_t edge,
+                                                 std::uint8_t level) const {
+  const Extent extent = Extent::cube(static_cast<unsigned>(edge));
+  const std::int32_t end = origin.y + (edge << level);
+  if (end <= y_min_ || origin.y >= y_max_) return uniform_chunk(extent, kEmpty);
+  if (origin.y >= y_min_ && end <= solid_below_)
+    return uniform_chunk(extent, layers_.back().material);
+
+  // A voxel of a tile is solid if any voxel below it is. So of the columns at the four corners of
+  // its cell, the highest one stands for the cell. The sampled columns are a lattice of these
+  // corners, one more than the cells a side.
+  const auto side = static_cast<std::uint32_t>(edge) + 1;
+  const std::vector<double> heights = heights_of(origin.x, origin.z, side, side, 1 << level);
+  const std::size_t plane_size = std::size_t{side} * side;
+  struct Sample {
+    Column column;
+    std::int32_t top = 0;
+  };
+  std::vector<Sample> near_row(side), far_row(side);
+  const auto sample_row = [&](std::vector<Sample>& row, std::uint32_t z) {
+    for (std::uint32_t x = 0; x < side; ++x) {
+      const std::size_t at = x + std::size_t{side} * z;
+      paint_column(row[x].column, [&](const Surface&, std::size_t plane) {
+        return heights[plane * plane_size + at];
+      });
+      row[x].top = row[x].column.top();
+    }
+  };
+  RunBuilder out(extent, AxisOrder::yxz);
+  sample_row(far_row, 0);
+  for (std::uint32_t z = 0; z + 1 < side; ++z) {
+    near_row.swap(far_row);
+    sample_row(far_row, z + 1);
+    for (std::uint32_t x = 0; x + 1 < side; ++x) {
+      const Sample* highest = &near_row[x];
+      for (const Sample* corner : {&far_row[x], &near_row[x + 1], &far_row[x + 1]}) {
+        if (corner->top > highest->top) highest = corner;
+      }
+      highest->column.emit_coarse(origin.y, extent.y, level, water_.value_or(kEmpty), out);
+    }
   }
   return out.finish();
 }

@@ -26,6 +26,8 @@ class TerrainGenerator final : public Generator {
                                                  const MaterialTable& materials);
 
   RunChunk generate(VoxelPos origin, Extent extent) const override;
+  std::optional<RunChunk> coarse(VoxelPos origin, std::int32_t edge,
+                                 std::uint8_t level) const override;
   std::int32_t y_min() const override { return y_min_; }
   std::int32_t y_max() const override { return y_max_; }
   std::int32_t surface_y(std::int32_t x, std::int32_t z) const override;
@@ -44,6 +46,10 @@ class TerrainGenerator final : public Generator {
   TerrainGenerator() = default;
   template <class Height>
   void paint_column(Column& column, Height&& height) const;
+  /// Returns a plane of heights for each surface, in layer order. Its columns are those of
+  /// ValueNoise::fill().
+  std::vector<double> heights_of(std::int32_t x, std::int32_t z, std::uint32_t width,
+                                 std::uint32_t depth, std::int32_t stride) const;
 
   std::vector<Layer> layers_;
   std::int32_t y_min_ = 0, y_max_ = 0;

@@ -8,9 +8,8 @@
 namespace runstone {
 namespace {
 
-/// The cells that kSideMax columns can touch at the highest frequency, 4, and the far corner of the
-/// last one.
-constexpr std::size_t kCornersMax = 4 * kSideMax + 2;
+/// Each column reads two lattice corners along x.
+constexpr std::size_t kCornersMax = 2 * std::size_t{kNoiseSideMax};
 
 /// Returns a lattice value in [-1, 1). It is a multiple of 2^-23, so it is exact in a double.
 double corner_value(std::uint64_t key, std::int64_t i, std::int64_t k) {
@@ -55,11 +54,11 @@ ValueNoise::ValueNoise(std::uint64_t seed, double frequency) : octaves_{} {
 }
 
 void ValueNoise::fill(std::int32_t x, std::int32_t z, std::uint32_t width, std::uint32_t depth,
-                      std::span<double> out) const {
-  RUNSTONE_ASSERT(width <= kSideMax && depth <= kSideMax &&
+                      std::span<double> out, std::int32_t stride) const {
+  RUNSTONE_ASSERT(width <= kNoiseSideMax && depth <= kNoiseSideMax &&
                   out.size() == std::size_t{width} * depth);
   std::fill(out.begin(), out.end(), 0.0);
-  for (const Octave& octave : octaves_) add_octave(octave, x, z, width, depth, out);
+  for (const Octave& octave : octaves_) add_octave(octave, x, z, width, depth, out, stride);
 }
 
 double ValueNoise::at(std::int32_t x, std::int32_t z) const {
@@ -69,20 +68,23 @@ double ValueNoise::at(std::int32_t x, std::int32_t z) const {
 }
 
 void ValueNoise::add_octave(const Octave& octave, std::int32_t x, std::int32_t z,
-                            std::uint32_t width, std::uint32_t depth, std::span<double> out) const {
+                            std::uint32_t width, std::uint32_t depth, std::span<double> out,
+                            std::int32_t stride) const {
   if (width == 0 || depth == 0) return;
-  // Corner of each column along x, counted from the first cell touched.
-  std::array<std::uint32_t, kSideMax> corner;
-  std::array<double, kSideMax> fade_x;
-  const std::int64_t first = place_of(x, octave.frequency, octave.shift_x).cell;
+  // The lattice corners along x that the columns read, ascending, and the left one of each column.
+  // The right one is the next. Neighbouring columns share corners.
+  std::array<std::int64_t, kCornersMax> cells;
+  std::array<std::uint32_t, kNoiseSideMax> corner;
+  std::array<double, kNoiseSideMax> fade_x;
+  std::size_t corners = 0;
   for (std::uint32_t i = 0; i < width; ++i) {
     const Place place =
-        place_of(x + static_cast<std::int32_t>(i), octave.frequency, octave.shift_x);
-    corner[i] = static_cast<std::uint32_t>(place.cell - first);
+        place_of(x + stride * static_cast<std::int32_t>(i), octave.frequency, octave.shift_x);
     fade_x[i] = place.fade;
+    if (corners == 0 || place.cell > cells[corners - 1]) cells[corners++] = place.cell;
+    if (place.cell == cells[corners - 1]) cells[corners++] = place.cell + 1;
+    corner[i] = static_cast<std::uint32_t>(corners - 2);
   }
-  const std::size_t corners = std::size_t{corner[width - 1]} + 2;
-  RUNSTONE_ASSERT(corners <= kCornersMax);
 
   // Terrain frequencies put dozens of columns into one cell. So the two lattice rows around z
   // change rarely, and the blend along z is done once per corner instead of once per column.
@@ -90,12 +92,11 @@ void ValueNoise::add_octave(const Octave& octave, std::int32_t x, std::int32_t z
   std::int64_t loaded = 0;
   for (std::uint32_t k = 0; k < depth; ++k) {
     const Place place =
-        place_of(z + static_cast<std::int32_t>(k), octave.frequency, octave.shift_z);
+        place_of(z + stride * static_cast<std::int32_t>(k), octave.frequency, octave.shift_z);
     if (k == 0 || place.cell != loaded) {
       for (std::size_t c = 0; c < corners; ++c) {
-        const std::int64_t i = first + static_cast<std::int64_t>(c);
-        near_row[c] = corner_value(octave.key, i, place.cell);
-        far_row[c] = corner_value(octave.key, i, place.cell + 1);
+        near_row[c] = corner_value(octave.key, cells[c], place.cell);
+        far_row[c] = corner_value(octave.key, cells[c], place.cell + 1);
       }
       loaded = place.cell;
     }

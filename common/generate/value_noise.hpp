@@ -14,16 +14,21 @@
 
 namespace runstone {
 
+/// A side of the columns that fill() takes: those of the widest chunk, and one more, so that every
+/// cell between columns has all its corners.
+inline constexpr std::uint32_t kNoiseSideMax = kSideMax + 1;
+
 class ValueNoise {
  public:
   /// Requires 0 < frequency <= 1 (cycles per voxel, of the first octave).
   ValueNoise(std::uint64_t seed, double frequency);
 
-  /// Writes noise in [-1, 1] of the columns [x, x + width) x [z, z + depth); out[i + width * k]
-  /// belongs to (x + i, z + k). A column's value does not depend on the rectangle. Requires width,
-  /// depth <= kSideMax and out.size() == width * depth. Cost: O(width * depth).
+  /// Writes noise in [-1, 1] of width * depth columns, one in `stride` along both axes:
+  /// out[i + width * k] belongs to (x + stride * i, z + stride * k). A column's value does not
+  /// depend on the other arguments. Requires width, depth <= kNoiseSideMax, out.size() ==
+  /// width * depth and stride > 0. Cost: O(width * depth).
   void fill(std::int32_t x, std::int32_t z, std::uint32_t width, std::uint32_t depth,
-            std::span<double> out) const;
+            std::span<double> out, std::int32_t stride = 1) const;
 
   double at(std::int32_t x, std::int32_t z) const;
 
@@ -37,7 +42,7 @@ class ValueNoise {
     double shift_x, shift_z;
   };
   void add_octave(const Octave& octave, std::int32_t x, std::int32_t z, std::uint32_t width,
-                  std::uint32_t depth, std::span<double> out) const;
+                  std::uint32_t depth, std::span<double> out, std::int32_t stride) const;
   std::array<Octave, 3> octaves_;
 };
 

@@ -7,19 +7,21 @@
 
 namespace runstone {
 
+Chunk generated_chunk(const Generator& generator, const ChunkKey& key, std::uint16_t edge) {
+  RUNSTONE_ASSERT(key.lod == 0);
+  Chunk chunk;
+  chunk.voxels = in_cheapest_order(generator.generate(origin_of(key.at, edge), Extent::cube(edge)));
+  chunk.digest = digest_of(chunk.voxels);
+  return chunk;
+}
+
 StoreResult<Chunk> base_chunk(ChunkReader& reader, const Generator& generator,
                               const ChunkKey& key) {
   RUNSTONE_ASSERT(key.lod == 0);
   auto stored = reader.load_base(key);
   if (!stored) return Unexpected<StoreError>{stored.error()};
-  Chunk chunk;
-  if (stored->has_value()) {
-    chunk = **std::move(stored);
-  } else {
-    const std::uint16_t edge = reader.meta().chunk_edge;
-    chunk.voxels = generator.generate(origin_of(key.at, edge), Extent::cube(edge));
-    chunk.digest = digest_of(chunk.voxels);
-  }
+  if (!stored->has_value()) return generated_chunk(generator, key, reader.meta().chunk_edge);
+  Chunk chunk = **std::move(stored);
   chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
   return chunk;
 }

@@ -12,6 +12,7 @@
 #include "server/replay/digest_list.hpp"
 #include "server/replay/replayer.hpp"
 #include "server/replay/subcommand.hpp"
+#include "server/replay/tile_check.hpp"
 
 namespace runstone {
 namespace {
@@ -20,8 +21,20 @@ double rate_of(const ReplayReport& report, double seconds) {
   return seconds > 0 ? static_cast<double>(report.edits) / seconds : 0;
 }
 
-void print_table(std::ostream& out, const Store& store, const ReplayReport& report, double seconds,
-                 bool all_rows_read) {
+/// The replay and, unless it is quick, the comparison of the tiles.
+struct VerifyReport {
+  ReplayReport replay;
+  std::optional<TileReport> tiles;
+  std::uint64_t differences() const { return replay.differences + (tiles ? tiles->differences : 0); }
+  /// Returns an empty text if there is none.
+  std::string first_difference() const {
+    if (replay.first) return replay.first->message();
+    return tiles ? tiles->first : "";
+  }
+};
+
+void print_table(std::ostream& out, const Store& store, const VerifyReport& whole, double seconds) {
+  const ReplayReport& report = whole.replay;
   const WorldMeta& meta = store.meta();
   out << std::fixed;
   print_world(out, store);
@@ -33,22 +46,27 @@ void print_table(std::ostream& out, const Store& store, const ReplayReport& repo
   row(out, "stacks") << report.stack_depths.text() << " (depth:count)\n";
   row(out, "snapshots") << report.snapshots_compared << " compared\n";
   row(out, "keyframes") << report.keyframes_compared << " chunks compared\n";
+  if (whole.tiles) {
+    row(out, "tiles") << whole.tiles->compared << " compared, " << whole.tiles->not_compared
+                      << " left out, because edits below them are in no snapshot\n";
+  }
   row(out, "lists") << report.listed_compared << " chunks compared\n";
   row(out, "left out") << report.not_compared
                        << " newer than the end, or of another level of detail\n";
-  if (all_rows_read) row(out, "rows") << "all read and sound\n";
+  if (whole.tiles) row(out, "rows") << "all read and sound\n";
   row(out, "time") << std::setprecision(3) << seconds << " s, " << std::setprecision(0)
                    << rate_of(report, seconds) << " edits/s\n";
   row(out, "digest") << to_hex(report.world_digest) << '\n';
-  row(out, "result") << (report.differences == 0
+  row(out, "result") << (whole.differences() == 0
                              ? "equal"
-                             : std::to_string(report.differences) + " differences")
+                             : std::to_string(whole.differences()) + " differences")
                      << (store.loss() ? ", but edits are lost" : "") << '\n';
-  if (report.first) row(out, "first") << report.first->message() << '\n';
+  if (whole.differences() != 0) row(out, "first") << whole.first_difference() << '\n';
 }
 
 /// Returns a digest list with one more member, "report".
-std::string report_json(const Store& store, const ReplayReport& report, double seconds) {
+std::string report_json(const Store& store, const VerifyReport& whole, double seconds) {
+  const ReplayReport& report = whole.replay;
   const DigestList list{store.meta().world_id, report.seq, report.digests};
   nlohmann::ordered_json more = {{"edits", report.edits},
                                  {"chunks", report.digests.size()},
@@ -58,8 +76,10 @@ std::string report_json(const Store& store, const ReplayReport& report, double s
                                  {"keyframes_compared", report.keyframes_compared},
                                  {"listed_compared", report.listed_compared},
                                  {"not_compared", report.not_compared},
-                                 {"differences", report.differences},
-                                 {"first_difference", report.first ? report.first->message() : ""},
+                                 {"tiles_compared", whole.tiles ? whole.tiles->compared : 0},
+                                 {"tiles_not_compared", whole.tiles ? whole.tiles->not_compared : 0},
+                                 {"differences", whole.differences()},
+                                 {"first_difference", whole.first_difference()},
                                  {"lost", store.loss() ? store.loss()->message() : ""},
                                  {"world_digest", to_hex(report.world_digest)},
                                  {"seconds", seconds},
@@ -94,7 +114,7 @@ void declare_verify(SubcommandOptions& command_line, VerifyOptions& options) {
   command_line.texts("--against", options.against,
                      "compare with these digest lists of servers, clients or replays");
   command_line.flag("--quick", options.quick,
-                    "do not read and check every row of every table, nor compare keyframes");
+                    "do not read and check every row of every table, nor compare keyframes and tiles");
 }
 
 Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& out) {
@@ -106,16 +126,25 @@ Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& 
     return failure(expected.error());
   }
   const auto start = std::chrono::steady_clock::now();
-  const StoreResult<ReplayReport> report = [&] {
+  StoreResult<ReplayReport> replayed = [&] {
     ProgressLine line("edits replayed", options.common.progress);
     return replayer.run(world->end, [&](Sequence done, Sequence last) { line.show(done, last); });
   }();
   const double seconds = seconds_since(start);
-  if (!report) return failure(report.error().message());
-  print_table(out, store, *report, seconds, !options.quick);
-  const auto written = write_report(options.common.json, report_json(store, *report, seconds));
+  if (!replayed) return failure(replayed.error().message());
+  VerifyReport report{*std::move(replayed), std::nullopt};
+  if (!options.quick) {
+    ProgressLine line("tiles compared", options.common.progress);
+    auto tiles = check_tiles(
+        options.common.world, store, *world->generator,
+        [&](std::uint64_t done, std::uint64_t last) { line.show(done, last); });
+    if (!tiles) return failure(tiles.error().message());
+    report.tiles = *std::move(tiles);
+  }
+  print_table(out, store, report, seconds);
+  const auto written = write_report(options.common.json, report_json(store, report, seconds));
   if (!written) return failure(written.error());
-  return report->differences == 0 && !store.loss() ? kReplayEqual : kReplayDifferent;
+  return report.differences() == 0 && !store.loss() ? kReplayEqual : kReplayDifferent;
 }
 
 }  // namespace runstone

@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "common/runs/chunk.hpp"
+#include "server/history/chunk_source.hpp"
 #include "server/net/net_session.hpp"
-#include "server/runtime/chunk_source.hpp"
 #include "server/runtime/encoded_chunks.hpp"
 
 namespace runstone {

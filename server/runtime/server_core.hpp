@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "server/admin/server_config.hpp"
+#include "server/history/chunk_source.hpp"
 #include "server/net/listener.hpp"
 #include "server/runtime/activity_line.hpp"
 #include "server/runtime/chat_logging.hpp"
 #include "server/runtime/chunk_sender.hpp"
-#include "server/runtime/chunk_source.hpp"
 #include "server/runtime/command_runner.hpp"
 #include "server/runtime/commit_scheduler.hpp"
 #include "server/runtime/connected_sessions.hpp"

@@ -13,9 +13,9 @@
 #include <string>
 
 #include "common/runs/chunk.hpp"
+#include "server/history/chunk_source.hpp"
 #include "server/history/moments.hpp"
 #include "server/rollback/rollback_service.hpp"
-#include "server/runtime/chunk_source.hpp"
 #include "server/runtime/low_priority_threads.hpp"
 #include "server/runtime/world_strand.hpp"
 #include "server/world/world_environment.hpp"

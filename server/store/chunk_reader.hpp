@@ -1,6 +1,7 @@
 // ChunkReader: reading of base chunks and snapshots. A base chunk holds an import, or the edits
 // that a compaction took out of the log. A snapshot holds a chunk as some edit of the log left it,
-// so that a start of the server reads little of the log.
+// so that a start of the server reads little of the log. A tile is a level of detail, made of the
+// chunks below it.
 #pragma once
 #include <optional>
 #include <utility>
@@ -39,6 +40,12 @@ class ChunkReader : public virtual WorldInfo {
   /// Returns the checkpoint: every edit up to it is contained in a snapshot of each chunk that it
   /// touched. It is 0 if there is none.
   virtual StoreResult<Sequence> checkpoint() = 0;
+
+  /// Returns a stored tile, or nullopt if there is none, or if the world is of format 3 and open for
+  /// reading only. Fails (corrupt) if the row is damaged; the tile can be made again.
+  virtual StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key) = 0;
+  /// Returns keys and versions of all stored tiles, ascending by key.
+  virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys() = 0;
 };
 
 }  // namespace runstone

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "common/core/key_text.hpp"
 #include "server/store/sqlite_result.hpp"
@@ -23,6 +24,7 @@ StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
   if (!snapshot_fold) return failed(snapshot_fold.error());
   const auto snapshots = rows_of(snapshots_);
   if (!snapshots) return failed(snapshots.error());
+  std::vector<std::pair<ChunkKey, Version>> newer_snapshots;
   std::map<ChunkKey, Version> saved_at;
   for (const StoredChunk& snapshot : *snapshots) saved_at[snapshot.key] = snapshot.version;
   for (const StoredChunk& stored : moment.chunks) {
@@ -45,8 +47,10 @@ StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
       if (auto saved = snapshots_.save(stored.key, **chunk, meta_.chunk_edge, *snapshot_fold);
           !saved)
         return saved;
+      newer_snapshots.emplace_back(stored.key, stored.version);
     }
   }
+  if (auto removed = tiles_->remove_stale(newer_snapshots); !removed) return removed;
   if (auto put = meta_table_.put_fold(base_.fold_key(), *base_fold); !put) return put;
   return meta_table_.put_fold(snapshots_.fold_key(), *snapshot_fold);
 }

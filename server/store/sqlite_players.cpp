@@ -106,19 +106,12 @@ StoreResult<void> SqliteStore::add_claims() {
 }
 
 StoreResult<void> SqliteStore::convert_to_format_3() {
-  auto converted = write([&]() -> StoreResult<void> {
-    if (auto made = add_tables_of_format_3(*database_); !made) return made;
-    if (auto added = add_claims(); !added) return added;
-    auto rights = RightsTable::open(*database_);
-    if (!rights) return failed(rights.error());
-    rights_ = *std::move(rights);
-    return meta_table_.put_fold(fold_key_of(kRights), {});
-  });
-  if (!converted) {
-    claims_.reset();
-    rights_.reset();
-  }
-  return converted;
+  if (auto made = add_tables_of_format_3(*database_); !made) return made;
+  if (auto added = add_claims(); !added) return added;
+  auto rights = RightsTable::open(*database_);
+  if (!rights) return failed(rights.error());
+  rights_ = *std::move(rights);
+  return meta_table_.put_fold(fold_key_of(kRights), {});
 }
 
 StoreResult<void> SqliteStore::read_rights(const EachRecord& each) {
@@ -235,6 +228,7 @@ StoreResult<std::vector<std::string>> SqliteStore::accept_losses() {
   const auto written = write([&]() -> StoreResult<void> {
     if (auto put = meta_table_.put("epoch", std::int64_t{state_.epoch}); !put) return put;
     if (auto put = meta_table_.put("author_max", std::int64_t{state_.author_max}); !put) return put;
+    if (auto cleared = tiles_->clear(); !cleared) return cleared;
     return accept_lost_rows(lost);
   });
   if (!written) return failed(written.error());

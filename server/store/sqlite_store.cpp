@@ -27,6 +27,7 @@ SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock,
       base_(std::move(tables.base)),
       snapshots_(std::move(tables.snapshots)),
       keyframes_(std::move(tables.keyframes)),
+      tiles_(std::move(tables.tiles)),
       access_(access),
       meta_(std::move(meta)),
       mark_(std::move(mark)) {}
@@ -201,6 +202,10 @@ StoreResult<void> SqliteStore::save_snapshots(ChunkSpan chunks,
       }
     }
     if (auto saved = save_chunks(snapshots_, chunks); !saved) return saved;
+    std::vector<std::pair<ChunkKey, Version>> versions;
+    versions.reserve(chunks.size());
+    for (const auto& [key, chunk] : chunks) versions.emplace_back(key, chunk->version);
+    if (auto removed = tiles_->remove_stale(versions); !removed) return removed;
     if (!checkpoint) return {};
     const auto before = meta_table_.counter("checkpoint");
     if (!before) return failed(before.error());
@@ -222,8 +227,33 @@ StoreResult<void> SqliteStore::save_base(ChunkSpan chunks) {
       if (chunk->version != Version{})
         return refuse("base chunk=" + text_of(key), "base chunks stand at version (0, 0)");
     }
+    if (auto cleared = tiles_->clear(); !cleared) return cleared;
     return save_chunks(base_, chunks);
   });
+}
+
+StoreResult<void> SqliteStore::save_tiles(ChunkSpan tiles) {
+  return write([&]() -> StoreResult<void> {
+    const auto range = log_range();
+    if (!range) return failed(range.error());
+    for (const auto& [key, tile] : tiles) {
+      // An edit that a crash takes away must not stay in a tile.
+      if (tile->version > range->last.version)
+        return refuse("tile chunk=" + text_of(key), "its version is not durable yet");
+      if (auto saved = tiles_->save(key, *tile, meta_.chunk_edge); !saved) return saved;
+    }
+    return {};
+  });
+}
+
+StoreResult<std::optional<Chunk>> SqliteStore::load_tile(const ChunkKey& key) {
+  if (!tiles_) return std::optional<Chunk>();
+  return tiles_->load(key, meta_.chunk_edge);
+}
+
+StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::tile_keys() {
+  if (!tiles_) return std::vector<std::pair<ChunkKey, Version>>();
+  return tiles_->keys();
 }
 
 StoreResult<std::optional<Chunk>> SqliteStore::load_snapshot(const ChunkKey& key) {

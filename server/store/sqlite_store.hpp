@@ -22,6 +22,7 @@
 #include "server/store/segment_table.hpp"
 #include "server/store/sqlite_result.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tile_table.hpp"
 
 namespace runstone {
 
@@ -67,6 +68,8 @@ class SqliteStore final : public Store {
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override;
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override;
   StoreResult<Sequence> checkpoint() override;
+  StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key) override;
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys() override;
 
   // KeyframeReader
   StoreResult<std::vector<Keyframe>> keyframes() override;
@@ -93,6 +96,7 @@ class SqliteStore final : public Store {
   StoreResult<void> save_snapshots(ChunkSpan chunks, std::optional<Sequence> checkpoint) override;
   StoreResult<void> save_keyframe(ChunkSpan chunks,
                                   const std::optional<Keyframe>& keyframe) override;
+  StoreResult<void> save_tiles(ChunkSpan tiles) override;
 
   // ImportSink
   StoreResult<void> save_base(ChunkSpan chunks) override;
@@ -121,12 +125,15 @@ class SqliteStore final : public Store {
     SegmentTable segments;
     ChunkTable base, snapshots;
     KeyframeTable keyframes;
+    std::optional<TileTable> tiles;
     static StoreResult<Tables> open(sql::Database& database);
   };
   SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
               Tables tables, WorldMeta meta, std::unique_ptr<DurableMark> mark);
-  /// Converts a world of format 2: the players own their names, and of several players with one
-  /// name the oldest. Its log has no changes of rights.
+  /// Converts a world of an older format, in one transaction.
+  StoreResult<void> convert();
+  /// Adds what format 3 has and format 2 lacks: the players own their names, and of several players
+  /// with one name the oldest. The log of such a world has no changes of rights.
   StoreResult<void> convert_to_format_3();
   StoreResult<void> add_claims();
   /// Reads the durable mark, then the numbers of the database, and compares them. Sets loss_. Fails
@@ -196,6 +203,8 @@ class SqliteStore final : public Store {
   SegmentTable segments_;
   ChunkTable base_, snapshots_;
   KeyframeTable keyframes_;
+  // nullopt: a world of format 2 or 3 that is open for reading only
+  std::optional<TileTable> tiles_;
   StoreAccess access_;
   WorldMeta meta_;
   std::unique_ptr<DurableMark> mark_;

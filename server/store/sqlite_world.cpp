@@ -181,7 +181,7 @@ StoreResult<SqliteStore::Tables> SqliteStore::Tables::open(sql::Database& databa
   if (!version) return failed(version.error());
   std::optional<ClaimTable> claims;
   std::optional<RightsTable> rights;
-  if (*version == std::int64_t{kWorldFormat}) {
+  if (*version >= 3) {
     auto claims_opened = ClaimTable::open(database);
     if (!claims_opened) return failed(claims_opened.error());
     claims = *std::move(claims_opened);
@@ -199,10 +199,16 @@ StoreResult<SqliteStore::Tables> SqliteStore::Tables::open(sql::Database& databa
   if (!snapshots) return failed(snapshots.error());
   auto keyframes = KeyframeTable::open(database);
   if (!keyframes) return failed(keyframes.error());
-  return Tables{*std::move(meta),     *std::move(players), *std::move(names),
-                std::move(claims),    std::move(rights),   *std::move(log),
-                *std::move(segments), *std::move(base),    *std::move(snapshots),
-                *std::move(keyframes)};
+  std::optional<TileTable> tiles;
+  if (*version >= 4) {
+    auto tiles_opened = TileTable::open(database);
+    if (!tiles_opened) return failed(tiles_opened.error());
+    tiles = *std::move(tiles_opened);
+  }
+  return Tables{*std::move(meta),      *std::move(players), *std::move(names),
+                std::move(claims),     std::move(rights),   *std::move(log),
+                *std::move(segments),  *std::move(base),    *std::move(snapshots),
+                *std::move(keyframes), std::move(tiles)};
 }
 
 StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder,
@@ -243,11 +249,24 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
                                                      std::move(mark)));
   if (const auto read = store->read_state(); !read) return failed(read.error());
   if (store->loss_ && access == StoreAccess::read_write) return failed(*store->loss_);
-  if (!store->claims_ && access != StoreAccess::read_only) {
-    if (const auto added = store->convert_to_format_3(); !added) return failed(added.error());
+  if (!store->tiles_ && access != StoreAccess::read_only) {
+    if (const auto converted = store->convert(); !converted) return failed(converted.error());
   }
   store->database_->keep_wal_on_close(store->loss_.has_value());
   return store;
+}
+
+StoreResult<void> SqliteStore::convert() {
+  return write([&]() -> StoreResult<void> {
+    if (!claims_) {
+      if (auto added = convert_to_format_3(); !added) return added;
+    }
+    if (auto made = add_tables_of_format_4(*database_); !made) return made;
+    auto tiles = TileTable::open(*database_);
+    if (!tiles) return failed(tiles.error());
+    tiles_ = *std::move(tiles);
+    return {};
+  });
 }
 
 StoreResult<void> SqliteStore::read_state() {

@@ -11,7 +11,8 @@
 //   - append() returns after the data is on disk: what it has written is durable;
 //   - a snapshot may only be saved at a version that is durable;
 //   - a row that does not decode, or whose checksum is wrong, is an error that names file, table
-//     and row. It is never overwritten, regenerated or skipped.
+//     and row. It is never overwritten, regenerated or skipped. Tiles are the exception, because
+//     they are a cache: a damaged tile is made of its chunks again.
 #pragma once
 #include <memory>
 #include <span>
@@ -46,7 +47,8 @@ class Maintenance {
   ///   - The edits, their indexes, the keyframe and those before it are deleted. Changes of rights
   ///     move to a table of their own, new materials to the material table of `meta`.
   ///   - The head of the log moves, and so does the checkpoint if it lies before the head.
-  ///   - A chunk whose snapshot is older than the base gets a snapshot that is not.
+  ///   - A chunk whose snapshot is older than the base gets a snapshot that is not. Tiles above it
+  ///     that are older are deleted.
   ///   - The watermarks of players stay.
   virtual StoreResult<void> compact(Sequence keyframe) = 0;
   /// Returns the free space in the database to the file system. Requires disk space for a second
@@ -67,7 +69,8 @@ class Store : public WorldReader, public WorldSink, public ImportSink, public Ma
   /// that start is lost.
   virtual Epoch epoch() const = 0;
   /// Makes a world usable that has lost edits, players or watermarks. Requires StoreAccess::repair.
-  /// Returns a line for each loss; there are none if nothing is lost.
+  /// Returns a line for each loss; there are none if nothing is lost. Deletes all tiles, because a
+  /// tile may contain lost edits.
   ///   - Lost edits: the world stays as the rest of the log makes it. The epoch becomes that
   ///     of a new branch, and the next raise_epoch() ends the loss.
   ///   - Lost players: the rest is counted anew. Their numbers are not given again.

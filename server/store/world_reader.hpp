@@ -18,8 +18,8 @@ class WorldReader : public LogReader,
   /// Returns the error if the world, when it was opened, lacked edits that had been durable, or if
   /// that cannot be known. Returns nullopt if the log is whole.
   virtual const std::optional<StoreError>& loss() const = 0;
-  /// Reads and verifies every row of every table, and runs the database's own check. It is slow,
-  /// and meant for audits. A loss() is no error of a row.
+  /// Reads and verifies every row of every table but `tile`, which is a cache, and runs the
+  /// database's own check. It is slow, and meant for audits. A loss() is no error of a row.
   virtual StoreResult<void> check() = 0;
 };
 

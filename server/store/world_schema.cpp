@@ -87,6 +87,18 @@ CREATE TABLE rights_record(
 ) STRICT;
 )sql";
 
+// Levels of detail of the chunks. The table is a cache, so `meta` does not count its rows.
+constexpr const char* kTiles = R"sql(
+CREATE TABLE tile(
+  lod INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL, z INTEGER NOT NULL,
+  epoch INTEGER NOT NULL, seq INTEGER NOT NULL,
+  digest0 INTEGER NOT NULL, digest1 INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  data BLOB NOT NULL,
+  PRIMARY KEY(lod, x, y, z)
+) STRICT;
+)sql";
+
 // There is no index by time: times never fall along the log, so a time is found by bisection.
 // Nearly every edit has cause player, so the index by cause holds the others only.
 constexpr const char* kIndexes = R"sql(
@@ -124,13 +136,19 @@ StoreResult<void> create_schema(sql::Database& database) {
   for (const char* part : {mark.c_str(), kTables, kPlayerNames, kIndexes, kKeyframes}) {
     if (auto made = database.run(part); !made) return failed(made.error());
   }
-  return add_tables_of_format_3(database);
+  if (auto made = add_tables_of_format_3(database); !made) return made;
+  return add_tables_of_format_4(database);
 }
 
 StoreResult<void> add_tables_of_format_3(sql::Database& database) {
   for (const char* table : {kNameClaims, kRightsRecords}) {
     if (auto made = database.run(table); !made) return failed(made.error());
   }
+  return {};
+}
+
+StoreResult<void> add_tables_of_format_4(sql::Database& database) {
+  if (auto made = database.run(kTiles); !made) return failed(made.error());
   const std::string mark = "PRAGMA user_version=" + std::to_string(kWorldFormat);
   return store_result(database.run(mark.c_str()));
 }

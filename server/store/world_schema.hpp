@@ -14,15 +14,17 @@ namespace runstone {
 inline constexpr std::uint32_t kApplicationId = 0x52756e53;
 /// PRAGMA user_version of every world: the version of the schema and of the contents of its
 /// columns.
-inline constexpr std::uint32_t kWorldFormat = 3;
+inline constexpr std::uint32_t kWorldFormat = 4;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
 
 /// Makes all tables and sets both marks, in the caller's transaction.
 StoreResult<void> create_schema(sql::Database& database);
-/// Makes the tables that format 3 adds to format 2, without rows, and sets the mark, in the caller's
-/// transaction.
+/// Makes the tables that format 3 adds to format 2, without rows, in the caller's transaction.
 StoreResult<void> add_tables_of_format_3(sql::Database& database);
+/// Makes the table that format 4 adds to format 3, without rows, and sets the mark of format 4, in
+/// the caller's transaction.
+StoreResult<void> add_tables_of_format_4(sql::Database& database);
 
 /// Reads the marks from the main file alone, so that a file that is refused does not change. `vfs`
 /// is that of sql::Database::open(). Fails with not_a_world, newer_version or corrupt.

@@ -1,5 +1,5 @@
-// WorldSink: the writes of a running server: edits, names, snapshots and keyframes. Each call is one
-// transaction.
+// WorldSink: the writes of a running server: edits, names, snapshots, keyframes and tiles. Each call
+// is one transaction.
 #pragma once
 #include <optional>
 #include <span>
@@ -30,8 +30,9 @@ class WorldSink {
   /// Writes claims of names and removes released ones, in this order. All of it is durable on
   /// return. It may be repeated. Fails (bad_request) if another key owns a claimed name.
   virtual StoreResult<void> change_names(std::span<const NameChange> changes) = 0;
-  /// Replaces the snapshots of these chunks and, if given, moves the checkpoint. Fails
-  /// (bad_request) if a chunk or the checkpoint is ahead of the log.
+  /// Replaces the snapshots of these chunks and, if given, moves the checkpoint. Deletes the tiles
+  /// above these chunks that are older. Fails (bad_request) if a chunk or the checkpoint is ahead of
+  /// the log.
   virtual StoreResult<void> save_snapshots(ChunkSpan chunks,
                                            std::optional<Sequence> checkpoint) = 0;
   /// Adds chunks as edits of the log left them and, if given, the keyframe that they complete. A
@@ -39,6 +40,11 @@ class WorldSink {
   /// not prove the keyframe.
   virtual StoreResult<void> save_keyframe(ChunkSpan chunks,
                                           const std::optional<Keyframe>& keyframe) = 0;
+  /// Inserts or replaces tiles. Requires that each was made of chunks of this world, after it was
+  /// opened for writing, and contains all edits below it up to its version. A tile is left out if a
+  /// snapshot below it was saved meanwhile that is newer. Fails (bad_request) if a tile is ahead of
+  /// the log.
+  virtual StoreResult<void> save_tiles(ChunkSpan tiles) = 0;
 };
 
 }  // namespace runstone

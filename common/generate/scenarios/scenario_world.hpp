@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "common/core/ids.hpp"
 #include "common/generate/generator.hpp"
@@ -25,6 +26,10 @@ class ScenarioWorld final : public Generator {
 
   /// Takes any place and extent, not only whole models. The order is yzx.
   RunChunk generate(VoxelPos origin, Extent extent) const override;
+  std::optional<RunChunk> coarse(VoxelPos origin, std::int32_t edge,
+                                 std::uint8_t level) const override {
+    return coarse_outside(bounds(), origin, edge, level);
+  }
   std::int32_t y_min() const override { return -edge(); }
   std::int32_t y_max() const override { return 2 * edge(); }
   std::int32_t surface_y(std::int32_t x, std::int32_t z) const override;

@@ -1,4 +1,4 @@
-// The bytes of world format 3: columns, row checksums and marks. A change here means a new
+// The bytes of world format 4: columns, row checksums and marks. A change here means a new
 // kWorldFormat.
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -48,6 +48,9 @@ std::string make_world(const TempFolder& folder) {
                           1,
                           world_digest_term(kept.front().first, kept.front().second->digest)};
   REQUIRE(store->save_keyframe(kept, keyframe).has_value());
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> tiles = {
+      {{3, {0, -1, -1}}, golden_chunk(4, {1, 2})}};
+  REQUIRE(store->save_tiles(tiles).has_value());
   return store->file();
 }
 
@@ -59,15 +62,15 @@ std::string columns(const std::string& file, const std::string& table) {
 
 }  // namespace
 
-TEST_CASE("the marks of a world are where format 3 has them", "[store][golden]") {
+TEST_CASE("the marks of a world are where format 4 has them", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(raw_sql(file, "PRAGMA application_id") == "1383427667");
-  CHECK(raw_sql(file, "PRAGMA user_version") == "3");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
   CHECK(raw_sql(file, "PRAGMA journal_mode") == "wal");
 }
 
-TEST_CASE("the tables have the columns of format 3", "[store][golden]") {
+TEST_CASE("the tables have the columns of format 4", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
@@ -80,6 +83,9 @@ TEST_CASE("the tables have the columns of format 3", "[store][golden]") {
         "min_y INTEGER0, min_z INTEGER0, max_x INTEGER0, max_y INTEGER0, max_z INTEGER0, "
         "descriptor BLOB0, checksum INTEGER0");
   CHECK(columns(file, "snapshot") ==
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, "
+        "digest0 INTEGER0, digest1 INTEGER0, checksum INTEGER0, data BLOB0");
+  CHECK(columns(file, "tile") ==
         "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, "
         "digest0 INTEGER0, digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "keyframe") ==
@@ -100,7 +106,7 @@ TEST_CASE("the tables have the columns of format 3", "[store][golden]") {
                 "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master "
                 "WHERE type = 'table' ORDER BY name)") ==
         "base edit_log keyframe keyframe_chunk log_box log_box_node log_box_parent log_box_rowid "
-        "meta name_claim player player_instance player_name rights_record snapshot");
+        "meta name_claim player player_instance player_name rights_record snapshot tile");
   CHECK(
       raw_sql(
           file,
@@ -122,7 +128,7 @@ TEST_CASE("the tables have the columns of format 3", "[store][golden]") {
       "server_key_seed snapshot_fold spawn world_id");
 }
 
-TEST_CASE("rows have the bytes and checksums of format 3", "[store][golden]") {
+TEST_CASE("rows have the bytes and checksums of format 4", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   const auto value = [&](const std::string& column, const std::string& from) {
@@ -142,6 +148,10 @@ TEST_CASE("rows have the bytes and checksums of format 3", "[store][golden]") {
   CHECK(value("checksum", "base") == "3696686867783136701");
   CHECK(value("hex(data)", "snapshot") == "02010110101001010200");
   CHECK(value("checksum", "snapshot") == "9083433871044378110");
+  CHECK(value("hex(data)", "tile") == "02010110101001010400");
+  CHECK(value("lod || ' ' || x || ' ' || y || ' ' || z || ' ' || epoch || ' ' || seq", "tile") ==
+        "3 0 -1 -1 1 2");
+  CHECK(value("checksum", "tile") == "-2266305544635191156");
   CHECK(value("hex(data)", "keyframe_chunk") == "02010110101001010300");
   CHECK(value("seq || ' ' || epoch || ' ' || digest0 || ' ' || digest1", "keyframe_chunk") ==
         "2 1 86466051881807956 2019403095640583695");

@@ -38,6 +38,9 @@ class FillingSink final : public WorldSink {
                                   const std::optional<Keyframe>& /*keyframe*/) override {
     return is_full ? no_room() : StoreResult<void>{};
   }
+  StoreResult<void> save_tiles(ChunkSpan /*tiles*/) override {
+    return is_full ? no_room() : StoreResult<void>{};
+  }
 
   std::atomic<bool> is_full{false}, is_full_for_snapshots{false};
   std::vector<Sequence> written;  // read it after stop()

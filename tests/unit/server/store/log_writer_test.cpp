@@ -56,6 +56,9 @@ class FakeSink final : public WorldSink {
       return Unexpected<StoreError>{{StoreError::Kind::full, "w", "keyframe", "disk full"}};
     return commit({{}, {}, chunks.size(), {}, keyframe});
   }
+  StoreResult<void> save_tiles(ChunkSpan tiles) override {
+    return commit({{}, {}, tiles.size(), {}});
+  }
 
   std::counting_semaphore<> entered{0}, gate{0};
   std::size_t fail_at = ~std::size_t{0};

@@ -31,12 +31,14 @@ void make_claims(const std::string& folder) {
   REQUIRE(store->change_names(changes).has_value());
 }
 
-/// Takes from a closed world what format 3 added.
+/// Takes from a closed world what formats 3 and 4 added.
 void make_format_2(const std::string& file) {
-  REQUIRE(raw_sql(file,
-                  "DROP TABLE name_claim; DROP TABLE rights_record; DELETE FROM meta WHERE key IN "
-                  "('name_claim_fold', 'rights_record_fold'); "
-                  "PRAGMA user_version = 2; SELECT 'done'") == "done");
+  REQUIRE(
+      raw_sql(
+          file,
+          "DROP TABLE tile; DROP TABLE name_claim; DROP TABLE rights_record; DELETE FROM meta WHERE key IN "
+          "('name_claim_fold', 'rights_record_fold'); "
+          "PRAGMA user_version = 2; SELECT 'done'") == "done");
 }
 
 }  // namespace
@@ -118,6 +120,6 @@ TEST_CASE("a world of format 2 is converted: the oldest player of a name owns it
     CHECK(store->players()->size() == 5);
     CHECK(store->check().has_value());
   }
-  CHECK(raw_sql(file, "PRAGMA user_version") == "3");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
   CHECK(claimed_world(folder.path(), StoreAccess::read_write)->name_claims()->size() == 2);
 }

@@ -1,4 +1,4 @@
-#include "server/runtime/chunk_source.hpp"
+#include "server/history/chunk_source.hpp"
 
 #include <optional>
 #include <utility>

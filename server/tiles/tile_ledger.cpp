@@ -1,0 +1,58 @@
+#include "server/tiles/tile_ledger.hpp"
+
+#include <algorithm>
+
+#include "common/tiles/tile_keys.hpp"
+
+namespace runstone {
+namespace {
+
+/// The mutex is released after so many chunks, because the world strand may wait for it.
+constexpr std::size_t kSliceChunks = 256;
+
+}  // namespace
+
+TileLedger::Entry& TileLedger::entry_of(ChunkCoord chunk) {
+  ChunkKey key{0, chunk};
+  Entry& first = entries_[key];
+  for (Entry* below = &first; below->above == nullptr && key.lod < kTileLevelMax;
+       below = below->above) {
+    key = tile_parent(key);
+    below->above = &entries_[key];
+  }
+  return first;
+}
+
+void TileLedger::edited(std::span<const ChunkCoord> chunks, Sequence seq) {
+  const std::lock_guard lock(mutex_);
+  for (const ChunkCoord& chunk : chunks) {
+    for (Entry* entry = &entry_of(chunk); entry != nullptr && entry->newest_edit < seq;
+         entry = entry->above) {
+      entry->newest_edit = seq;
+    }
+  }
+}
+
+void TileLedger::stored(std::span<const ChunkKey> chunks) {
+  while (!chunks.empty()) {
+    const std::size_t count = std::min(chunks.size(), kSliceChunks);
+    const std::lock_guard lock(mutex_);
+    for (const ChunkKey& key : chunks.first(count)) {
+      if (key.lod == 0) entry_of(key.at);
+    }
+    chunks = chunks.subspan(count);
+  }
+}
+
+Sequence TileLedger::newest_edit(const ChunkKey& tile) const {
+  const std::lock_guard lock(mutex_);
+  const Entry* entry = entries_.find(tile);
+  return entry == nullptr ? 0 : entry->newest_edit;
+}
+
+bool TileLedger::has_ground(const ChunkKey& tile) const {
+  const std::lock_guard lock(mutex_);
+  return entries_.contains(tile);
+}
+
+}  // namespace runstone

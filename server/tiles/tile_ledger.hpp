@@ -1,0 +1,45 @@
+// TileLedger: which tiles have ground, and the newest edit below each. A tile has *ground* if a
+// chunk below it is stored or was edited, so that the generator alone does not determine it.
+// Memory: an entry for each chunk that is stored or was edited in this run, and for each tile above
+// one of them.
+// Threads: any. The mutex is a leaf and is held for short times only.
+#pragma once
+#include <cstddef>
+#include <mutex>
+#include <span>
+
+#include "common/core/coords.hpp"
+#include "common/core/ids.hpp"
+#include "server/interest/chunk_hash_map.hpp"
+
+namespace runstone {
+
+class TileLedger {
+ public:
+  /// Reports that edit `seq` touched these chunks, or that edits up to it did. A server reports each
+  /// commit, and at its start the edits that are in no snapshot. Cost: one look-up a chunk, and a
+  /// few instructions for each tile above that the same edit did not reach yet.
+  void edited(std::span<const ChunkCoord> chunks, Sequence seq);
+  /// Reports chunks that the world's folder has rows for. Keys of tiles are ignored.
+  void stored(std::span<const ChunkKey> chunks);
+
+  /// Returns the newest edit below a tile, or 0 if there was none in this run.
+  Sequence newest_edit(const ChunkKey& tile) const;
+  /// Returns true if a chunk below the tile, or the chunk itself at level 0, is stored or was
+  /// edited. It is complete once stored() got all chunks of the folder.
+  bool has_ground(const ChunkKey& tile) const;
+
+ private:
+  /// Of a chunk or a tile. Invariant: no edit of `above` is older than the newest of this one.
+  struct Entry {
+    Sequence newest_edit = 0;
+    Entry* above = nullptr;  // null: of level kTileLevelMax
+  };
+  /// Returns the entry of a chunk, which is made first, with all above it, if there is none.
+  Entry& entry_of(ChunkCoord chunk);
+
+  mutable std::mutex mutex_;
+  ChunkHashMap<Entry> entries_;  // values keep their address
+};
+
+}  // namespace runstone

@@ -1,0 +1,193 @@
+#include "server/tiles/tile_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+#include "common/core/assert.hpp"
+#include "common/tiles/tile_keys.hpp"
+#include "common/tiles/veiled_tile.hpp"
+#include "server/history/base_chunk.hpp"
+
+namespace runstone {
+
+class TileSource::Making {
+ public:
+  Making(TileSource& source, const TileRequest& request)
+      : source_(source), request_(request), fresh_(request.fresh.begin(), request.fresh.end()) {}
+
+  StoreResult<MadeTile> tile(const ChunkKey& key) {
+    // It is read first: a tile that is read or made later contains at least these edits.
+    const Sequence newest = source_.ledger_.newest_edit(key);
+    if (auto cached = source_.cache_.find(key); cached && newest <= cached->through) {
+      cached->is_from_store = true;
+      // The ledger knows all edits up to the head, and none of them is newer.
+      cached->through = std::max(cached->through, request_.head);
+      return *std::move(cached);
+    }
+    auto found = coarse(key);
+    if (!found) {
+      auto stored = load(key, newest);
+      if (!stored) return Unexpected<StoreError>{stored.error()};
+      found = *std::move(stored);
+    }
+    if (!found) {
+      auto built = build(key);
+      if (!built) return built;
+      if (key != request_.key && built->is_worth_storing()) on_the_way_.push_back(*built);
+      found = *std::move(built);
+    }
+    source_.cache_.put(*found);
+    return *std::move(found);
+  }
+
+  /// Returns the tiles that tile() made below the requested one and that are worth storing.
+  std::vector<MadeTile> take_on_the_way() { return std::move(on_the_way_); }
+
+ private:
+  /// A chunk or a tile. A null chunk is damaged, and shown as empty.
+  struct Child {
+    ChunkPtr chunk;
+    bool is_approximate = false;
+  };
+
+  std::optional<MadeTile> coarse(const ChunkKey& key) {
+    if (key.lod < kCoarseLevelMin || source_.ledger_.has_ground(key)) return std::nullopt;
+    auto voxels =
+        source_.generator_.coarse(tile_origin(key, source_.edge_), source_.edge_, key.lod);
+    if (!voxels) return std::nullopt;
+    return tile_of_voxels(key, veiled(*std::move(voxels), *request_.visibility, scratch_), {},
+                          true);
+  }
+
+  /// Returns the stored tile, or nullopt if there is none, if it is damaged, or if it lacks edit
+  /// `newest`.
+  StoreResult<std::optional<MadeTile>> load(const ChunkKey& key, Sequence newest) {
+    std::optional<MadeTile> out;
+    if (!source_.options_.reads_stored_tiles) return out;
+    StoreResult<std::optional<Chunk>> row = std::optional<Chunk>();
+    const auto read =
+        source_.chunks_.with_reader([&](WorldReader& reader) { row = reader.load_tile(key); });
+    if (!read) return Unexpected<StoreError>{read.error()};
+    if (!row) {
+      if (row.error().kind != StoreError::Kind::corrupt) return Unexpected<StoreError>{row.error()};
+      source_.warn_once(key, row.error());
+      return out;
+    }
+    if (!row->has_value() || newest > (*row)->version.seq) return out;
+    out = MadeTile{key, std::make_shared<const Chunk>(**std::move(row)), 0, false, true};
+    out->through = std::max(out->tile->version.seq, request_.head);
+    return out;
+  }
+
+  StoreResult<MadeTile> build(const ChunkKey& key) {
+    std::array<Child, 8> children;
+    TileChildren runs{};
+    Version version;
+    bool is_approximate = false;
+    for (unsigned i = 0; i < 8; ++i) {
+      auto child = child_of(tile_child(key, i));
+      if (!child) return Unexpected<StoreError>{child.error()};
+      children[i] = *std::move(child);
+      is_approximate = is_approximate || children[i].is_approximate;
+      if (children[i].chunk == nullptr) continue;
+      runs[i] = &children[i].chunk->voxels;
+      version = std::max(version, children[i].chunk->version);
+    }
+    return tile_of_voxels(
+        key,
+        veiled_tile(runs, static_cast<unsigned>(source_.edge_), *request_.visibility, scratch_),
+        version, is_approximate);
+  }
+
+  StoreResult<Child> child_of(const ChunkKey& key) {
+    if (key.lod == 0) return chunk_at(key);
+    auto made = tile(key);
+    if (!made) return Unexpected<StoreError>{made.error()};
+    return Child{made->tile, made->is_approximate};
+  }
+
+  StoreResult<Child> chunk_at(const ChunkKey& key) {
+    if (const auto fresh = fresh_.find(key.at); fresh != fresh_.end())
+      return Child{fresh->second, fresh->second == nullptr};
+    if (!source_.ledger_.has_ground(key)) {
+      return Child{std::make_shared<const Chunk>(generated_chunk(
+                       source_.generator_, key, static_cast<std::uint16_t>(source_.edge_))),
+                   false};
+    }
+    auto loaded = source_.chunks_.load(key);
+    if (loaded) return Child{std::make_shared<const Chunk>(*std::move(loaded)), false};
+    if (loaded.error().kind != StoreError::Kind::corrupt)
+      return Unexpected<StoreError>{loaded.error()};
+    source_.warn_once(key, loaded.error());
+    return Child{nullptr, true};
+  }
+
+  MadeTile tile_of_voxels(const ChunkKey& key, RunChunk voxels, Version version,
+                          bool is_approximate) const {
+    Chunk tile{std::move(voxels), version, {}};
+    tile.digest = digest_of(tile.voxels);
+    return {key, std::make_shared<const Chunk>(std::move(tile)), request_.head, is_approximate,
+            false};
+  }
+
+  TileSource& source_;
+  const TileRequest& request_;
+  const std::map<ChunkCoord, ChunkPtr> fresh_;
+  VeiledTileScratch scratch_;
+  std::vector<MadeTile> on_the_way_;
+};
+
+TileSource::TileSource(ChunkSource& chunks, const Generator& generator, std::int32_t edge,
+                       TileLedger& ledger, Warn warn, Options options)
+    : chunks_(chunks),
+      generator_(generator),
+      edge_(edge),
+      ledger_(ledger),
+      warn_(std::move(warn)),
+      options_(options),
+      cache_(options.cache_bytes) {}
+
+StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request) {
+  RUNSTONE_ASSERT(request.key.lod >= 1 && request.key.lod <= kTileLevelMax);
+  if (auto found = find_ground(); !found) return Unexpected<StoreError>{found.error()};
+  Making making(*this, request);
+  auto tile = making.tile(request.key);
+  if (!tile) return Unexpected<StoreError>{tile.error()};
+  std::vector<MadeTile> tiles = making.take_on_the_way();
+  tiles.push_back(*std::move(tile));
+  return tiles;
+}
+
+StoreResult<void> TileSource::find_ground() {
+  if (has_found_ground_.load()) return {};
+  StoreResult<void> found;
+  const auto read = chunks_.with_reader([&](WorldReader& reader) {
+    const auto snapshots = reader.snapshot_keys();
+    const auto base = reader.base_chunks();
+    if (!snapshots || !base) {
+      found = Unexpected<StoreError>{snapshots ? base.error() : snapshots.error()};
+      return;
+    }
+    std::vector<ChunkKey> keys;
+    keys.reserve(snapshots->size() + base->size());
+    for (const auto& [key, version] : *snapshots) keys.push_back(key);
+    for (const StoredChunk& chunk : *base) keys.push_back(chunk.key);
+    ledger_.stored(keys);
+  });
+  if (!read) return read;
+  // Two threads may get here. The ledger is the same then.
+  if (found) has_found_ground_.store(true);
+  return found;
+}
+
+void TileSource::warn_once(const ChunkKey& key, const StoreError& error) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!warned_.insert(key).second) return;
+  }
+  warn_(error.message());
+}
+
+}  // namespace runstone

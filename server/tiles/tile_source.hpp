@@ -1,0 +1,87 @@
+// TileSource: makes tiles of a world: levels of detail of its chunks. A tile is taken from the first
+// of these that has it:
+//   1. the tiles that were made lately, in memory;
+//   2. the generator's coarse form, from level kCoarseLevelMin on, if nothing below the tile is
+//      stored or edited. It is an approximation;
+//   3. the table of tiles in the world's folder;
+//   4. its eight children, which are chunks or tiles of the level below.
+// A tile of 1 or 3 is used only if no edit below it is newer. A damaged row of a tile is reported and
+// the tile is made again. A damaged chunk is reported, and the tiles above it show nothing there.
+// Threads: any. Calls block on the disk, so workers make them.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/generate/generator.hpp"
+#include "common/mesh/visibility.hpp"
+#include "server/history/chunk_source.hpp"
+#include "server/tiles/made_tile.hpp"
+#include "server/tiles/tile_cache.hpp"
+#include "server/tiles/tile_ledger.hpp"
+
+namespace runstone {
+
+/// The lowest level at which the generator may make a tile without chunks. Below it, at most 64
+/// chunks are generated for a tile.
+inline constexpr std::uint8_t kCoarseLevelMin = 3;
+
+struct TileRequest {
+  ChunkKey key;  // level 1 to kTileLevelMax, inside the world
+  /// Every edit up to it is contained in `fresh` or on disk, and was reported to the ledger.
+  Sequence head = 0;
+  std::shared_ptr<const VisibilityTable> visibility;
+  /// The chunks below the tile whose newest voxels are only in memory. A chunk that is null cannot
+  /// be shown: it counts as damaged.
+  std::vector<std::pair<ChunkCoord, ChunkPtr>> fresh;
+};
+
+class TileSource {
+ public:
+  struct Options {
+    std::size_t cache_bytes = std::size_t{16} << 20;  // of the tiles that were made lately
+    /// False: no tile is read from the folder, so that stored tiles can be compared with others.
+    bool reads_stored_tiles = true;
+  };
+  /// Reports a damaged row. The text names file, table and row.
+  using Warn = std::function<void(const std::string&)>;
+
+  /// Chunk source, generator and ledger must outlive the object. `edge` is that of the world's chunks.
+  /// `warn` is called on the threads that call make().
+  TileSource(ChunkSource& chunks, const Generator& generator, std::int32_t edge, TileLedger& ledger,
+             Warn warn, Options options);
+  TileSource(ChunkSource& chunks, const Generator& generator, std::int32_t edge, TileLedger& ledger,
+             Warn warn)
+      : TileSource(chunks, generator, edge, ledger, std::move(warn), Options()) {}
+
+  /// Returns the tile as the last of the list. Before it come the tiles below it that were made on
+  /// the way and are worth storing. The first call reads the keys of all stored chunks. Fails if the
+  /// folder cannot be read.
+  StoreResult<std::vector<MadeTile>> make(const TileRequest& request);
+
+ private:
+  class Making;  // one call of make()
+  /// Passes the chunks that the folder has to the ledger, unless it was done.
+  StoreResult<void> find_ground();
+  /// Reports a damaged row, once for each key.
+  void warn_once(const ChunkKey& key, const StoreError& error);
+
+  ChunkSource& chunks_;
+  const Generator& generator_;
+  const std::int32_t edge_;
+  TileLedger& ledger_;
+  const Warn warn_;
+  const Options options_;
+  TileCache cache_;
+  std::atomic<bool> has_found_ground_{false};
+  std::mutex mutex_;  // a leaf: guards warned_
+  std::set<ChunkKey> warned_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,202 @@
+#include "server/tiles/tile_source.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/tiles/veiled_tile.hpp"
+#include "tests/support/raw_sql.hpp"
+#include "tests/unit/server/tiles/tile_world.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+std::vector<ChunkKey> keys_of(const std::vector<MadeTile>& made) {
+  std::vector<ChunkKey> keys;
+  for (const MadeTile& tile : made) keys.push_back(tile.key);
+  return keys;
+}
+
+}  // namespace
+
+TEST_CASE("ground without edits is approximated from level 3 on, and made of chunks below",
+          "[tiles]") {
+  TileWorld world({"terrain", 1, 7, ""});
+  const auto coarse = world.make({kCoarseLevelMin, {0, 0, 0}});
+  REQUIRE(coarse.size() == 1);
+  CHECK(coarse[0].is_approximate);
+  CHECK_FALSE(coarse[0].is_worth_storing());
+  CHECK(coarse[0].tile->version == Version{});
+  CHECK(coarse[0].tile->digest == digest_of(coarse[0].tile->voxels));
+  CHECK_FALSE(coarse[0].tile->voxels.is_uniform());
+
+  const auto exact = world.make({2, {0, 0, 0}});
+  CHECK(exact.size() == 9);
+  CHECK_FALSE(exact.back().is_approximate);
+  CHECK(exact.back().is_worth_storing());
+}
+
+TEST_CASE("an edit makes an approximated tile exact, and the tiles above it stay approximate",
+          "[tiles]") {
+  TileWorld world({"terrain", 1, 7, ""});
+  REQUIRE(world.make({3, {0, 0, 0}}).back().is_approximate);
+  world.edit({{1, 2, 3}});
+  const auto exact = world.make({3, {0, 0, 0}});
+  CHECK_FALSE(exact.back().is_approximate);
+  CHECK(exact.back().tile->version == Version{1, 1});
+  CHECK(exact.size() == 1 + 8 + 64);
+  const auto above = world.make({4, {0, 0, 0}});
+  CHECK(above.back().is_approximate);
+  CHECK(above.back().tile->version == Version{1, 1});
+  CHECK(keys_of(above) == std::vector{ChunkKey{4, {0, 0, 0}}});  // the others were made before
+}
+
+TEST_CASE("chunks that an earlier run stored are ground", "[tiles]") {
+  TileWorld world({"terrain", 1, 7, ""});
+  world.edit({{1, 2, 3}});
+  world.save_all();
+  world.start();
+  CHECK_FALSE(world.make({3, {0, 0, 0}}).back().is_approximate);
+  CHECK(world.make({3, {1, 0, 0}}).back().is_approximate);
+}
+
+TEST_CASE("a tile without any voxel is the uniform empty tile", "[tiles]") {
+  TileWorld world({"empty", 1, 0, ""});
+  const auto made = world.make({2, {0, 0, 0}});
+  CHECK(made.back().tile->voxels == uniform_chunk(Extent::cube(kSampleEdge), kEmpty));
+  CHECK(made.back().tile->digest == Digest{});
+}
+
+TEST_CASE("a tile of the folder is used until an edit below it is newer", "[tiles]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}, {5, 0, 0}});
+  world.save_all();
+  const auto first = world.make({1, {0, 0, 0}});
+  REQUIRE(first.back().is_worth_storing());
+  world.save_tiles(first);
+  world.start();
+  const auto stored = world.make({1, {0, 0, 0}});
+  CHECK(stored.back().is_from_store);
+  CHECK_FALSE(stored.back().is_worth_storing());
+  CHECK(*stored.back().tile == *first.back().tile);
+
+  world.start();
+  world.edit({{1, 1, 1}});
+  const auto made = world.make({1, {0, 0, 0}});
+  CHECK_FALSE(made.back().is_from_store);
+  CHECK(made.back().tile->version == Version{world.epoch, 2});
+  CHECK(made.back().through == 2);
+}
+
+TEST_CASE("a tile that was made lately is used until an edit below it is newer", "[tiles]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}});
+  const auto first = world.make({1, {0, 0, 0}});
+  CHECK_FALSE(first.back().is_from_store);
+  world.edit({{7, 7, 7}});  // below another tile
+  const auto again = world.make({1, {0, 0, 0}});
+  CHECK(again.back().is_from_store);
+  CHECK(again.back().tile == first.back().tile);
+  CHECK(again.back().through == 2);
+  world.edit({{0, 0, 1}});
+  CHECK(world.make({1, {0, 0, 0}}).back().tile->version == Version{1, 3});
+}
+
+TEST_CASE("a source that reads no stored tiles makes all of chunks", "[tiles]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}});
+  world.save_all();
+  world.save_tiles(world.make({2, {0, 0, 0}}));
+  TileLedger ledger;
+  TileSource::Options options;
+  options.reads_stored_tiles = false;
+  TileSource source(*world.chunk_source, *world.generator, kSampleEdge, ledger, {}, options);
+  const auto made = source.make({{2, {0, 0, 0}}, world.head, world.visibility, {}});
+  REQUIRE(made.has_value());
+  CHECK(made->size() == 9);
+  CHECK(*made->back().tile == **world.store->load_tile({2, {0, 0, 0}}));
+}
+
+TEST_CASE("a damaged row of a tile is reported and made anew", "[tiles][damage]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}});
+  world.save_all();
+  const auto first = world.make({1, {0, 0, 0}});
+  world.save_tiles(first);
+  world.start();
+  REQUIRE(raw_sql(world.file(), "UPDATE tile SET digest1 = digest1 + 1; SELECT changes()") == "1");
+  const auto again = world.make({1, {0, 0, 0}});
+  CHECK(world.warnings ==
+        std::vector{world.file() + ": tile chunk=0,0,0 lod=1: checksum is wrong"});
+  CHECK(*again.back().tile == *first.back().tile);
+  REQUIRE(again.back().is_worth_storing());
+  world.save_tiles(again);
+  world.start();
+  CHECK(world.make({1, {0, 0, 0}}).back().is_from_store);
+  CHECK(world.warnings.size() == 1);
+}
+
+TEST_CASE("a damaged chunk is reported once, and tiles show nothing there", "[tiles][damage]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}, {1, 0, 0}});
+  world.save_all();
+  REQUIRE(raw_sql(world.file(), "UPDATE snapshot SET seq = 9 WHERE x = 0; SELECT changes()") ==
+          "1");
+  REQUIRE(raw_sql(world.file(), "SELECT count(*) FROM snapshot") == "2");
+  world.ledger->stored(std::vector{ChunkKey{0, {0, 0, 0}}});
+  const auto made = world.source->make(world.request({1, {0, 0, 0}}));
+  // The fold of the table is wrong as well, so the keys of the chunks cannot be read.
+  CHECK_FALSE(made.has_value());
+
+  REQUIRE(raw_sql(world.file(),
+                  "UPDATE snapshot SET seq = 1, checksum = 0 WHERE x = 0; "
+                  "SELECT changes()") == "1");
+  const auto damaged = world.make({1, {0, 0, 0}});
+  CHECK(damaged.back().is_approximate);
+  CHECK_FALSE(damaged.back().is_worth_storing());
+  VeiledTileScratch scratch;
+  const ChunkPtr sound = world.chunk({1, 0, 0});
+  CHECK(damaged.back().tile->voxels ==
+        veiled_tile({nullptr, &sound->voxels}, kSampleEdge, *world.visibility, scratch));
+  CHECK(world.make({2, {0, 0, 0}}).back().is_approximate);
+  CHECK(world.warnings == std::vector{world.file() + ": snapshot chunk=0,0,0: checksum is wrong"});
+}
+
+TEST_CASE("a chunk that cannot be shown is left out of its tile", "[tiles]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}});
+  TileRequest request = world.request({1, {0, 0, 0}});
+  REQUIRE(request.fresh.size() == 1);
+  request.fresh[0].second = nullptr;
+  const auto made = world.source->make(request);
+  REQUIRE(made.has_value());
+  CHECK(made->back().is_approximate);
+  CHECK(made->back().tile->voxels == uniform_chunk(Extent::cube(kSampleEdge), kEmpty));
+}
+
+TEST_CASE("a tile with an edit behind the head of its request is not stored", "[tiles]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}});
+  world.save_all();
+  TileRequest request = world.request({1, {0, 0, 0}});
+  world.edit({{0, 0, 0}, {1, 0, 0}});
+  world.save({{0, 0, 0}});  // the other chunk is not on disk yet
+  const auto made = world.source->make(request);
+  REQUIRE(made.has_value());
+  CHECK(made->back().tile->version == Version{1, 2});
+  CHECK(made->back().through == 1);
+  CHECK_FALSE(made->back().is_worth_storing());
+  CHECK(world.make({1, {0, 0, 0}}).back().tile->version == Version{1, 2});
+}
+
+TEST_CASE("a folder that cannot be read fails a tile, and the next call tries again", "[tiles]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}});
+  world.save_all();
+  REQUIRE(raw_sql(world.file(), "UPDATE meta SET checksum = checksum + 1 WHERE key = 'base_fold'")
+              .empty());
+  CHECK_FALSE(world.source->make(world.request({1, {0, 0, 0}})).has_value());
+  REQUIRE(raw_sql(world.file(), "UPDATE meta SET checksum = checksum - 1 WHERE key = 'base_fold'")
+              .empty());
+  CHECK(world.source->make(world.request({1, {0, 0, 0}})).has_value());
+}
