@@ -7,7 +7,9 @@
 
 namespace runstone {
 
-/// The highest level of detail. Levels 1 .. kTileLevelMax are tiles.
+/// The highest level of detail. Levels 1 .. kTileLevelMax are tiles. A tile of it is 256 chunks wide.
+/// kWorldLimit is a multiple of that width for every chunk edge, so no tile crosses the border of the
+/// world.
 inline constexpr std::uint8_t kTileLevelMax = 8;
 /// The children of a tile.
 inline constexpr unsigned kTileChildren = 8;
@@ -38,6 +40,12 @@ constexpr ChunkKey tile_child(const ChunkKey& key, unsigned i) {
 /// Returns which child of its parent a tile or chunk is.
 constexpr unsigned child_index(const ChunkKey& key) {
   return static_cast<unsigned>((key.at.x & 1) | (key.at.y & 1) << 1 | (key.at.z & 1) << 2);
+}
+
+/// Returns the first voxel of a tile or chunk. `edge` is that of a chunk.
+constexpr VoxelPos tile_origin(const ChunkKey& key, std::int32_t edge) {
+  const std::int32_t width = edge << key.lod;
+  return {key.at.x * width, key.at.y * width, key.at.z * width};
 }
 
 /// Returns the first chunk that a tile covers.

@@ -69,8 +69,7 @@ StoreResult<TileReport> check_tiles(const std::string& folder, WorldReader& stor
   TileLedger ground;
   TileSource source(chunks, generator, store.meta().chunk_edge, ground, differs,
                     {kCacheBytes, false});
-  TileRequest request;
-  request.visibility = std::make_shared<const VisibilityTable>(visibilities(*materials));
+  const VisibilityTable visibility(visibilities(*materials));
   std::uint64_t done = 0;
   for (const auto& [key, version] : *keys) {
     if (progress) progress(done++, keys->size());
@@ -85,8 +84,7 @@ StoreResult<TileReport> check_tiles(const std::string& folder, WorldReader& stor
       differs(stored.error().message());
       continue;
     }
-    request.key = key;
-    const auto made = source.make(request);
+    const auto made = source.make({key, 0, {}}, visibility);
     if (!made) return fail_with(made.error());
     const Row after = store.load_tile(key);
     if (!after) return fail_with(after.error());

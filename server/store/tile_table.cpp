@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/core/key_text.hpp"
-#include "common/tiles/tile_keys.hpp"
+#include "common/core/tile_keys.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
 #include "server/store/sqlite_result.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/tiles/tile_keys.hpp"
+#include "common/core/tile_keys.hpp"
 
 namespace runstone {
 namespace {
@@ -23,14 +23,21 @@ TileLedger::Entry& TileLedger::entry_of(ChunkCoord chunk) {
   return first;
 }
 
+void TileLedger::edited(ChunkCoord chunk, Sequence seq) {
+  for (Entry* entry = &entry_of(chunk); entry != nullptr && entry->newest_edit < seq;
+       entry = entry->above) {
+    entry->newest_edit = seq;
+  }
+}
+
 void TileLedger::edited(std::span<const ChunkCoord> chunks, Sequence seq) {
   const std::lock_guard lock(mutex_);
-  for (const ChunkCoord& chunk : chunks) {
-    for (Entry* entry = &entry_of(chunk); entry != nullptr && entry->newest_edit < seq;
-         entry = entry->above) {
-      entry->newest_edit = seq;
-    }
-  }
+  for (const ChunkCoord chunk : chunks) edited(chunk, seq);
+}
+
+void TileLedger::edited(std::span<const ChunkKey> chunks, Sequence seq) {
+  const std::lock_guard lock(mutex_);
+  for (const ChunkKey& chunk : chunks) edited(chunk.at, seq);
 }
 
 void TileLedger::stored(std::span<const ChunkKey> chunks) {

@@ -20,6 +20,8 @@ class TileLedger {
   /// commit, and at its start the edits that are in no snapshot. Cost: one look-up a chunk, and a
   /// few instructions for each tile above that the same edit did not reach yet.
   void edited(std::span<const ChunkCoord> chunks, Sequence seq);
+  /// Does the same for keys of level of detail 0.
+  void edited(std::span<const ChunkKey> chunks, Sequence seq);
   /// Reports chunks that the world's folder has rows for. Keys of tiles are ignored.
   void stored(std::span<const ChunkKey> chunks);
 
@@ -35,6 +37,7 @@ class TileLedger {
     Sequence newest_edit = 0;
     Entry* above = nullptr;  // null: of level kTileLevelMax
   };
+  void edited(ChunkCoord chunk, Sequence seq);
   /// Returns the entry of a chunk, which is made first, with all above it, if there is none.
   Entry& entry_of(ChunkCoord chunk);
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/core/assert.hpp"
-#include "common/tiles/tile_keys.hpp"
+#include "common/core/tile_keys.hpp"
 #include "common/tiles/veiled_tile.hpp"
 #include "server/history/base_chunk.hpp"
 
@@ -14,14 +14,17 @@ namespace runstone {
 
 class TileSource::Making {
  public:
-  Making(TileSource& source, const TileRequest& request)
-      : source_(source), request_(request), fresh_(request.fresh.begin(), request.fresh.end()) {}
+  Making(TileSource& source, const TileRequest& request, const VisibilityTable& visibility)
+      : source_(source),
+        request_(request),
+        visibility_(visibility),
+        fresh_(request.fresh.begin(), request.fresh.end()) {}
 
   StoreResult<MadeTile> tile(const ChunkKey& key) {
     // It is read first: a tile that is read or made later contains at least these edits.
     const Sequence newest = source_.ledger_.newest_edit(key);
     if (auto cached = source_.cache_.find(key); cached && newest <= cached->through) {
-      cached->is_from_store = true;
+      cached->is_known = true;
       // The ledger knows all edits up to the head, and none of them is newer.
       cached->through = std::max(cached->through, request_.head);
       return *std::move(cached);
@@ -57,7 +60,7 @@ class TileSource::Making {
     auto voxels =
         source_.generator_.coarse(tile_origin(key, source_.edge_), source_.edge_, key.lod);
     if (!voxels) return std::nullopt;
-    return tile_of_voxels(key, veiled(*std::move(voxels), *request_.visibility, scratch_), {},
+    return tile_of_voxels(key, veiled(*std::move(voxels), visibility_, scratch_), {},
                           true);
   }
 
@@ -97,7 +100,7 @@ class TileSource::Making {
     }
     return tile_of_voxels(
         key,
-        veiled_tile(runs, static_cast<unsigned>(source_.edge_), *request_.visibility, scratch_),
+        veiled_tile(runs, static_cast<unsigned>(source_.edge_), visibility_, scratch_),
         version, is_approximate);
   }
 
@@ -134,6 +137,7 @@ class TileSource::Making {
 
   TileSource& source_;
   const TileRequest& request_;
+  const VisibilityTable& visibility_;
   const std::map<ChunkCoord, ChunkPtr> fresh_;
   VeiledTileScratch scratch_;
   std::vector<MadeTile> on_the_way_;
@@ -149,10 +153,11 @@ TileSource::TileSource(ChunkSource& chunks, const Generator& generator, std::int
       options_(options),
       cache_(options.cache_bytes) {}
 
-StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request) {
+StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
+                                                       const VisibilityTable& visibility) {
   RUNSTONE_ASSERT(request.key.lod >= 1 && request.key.lod <= kTileLevelMax);
   if (auto found = find_ground(); !found) return Unexpected<StoreError>{found.error()};
-  Making making(*this, request);
+  Making making(*this, request, visibility);
   auto tile = making.tile(request.key);
   if (!tile) return Unexpected<StoreError>{tile.error()};
   std::vector<MadeTile> tiles = making.take_on_the_way();

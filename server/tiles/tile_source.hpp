@@ -22,25 +22,15 @@
 #include "common/generate/generator.hpp"
 #include "common/mesh/visibility.hpp"
 #include "server/history/chunk_source.hpp"
-#include "server/tiles/made_tile.hpp"
 #include "server/tiles/tile_cache.hpp"
 #include "server/tiles/tile_ledger.hpp"
+#include "server/world/tile_request.hpp"
 
 namespace runstone {
 
 /// The lowest level at which the generator may make a tile without chunks. Below it, at most 64
 /// chunks are generated for a tile.
 inline constexpr std::uint8_t kCoarseLevelMin = 3;
-
-struct TileRequest {
-  ChunkKey key;  // level 1 to kTileLevelMax, inside the world
-  /// Every edit up to it is contained in `fresh` or on disk, and was reported to the ledger.
-  Sequence head = 0;
-  std::shared_ptr<const VisibilityTable> visibility;
-  /// The chunks below the tile whose newest voxels are only in memory. A chunk that is null cannot
-  /// be shown: it counts as damaged.
-  std::vector<std::pair<ChunkCoord, ChunkPtr>> fresh;
-};
 
 class TileSource {
  public:
@@ -61,9 +51,11 @@ class TileSource {
       : TileSource(chunks, generator, edge, ledger, std::move(warn), Options()) {}
 
   /// Returns the tile as the last of the list. Before it come the tiles below it that were made on
-  /// the way and are worth storing. The first call reads the keys of all stored chunks. Fails if the
-  /// folder cannot be read.
-  StoreResult<std::vector<MadeTile>> make(const TileRequest& request);
+  /// the way and are worth storing. The first call reads the keys of all stored chunks. Requires a
+  /// tile inside the world, and that every edit up to request.head was reported to the ledger. Fails if
+  /// the folder cannot be read.
+  StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
+                                          const VisibilityTable& visibility);
 
  private:
   class Making;  // one call of make()

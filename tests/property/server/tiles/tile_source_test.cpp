@@ -114,7 +114,7 @@ void edit_and_compare(TileWorld& world, std::uint8_t level_max, int steps) {
   for (const auto& [key, version] : stored) {
     CAPTURE(key.lod, key.at.x, key.at.y, key.at.z);
     const auto made = world.make(key);
-    REQUIRE(made.back().is_from_store);
+    REQUIRE(made.back().is_known);
     REQUIRE(is_expected(world, made, key));
   }
 }

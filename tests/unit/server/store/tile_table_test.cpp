@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/tiles/tile_keys.hpp"
+#include "common/core/tile_keys.hpp"
 #include "server/store/store.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "common/tiles/tile_keys.hpp"
+#include "common/core/tile_keys.hpp"
 
 using namespace runstone;
 

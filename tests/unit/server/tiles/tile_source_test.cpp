@@ -76,14 +76,14 @@ TEST_CASE("a tile of the folder is used until an edit below it is newer", "[tile
   world.save_tiles(first);
   world.start();
   const auto stored = world.make({1, {0, 0, 0}});
-  CHECK(stored.back().is_from_store);
+  CHECK(stored.back().is_known);
   CHECK_FALSE(stored.back().is_worth_storing());
   CHECK(*stored.back().tile == *first.back().tile);
 
   world.start();
   world.edit({{1, 1, 1}});
   const auto made = world.make({1, {0, 0, 0}});
-  CHECK_FALSE(made.back().is_from_store);
+  CHECK_FALSE(made.back().is_known);
   CHECK(made.back().tile->version == Version{world.epoch, 2});
   CHECK(made.back().through == 2);
 }
@@ -92,10 +92,10 @@ TEST_CASE("a tile that was made lately is used until an edit below it is newer",
   TileWorld world({"empty", 1, 0, ""});
   world.edit({{0, 0, 0}});
   const auto first = world.make({1, {0, 0, 0}});
-  CHECK_FALSE(first.back().is_from_store);
+  CHECK_FALSE(first.back().is_known);
   world.edit({{7, 7, 7}});  // below another tile
   const auto again = world.make({1, {0, 0, 0}});
-  CHECK(again.back().is_from_store);
+  CHECK(again.back().is_known);
   CHECK(again.back().tile == first.back().tile);
   CHECK(again.back().through == 2);
   world.edit({{0, 0, 1}});
@@ -111,7 +111,7 @@ TEST_CASE("a source that reads no stored tiles makes all of chunks", "[tiles]") 
   TileSource::Options options;
   options.reads_stored_tiles = false;
   TileSource source(*world.chunk_source, *world.generator, kSampleEdge, ledger, {}, options);
-  const auto made = source.make({{2, {0, 0, 0}}, world.head, world.visibility, {}});
+  const auto made = source.make({{2, {0, 0, 0}}, world.head, {}}, *world.visibility);
   REQUIRE(made.has_value());
   CHECK(made->size() == 9);
   CHECK(*made->back().tile == **world.store->load_tile({2, {0, 0, 0}}));
@@ -132,7 +132,7 @@ TEST_CASE("a damaged row of a tile is reported and made anew", "[tiles][damage]"
   REQUIRE(again.back().is_worth_storing());
   world.save_tiles(again);
   world.start();
-  CHECK(world.make({1, {0, 0, 0}}).back().is_from_store);
+  CHECK(world.make({1, {0, 0, 0}}).back().is_known);
   CHECK(world.warnings.size() == 1);
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("a damaged chunk is reported once, and tiles show nothing there", "[ti
           "1");
   REQUIRE(raw_sql(world.file(), "SELECT count(*) FROM snapshot") == "2");
   world.ledger->stored(std::vector{ChunkKey{0, {0, 0, 0}}});
-  const auto made = world.source->make(world.request({1, {0, 0, 0}}));
+  const auto made = world.source->make(world.request({1, {0, 0, 0}}), *world.visibility);
   // The fold of the table is wrong as well, so the keys of the chunks cannot be read.
   CHECK_FALSE(made.has_value());
 
@@ -168,7 +168,7 @@ TEST_CASE("a chunk that cannot be shown is left out of its tile", "[tiles]") {
   TileRequest request = world.request({1, {0, 0, 0}});
   REQUIRE(request.fresh.size() == 1);
   request.fresh[0].second = nullptr;
-  const auto made = world.source->make(request);
+  const auto made = world.source->make(request, *world.visibility);
   REQUIRE(made.has_value());
   CHECK(made->back().is_approximate);
   CHECK(made->back().tile->voxels == uniform_chunk(Extent::cube(kSampleEdge), kEmpty));
@@ -181,7 +181,7 @@ TEST_CASE("a tile with an edit behind the head of its request is not stored", "[
   TileRequest request = world.request({1, {0, 0, 0}});
   world.edit({{0, 0, 0}, {1, 0, 0}});
   world.save({{0, 0, 0}});  // the other chunk is not on disk yet
-  const auto made = world.source->make(request);
+  const auto made = world.source->make(request, *world.visibility);
   REQUIRE(made.has_value());
   CHECK(made->back().tile->version == Version{1, 2});
   CHECK(made->back().through == 1);
@@ -195,8 +195,8 @@ TEST_CASE("a folder that cannot be read fails a tile, and the next call tries ag
   world.save_all();
   REQUIRE(raw_sql(world.file(), "UPDATE meta SET checksum = checksum + 1 WHERE key = 'base_fold'")
               .empty());
-  CHECK_FALSE(world.source->make(world.request({1, {0, 0, 0}})).has_value());
+  CHECK_FALSE(world.source->make(world.request({1, {0, 0, 0}}), *world.visibility).has_value());
   REQUIRE(raw_sql(world.file(), "UPDATE meta SET checksum = checksum - 1 WHERE key = 'base_fold'")
               .empty());
-  CHECK(world.source->make(world.request({1, {0, 0, 0}})).has_value());
+  CHECK(world.source->make(world.request({1, {0, 0, 0}}), *world.visibility).has_value());
 }

@@ -13,7 +13,7 @@
 #include "common/core/hash.hpp"
 #include "common/generate/generator.hpp"
 #include "common/mesh/visibility.hpp"
-#include "common/tiles/tile_keys.hpp"
+#include "common/core/tile_keys.hpp"
 #include "server/history/base_chunk.hpp"
 #include "server/history/chunk_source.hpp"
 #include "server/store/store.hpp"
@@ -85,14 +85,14 @@ class TileWorld {
 
   /// Returns a request with all chunks that are not saved.
   TileRequest request(const ChunkKey& key) const {
-    TileRequest out{key, head, visibility, {}};
+    TileRequest out{key, head, {}};
     for (const ChunkCoord& at : unsaved) {
       if (tile_of(at, key.lod) == key) out.fresh.emplace_back(at, chunks.at(at));
     }
     return out;
   }
   std::vector<MadeTile> make(const ChunkKey& key) {
-    auto made = source->make(request(key));
+    auto made = source->make(request(key), *visibility);
     if (!made) FAIL(made.error().message());
     return *std::move(made);
   }

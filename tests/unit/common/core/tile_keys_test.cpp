@@ -1,4 +1,4 @@
-#include "common/tiles/tile_keys.hpp"
+#include "common/core/tile_keys.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -21,6 +21,7 @@ TEST_CASE("a tile has eight children, whose parent it is", "[tiles]") {
     for (unsigned i = 0; i < 8; ++i) {
       const ChunkKey child = tile_child(tile, i);
       CHECK(tile_parent(child) == tile);
+      CHECK(child_index(child) == i);
       CHECK(child.at.x - 2 * tile.at.x == static_cast<int>(i & 1U));
       CHECK(child.at.y - 2 * tile.at.y == static_cast<int>(i >> 1U & 1U));
       CHECK(child.at.z - 2 * tile.at.z == static_cast<int>(i >> 2U));
@@ -44,6 +45,7 @@ TEST_CASE("the tile of a chunk is its parent of parents", "[tiles]") {
 }
 
 TEST_CASE("a tile begins at the first voxel of its first chunk", "[tiles]") {
+  CHECK(first_chunk({3, {1, -2, 3}}) == ChunkCoord{8, -16, 24});
   CHECK(tile_origin({0, {1, -2, 3}}, 32) == VoxelPos{32, -64, 96});
   CHECK(tile_origin({3, {1, -2, 3}}, 32) == VoxelPos{256, -512, 768});
   CHECK(tile_origin({8, {-kWorldLimit / (128 << 8), 0, 0}}, 128).x == -kWorldLimit);
