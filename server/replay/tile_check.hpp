@@ -14,7 +14,7 @@ struct TileReport {
   /// Tiles with edits below them that are in no snapshot, and tiles that a running server replaced
   /// or deleted meanwhile.
   std::uint64_t not_compared = 0;
-  std::uint64_t differences = 0;  // damaged rows included
+  std::uint64_t differences = 0;  // damaged tiles and chunks included
   std::string first;              // describes the first difference; empty if there is none
 };
 
@@ -23,8 +23,8 @@ using TileProgress = std::function<void(std::uint64_t, std::uint64_t)>;
 
 /// Makes each stored tile of the chunks in `folder` again, without reading a stored tile, and
 /// compares version and digest. Tiles are a cache of snapshots and base, so the edits that only the
-/// log has do not count. `store` is the world in `folder`; a server may be running it. Fails if a
-/// chunk or the log cannot be read.
+/// log has do not count. `store` is the world in `folder`; a server may be running it. Fails if
+/// the folder cannot be read.
 StoreResult<TileReport> check_tiles(const std::string& folder, WorldReader& store,
                                     const Generator& generator, const TileProgress& progress);
 

@@ -25,7 +25,9 @@ double rate_of(const ReplayReport& report, double seconds) {
 struct VerifyReport {
   ReplayReport replay;
   std::optional<TileReport> tiles;
-  std::uint64_t differences() const { return replay.differences + (tiles ? tiles->differences : 0); }
+  std::uint64_t differences() const {
+    return replay.differences + (tiles ? tiles->differences : 0);
+  }
   /// Returns an empty text if there is none.
   std::string first_difference() const {
     if (replay.first) return replay.first->message();
@@ -68,22 +70,23 @@ void print_table(std::ostream& out, const Store& store, const VerifyReport& whol
 std::string report_json(const Store& store, const VerifyReport& whole, double seconds) {
   const ReplayReport& report = whole.replay;
   const DigestList list{store.meta().world_id, report.seq, report.digests};
-  nlohmann::ordered_json more = {{"edits", report.edits},
-                                 {"chunks", report.digests.size()},
-                                 {"voxels_changed", report.voxels_changed},
-                                 {"stack_depths", report.stack_depths.text()},
-                                 {"snapshots_compared", report.snapshots_compared},
-                                 {"keyframes_compared", report.keyframes_compared},
-                                 {"listed_compared", report.listed_compared},
-                                 {"not_compared", report.not_compared},
-                                 {"tiles_compared", whole.tiles ? whole.tiles->compared : 0},
-                                 {"tiles_not_compared", whole.tiles ? whole.tiles->not_compared : 0},
-                                 {"differences", whole.differences()},
-                                 {"first_difference", whole.first_difference()},
-                                 {"lost", store.loss() ? store.loss()->message() : ""},
-                                 {"world_digest", to_hex(report.world_digest)},
-                                 {"seconds", seconds},
-                                 {"edits_per_second", rate_of(report, seconds)}};
+  nlohmann::ordered_json more = {
+      {"edits", report.edits},
+      {"chunks", report.digests.size()},
+      {"voxels_changed", report.voxels_changed},
+      {"stack_depths", report.stack_depths.text()},
+      {"snapshots_compared", report.snapshots_compared},
+      {"keyframes_compared", report.keyframes_compared},
+      {"listed_compared", report.listed_compared},
+      {"not_compared", report.not_compared},
+      {"tiles_compared", whole.tiles ? whole.tiles->compared : 0},
+      {"tiles_not_compared", whole.tiles ? whole.tiles->not_compared : 0},
+      {"differences", whole.differences()},
+      {"first_difference", whole.first_difference()},
+      {"lost", store.loss() ? store.loss()->message() : ""},
+      {"world_digest", to_hex(report.world_digest)},
+      {"seconds", seconds},
+      {"edits_per_second", rate_of(report, seconds)}};
   std::string json = to_json(list);
   json.resize(json.rfind('}'));  // removes the end of the object, so that a member can follow
   return json + ",\n\"report\":" + more.dump() + "}";
@@ -113,8 +116,9 @@ void declare_verify(SubcommandOptions& command_line, VerifyOptions& options) {
   command_line.moment("--at", options.at, "end of the replay");
   command_line.texts("--against", options.against,
                      "compare with these digest lists of servers, clients or replays");
-  command_line.flag("--quick", options.quick,
-                    "do not read and check every row of every table, nor compare keyframes and tiles");
+  command_line.flag(
+      "--quick", options.quick,
+      "do not read and check every row of every table, nor compare keyframes and tiles");
 }
 
 Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& out) {
@@ -135,9 +139,9 @@ Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& 
   VerifyReport report{*std::move(replayed), std::nullopt};
   if (!options.quick) {
     ProgressLine line("tiles compared", options.common.progress);
-    auto tiles = check_tiles(
-        options.common.world, store, *world->generator,
-        [&](std::uint64_t done, std::uint64_t last) { line.show(done, last); });
+    auto tiles =
+        check_tiles(options.common.world, store, *world->generator,
+                    [&](std::uint64_t done, std::uint64_t last) { line.show(done, last); });
     if (!tiles) return failure(tiles.error().message());
     report.tiles = *std::move(tiles);
   }

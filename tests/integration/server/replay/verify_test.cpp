@@ -11,6 +11,7 @@
 
 #include "common/runs/run_chunk.hpp"
 #include "server/replay/digest_list.hpp"
+#include "server/tiles/tile_source.hpp"
 #include "tests/support/crash_image.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/run_replay.hpp"
@@ -155,6 +156,87 @@ TEST_CASE("a sound snapshot that differs from the log exits with 1 and is named"
   CHECK(
       different.out.find("first       snapshot: chunk=3,0,0 version=1:2 digest=" + to_hex(stored) +
                          ", replay gives digest=" + to_hex(replayed) + "\n") != std::string::npos);
+}
+
+namespace {
+
+/// Makes the tile and those below it of the stored chunks of a closed world, and stores them.
+void store_tiles(const std::string& folder, const ChunkKey& key) {
+  const auto store = *open_world(folder, StoreAccess::read_write);
+  const auto generator = *make_generator(store->meta().generator, default_material_table());
+  ChunkSource chunks(folder, *generator);
+  TileLedger ledger;
+  TileSource source(chunks, *generator, kVerifiedEdge, ledger, {});
+  const auto made =
+      source.make({key,
+                   *store->last_sequence(),
+                   std::make_shared<const VisibilityTable>(visibilities(default_material_table())),
+                   {}});
+  REQUIRE(made.has_value());
+  std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
+  for (const MadeTile& tile : *made) tiles.emplace_back(tile.key, tile.tile);
+  REQUIRE(store->save_tiles(tiles).has_value());
+}
+
+}  // namespace
+
+TEST_CASE("verify compares stored tiles with their chunks", "[store][replay][tiles]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", json = folder / "out.json";
+  make_small_world(world, [](const ChunkKey&, RunChunk&) {});
+  store_tiles(world, {2, {0, 0, 0}});
+  const ReplayOutcome equal = run_replay({"verify", "--world", world});
+  INFO(equal.out << equal.err);
+  CHECK(equal.code == 0);
+  CHECK(equal.out.find("tiles       9 compared, 0 left out") != std::string::npos);
+  CHECK(run_replay({"verify", "--quick", "--world", world}).out.find("tiles") == std::string::npos);
+
+  SECTION("a tile with one wrong voxel") {
+    Chunk tile;
+    Digest sound;
+    {
+      const auto store = *open_world(world, StoreAccess::read_write);
+      tile = **store->load_tile({1, {1, 0, 0}});
+      sound = tile.digest;
+      fill(tile.voxels, index_of({7, 7, 7}, tile.voxels.extent, tile.voxels.order), 1, 2);
+      tile.digest = digest_of(tile.voxels);
+      const std::vector<std::pair<ChunkKey, ChunkPtr>> tiles = {
+          {{1, {1, 0, 0}}, std::make_shared<const Chunk>(tile)}};
+      REQUIRE(store->save_tiles(tiles).has_value());
+    }
+    const ReplayOutcome different = run_replay({"verify", "--world", world, "--json", json});
+    INFO(different.out << different.err);
+    CHECK(different.code == 1);
+    CHECK(different.out.find("result      1 differences\n") != std::string::npos);
+    CHECK(different.out.find(
+              "first       tile: chunk=1,0,0 lod=1 version=1:2 digest=" + to_hex(tile.digest) +
+              ", its chunks give version=1:2 digest=" + to_hex(sound) + "\n") != std::string::npos);
+    CHECK(file_text(json).find("\"tiles_compared\":9") != std::string::npos);
+  }
+  SECTION("a damaged tile") {
+    REQUIRE(raw_sql(world + "/world.sqlite", "UPDATE tile SET seq = 7 WHERE lod = 2").empty());
+    const ReplayOutcome damaged = run_replay({"verify", "--world", world});
+    INFO(damaged.out << damaged.err);
+    CHECK(damaged.code == 1);
+    CHECK(damaged.out.find("first       " + world +
+                           "/world.sqlite: tile chunk=0,0,0 lod=2: checksum is wrong\n") !=
+          std::string::npos);
+  }
+  SECTION("an edit behind the checkpoint") {
+    {
+      const auto store = *open_world(world, StoreAccess::read_write);
+      SplitMix64 rng(2);
+      EditRecord record = sample_record(rng, store->epoch(), 3);
+      record.cause = Cause::player;
+      record.subject = 0;
+      record.edit = {SetVoxel{{5, 5, 5}}, {}, 4};
+      REQUIRE(store->append({}, std::vector{record}).has_value());
+    }
+    const ReplayOutcome later = run_replay({"verify", "--world", world});
+    INFO(later.out << later.err);
+    CHECK(later.code == 0);
+    CHECK(later.out.find("tiles       7 compared, 2 left out") != std::string::npos);
+  }
 }
 
 TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is overwritten",

@@ -1,4 +1,5 @@
-// Damage in any column of any table is detected, named in the error, and never repaired.
+// Damage in any column of any table is detected, named in the error, and never repaired. The table
+// of tiles is a cache and has its own test (tile_table_test.cpp).
 #include <catch2/catch.hpp>
 #include <filesystem>
 

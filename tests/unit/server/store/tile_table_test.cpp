@@ -147,6 +147,23 @@ TEST_CASE("an import of base chunks and an accepted loss delete all tiles", "[st
   }
 }
 
+TEST_CASE("a compaction deletes the tiles that are older than the snapshots it makes",
+          "[store][tiles]") {
+  TiledWorld world;
+  world.save_snapshot({0, 0, 0}, {1, 3});
+  world.save_tile({1, {0, 0, 0}}, {1, 3});
+  world.save_tile({2, {0, 0, 0}}, {1, 20});
+  world.save_tile({1, {4, 0, 0}}, {1, 3});
+  const KeyedChunks kept = {{{0, {0, 0, 0}}, sample_chunk(world.rng, {1, 20})}};
+  const Keyframe keyframe{{{1, 20}, 1'700'000'000'020'000},
+                          1,
+                          world_digest_term(kept.front().first, kept.front().second->digest)};
+  REQUIRE(world.store->save_keyframe(kept, keyframe).has_value());
+  const auto compacted = world.store->compact(20);
+  if (!compacted) FAIL(compacted.error().message());
+  CHECK(*world.store->tile_keys() == Keys{{{1, {4, 0, 0}}, {1, 3}}, {{2, {0, 0, 0}}, {1, 20}}});
+}
+
 TEST_CASE("a world of format 3 has no tiles for a reader, and gets the table from a writer",
           "[store][tiles]") {
   TiledWorld world;

@@ -1,6 +1,7 @@
 #include "server/tiles/tile_source.hpp"
 
 #include <catch2/catch.hpp>
+#include <thread>
 
 #include "common/tiles/veiled_tile.hpp"
 #include "tests/support/raw_sql.hpp"
@@ -187,6 +188,31 @@ TEST_CASE("a tile with an edit behind the head of its request is not stored", "[
   CHECK(made->back().through == 1);
   CHECK_FALSE(made->back().is_worth_storing());
   CHECK(world.make({1, {0, 0, 0}}).back().tile->version == Version{1, 2});
+}
+
+TEST_CASE("several threads make the same tiles while edits are reported", "[tiles]") {
+  TileWorld world({"terrain", 1, 7, ""});
+  world.edit({{0, 1, 0}, {3, 2, 1}});
+  world.save_all();
+  const std::vector<ChunkKey> keys = {{2, {0, 0, 0}}, {1, {0, 0, 0}}, {1, {1, 1, 0}}};
+  std::vector<Digest> expected;
+  for (const ChunkKey& key : keys) expected.push_back(world.make(key).back().tile->digest);
+  world.start();
+  std::array<bool, 3> is_equal{};
+  std::vector<std::thread> threads;
+  for (bool& equal : is_equal) {
+    threads.emplace_back([&] {
+      equal = true;
+      for (std::size_t i = 0; i < keys.size(); ++i) {
+        const auto made = world.source->make({keys[i], world.head, world.visibility, {}});
+        equal = equal && made && made->back().tile->digest == expected[i];
+      }
+    });
+  }
+  for (std::int32_t x = 100; x < 600; ++x)
+    world.ledger->edited(std::vector{ChunkCoord{x, 0, 0}}, static_cast<Sequence>(x));
+  for (std::thread& thread : threads) thread.join();
+  CHECK(is_equal == std::array{true, true, true});
 }
 
 TEST_CASE("a folder that cannot be read fails a tile, and the next call tries again", "[tiles]") {
