@@ -49,9 +49,11 @@ void leave_tiles(WorldState& world, SessionId session, std::span<const ChunkKey>
 }
 
 /// Collects the chunks below a tile that are newer in memory than on disk. An absent one has edits
-/// that nobody has applied yet; then `head` is 0.
-TileRequest request_of(const WorldState& world, const ChunkKey& tile) {
+/// that nobody has applied yet; then `head` is 0. Some of the absent ones are loaded, so that the tile
+/// is complete when it is made again.
+TileRequest request_of(WorldState& world, const ChunkKey& tile, const Clocks& now) {
   const WorldChunks& chunks = world.authority.chunks();
+  std::vector<ChunkKey> absent;
   TileRequest request{tile, world.authority.head(), {}};
   const ChunkCoord first = first_chunk(tile);
   const std::set<ChunkKey>& dirty = chunks.dirty();
@@ -63,8 +65,10 @@ TileRequest request_of(const WorldState& world, const ChunkKey& tile) {
       request.fresh.emplace_back(at->at, std::move(chunk));
     } else {
       request.head = 0;
+      if (absent.size() < kTileLoadsMax) absent.push_back(*at);
     }
   }
+  for (const ChunkKey& key : absent) request_load(world, key, now);
   return request;
 }
 
@@ -142,7 +146,7 @@ void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
 void start_tiles(WorldState& world, const Clocks& now) {
   if (world.is_stopping) return;
   while (const auto key = world.tiles.queue.next(now.steady_us, kTilesInFlightMax))
-    world.environment.make_tile(request_of(world, *key));
+    world.environment.make_tile(request_of(world, *key, now));
 }
 
 void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,

@@ -17,6 +17,8 @@ inline constexpr TimeUs kTileRemakeUs = 1'000'000;
 /// After this time a tile is tried again that could not be made, or that lacks edits of chunks that
 /// are not in memory.
 inline constexpr TimeUs kTileRetryUs = 1'000'000;
+/// Chunks that are loaded for one request of a tile because they have edits.
+inline constexpr std::size_t kTileLoadsMax = 64;
 /// Tiles with the workers at a time.
 inline constexpr std::size_t kTilesInFlightMax = 4;
 

@@ -167,11 +167,8 @@ void store_tiles(const std::string& folder, const ChunkKey& key) {
   ChunkSource chunks(folder, *generator);
   TileLedger ledger;
   TileSource source(chunks, *generator, kVerifiedEdge, ledger, {});
-  const auto made =
-      source.make({key,
-                   *store->last_sequence(),
-                   std::make_shared<const VisibilityTable>(visibilities(default_material_table())),
-                   {}});
+  const VisibilityTable visibility(visibilities(default_material_table()));
+  const auto made = source.make({key, *store->last_sequence(), {}}, visibility);
   REQUIRE(made.has_value());
   std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
   for (const MadeTile& tile : *made) tiles.emplace_back(tile.key, tile.tile);

@@ -204,7 +204,7 @@ TEST_CASE("several threads make the same tiles while edits are reported", "[tile
     threads.emplace_back([&] {
       equal = true;
       for (std::size_t i = 0; i < keys.size(); ++i) {
-        const auto made = world.source->make({keys[i], world.head, world.visibility, {}});
+        const auto made = world.source->make({keys[i], world.head, {}}, *world.visibility);
         equal = equal && made && made->back().tile->digest == expected[i];
       }
     });
