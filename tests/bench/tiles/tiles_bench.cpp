@@ -6,13 +6,15 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 
 #include "common/core/assert.hpp"
+#include "common/core/tile_keys.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/runs/reorder.hpp"
 #include "common/tiles/tile_builder.hpp"
-#include "common/tiles/veil.hpp"
+#include "common/tiles/veiled_tile.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/machine_json.hpp"
@@ -27,12 +29,13 @@ constexpr double kTargetShare = 2;
 /// The part of an endless world that is measured.
 constexpr VoxelBox kPart{{0, -64, 0}, {512, 64, 512}};
 
-/// A chunk or a tile: as it was built, veiled, and the veiled bytes on the wire.
+/// A chunk, or a tile with its veil, and its bytes on the wire.
 struct Tile {
-  RunChunk built, veiled;
+  RunChunk voxels;
   Bytes packed;
-  std::size_t built_bytes = 0, quads = 0;
-  std::vector<double> build_us, build_one_order_us, veil_us, decode_us, mesh_us;
+  std::size_t built_runs = 0, built_bytes = 0;  // before the veil
+  std::size_t quads = 0;
+  std::vector<double> make_us, make_one_order_us, decode_us, mesh_us;
 };
 using Level = std::map<ChunkCoord, Tile>;
 
@@ -50,9 +53,7 @@ Level chunks_of(const VoxelWorld& world, unsigned edge) {
       for (std::int32_t x = first.x; x * side < box.max.x; ++x) {
         RunChunk chunk = chunk_of_world(world, {x * side, y * side, z * side}, edge);
         if (!has_voxels(chunk)) continue;
-        Tile& tile = out[{x, y, z}];
-        tile.veiled = chunk;
-        tile.built = std::move(chunk);
+        out[{x, y, z}].voxels = std::move(chunk);
       }
     }
   }
@@ -64,20 +65,9 @@ TileChildren children_of(const Level& below, const ChunkCoord& at) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto bit = [i](unsigned shift) { return static_cast<std::int32_t>(i >> shift & 1); };
     const auto found = below.find({2 * at.x + bit(0), 2 * at.y + bit(1), 2 * at.z + bit(2)});
-    if (found != below.end()) out[i] = &found->second.built;
+    if (found != below.end()) out[i] = &found->second.voxels;
   }
   return out;
-}
-
-/// Returns the axis order of most runs of the children, in which few of them have to be turned.
-AxisOrder order_of(const TileChildren& children) {
-  std::array<std::size_t, kAxisOrderCount> runs{};
-  for (const RunChunk* child : children) {
-    if (child != nullptr && !child->is_uniform())
-      runs[static_cast<std::size_t>(child->order)] += child->runs.size();
-  }
-  return kAxisOrders[static_cast<std::size_t>(std::max_element(runs.begin(), runs.end()) -
-                                              runs.begin())];
 }
 
 /// Children in one axis order.
@@ -100,31 +90,31 @@ class Passes {
  public:
   Passes(const VisibilityTable& visibility, unsigned edge) : visibility_(visibility), edge_(edge) {}
 
-  /// Builds and veils all tiles of a level in turn.
-  void build(const Level& below, Level& level) {
+  /// Makes all tiles of a level in turn.
+  void make(const Level& below, Level& level) {
     for (auto& [at, tile] : level) {
       const TileChildren children = children_of(below, at);
-      const AxisOrder order = order_of(children);
-      const TurnedChildren turned(children, order);
       std::uint64_t start = now_ns();
-      RunChunk built = build_tile(children, edge_, order, visibility_, tiles_);
-      tile.build_us.push_back(us_since(start));
+      tile.voxels = veiled_tile(children, edge_, visibility_, tiles_);
+      tile.make_us.push_back(us_since(start));
+      const TurnedChildren turned(children, tile.voxels.order);
       start = now_ns();
-      const RunChunk same = build_tile(turned.children, edge_, order, visibility_, tiles_);
-      tile.build_one_order_us.push_back(us_since(start));
-      RUNSTONE_ASSERT(same == built);
-      tile.veiled = built;
-      start = now_ns();
-      veil(tile.veiled, visibility_, veils_);
-      tile.veil_us.push_back(us_since(start));
-      tile.built = std::move(built);
+      const RunChunk same = veiled_tile(turned.children, edge_, visibility_, tiles_);
+      tile.make_one_order_us.push_back(us_since(start));
+      RUNSTONE_ASSERT(same == tile.voxels);
     }
   }
-  /// Packs all tiles of a level.
-  static void pack(Level& level) {
+  /// Packs all tiles of a level, and those that they were before the veil. Without children, for
+  /// chunks.
+  void pack(const Level* below, Level& level) {
     for (auto& [at, tile] : level) {
-      tile.packed = encode_chunk(tile.veiled, ChunkEncoding::packed);
-      tile.built_bytes = encode_chunk(tile.built, ChunkEncoding::packed).size();
+      tile.packed = encode_chunk(tile.voxels, ChunkEncoding::packed);
+      const RunChunk built = below == nullptr
+                                 ? tile.voxels
+                                 : build_tile(children_of(*below, at), edge_, tile.voxels.order,
+                                              visibility_, tiles_.build);
+      tile.built_runs = built.runs.size();
+      tile.built_bytes = encode_chunk(built, ChunkEncoding::packed).size();
     }
   }
   /// Decodes and meshes all tiles of a level in turn.
@@ -133,11 +123,11 @@ class Passes {
       const std::uint64_t start = now_ns();
       const auto decoded = decode_chunk(tile.packed);
       tile.decode_us.push_back(us_since(start));
-      RUNSTONE_ASSERT(decoded.has_value() && *decoded == tile.veiled);
+      RUNSTONE_ASSERT(decoded.has_value() && *decoded == tile.voxels);
     }
     for (auto& [at, tile] : level) {
       const std::uint64_t start = now_ns();
-      mesh_rdm(tile.veiled, {}, visibility_, meshes_, mesh_);
+      mesh_rdm(tile.voxels, {}, visibility_, meshes_, mesh_);
       tile.mesh_us.push_back(us_since(start));
       tile.quads = mesh_.quad_count();
     }
@@ -146,8 +136,7 @@ class Passes {
  private:
   const VisibilityTable& visibility_;
   unsigned edge_;
-  TileScratch tiles_;
-  VeilScratch veils_;
+  VeiledTileScratch tiles_;
   RdmScratch meshes_;
   ChunkMesh mesh_;
 };
@@ -157,21 +146,28 @@ TilesRow row_of(const Level& level, unsigned number) {
   row.level = number;
   row.tiles = level.size();
   for (const auto& [at, tile] : level) {
-    row.uniform += tile.veiled.is_uniform() ? 1 : 0;
-    row.runs += tile.built.runs.size();
-    row.veiled_runs += tile.veiled.runs.size();
+    row.uniform += tile.voxels.is_uniform() ? 1 : 0;
+    row.runs += tile.built_runs;
+    row.veiled_runs += tile.voxels.runs.size();
     row.bytes += tile.built_bytes;
     row.veiled_bytes += tile.packed.size();
     row.quads += tile.quads;
-    if (!tile.build_us.empty()) {
-      row.build_us += median(tile.build_us);
-      row.build_one_order_us += median(tile.build_one_order_us);
-      row.veil_us += median(tile.veil_us);
+    if (!tile.make_us.empty()) {
+      row.make_us += median(tile.make_us);
+      row.make_one_order_us += median(tile.make_one_order_us);
     }
-    row.decode_us += median(tile.decode_us);
-    row.mesh_us += median(tile.mesh_us);
+    if (!tile.decode_us.empty()) {
+      row.decode_us += median(tile.decode_us);
+      row.mesh_us += median(tile.mesh_us);
+    }
   }
   return row;
+}
+
+Level empty_level_above(const Level& level) {
+  Level above;
+  for (const auto& [at, tile] : level) above.try_emplace(tile_at(at, 1));
+  return above;
 }
 
 void measure(const VoxelWorld& world, unsigned edge, unsigned repetitions,
@@ -181,16 +177,12 @@ void measure(const VoxelWorld& world, unsigned edge, unsigned repetitions,
   Passes passes(*world.visibility, edge);
   double decode_below_us = 0;
   for (unsigned number = 0; number <= kLevels; ++number) {
+    Level below;
     if (number > 0) {
-      Level above;
-      for (const auto& [at, tile] : level) {
-        const auto half = [](std::int32_t c) { return c >> 1; };
-        above.try_emplace({half(at.x), half(at.y), half(at.z)});
-      }
-      for (unsigned i = 0; i < repetitions; ++i) passes.build(level, above);
-      level = std::move(above);
+      below = std::exchange(level, empty_level_above(level));
+      for (unsigned i = 0; i < repetitions; ++i) passes.make(below, level);
     }
-    Passes::pack(level);
+    passes.pack(number > 0 ? &below : nullptr, level);
     for (unsigned i = 0; i < repetitions; ++i) passes.receive(level);
     TilesRow row = row_of(level, number);
     row.world = world.name;
@@ -199,6 +191,42 @@ void measure(const VoxelWorld& world, unsigned edge, unsigned repetitions,
                   static_cast<std::size_t>(box.max.z - box.min.z);
     row.decode_children_us = decode_below_us;
     decode_below_us = row.decode_us;
+    rows.push_back(row);
+  }
+}
+
+/// Measures the bytes of a bounded world that is repeated sideways without end, so that no tile lies
+/// at its border. A part is measured in which the world and the tiles of the highest level repeat.
+void measure_repeated(const VoxelWorld& world, unsigned edge, std::vector<TilesRow>& rows) {
+  const auto side = static_cast<std::int32_t>(edge);
+  const ChunkCoord first = chunk_of(world.bounds->min, side);
+  const ChunkCoord last =
+      chunk_of({world.bounds->max.x - 1, world.bounds->max.y - 1, world.bounds->max.z - 1}, side);
+  const std::int32_t width = last.x - first.x + 1, depth = last.z - first.z + 1;
+  const std::int32_t across = std::lcm(width, 1 << kLevels), along = std::lcm(depth, 1 << kLevels);
+  Level level = chunks_of(world, edge);
+  Passes passes(*world.visibility, edge);
+  for (unsigned number = 1; number <= kLevels; ++number) {
+    Level below;
+    if (number == 1) {
+      for (std::int32_t x = 0; x < across; ++x) {
+        for (std::int32_t z = 0; z < along; ++z) {
+          for (std::int32_t y = first.y; y <= last.y; ++y) {
+            const auto found = level.find({first.x + x % width, y, first.z + z % depth});
+            if (found != level.end()) below[{x, y, z}].voxels = found->second.voxels;
+          }
+        }
+      }
+    } else {
+      below = std::move(level);
+    }
+    level = empty_level_above(below);
+    passes.make(below, level);
+    passes.pack(&below, level);
+    TilesRow row = row_of(level, number);
+    row.world = world.name + ", repeated";
+    row.edge = edge;
+    row.columns = static_cast<std::size_t>(across) * static_cast<std::size_t>(along) * edge * edge;
     rows.push_back(row);
   }
 }
@@ -213,13 +241,13 @@ std::vector<Target> TilesResult::targets() const {
   std::vector<Target> out;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].level != 0) continue;
-    double build_us = 0, one_order_us = 0;
-    for (std::size_t k = i + 1; k < rows.size() && rows[k].level != 0; ++k) {
-      build_us += rows[k].build_us + rows[k].veil_us;
-      one_order_us += rows[k].build_one_order_us + rows[k].veil_us;
+    double make_us = 0, one_order_us = 0;
+    for (std::size_t k = i + 1; k < rows.size() && rows[k].level == k - i; ++k) {
+      make_us += rows[k].make_us;
+      one_order_us += rows[k].make_one_order_us;
     }
-    const double share = build_us / rows[i].decode_us;
-    out.push_back({fmt::format("{}, edge {}: build and veil of all tiles against one decoding of "
+    const double share = make_us / rows[i].decode_us;
+    out.push_back({fmt::format("{}, edge {}: making all tiles against one decoding of "
                                "the chunks of level 0",
                                rows[i].world, rows[i].edge),
                    fmt::format("at most {:.0f}x", kTargetShare),
@@ -239,7 +267,9 @@ Result<TilesResult, std::string> run_tiles_bench(const BenchOptions& options,
   out.repetitions = options.repetitions;
   for (std::size_t w = 0; w < worlds->size(); ++w) {
     for (const unsigned edge : options.edges) {
-      measure(*worlds->voxels(w), edge, options.repetitions, out.rows);
+      const VoxelWorld& world = *worlds->voxels(w);
+      measure(world, edge, options.repetitions, out.rows);
+      if (world.bounds) measure_repeated(world, edge, out.rows);
       fmt::print(progress, "{} edge {}\n", worlds->name(w), edge);
       progress.flush();
     }
@@ -252,9 +282,8 @@ void write_table(const TilesResult& result, std::ostream& out) {
       out,
       "{} passes over the tiles of a level; times are means of a tile\n\n"
       "| world | edge | level | tiles | uniform | runs | veiled | bytes / column | veiled | "
-      "build µs | of one order | veil µs | decode of the children µs | build and veil / decode | quads | "
-      "mesh µs |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "make µs | of one order | decode of the children µs | make / decode | quads | mesh µs |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       result.repetitions);
   for (const TilesRow& row : result.rows) {
     const std::size_t n = row.tiles;
@@ -263,16 +292,19 @@ void write_table(const TilesResult& result, std::ostream& out) {
                per(static_cast<double>(row.veiled_runs), n),
                per(static_cast<double>(row.bytes), row.columns),
                per(static_cast<double>(row.veiled_bytes), row.columns));
-    if (row.level == 0) {
-      fmt::print(out, " – | – | – | – | – |");
+    if (row.decode_children_us == 0) {
+      fmt::print(out, " – | – | – | – |");
     } else {
-      fmt::print(out, " {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} |", per(row.build_us, n),
-                 per(row.build_one_order_us, n), per(row.veil_us, n),
-                 per(row.decode_children_us, n),
-                 (row.build_us + row.veil_us) / row.decode_children_us);
+      fmt::print(out, " {:.1f} | {:.1f} | {:.1f} | {:.2f} |", per(row.make_us, n),
+                 per(row.make_one_order_us, n), per(row.decode_children_us, n),
+                 row.make_us / row.decode_children_us);
     }
-    fmt::print(out, " {:.0f} | {:.1f} |\n", per(static_cast<double>(row.quads), n),
-               per(row.mesh_us, n));
+    if (row.decode_us == 0) {
+      fmt::print(out, " – | – |\n");
+    } else {
+      fmt::print(out, " {:.0f} | {:.1f} |\n", per(static_cast<double>(row.quads), n),
+                 per(row.mesh_us, n));
+    }
   }
   fmt::print(out, "\n");
   write_targets(result.targets(), out);
@@ -295,9 +327,8 @@ void write_json(const TilesResult& result, std::ostream& out) {
                             {"bytes", row.bytes},
                             {"veiled_bytes", row.veiled_bytes},
                             {"quads", row.quads},
-                            {"build_us", row.build_us},
-                            {"build_one_order_us", row.build_one_order_us},
-                            {"veil_us", row.veil_us},
+                            {"make_us", row.make_us},
+                            {"make_one_order_us", row.make_one_order_us},
                             {"decode_us", row.decode_us},
                             {"decode_children_us", row.decode_children_us},
                             {"mesh_us", row.mesh_us}});

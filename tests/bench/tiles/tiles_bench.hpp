@@ -1,6 +1,6 @@
-// `runstone-bench tiles`: levels of detail of whole worlds. It builds all tiles of levels 1 to 4
-// from the chunks of a world, and measures runs, bytes and times. The tiles of a level are made
-// from those of the level below before their veil.
+// `runstone-bench tiles`: levels of detail of whole worlds. It makes all tiles of levels 1 to 4 from
+// the chunks of a world, as a server does, and measures runs, bytes and times. A world with borders
+// is measured once more as if it were repeated sideways without end, by runs and bytes.
 #pragma once
 #include <cstddef>
 #include <iosfwd>
@@ -14,9 +14,9 @@
 
 namespace runstone::bench {
 
-/// One level of one world. Level 0 are its chunks, which have no build and no veil. Chunks and
-/// tiles without voxels are left out. Times are sums over the tiles, each with its median over the
-/// passes.
+/// One level of one world. Level 0 are its chunks, which are not made. Chunks and tiles without
+/// voxels are left out. Times are sums over the tiles, each with its median over the passes; 0 means
+/// that it was not measured.
 struct TilesRow {
   std::string world;
   unsigned edge = 0;
@@ -26,11 +26,10 @@ struct TilesRow {
   std::size_t runs = 0, veiled_runs = 0;
   std::size_t bytes = 0, veiled_bytes = 0;  // packed
   std::size_t quads = 0;                    // without neighbours
-  double build_us = 0;                      // from the children in their own axis orders
-  double build_one_order_us = 0;  // from the same children, reordered before the time starts
-  double veil_us = 0;
-  double decode_us = 0;  // of the packed bytes of these tiles, veiled
-  double mesh_us = 0;    // without neighbours
+  double make_us = 0;            // built and veiled, from the children in their own axis orders
+  double make_one_order_us = 0;  // from the same children, reordered before the time starts
+  double decode_us = 0;          // of the packed bytes of these tiles, veiled
+  double mesh_us = 0;            // without neighbours
   /// The time to decode the children of these tiles: decode_us of the level below.
   double decode_children_us = 0;
 };

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/runs/run_builder.hpp"
+#include "common/tiles/veiled_tile.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/tile_oracle.hpp"
 #include "tests/unit/server/tiles/tile_world.hpp"
@@ -24,12 +25,6 @@ RunChunk runs_of(const DenseChunk& dense, AxisOrder order) {
   return out.finish();
 }
 
-AxisOrder cheapest(const DenseChunk& dense) {
-  return *std::min_element(kAxisOrders.begin(), kAxisOrders.end(), [&](AxisOrder a, AxisOrder b) {
-    return dense.run_count(a) < dense.run_count(b);
-  });
-}
-
 /// Builds the tile of all chunks below it, through all levels.
 Chunk expected(const TileWorld& world, const ChunkKey& key) {
   if (key.lod == 0) return *world.chunk(key.at);
@@ -42,8 +37,7 @@ Chunk expected(const TileWorld& world, const ChunkKey& key) {
     out.version = std::max(out.version, below[i].version);
   }
   const DenseChunk tile = expected_tile(children, kSampleEdge, default_material_table());
-  const AxisOrder order = cheapest(tile);
-  out.voxels = runs_of(expected_veil(tile, order, default_material_table()), order);
+  out.voxels = runs_of(expected_veil(tile, kTileOrder, default_material_table()), kTileOrder);
   return out;
 }
 

@@ -32,7 +32,8 @@ TEST_CASE("a tile of empty children is uniform, and one of solid children keeps 
           "[tiles]") {
   VeiledTileScratch scratch;
   const Extent extent = Extent::cube(32);
-  const RunChunk empty = uniform_chunk(extent, kEmpty), solid = uniform_chunk(extent, 1);
+  const RunChunk empty = uniform_chunk(extent, kEmpty, kTileOrder),
+                 solid = uniform_chunk(extent, 1, kTileOrder);
   CHECK(veiled_tile({nullptr, &empty}, 32, mesh_visibility(), scratch) == empty);
   TileChildren children;
   children.fill(&solid);

@@ -64,7 +64,7 @@ TEST_CASE("chunks that an earlier run stored are ground", "[tiles]") {
 TEST_CASE("a tile without any voxel is the uniform empty tile", "[tiles]") {
   TileWorld world({"empty", 1, 0, ""});
   const auto made = world.make({2, {0, 0, 0}});
-  CHECK(made.back().tile->voxels == uniform_chunk(Extent::cube(kSampleEdge), kEmpty));
+  CHECK(made.back().tile->voxels == uniform_chunk(Extent::cube(kSampleEdge), kEmpty, kTileOrder));
   CHECK(made.back().tile->digest == Digest{});
 }
 
@@ -172,7 +172,7 @@ TEST_CASE("a chunk that cannot be shown is left out of its tile", "[tiles]") {
   const auto made = world.source->make(request, *world.visibility);
   REQUIRE(made.has_value());
   CHECK(made->back().is_approximate);
-  CHECK(made->back().tile->voxels == uniform_chunk(Extent::cube(kSampleEdge), kEmpty));
+  CHECK(made->back().tile->voxels == uniform_chunk(Extent::cube(kSampleEdge), kEmpty, kTileOrder));
 }
 
 TEST_CASE("a tile with an edit behind the head of its request is not stored", "[tiles]") {
