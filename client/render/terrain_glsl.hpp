@@ -15,6 +15,7 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "uniform mat4 clip;\n"     // clip space from eye-relative space
     "uniform vec3 origin;\n"   // chunk origin minus eye
     "uniform vec3 pattern;\n"  // chunk origin modulo 8192: coordinates fixed to the world
+    "uniform float scale;\n"   // the side of a voxel
     "uniform sampler2D palette, looks;\n"
     "uniform float seam;\n"  // growth of a quad as a share of the distance
     "out vec3 relative;\n"
@@ -27,7 +28,7 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "#endif\n"
     "void main() {\n"
     "  QuadCorner c = quad_corner();\n"
-    "  relative = origin + c.at;\n"
+    "  relative = origin + c.at * scale;\n"
     // Merged quads meet in T-junctions, where rounding leaves pinholes. So each quad grows by a
     // small fraction of a pixel along both of its axes, whatever the angle at which they are seen:
     // an axis of length 1 is seen with the length sqrt(q) / distance^2.
