@@ -283,14 +283,14 @@ void Client::limit_far_memory(TimeUs now_us) {
   const std::size_t bytes = pipeline_.far_bytes();
   const std::uint8_t before = far_budget_.levels();
   const auto complete_since_us = view_.complete_since_us();
-  const bool is_complete = complete_since_us && now_us - *complete_since_us >= kMeshedUs &&
-                           pipeline_.is_far_meshed();
+  const bool is_complete =
+      complete_since_us && now_us - *complete_since_us >= kMeshedUs && pipeline_.is_far_meshed();
   if (!far_budget_.step(bytes, is_complete, now_us)) return;
   const bool has_shrunk = far_budget_.levels() < before;
   spdlog::log(has_shrunk ? spdlog::level::warn : spdlog::level::info,
               "memory: {} of {} MiB in use by far ground, which {} to {} of {} levels", bytes >> 20,
-              far_budget_.bytes_max() >> 20, has_shrunk ? "shrinks" : "grows",
-              far_budget_.levels(), far_budget_.wanted());
+              far_budget_.bytes_max() >> 20, has_shrunk ? "shrinks" : "grows", far_budget_.levels(),
+              far_budget_.wanted());
   view_.set_far_levels(far_budget_.levels());
   drain_changes();
 }

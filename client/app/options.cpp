@@ -82,9 +82,10 @@ void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   app.add_option("--view-vertical", raw.view_v,
                  "view radius in chunks, vertical; default: half of --view, rounded up")
       ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
-  app.add_option("--far-levels", raw.far_levels,
-                 "levels of coarser ground beyond the view radius; each sees twice as far. Default: "
-                 "that of the settings with a window, otherwise 0")
+  app.add_option(
+         "--far-levels", raw.far_levels,
+         "levels of coarser ground beyond the view radius; each sees twice as far. Default: "
+         "that of the settings with a window, otherwise 0")
       ->check(CLI::Range(0U, unsigned{kTileLevelMax}));
   app.add_option("--encoding", raw.encoding, "chunk encodings to offer")
       ->check(CLI::IsMember({"raw", "packed", "coded", "auto"}));
@@ -194,9 +195,9 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   }
   const std::string wrong_size = raw.size.empty() ? "" : parse_size(raw.size, out);
   if (!wrong_size.empty()) throw CLI::ValidationError("--size", wrong_size);
-  out.given = {app.count("--name") != 0, app.count("--view") != 0,
+  out.given = {app.count("--name") != 0,          app.count("--view") != 0,
                app.count("--view-vertical") != 0, app.count("--memory-mib") != 0,
-               app.count("--quality") != 0, app.count("--far-levels") != 0};
+               app.count("--quality") != 0,       app.count("--far-levels") != 0};
   out.view_radius = static_cast<std::uint8_t>(raw.view);
   out.view_radius_v = static_cast<std::uint8_t>(
       app.count("--view-vertical") != 0 ? raw.view_v : (raw.view + 1) / 2);

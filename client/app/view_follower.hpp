@@ -14,7 +14,7 @@ class ViewFollower {
  public:
   /// Session and player must outlive the follower.
   ViewFollower(ClientSession& session, const Player& player, ViewRadii radii,
-               std::uint8_t far_levels)
+               std::uint8_t far_levels = 0)
       : session_(session), player_(player), radii_(radii), far_levels_(far_levels) {}
 
   /// Gives the session the player's pose and, if ViewPace allows it, a view around the player.

@@ -120,6 +120,12 @@ void MeshPipeline::take_result(MeshResult result) {
   recorder_.meshed(result.key, result.serial, result.meshed_us);
   join_.done(result.key, result.meshed_us);
   if (!draw_thread_) return;
+  const bool has_walls = result.open_sides != 0 && !result.mesh->transparent.quads.empty();
+  if (has_walls && replica_.far_tiles().solid_count() != 0) {
+    ChunkMesh mesh = *result.mesh;
+    if (drop_water_walls(mesh, result.edge, result.open_sides))
+      result.mesh = std::make_shared<const ChunkMesh>(std::move(mesh));
+  }
   gpu_bytes_.set(result.key, runstone::gpu_bytes(*result.mesh, result.chunk.get()));
   inspection_.meshed(result, result.meshed_us);
   tracker_.queued(result.key, result.number, result.urgency);

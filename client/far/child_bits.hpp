@@ -6,6 +6,8 @@
 
 namespace runstone {
 
+inline constexpr std::uint8_t kAllChildren = 255;
+
 /// Returns the bit of a tile or chunk in a set of its parent's children.
 constexpr std::uint8_t child_bit(const ChunkKey& key) {
   return static_cast<std::uint8_t>(1U << child_index(key));

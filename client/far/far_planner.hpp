@@ -62,11 +62,11 @@ class FarPlanner {
     std::uint8_t children = 0;  // bit per child that has a node
     bool is_held = false;       // it has arrived, or is a chunk that is held
     bool is_dirty = false;
-    bool is_drawn = false;      // finish() returned true and take_removals() has not named it
-    bool has_octants = false;   // the newest job has
-    TilePtr tile;               // that arrived, or a stand-in; null: there is none
-    std::uint64_t job = 0;      // number of the open job; 0: none
-    std::optional<Rank> rank;   // place in ready_
+    bool is_drawn = false;     // finish() returned true and take_removals() has not named it
+    bool has_octants = false;  // the newest job has
+    TilePtr tile;              // that arrived, or a stand-in; null: there is none
+    std::uint64_t job = 0;     // number of the open job; 0: none
+    std::optional<Rank> rank;  // place in ready_
     bool is_stand_in() const { return tile && !is_held; }
   };
 

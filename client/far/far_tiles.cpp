@@ -71,8 +71,7 @@ bool FarTiles::keep(const ChunkKey& key, TilePtr tile) {
   return true;
 }
 
-std::map<ChunkKey, TilePtr>::iterator FarTiles::drop(
-    std::map<ChunkKey, TilePtr>::iterator tile) {
+std::map<ChunkKey, TilePtr>::iterator FarTiles::drop(std::map<ChunkKey, TilePtr>::iterator tile) {
   count(*tile->second, false);
   changed_.insert(tile->first);
   return tiles_.erase(tile);

@@ -1,6 +1,6 @@
 // TileMesh: the quads of a tile as a whole, and of each of its octants. Each of the nine bodies is
-// closed: all faces towards its outside are drawn. So no crack shows the sky, whatever stands next
-// to it.
+// closed: all opaque faces towards its outside are drawn. So no crack shows the sky, whatever stands
+// next to it.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -38,9 +38,16 @@ struct FarMeshResult {
   std::shared_ptr<const TileMesh> mesh;
 };
 
-/// Meshes a tile. Faces of transparent materials on the lower and lateral sides of a body are left
-/// out, because water would show them as walls. Thread: any, with one scratch each.
+/// Meshes a tile. Of the faces of transparent materials on the border of a body, the lower ones are
+/// left out, because water would show them as walls. Of the lateral ones only the waterline is kept:
+/// the uppermost voxel. The water beside it may have another level and end up to a voxel lower.
+/// Thread: any, with one scratch each.
 FarMeshResult mesh_tile(const FarMeshJob& job, const VisibilityTable& visibility,
                         RdmScratch& scratch);
+
+/// Removes the transparent faces of a chunk on its border in the lateral directions of `sides`, one
+/// bit for each Direction. Where distant ground continues the water of a chunk, they would be walls
+/// in it. Returns true if there were any.
+bool drop_water_walls(ChunkMesh& mesh, std::int32_t edge, std::uint8_t sides);
 
 }  // namespace runstone

@@ -93,7 +93,7 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   view.eye = {camera.x, camera.y, camera.z};
   view.clip = clip_of(camera, view.depth, width, height);
   view.pixel = 2 * std::tan(camera.fov_y / 2) / scaled(height);
-  view.light = day_light(contents.look.time_of_day, camera.far);
+  view.light = day_light(contents.look.time_of_day, camera.far, camera.shadow_far > 0);
   view.look = contents.look;
 
   glDepthMask(GL_TRUE);

@@ -25,7 +25,8 @@ struct Camera {
   double yaw = 0, pitch = 0;
   double fov_y = 1.2;  // vertical field of view
   double near = 0.1, far = 1000;
-  /// Ground farther than this is not in shadows. 0 means `far`.
+  /// How far the chunks reach, if tiles reach farther: ground beyond it is in no shadow, and fog
+  /// begins nearer. 0: there are no tiles.
   double shadow_far = 0;
 };
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "client/far/child_bits.hpp"
 #include "client/render/terrain_glsl.hpp"
-#include "common/core/tile_keys.hpp"
 
 namespace runstone {
 namespace {
@@ -65,6 +65,7 @@ std::string variant_of(const char* shader, Quality quality, bool is_tile, bool h
   std::string out = "#version 330 core\n";
   if (quality != Quality::low) out += "#define RUNSTONE_DEPTH\n";
   if (quality != Quality::low && !is_tile) out += "#define RUNSTONE_SHADOWS\n";
+  if (is_tile) out += "#define RUNSTONE_TILE\n";
   if (has_field) out += "#define RUNSTONE_FIELD\n";
   if (is_fine) out += "#define RUNSTONE_FINE\n";
   if (has_fog) out += "#define RUNSTONE_FOG\n";
@@ -116,10 +117,10 @@ void Terrain::set_materials(const MaterialTable& materials) {
   light_codes_ = light_codes(materials);
 }
 
-Terrain::Chunk Terrain::add_quads(std::int32_t edge, const ChunkMesh& mesh) {
+Terrain::Chunk Terrain::add_quads(std::int32_t edge, const ChunkMesh& mesh, bool with_tree) {
   Chunk out;
   out.edge = edge;
-  out.tree = TransparentTree::build(mesh.transparent.quads);
+  if (with_tree) out.tree = TransparentTree::build(mesh.transparent.quads);
   // Both passes lie in one span, so that a chunk has one range of the buffer.
   const auto opaque_count = static_cast<std::uint32_t>(mesh.opaque.quads.size());
   std::vector<Quad> quads = mesh.opaque.quads;
@@ -140,7 +141,7 @@ void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& me
     quads_.remove(before->second.quads);
     chunks_.erase(before);
   }
-  if (!mesh.empty()) chunks_.emplace(key, add_quads(edge, mesh));
+  if (!mesh.empty()) chunks_.emplace(key, add_quads(edge, mesh, true));
   cover_.put(key, true);
   if (key.lod == 0) {
     if (voxels != nullptr) {
@@ -162,9 +163,9 @@ void Terrain::upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh
   cover_.put(key, mesh.empty() || !mesh.octants.empty());
   if (mesh.empty()) return;
   Tile tile;
-  tile.whole = add_quads(edge, mesh.whole);
+  tile.whole = add_quads(edge, mesh.whole, false);
   for (const ChunkMesh& octant : mesh.octants)
-    tile.octants.push_back(octant.empty() ? Chunk{} : add_quads(edge / 2, octant));
+    tile.octants.push_back(octant.empty() ? Chunk{} : add_quads(edge / 2, octant, false));
   tiles_.emplace(key, std::move(tile));
 }
 
@@ -208,9 +209,10 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigne
 
 void Terrain::update_light(const FrameView& view) {
   if (view.look.quality == Quality::low) return;
-  shadows_.update(
-      view.eye, view.light, kShadowEdges * edge_, view.shadow_far, view.look.quality, view.look.exact,
-      [this](ShadowPass& pass, std::size_t quads_max) { return draw_depth(pass, quads_max); });
+  shadows_.update(view.eye, view.light, kShadowEdges * edge_, view.shadow_far, view.look.quality,
+                  view.look.exact, [this](ShadowPass& pass, std::size_t quads_max) {
+                    return draw_depth(pass, quads_max);
+                  });
   relit_.clear();
   field_.update(voxel_at(view.eye), view.look.exact, relit_);
   field_texture_.copy(field_, relit_);
@@ -295,11 +297,32 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
                         glm::dot(centre, centre),
                         1,
                         variant,
+                        0,
                         key});
   }
   find_visible_tiles(view, frustum, stats);
   std::sort(visible_.begin(), visible_.end(),
             [](const Visible& a, const Visible& b) { return a.distance2 < b.distance2; });
+}
+
+std::uint8_t Terrain::joined_sides(const ChunkKey& key, std::uint8_t octants) const {
+  std::uint8_t out = 0;
+  for (const Direction d :
+       {Direction::neg_x, Direction::pos_x, Direction::neg_z, Direction::pos_z}) {
+    const unsigned across = 1U << static_cast<unsigned>(axis_of(d));
+    const ChunkKey beside{key.lod, neighbour(key.at, d)};
+    bool is_joined = true;
+    for (unsigned i = 0; i < kTileChildren && is_joined; ++i) {
+      if (!has_child(octants, i)) continue;
+      const bool is_at_side = ((i & across) != 0) == is_positive(d);
+      // Of a whole tile, the octants at this side continue in the tile beside it.
+      if (octants == kAllChildren && !is_at_side) continue;
+      const TileParts parts = cover_.parts(is_at_side ? beside : key);
+      is_joined = parts.is_whole || has_child(parts.octants, i ^ across);
+    }
+    if (is_joined) out = static_cast<std::uint8_t>(out | 1U << static_cast<unsigned>(d));
+  }
+  return out;
 }
 
 void Terrain::find_visible_tiles(const FrameView& view, const Frustum& frustum,
@@ -310,7 +333,8 @@ void Terrain::find_visible_tiles(const FrameView& view, const Frustum& frustum,
     const VoxelPos first = origin_of(key.at, tile.whole.edge);
     const double side = scale * tile.whole.edge;
     const glm::dvec3 corner = glm::dvec3{first.x, first.y, first.z} * scale - view.eye;
-    const auto add = [&](const Chunk& part, const glm::dvec3& at, const glm::vec3& pattern) {
+    const auto add = [&](const Chunk& part, std::uint8_t octants, const glm::dvec3& at,
+                         const glm::vec3& pattern) {
       if (part.quads.count == 0) return;
       const double width = scale * part.edge;
       if (nearest_of(at, width) > view.far ||
@@ -325,14 +349,16 @@ void Terrain::find_visible_tiles(const FrameView& view, const Frustum& frustum,
       has_variant_[variant] = true;
       ++stats.tile_parts_drawn;
       const glm::dvec3 eye = -at / scale;
-      visible_.push_back({&part,
-                          glm::vec3(at),
-                          pattern,
-                          {eye.x, eye.y, eye.z},
-                          glm::dot(centre, centre),
-                          static_cast<float>(scale),
-                          variant,
-                          key});
+      visible_.push_back(
+          {&part,
+           glm::vec3(at),
+           pattern,
+           {eye.x, eye.y, eye.z},
+           glm::dot(centre, centre),
+           static_cast<float>(scale),
+           variant,
+           part.transparent.count == 0 ? std::uint8_t{0} : joined_sides(key, octants),
+           key});
     };
     if (!frustum.may_see(glm::vec3(corner), glm::vec3(corner + side))) {
       ++stats.chunks_culled;
@@ -340,11 +366,11 @@ void Terrain::find_visible_tiles(const FrameView& view, const Frustum& frustum,
     }
     const TileParts parts = cover_.parts(key);
     const glm::vec3 pattern = pattern_of(key, tile.whole.edge);
-    if (parts.is_whole) add(tile.whole, corner, pattern);
+    if (parts.is_whole) add(tile.whole, kAllChildren, corner, pattern);
     for (unsigned i = 0; i < tile.octants.size(); ++i) {
-      if ((parts.octants >> i & 1U) == 0) continue;
+      if (!has_child(parts.octants, i)) continue;
       const glm::dvec3 place{i & 1U, i >> 1U & 1U, i >> 2U};
-      add(tile.octants[i], corner + place * (0.5 * side),
+      add(tile.octants[i], static_cast<std::uint8_t>(1U << i), corner + place * (0.5 * side),
           pattern + glm::vec3(place * (0.5 * tile.whole.edge)));
     }
   }
@@ -433,7 +459,7 @@ void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
     if (chunk->chunk->tree) {
       chunk->chunk->tree->append_back_to_front(chunk->eye, chunk->chunk->transparent.first, spans_);
     } else {
-      chunk->chunk->layers.append_back_to_front(chunk->eye, spans_);
+      chunk->chunk->layers.append_back_to_front(chunk->eye, spans_, chunk->joined_sides);
     }
     if (spans_.empty()) continue;
     use_for(*chunk, view, true);

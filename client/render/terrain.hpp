@@ -35,9 +35,9 @@ namespace runstone {
 
 /// The view of a frame.
 struct FrameView {
-  glm::dvec3 eye{0};  // world voxels
-  glm::mat4 clip{1};  // clip space from eye-relative space
-  double far = 1000;  // what is farther is not drawn
+  glm::dvec3 eye{0};         // world voxels
+  glm::mat4 clip{1};         // clip space from eye-relative space
+  double far = 1000;         // what is farther is not drawn
   double shadow_far = 1000;  // what is farther is in no shadow
   DepthRange depth;
   double pixel = 0.002;  // the side of a pixel at distance 1
@@ -100,8 +100,9 @@ class Terrain {
     glm::vec3 origin, pattern;    // origin minus eye; origin in voxels modulo kPattern
     std::array<double, 3> eye{};  // relative to the origin, in voxels of its level
     float distance2;
-    float scale = 1;       // the side of a voxel
-    unsigned variant = 0;  // of the programs
+    float scale = 1;                // the side of a voxel
+    unsigned variant = 0;           // of the programs
+    std::uint8_t joined_sides = 0;  // of a part of a tile, see joined_sides()
     ChunkKey key;
   };
   /// The quads of a ghost's mesh, kept as long as frames show it.
@@ -111,9 +112,13 @@ class Terrain {
     bool is_used = false;
   };
 
-  Chunk add_quads(std::int32_t edge, const ChunkMesh& mesh);
+  /// Without a tree, the order of transparent quads is that of their layers.
+  Chunk add_quads(std::int32_t edge, const ChunkMesh& mesh, bool with_tree);
   void remove_quads(const Tile& tile);
   void find_visible(const FrameView& view, TerrainStats& stats);
+  /// Returns a bit for each lateral Direction in which ground of the same level continues the part.
+  /// Water has no waterline there. `octants` are those that the part covers.
+  std::uint8_t joined_sides(const ChunkKey& key, std::uint8_t octants) const;
   void find_visible_tiles(const FrameView& view, const Frustum& frustum, TerrainStats& stats);
   /// The variants of a program: bits that add what not every chunk needs.
   static constexpr unsigned kInField = 1;  // it reads the light field

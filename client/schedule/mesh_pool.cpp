@@ -162,6 +162,8 @@ MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
   for (std::size_t i = 0; i < neighbours.size(); ++i) {
     neighbours[i] = job.neighbours[i].get();
     borders[i] = job.borders[i].get();
+    if (neighbours[i] == nullptr)
+      result.open_sides = static_cast<std::uint8_t>(result.open_sides | 1U << i);
   }
   const std::int64_t start = clock_();
   if (job.before) {

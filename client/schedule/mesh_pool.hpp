@@ -32,6 +32,7 @@ struct MeshResult {
   BordersPtr borders;                    // of the chunk; null unless all of it was meshed
   bool layers_only = false;              // the other layers are those of the previous mesh
   Urgency urgency = Urgency::terrain;    // of the job
+  std::uint8_t open_sides = 0;           // bit per Direction: there was no neighbour
   DirtyLayers layers;                    // that were meshed, of those in which a voxel changed
   std::int64_t mesh_ns = 0;              // duration
   TimeUs meshed_us = 0;                  // when meshing ended

@@ -183,8 +183,9 @@ std::string to_toml(const ClientSettings& settings) {
   out += fmt::format("# Horizontal view radius in chunks, 1 to {}. The server may reduce it.\n",
                      kViewRadiusMax);
   out += fmt::format("radius = {}\n", s.view_radius);
-  out += fmt::format("# Levels of coarser ground beyond it, 0 to {}. Each one lets you see twice as far.\n",
-                     kTileLevelMax);
+  out += fmt::format(
+      "# Levels of coarser ground beyond it, 0 to {}. Each one lets you see twice as far.\n",
+      kTileLevelMax);
   out += fmt::format("far_levels = {}\n", s.far_levels);
   out += "# Memory for chunks, edits and meshes in MiB, 64 to 65536.\n";
   out += fmt::format("memory_mib = {}\n\n[hand]\n", s.memory_mib);

@@ -65,8 +65,7 @@ TEST_CASE("all ground that is known is drawn exactly once, whatever comes and go
     const ChunkCoord first = first_chunk(model.top);
     const auto within = [&] { return static_cast<std::int32_t>(rng.below(8)); };
     const auto lod = static_cast<std::uint8_t>(rng.below(4));
-    const ChunkKey key =
-        tile_of({first.x + within(), first.y + within(), first.z + within()}, lod);
+    const ChunkKey key = tile_of({first.x + within(), first.y + within(), first.z + within()}, lod);
     // Long phases of growth and of decay reach full and empty trees.
     const bool is_growing = step / 500 % 2 == 0;
     if (rng.below(10) < (is_growing ? 8U : 2U)) {

@@ -212,7 +212,8 @@ TEST_CASE("known ground is drawn exactly once while tiles and chunks come, go an
       known.clear();
     } else if (kind < 10) {
       bench.begin_job();
-      if (!bench.jobs.empty()) bench.end_job(rng.below(static_cast<std::uint32_t>(bench.jobs.size())));
+      if (!bench.jobs.empty())
+        bench.end_job(rng.below(static_cast<std::uint32_t>(bench.jobs.size())));
     } else {
       bench.upload();
     }

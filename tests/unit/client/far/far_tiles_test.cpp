@@ -59,7 +59,8 @@ TEST_CASE("an empty tile drops what is below it", "[far]") {
   const ChunkKey top{3, {0, 0, 0}};
   const ChunkKey middle = tile_child(top, 5), low = tile_child(middle, 2);
   const ChunkKey beside{1, {-1, 0, 0}};
-  for (const ChunkKey& key : {top, middle, low, beside}) REQUIRE(tiles.receive(key, some_tile(rng)));
+  for (const ChunkKey& key : {top, middle, low, beside})
+    REQUIRE(tiles.receive(key, some_tile(rng)));
   tiles.drain_changes();
   CHECK(tiles.solid_count() == 4);
   REQUIRE(tiles.receive_uniform(top, kEmpty));
