@@ -432,6 +432,12 @@ ClientReport Client::report() const {
   out.memory = memory_use();
   out.budget = {budget_.bytes_max(), budget_.peak_bytes(), budget_.shrinks(),
                 budget_.growths(),   budget_.radii(),      budget_.wanted()};
+  out.far = {session_.replica().far_tiles().count(),
+             pipeline_.far_bytes(),
+             far_budget_.bytes_max(),
+             session_.view().levels,
+             far_budget_.wanted(),
+             scene_.reach()};
   network_.add_to(out);
   pipeline_.add_to(out);
   return out;

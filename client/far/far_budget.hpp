@@ -1,8 +1,8 @@
 // FarBudget: bounds the memory of tiles and their meshes. If they take more than the budget, the
 // view loses its highest level: the client sees half as far, and nothing near changes. If all tiles
-// of the view were meshed and one more level should fit, the view gets it again. The estimate assumes
-// that all levels are equal. If it was wrong, the pause before the next attempt doubles. The budget
-// may be exceeded by what arrives between two calls of step(). Pure. One thread.
+// of the view were meshed and one more level should fit, the view gets it again. The estimate
+// assumes that all levels are equal. If it was wrong, the pause before the next attempt doubles.
+// The budget may be exceeded by what arrives between two calls of step(). Pure. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace runstone {
 
 class FarBudget {
  public:
-  /// The least time between a change and the next growth. It doubles up to the maximum while growths
-  /// fail.
+  /// The least time between a change and the next growth. It doubles up to the maximum while
+  /// growths fail.
   static constexpr TimeUs kGrowPauseUs = 2'000'000;
   static constexpr TimeUs kGrowPauseUsMax = 128'000'000;
 
@@ -23,8 +23,8 @@ class FarBudget {
 
   /// Sets the levels that are wanted. If the number is new, the view has this number again.
   void set_wanted(std::uint8_t levels);
-  /// Compares the use with the budget, and changes the levels by one at most. `is_complete`: no tile
-  /// has arrived for a while, and all were meshed. Returns true if levels() changed.
+  /// Compares the use with the budget, and changes the levels by one at most. `is_complete`: no
+  /// tile has arrived for a while, and all were meshed. Returns true if levels() changed.
   bool step(std::size_t bytes, bool is_complete, TimeUs now_us);
 
   /// Returns View::levels.

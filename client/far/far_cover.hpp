@@ -1,8 +1,8 @@
 // FarCover: decides which chunks and which parts of tiles are drawn. All places that a view knows
 // are drawn by exactly one of them at every time.
 //
-// The chunks and tiles that are *present* are those whose quads are on the GPU. A tile is drawn as a
-// whole or as *octants*, one for each child. The rules are:
+// The chunks and tiles that are *present* are those whose quads are on the GPU. A tile is drawn as
+// a whole or as *octants*, one for each child. The rules are:
 //   - A tile or chunk is *shown* if nothing above it is present, or if its parent is present, shown
 //     and open.
 //   - A tile is *open* if it has octants, or has no quads at all.

@@ -2,13 +2,13 @@
 //   - A tile is meshed with octants if anything below it is held, so that FarCover can show that.
 //   - Chunks and tiles below a tile may be held while those between have not arrived. Each one
 //     between gets a stand-in (stand_in.hpp), so that FarCover finds no gap.
-//   - A tile whose mesh is new waits until the tiles that are held below it have their first meshes.
-//     So coarse ground never hides finer ground that was drawn before.
+//   - A tile whose mesh is new waits until the tiles that are held below it have their first
+//     meshes. So coarse ground never hides finer ground that was drawn before.
 //   - The order is: finer levels first, then the nearest to the eye. All levels look equally large
 //     on the screen, because their reach grows with their voxels.
 //
-// Pure. One thread. Cost: O(levels * log n) per change; O(tiles to mesh) when the eye enters another
-// chunk. Memory: one entry for each chunk and tile that is held, and bytes() of stand-ins.
+// Pure. One thread. Cost: O(levels * log n) per change; O(tiles to mesh) when the eye enters
+// another chunk. Memory: one entry for each chunk and tile that is held, and bytes() of stand-ins.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -38,10 +38,11 @@ class FarPlanner {
 
   /// Returns the next job, or nullopt while there is none. Pass its key and number to finish().
   std::optional<FarMeshJob> next();
-  /// Takes the end of a job. Returns true if its mesh should be drawn. Returns false if the tile has
-  /// left since, or if the job was made void.
+  /// Takes the end of a job. Returns true if its mesh should be drawn. Returns false if the tile
+  /// has left since, or if the job was made void.
   bool finish(const ChunkKey& key, std::uint64_t number);
-  /// Returns the tiles that are not to be drawn any more, of those for which finish() returned true.
+  /// Returns the tiles that are not to be drawn any more, of those for which finish() returned
+  /// true.
   std::vector<ChunkKey> take_removals();
   /// Makes all open jobs void and meshes every tile again, because materials look different now.
   void mesh_again();

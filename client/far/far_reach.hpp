@@ -10,9 +10,9 @@ namespace runstone {
 /// Depth separates faces a voxel apart up to this distance (client/render/depth_range.hpp).
 inline constexpr double kReachMax = 29'000;
 
-/// Returns the distance within which the view has ground in all directions, or 0 if it has no tiles.
-/// The eye is anywhere in the tile of the centre, so the disc of the highest level ends up to half a
-/// tile before its radius.
+/// Returns the distance within which the view has ground in all directions, or 0 if it has no
+/// tiles. The eye is anywhere in the tile of the centre, so the disc of the highest level ends up
+/// to half a tile before its radius.
 inline double far_reach(const View& view, std::int32_t chunk_edge) {
   const std::uint8_t levels = tile_levels(view);
   if (levels == 0) return 0;

@@ -1,4 +1,5 @@
-// FarTiles: the tiles that arrived, by key, always as runs. The mesher of distant ground reads them.
+// FarTiles: the tiles that arrived, by key, always as runs. The mesher of distant ground reads
+// them.
 //   - A tile is replaced as a whole. The newest answer counts.
 //   - An empty tile says that everything below it is empty, so the tiles below it are dropped.
 //   - Tiles outside of the view are ignored, and dropped when the view moves. So their number is
@@ -33,8 +34,8 @@ class FarTiles {
   void set_view(const View& view, std::int32_t edge);
   void clear();
 
-  /// Takes a tile. Returns false and ignores it if the view does not have it or its extent is wrong.
-  /// Requires a key of level 1 or more.
+  /// Takes a tile. Returns false and ignores it if the view does not have it or its extent is
+  /// wrong. Requires a key of level 1 or more.
   bool receive(const ChunkKey& key, RunChunk tile);
   /// Takes a tile of one material.
   bool receive_uniform(const ChunkKey& key, Material material);

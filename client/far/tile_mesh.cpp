@@ -12,8 +12,8 @@ namespace {
 constexpr std::array kLateral = {Direction::neg_x, Direction::pos_x, Direction::neg_z,
                                  Direction::pos_z};
 
-/// Appends the waterline of a lateral face: its parts of which the voxel above has another material,
-/// one voxel high. `quad` is transparent and faces along x or z.
+/// Appends the waterline of a lateral face: its parts of which the voxel above has another
+/// material, one voxel high. `quad` is transparent and faces along x or z.
 void append_waterline(const QuadFields& quad, const RunChunk& body, std::vector<Quad>& out) {
   // u and v are y and z for faces along x, and x and y for those along z.
   const bool is_along_x = axis_of(quad.direction) == Axis::x;
@@ -54,7 +54,8 @@ void replace_layer(QuadLayers& layers, Direction d, unsigned l, const std::vecto
     layers.first[later] = layers.first[later] - before + after;
 }
 
-/// Leaves of the transparent faces on the border those on top, and the waterlines of the lateral ones.
+/// Leaves of the transparent faces on the border those on top, and the waterlines of the lateral
+/// ones.
 void trim_border(const RunChunk& body, QuadLayers& transparent) {
   if (transparent.quads.empty()) return;
   replace_layer(transparent, Direction::neg_y, 0, {});

@@ -1,6 +1,6 @@
 // TileMesh: the quads of a tile as a whole, and of each of its octants. Each of the nine bodies is
-// closed: all opaque faces towards its outside are drawn. So no crack shows the sky, whatever stands
-// next to it.
+// closed: all opaque faces towards its outside are drawn. So no crack shows the sky, whatever
+// stands next to it.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -39,9 +39,9 @@ struct FarMeshResult {
 };
 
 /// Meshes a tile. Of the faces of transparent materials on the border of a body, the lower ones are
-/// left out, because water would show them as walls. Of the lateral ones only the waterline is kept:
-/// the uppermost voxel. The water beside it may have another level and end up to a voxel lower.
-/// Thread: any, with one scratch each.
+/// left out, because water would show them as walls. Of the lateral ones only the waterline is
+/// kept: the uppermost voxel. The water beside it may have another level and end up to a voxel
+/// lower. Thread: any, with one scratch each.
 FarMeshResult mesh_tile(const FarMeshJob& job, const VisibilityTable& visibility,
                         RdmScratch& scratch);
 

@@ -20,11 +20,10 @@
 //   - A chunk with a gap, or with a wrong digest, accepts nothing but a snapshot, which it
 //     requests.
 //   - A snapshot older than the confirmed chunk is ignored.
-// An answer to a view is ignored if the chunk has left the view since (RecentViews).
-// Tiles, the keys of level 1 or more, are kept apart (FarTiles). They have no versions and are never
-// predicted, requested, claimed or cached.
-// After a restart of the server (new epoch) only versions that it kept for sure are trusted
-// (SharedHistory).
+// An answer to a view is ignored if the chunk has left the view since (RecentViews). Tiles, the
+// keys of level 1 or more, are kept apart (FarTiles). They have no versions and are never
+// predicted, requested, claimed or cached. After a restart of the server (new epoch) only versions
+// that it kept for sure are trusted (SharedHistory).
 //
 // Pure: no clock and no socket. Times are arguments, in microseconds of the client's steady clock.
 // One thread; the chunks that are returned are immutable and may be read from any thread. Bounds:

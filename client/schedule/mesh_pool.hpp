@@ -1,8 +1,8 @@
-// MeshPool: threads that mesh chunks and tiles. One thread, the client's main thread, pushes jobs and takes
-// results. At most `capacity` jobs wait or run. Beyond that, push() returns false, and the planner
-// keeps the changes and merges them. Without workers push() meshes the job itself, which is for
-// tests and machines with one core. Tiles are meshed while no chunk waits, and at least once for
-// each kChunksPerTile chunks of a worker.
+// MeshPool: threads that mesh chunks and tiles. One thread, the client's main thread, pushes jobs
+// and takes results. At most `capacity` jobs wait or run. Beyond that, push() returns false, and
+// the planner keeps the changes and merges them. Without workers push() meshes the job itself,
+// which is for tests and machines with one core. Tiles are meshed while no chunk waits, and at
+// least once for each kChunksPerTile chunks of a worker.
 #pragma once
 #include <condition_variable>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// FarWorld: a generated landscape with its tiles, made as a server makes them. FarScene: a view of it
-// on a renderer, through FarTiles and FarPlanner, as MeshPipeline does it.
+// FarWorld: a generated landscape with its tiles, made as a server makes them. FarScene: a view of
+// it on a renderer, through FarTiles and FarPlanner, as MeshPipeline does it.
 #pragma once
 #include <catch2/catch.hpp>
 #include <map>

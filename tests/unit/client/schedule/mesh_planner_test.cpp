@@ -245,8 +245,7 @@ TEST_CASE_METHOD(
 
 TEST_CASE_METHOD(
     PlannerBench,
-    "when the view moves, chunks at its old and new edges are meshed again with the neighbours that "
-    "they have",
+    "when the view moves, chunks at its old and new edges are meshed again with what is beside them",
     "[schedule]") {
   load_all();
   drain();
