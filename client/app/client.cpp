@@ -45,10 +45,20 @@ std::string moment_text(const std::optional<PastMoment>& past) {
                      fmt::gmtime(seconds));
 }
 
-std::string memory_text(const MemoryBudget& budget) {
-  if (!budget.binds()) return {};
-  return fmt::format("view {} of {} chunks, because memory is short", budget.radii().h,
-                     budget.wanted().h);
+std::string memory_text(const MemoryBudget& budget, const FarBudget& far) {
+  if (budget.binds())
+    return fmt::format("view {} of {} chunks, because memory is short", budget.radii().h,
+                       budget.wanted().h);
+  if (far.binds())
+    return fmt::format("far ground: {} of {} levels, because memory is short", far.levels(),
+                       far.wanted());
+  return {};
+}
+
+/// Returns the share of the memory that tiles and their meshes may take: an eighth, if there are
+/// tiles.
+std::size_t far_bytes_max(const ClientOptions& options) {
+  return options.far_levels == 0 ? 0 : (options.memory_mib << 20) / 8;
 }
 
 Driver driver_of(const ClientOptions& options, const Script* script) {
@@ -78,8 +88,10 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
       tool_(session_, player_, pipeline_.recorder(), display.tools),
       previews_(session_, tool_),
       input_(router_of(options_.settings)),
-      budget_(options_.memory_mib << 20, {options_.view_radius, options_.view_radius_v}),
-      view_(session_, player_, budget_.radii()),
+      far_budget_(far_bytes_max(options_), options_.far_levels),
+      budget_((options_.memory_mib << 20) - far_bytes_max(options_),
+              {options_.view_radius, options_.view_radius_v}),
+      view_(session_, player_, budget_.radii(), options_.far_levels),
       chat_(session_, terminal_of(script)),
       panels_(session_, player_, tool_.box()),
       hud_(session_, player_, pipeline_, chat_, panels_, tool_, options_.name, input_.keys(),
@@ -126,6 +138,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     const TimeUs now_us = steady_now_us();
     if (panels_.step(hud_.shown_panels(), now_us)) pipeline_.moved();
     limit_memory(now_us);
+    limit_far_memory(now_us);
     poll_window();
     handle_input(now_us);
     step_menu(now_us);
@@ -164,7 +177,9 @@ void Client::on_world_opened() {
   set_tool_materials(welcome.materials);
   budget_.set_wanted({std::min(options_.view_radius, welcome.view_radius_max),
                       std::min(options_.view_radius_v, welcome.view_radius_max)});
-  if (view_.radii() != budget_.radii()) view_.set_radii(budget_.radii());
+  // The levels that help depend on the edge of the chunks, which is known from now on.
+  if (view_.radii() != budget_.radii() || options_.far_levels != 0)
+    view_.set_radii(budget_.radii());
 }
 
 void Client::take_new_materials() {
@@ -264,6 +279,22 @@ void Client::limit_memory(TimeUs now_us) {
   pipeline_.set_mesh_bytes_max(budget_.room(kept) + kept.meshes + kept.gpu);
 }
 
+void Client::limit_far_memory(TimeUs now_us) {
+  const std::size_t bytes = pipeline_.far_bytes();
+  const std::uint8_t before = far_budget_.levels();
+  const auto complete_since_us = view_.complete_since_us();
+  const bool is_complete =
+      complete_since_us && now_us - *complete_since_us >= kMeshedUs && pipeline_.is_far_meshed();
+  if (!far_budget_.step(bytes, is_complete, now_us)) return;
+  const bool has_shrunk = far_budget_.levels() < before;
+  spdlog::log(has_shrunk ? spdlog::level::warn : spdlog::level::info,
+              "memory: {} of {} MiB in use by far ground, which {} to {} of {} levels", bytes >> 20,
+              far_budget_.bytes_max() >> 20, has_shrunk ? "shrinks" : "grows", far_budget_.levels(),
+              far_budget_.wanted());
+  view_.set_far_levels(far_budget_.levels());
+  drain_changes();
+}
+
 void Client::drain_changes() {
   const ReplicaChanges changes = session_.replica().drain_changes();
   pipeline_.take(changes, session_.clock(), steady_now_us());
@@ -306,7 +337,7 @@ HudScene Client::hud_scene() const {
   scene.state = moment_text(session_.replica().past());
   const std::string lost = opened_us_ ? lost_text(network_, steady_now_us()) : std::string();
   if (!lost.empty()) scene.state = lost;
-  if (scene.state.empty()) scene.state = memory_text(budget_);
+  if (scene.state.empty()) scene.state = memory_text(budget_, far_budget_);
   if (scene.state.empty() && player_.is_waiting_for_ground())
     scene.state = "the ground here has not arrived yet";
   scene.tool = tool_.text();
@@ -314,6 +345,8 @@ HudScene Client::hud_scene() const {
     scene.net = network_.net_counts();
     scene.memory = memory_use();
     scene.memory_max = budget_.bytes_max();
+    scene.far_bytes_max = far_budget_.bytes_max();
+    scene.reach = scene_.reach();
   }
   scene.camera = camera();
   scene.size = frame_size();
@@ -399,6 +432,12 @@ ClientReport Client::report() const {
   out.memory = memory_use();
   out.budget = {budget_.bytes_max(), budget_.peak_bytes(), budget_.shrinks(),
                 budget_.growths(),   budget_.radii(),      budget_.wanted()};
+  out.far = {session_.replica().far_tiles().count(),
+             pipeline_.far_bytes(),
+             far_budget_.bytes_max(),
+             session_.view().levels,
+             far_budget_.wanted(),
+             scene_.reach()};
   network_.add_to(out);
   pipeline_.add_to(out);
   return out;

@@ -29,6 +29,7 @@
 #include "client/app/view_follower.hpp"
 #include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
+#include "client/far/far_budget.hpp"
 #include "client/input/input_router.hpp"
 #include "client/report/report.hpp"
 #include "client/schedule/memory_budget.hpp"
@@ -64,6 +65,8 @@ class Client {
   /// Keeps the memory within the budget: shrinks the view, or lets it grow again, and bounds the
   /// meshes.
   void limit_memory(TimeUs now_us);
+  /// Keeps the memory of tiles within their share of the budget.
+  void limit_far_memory(TimeUs now_us);
   /// Sends what is queued, and meshes what changed.
   void flush();
   /// Logs who came and left, once a second.
@@ -103,7 +106,8 @@ class Client {
   EditTool tool_;
   PreviewExchange previews_;
   InputRouter input_;
-  MemoryBudget budget_;
+  FarBudget far_budget_;
+  MemoryBudget budget_;  // of all but the tiles
   ViewFollower view_;
   TerminalChat chat_;
   WorldPanels panels_;

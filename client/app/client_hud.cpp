@@ -224,12 +224,18 @@ StatisticsState ClientHud::statistics(const HudScene& scene, TimeUs now_us) {
     out.chunks_drawn = stats.chunks_drawn;
     out.chunks_culled = stats.chunks_culled;
     out.quads_drawn = stats.quads_drawn;
+    out.tile_parts_drawn = stats.tile_parts_drawn;
   }
   out.chunk_bytes = scene.memory.chunks;
   out.edit_bytes = scene.memory.edits;
   out.mesh_bytes = scene.memory.meshes;
   out.gpu_bytes = scene.memory.gpu;
   out.bytes_max = scene.memory_max;
+  out.tiles = session_.replica().far_tiles().count();
+  out.tile_levels = session_.view().levels;
+  out.far_bytes = pipeline_.far_bytes();
+  out.far_bytes_max = scene.far_bytes_max;
+  out.reach = scene.reach;
   out.mesh_jobs = pipeline_.mesh_jobs();
   const auto median_us = [](const Histogram& ns) -> std::optional<double> {
     const auto median = ns.percentile(0.5);

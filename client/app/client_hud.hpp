@@ -27,6 +27,8 @@ struct HudScene {
   NetCounts net;                // filled only while ClientHud::shows_statistics()
   MemoryUse memory;             // likewise
   std::size_t memory_max = 0;
+  std::size_t far_bytes_max = 0;  // likewise
+  double reach = 0;               // likewise; as FrameScene::reach()
   Camera camera;
   std::array<int, 2> size{};  // of the frame, in pixels
 };

@@ -7,6 +7,7 @@
 
 #include "client/display/ground_marker.hpp"
 #include "client/display/player_body.hpp"
+#include "client/far/far_reach.hpp"
 
 namespace runstone {
 namespace {
@@ -32,8 +33,15 @@ double FrameScene::draw_distance() const {
   return (view_.radii().h + 1.5) * std::max(16, session_.replica().chunk_edge());
 }
 
+double FrameScene::reach() const {
+  const Replica& replica = session_.replica();
+  if (replica.far_tiles().solid_count() == 0) return draw_distance();
+  return std::max(draw_distance(), far_reach(session_.view(), replica.chunk_edge()));
+}
+
 Camera FrameScene::camera(std::optional<double> field_of_view) const {
-  Camera out = player_.camera(draw_distance());
+  Camera out = player_.camera(reach());
+  if (reach() > draw_distance()) out.shadow_far = draw_distance();
   if (field_of_view) out.fov_y = *field_of_view * std::numbers::pi / 180;
   return out;
 }

@@ -29,11 +29,14 @@ class FrameScene {
 
   /// `field_of_view` is vertical, in degrees; nullopt: that of screenshots of scripts.
   Camera camera(std::optional<double> field_of_view) const;
+  /// Returns the distance up to which ground is seen, in voxels: that of the tiles if some have
+  /// arrived, otherwise that of the chunks.
+  double reach() const;
   /// `outlines_aim`: the voxel in sight is outlined. `shows_ground`: protected boxes are outlined.
   FrameContents contents(bool outlines_aim, bool shows_ground) const;
 
  private:
-  double draw_distance() const;  // voxels
+  double draw_distance() const;  // of chunks, voxels
   void add_bodies(std::vector<Body>& bodies) const;
   void add_ground(std::vector<Marker>& markers) const;
   void add_aim(std::vector<Marker>& markers) const;

@@ -9,6 +9,7 @@
 #include "client/display/look_control.hpp"
 #include "common/core/day_time.hpp"
 #include "common/core/text.hpp"
+#include "common/core/tile_keys.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/passphrase.hpp"
 #include "protocol/codec/chunk_codec.hpp"
@@ -32,7 +33,7 @@ std::string parse_size(const std::string& text, ClientOptions& out) {
 /// Values that are converted to options after the whole command line was read.
 struct RawOptions {
   std::string address, link, size, encoding = "auto", authorities, password_file;
-  unsigned view = ClientOptions{}.view_radius, view_v = 0;
+  unsigned view = ClientOptions{}.view_radius, view_v = 0, far_levels = 0;
   std::string time, quality = "auto", benchmark;
   bool no_render = false, no_cache = false, insecure = false;
 };
@@ -81,6 +82,11 @@ void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   app.add_option("--view-vertical", raw.view_v,
                  "view radius in chunks, vertical; default: half of --view, rounded up")
       ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
+  app.add_option(
+         "--far-levels", raw.far_levels,
+         "levels of coarser ground beyond the view radius; each sees twice as far. Default: "
+         "that of the settings with a window, otherwise 0")
+      ->check(CLI::Range(0U, unsigned{kTileLevelMax}));
   app.add_option("--encoding", raw.encoding, "chunk encodings to offer")
       ->check(CLI::IsMember({"raw", "packed", "coded", "auto"}));
   app.add_flag("--exit-on-goodbye", out.exit_on_goodbye, "end when the server says goodbye");
@@ -189,12 +195,13 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   }
   const std::string wrong_size = raw.size.empty() ? "" : parse_size(raw.size, out);
   if (!wrong_size.empty()) throw CLI::ValidationError("--size", wrong_size);
-  out.given = {app.count("--name") != 0, app.count("--view") != 0,
+  out.given = {app.count("--name") != 0,          app.count("--view") != 0,
                app.count("--view-vertical") != 0, app.count("--memory-mib") != 0,
-               app.count("--quality") != 0};
+               app.count("--quality") != 0,       app.count("--far-levels") != 0};
   out.view_radius = static_cast<std::uint8_t>(raw.view);
   out.view_radius_v = static_cast<std::uint8_t>(
       app.count("--view-vertical") != 0 ? raw.view_v : (raw.view + 1) / 2);
+  out.far_levels = static_cast<std::uint8_t>(raw.far_levels);
   out.render = !raw.no_render && !out.list_materials;
   const bool has_window = out.render && !out.headless;
   const bool asks_for_cache = app.count("--cache-dir") != 0 || app.count("--cache-mib") != 0;

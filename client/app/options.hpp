@@ -24,6 +24,7 @@ struct ClientOptions {
   /// window.
   struct {
     bool name = false, view = false, view_vertical = false, memory = false, quality = false;
+    bool far_levels = false;
   } given;
   std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
   std::string name = "builder";
@@ -34,6 +35,7 @@ struct ClientOptions {
   std::string servers_file;        // the list of servers that were joined; empty: no list is kept
   std::uint8_t view_radius = 6;    // chunks, horizontal
   std::uint8_t view_radius_v = 3;  // chunks, vertical
+  std::uint8_t far_levels = 0;     // of tiles beyond the view radius (View::levels)
   bool headless = false;           // off screen, no display needed
   bool render = true;              // false: mesh, but draw nothing
   int width = 1280, height = 720;  // pixels

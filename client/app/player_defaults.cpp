@@ -35,6 +35,7 @@ void apply_settings(const ClientSettings& settings, ClientOptions& options) {
     if (!options.given.view_vertical)
       options.view_radius_v = static_cast<std::uint8_t>((settings.view_radius + 1) / 2);
   }
+  if (!options.given.far_levels) options.far_levels = settings.far_levels;
   options.settings = settings;
   if (!options.given.memory) options.memory_mib = settings.memory_mib;
   if (!options.given.quality) options.quality = quality_of(settings);

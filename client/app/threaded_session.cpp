@@ -53,6 +53,7 @@ SessionConfig session_config(const ClientOptions& options, bool has_cache) {
   config.encodings = options.encodings;
   config.view.radius_h = options.view_radius;
   config.view.radius_v = options.view_radius_v;
+  config.view.levels = options.far_levels;
   return config;
 }
 

@@ -1,5 +1,7 @@
 #include "client/app/view_follower.hpp"
 
+#include "client/far/far_reach.hpp"
+
 namespace runstone {
 
 bool ViewFollower::follow(TimeUs now_us) {
@@ -21,9 +23,15 @@ void ViewFollower::set_radii(ViewRadii radii) {
   set_view(session_.view());
 }
 
+void ViewFollower::set_far_levels(std::uint8_t levels) {
+  far_levels_ = levels;
+  set_view(session_.view());
+}
+
 void ViewFollower::set_view(View view) {
   view.radius_h = radii_.h;
   view.radius_v = radii_.v;
+  view.levels = useful_levels(radii_.h, session_.replica().chunk_edge(), far_levels_);
   session_.set_view(view);
 }
 

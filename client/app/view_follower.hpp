@@ -13,8 +13,9 @@ namespace runstone {
 class ViewFollower {
  public:
   /// Session and player must outlive the follower.
-  ViewFollower(ClientSession& session, const Player& player, ViewRadii radii)
-      : session_(session), player_(player), radii_(radii) {}
+  ViewFollower(ClientSession& session, const Player& player, ViewRadii radii,
+               std::uint8_t far_levels = 0)
+      : session_(session), player_(player), radii_(radii), far_levels_(far_levels) {}
 
   /// Gives the session the player's pose and, if ViewPace allows it, a view around the player.
   /// Returns true if the view covers other chunks than before.
@@ -22,6 +23,9 @@ class ViewFollower {
   /// Gives the session a view with other radii, at once.
   void set_radii(ViewRadii radii);
   ViewRadii radii() const { return radii_; }
+  /// Gives the session a view with another number of levels of tiles, at once. Levels beyond the
+  /// reach of the picture are left out (useful_levels()).
+  void set_far_levels(std::uint8_t levels);
   /// Returns true if the view is centred on the player's chunk.
   bool has_followed() const;
   /// Returns true if the view is centred on the player's chunk and all of its chunks are here.
@@ -39,6 +43,7 @@ class ViewFollower {
   ClientSession& session_;
   const Player& player_;
   ViewRadii radii_;
+  std::uint8_t far_levels_;
   ViewPace pace_;
   std::optional<TimeUs> complete_since_us_;
 };

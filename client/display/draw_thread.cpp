@@ -225,7 +225,7 @@ std::size_t DrawThread::upload_for(const FrameOrder& order, Screen& screen) {
     if (!next) break;
     is_first = false;
     upload(screen, next->first, next->second);
-    bytes += gpu_bytes(*next->second.mesh, next->second.voxels.get());
+    bytes += gpu_bytes(next->second);
   }
   report_uploads();
   return carried;
@@ -233,7 +233,11 @@ std::size_t DrawThread::upload_for(const FrameOrder& order, Screen& screen) {
 
 void DrawThread::upload(Screen& screen, const ChunkKey& key, const ChunkUpload& upload) {
   const TimeUs start_us = steady_now_us();
-  screen.upload(key, upload.edge, *upload.mesh, upload.voxels.get());
+  if (upload.tile) {
+    screen.upload_tile(key, upload.edge, *upload.tile);
+  } else {
+    screen.upload(key, upload.edge, *upload.mesh, upload.voxels.get());
+  }
   const TimeUs end_us = steady_now_us();
   edge_ = upload.edge;
   uploads_.us += end_us - start_us;

@@ -29,6 +29,7 @@ MeshPipeline::MeshPipeline(const Replica& replica, DrawThread* draw_thread, bool
       recorder_(draw_thread != nullptr ? LatencyStage::presented : LatencyStage::meshed),
       replica_(replica),
       planner_(replica),
+      far_planner_(replica.far_tiles()),
       look_(!watched),
       draw_thread_(draw_thread) {}
 
@@ -41,9 +42,11 @@ void MeshPipeline::set_materials(const MaterialTable& materials) {
   if (draw_thread_) draw_thread_->set_materials(materials_);
   if (has_grown) {
     pool_->set_visibility(VisibilityTable(visibilities(materials_)));
+    far_planner_.mesh_again();
     return planner_.mesh_again_from(static_cast<Material>(known));
   }
   planner_.forget_meshes();
+  far_planner_.mesh_again();
   pool_.reset();
   open_job_bytes_.clear();
   pool_ = std::make_unique<MeshPool>(VisibilityTable(visibilities(materials_)), workers_,
@@ -55,7 +58,9 @@ void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock,
   planner_.take(changes.chunks);
   for (const auto& [key, reason] : changes.unavailable) join_.done(key, now_us);
   if (!draw_thread_) return;
+  far_planner_.take(changes.tiles);
   for (const ChunkChange& chunk : changes.chunks) {
+    far_planner_.set_chunk(chunk.key.at, !chunk.removed);
     if (!chunk.removed) continue;
     draw_thread_->remove(chunk.key);
     tracker_.removed(chunk.key);
@@ -70,6 +75,7 @@ void MeshPipeline::take_drawn() {
   for (const DrawDone& done : draw_thread_->take_done()) {
     if (const auto* upload = std::get_if<UploadDone>(&done)) {
       tracker_.uploaded(upload->key, upload->number);
+      if (upload->key.lod > 0) continue;
       recorder_.uploaded(upload->key, upload->serial, upload->at_us);
     }
     if (const auto* frame = std::get_if<FrameDone>(&done)) take_frame(*frame);
@@ -98,6 +104,7 @@ void MeshPipeline::mesh() {
   take_results();
   mesh_layers();
   push_jobs();
+  push_tiles();
 }
 
 void MeshPipeline::take_results() {
@@ -113,11 +120,17 @@ void MeshPipeline::take_result(MeshResult result) {
   recorder_.meshed(result.key, result.serial, result.meshed_us);
   join_.done(result.key, result.meshed_us);
   if (!draw_thread_) return;
+  const bool has_walls = result.open_sides != 0 && !result.mesh->transparent.quads.empty();
+  if (has_walls && replica_.far_tiles().solid_count() != 0) {
+    ChunkMesh mesh = *result.mesh;
+    if (drop_water_walls(mesh, result.edge, result.open_sides))
+      result.mesh = std::make_shared<const ChunkMesh>(std::move(mesh));
+  }
   gpu_bytes_.set(result.key, runstone::gpu_bytes(*result.mesh, result.chunk.get()));
   inspection_.meshed(result, result.meshed_us);
   tracker_.queued(result.key, result.number, result.urgency);
   draw_thread_->upload(result.key, {result.number, result.serial, result.edge, result.urgency,
-                                    std::move(result.mesh), std::move(result.chunk)});
+                                    std::move(result.mesh), std::move(result.chunk), nullptr});
 }
 
 void MeshPipeline::mesh_layers() {
@@ -135,6 +148,36 @@ void MeshPipeline::push_jobs() {
     open_job_bytes_.set(job->number, (draw_thread_ ? 2 : 1) * mesh_bytes_about(*job));
     pool_->push(std::move(*job));
   }
+}
+
+void MeshPipeline::push_tiles() {
+  for (FarMeshResult& result : pool_->take_tiles()) take_tile(std::move(result));
+  for (const ChunkKey& key : far_planner_.take_removals()) {
+    draw_thread_->remove(key);
+    tracker_.removed(key);
+    far_gpu_bytes_.erase(key);
+    changed_ = true;
+  }
+  while (pool_->has_room_for_tiles()) {
+    auto job = far_planner_.next();
+    if (!job) return;
+    if (is_empty_tile(*job->tile)) {
+      take_tile({job->key, job->number, job->tile->extent.x, std::make_shared<const TileMesh>()});
+    } else {
+      pool_->push(std::move(*job));
+    }
+  }
+}
+
+void MeshPipeline::take_tile(FarMeshResult result) {
+  if (!far_planner_.finish(result.key, result.number)) return;
+  far_gpu_bytes_.set(result.key, runstone::gpu_bytes(*result.mesh));
+  tracker_.queued(result.key, result.number, Urgency::terrain);
+  ChunkUpload upload;
+  upload.number = result.number;
+  upload.edge = result.edge;
+  upload.tile = std::move(result.mesh);
+  draw_thread_->upload(result.key, std::move(upload));
 }
 
 bool MeshPipeline::has_room_for_jobs() const {

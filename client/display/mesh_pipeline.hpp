@@ -15,6 +15,7 @@
 #include "client/display/inspection_control.hpp"
 #include "client/display/look_control.hpp"
 #include "client/display/upload_tracker.hpp"
+#include "client/far/far_planner.hpp"
 #include "client/report/report.hpp"
 #include "client/schedule/byte_ledger.hpp"
 #include "client/schedule/join_recorder.hpp"
@@ -43,7 +44,10 @@ class MeshPipeline {
   const MaterialTable& materials() const { return materials_; }
   /// Call it when the replica's view covers other chunks.
   void view_changed() { planner_.view_changed(); }
-  void set_eye(ChunkCoord eye) { planner_.set_eye(eye); }
+  void set_eye(ChunkCoord eye) {
+    planner_.set_eye(eye);
+    far_planner_.set_eye(eye);
+  }
   /// Sets the memory that meshes may take, those on the GPU included. Beyond it one job is made at
   /// a time, so that the nearest chunk is meshed all the same.
   void set_mesh_bytes_max(std::size_t bytes) { mesh_bytes_max_ = bytes; }
@@ -53,6 +57,15 @@ class MeshPipeline {
   std::size_t mesh_bytes() const { return planner_.kept_bytes(); }
   /// Returns the memory of the chunks that were queued for upload and not removed since.
   std::size_t gpu_bytes() const { return gpu_bytes_.total(); }
+  /// Returns the memory of tiles, stand-ins, and the meshes of both that were queued for upload and
+  /// not removed since.
+  std::size_t far_bytes() const {
+    return replica_.far_tiles().bytes() + far_planner_.bytes() + far_gpu_bytes_.total();
+  }
+  /// Returns true if all tiles that arrived are meshed.
+  bool is_far_meshed() const {
+    return far_planner_.dirty_count() == 0 && (!pool_ || pool_->tiles_in_flight() == 0);
+  }
   /// Returns the control of the look of all frames.
   LookControl& look() { return look_; }
   const LookControl& look() const { return look_; }
@@ -93,7 +106,8 @@ class MeshPipeline {
 
   /// Returns true if all shown runs are meshed and a frame with all of these meshes was presented.
   bool is_up_to_date() const {
-    return planner_.dirty_count() == 0 && is_idle() && tracker_.empty();
+    return planner_.dirty_count() == 0 && far_planner_.dirty_count() == 0 && is_idle() &&
+           tracker_.empty();
   }
   /// Returns true if every edit that was meshed before the first call has been presented. That
   /// takes a bounded number of frames, whatever other players edit meanwhile
@@ -127,7 +141,8 @@ class MeshPipeline {
  private:
   bool is_screenshot_due(TimeUs now_us) const;
   bool is_idle() const {
-    return planner_.ready_count() == 0 && (!pool_ || pool_->in_flight() == 0);
+    return planner_.ready_count() == 0 && far_planner_.ready_count() == 0 &&
+           (!pool_ || (pool_->in_flight() == 0 && pool_->tiles_in_flight() == 0));
   }
   void take_results();
   void take_result(MeshResult result);
@@ -135,6 +150,8 @@ class MeshPipeline {
   /// takes longer than the job.
   void mesh_layers();
   void push_jobs();
+  void push_tiles();
+  void take_tile(FarMeshResult result);
   bool has_room_for_jobs() const;
   void take_frame(const FrameDone& frame);
 
@@ -145,9 +162,10 @@ class MeshPipeline {
   JoinRecorder join_;
   const Replica& replica_;
   MeshPlanner planner_;
+  FarPlanner far_planner_;
   std::size_t mesh_bytes_max_ = std::numeric_limits<std::size_t>::max();
   ByteLedger<std::uint64_t> open_job_bytes_;  // expected, by job number
-  ByteLedger<ChunkKey> gpu_bytes_;
+  ByteLedger<ChunkKey> gpu_bytes_, far_gpu_bytes_;
   MaterialTable materials_;
   Histogram whole_ns_, layers_ns_;
   FrameStats frames_;

@@ -21,6 +21,9 @@ class GlScreen final : public Screen {
               const RunChunk* voxels) override {
     renderer_.upload(key, edge, mesh, voxels);
   }
+  void upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh) override {
+    renderer_.upload_tile(key, edge, mesh);
+  }
   void remove(const ChunkKey& key) override { renderer_.remove(key); }
   void set_overlay(std::shared_ptr<const OverlayFrame> overlay) override {
     overlay_ = std::move(overlay);

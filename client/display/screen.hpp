@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "client/far/tile_mesh.hpp"
 #include "client/platform/window.hpp"
 #include "client/render/image.hpp"
 #include "client/render/overlay_frame.hpp"
@@ -26,9 +27,10 @@ class Screen {
   /// Returns the name of the OpenGL context, a static string.
   virtual const char* name() const = 0;
   virtual void set_materials(const MaterialTable& materials) = 0;
-  /// Do the same as Renderer::upload() and Renderer::remove().
+  /// Do the same as the functions of Renderer.
   virtual void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
                       const RunChunk* voxels) = 0;
+  virtual void upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh) = 0;
   virtual void remove(const ChunkKey& key) = 0;
   /// Sets the user interface that the next frames have on top; null: none.
   virtual void set_overlay(std::shared_ptr<const OverlayFrame> overlay) = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "client/schedule/chunk_distance.hpp"
+#include "common/core/tile_keys.hpp"
 
 namespace runstone {
 
@@ -11,6 +12,16 @@ std::size_t gpu_bytes(const ChunkMesh& mesh, const RunChunk* voxels) {
   if (voxels != nullptr && !voxels->is_uniform())
     light = voxels->runs.byte_size() + std::size_t{voxels->extent.x} * voxels->extent.z;
   return mesh.quad_count() * sizeof(Quad) + light;
+}
+
+std::size_t gpu_bytes(const TileMesh& mesh) {
+  constexpr std::size_t kLayersBytes = 1024;
+  return mesh.empty() ? 0
+                      : mesh.quad_count() * sizeof(Quad) + kLayersBytes * (1 + mesh.octants.size());
+}
+
+std::size_t gpu_bytes(const ChunkUpload& upload) {
+  return upload.tile ? gpu_bytes(*upload.tile) : gpu_bytes(*upload.mesh, upload.voxels.get());
 }
 
 void UploadQueue::put(const ChunkKey& key, ChunkUpload upload) {
@@ -40,9 +51,10 @@ void UploadQueue::place(const ChunkKey& key, Entry& entry) {
   constexpr int kOverdue = 1;
   int rank = entry.upload.urgency == Urgency::local_edit ? 0
              : entry.upload.urgency == Urgency::edit     ? 2
-                                                         : 3;
+             : key.lod == 0                              ? 3
+                                                         : 4;
   if (entry.is_overdue) rank = std::min(rank, kOverdue);
-  entry.rank = Rank{rank, distance_squared(key.at, eye_), key};
+  entry.rank = Rank{rank, key.lod, distance_squared(key.at, tile_at(eye_, key.lod)), key};
   order_.insert(entry.rank);
 }
 

@@ -3,7 +3,8 @@
 //   1. chunks with an edit of this client;
 //   2. chunks that have waited for kPatience frames, so that nothing waits for ever;
 //   3. chunks with edits of others;
-//   4. chunks that arrived, and those beside them.
+//   4. chunks that arrived, and those beside them;
+//   5. tiles, finer levels first, so that coarse ground never hides finer ground that follows.
 // Within a rank the nearest to the eye comes first. Pure. Cost: O(log chunks) per change, O(chunks
 // that wait) when the eye enters another chunk. Memory: one entry for each chunk.
 #pragma once
@@ -18,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/far/tile_mesh.hpp"
 #include "client/replica/replica_changes.hpp"
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
@@ -25,19 +27,24 @@
 
 namespace runstone {
 
-/// The new quads of a chunk, and the runs that were meshed.
+/// The new quads of a chunk, and the runs that were meshed; or the quads of a tile.
 struct ChunkUpload {
   std::uint64_t number = 0;  // of its mesh job, see MeshJob::number
   std::uint64_t serial = 0;  // Replica::shown_serial() of these runs
   std::int32_t edge = 0;     // voxels
   Urgency urgency = Urgency::terrain;
-  std::shared_ptr<const ChunkMesh> mesh;
+  std::shared_ptr<const ChunkMesh> mesh;   // null for a tile
   std::shared_ptr<const RunChunk> voxels;  // may be null
+  std::shared_ptr<const TileMesh> tile;    // null for a chunk
 };
 
 /// Returns the memory of a chunk in the renderer: its quads, and at most its runs once more, with a
 /// byte for each column. `voxels` may be null.
 std::size_t gpu_bytes(const ChunkMesh& mesh, const RunChunk* voxels);
+/// Returns the same of a tile, which has no light: its quads, and a number for each of their
+/// layers.
+std::size_t gpu_bytes(const TileMesh& mesh);
+std::size_t gpu_bytes(const ChunkUpload& upload);
 
 class UploadQueue {
  public:
@@ -65,7 +72,7 @@ class UploadQueue {
   std::size_t upload_count() const { return uploads_.size(); }
 
  private:
-  using Rank = std::tuple<int, std::int64_t, ChunkKey>;
+  using Rank = std::tuple<int, int, std::int64_t, ChunkKey>;
   struct Entry {
     ChunkUpload upload;
     std::uint64_t since = 0;  // the frame in which the chunk began to wait

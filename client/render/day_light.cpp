@@ -14,7 +14,7 @@ float ramp(float from, float to, float at) {
 
 }  // namespace
 
-DayLight day_light(double time_of_day, double far) {
+DayLight day_light(double time_of_day, double far, bool has_far_ground) {
   const double turn = time_of_day - std::floor(time_of_day);
   const double angle = (turn - 0.25) * 2 * std::numbers::pi;
   const auto height = static_cast<float>(std::sin(angle));  // of the sun: -1 .. 1
@@ -50,7 +50,7 @@ DayLight day_light(double time_of_day, double far) {
   out.lamps = std::pow(out.exposure, -0.25F);
   out.dark = glm::vec3{0.048F, 0.051F, 0.058F} / out.exposure;
   out.fog_end = static_cast<float>(far) * 0.98F;
-  out.fog_start = static_cast<float>(far) * 0.55F;
+  out.fog_start = static_cast<float>(far) * (has_far_ground ? 0.12F : 0.55F);
   return out;
 }
 

@@ -18,7 +18,8 @@ struct DayLight {
 };
 
 /// Returns the light at a time of day (FrameLook::time_of_day). `far` is the distance in voxels at
-/// which fog hides everything.
-DayLight day_light(double time_of_day, double far);
+/// which fog hides everything. `has_far_ground`: the view has tiles, so fog begins nearer in
+/// proportion, because the last half of a long distance is only some pixels high.
+DayLight day_light(double time_of_day, double far, bool has_far_ground = false);
 
 }  // namespace runstone

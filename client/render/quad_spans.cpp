@@ -58,14 +58,15 @@ void QuadSpans::append_facing(const std::array<double, 3>& eye, std::vector<Quad
   }
 }
 
-void QuadSpans::append_back_to_front(const std::array<double, 3>& eye,
-                                     std::vector<QuadSpan>& out) const {
+void QuadSpans::append_back_to_front(const std::array<double, 3>& eye, std::vector<QuadSpan>& out,
+                                     std::uint8_t hidden_sides) const {
   if (starts_.empty()) return;
   std::vector<std::pair<double, QuadSpan>> planes;
   for (int d = 0; d < kDirectionCount; ++d) {
     for (int l = 0; l < edge_; ++l) {
       const QuadSpan of_layer = span(d, l, l + 1);
-      if (of_layer.count == 0) continue;
+      const bool is_hidden = (hidden_sides >> d & 1) != 0 && l == (d % 2 == 1 ? edge_ - 1 : 0);
+      if (of_layer.count == 0 || is_hidden) continue;
       const double plane = l + d % 2;
       planes.emplace_back(std::abs(eye[static_cast<std::size_t>(d / 2)] - plane), of_layer);
     }

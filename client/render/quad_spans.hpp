@@ -29,8 +29,10 @@ class QuadSpans {
   /// origin. A place very far away stands for a direction.
   void append_facing(const std::array<double, 3>& eye, std::vector<QuadSpan>& out) const;
   /// Appends a span for each layer with quads, from the farthest plane to the nearest one. Planes
-  /// of one axis are in their right order; those of different axes may not be.
-  void append_back_to_front(const std::array<double, 3>& eye, std::vector<QuadSpan>& out) const;
+  /// of one axis are in their right order; those of different axes may not be. The faces on the
+  /// border of the body are left out for each Direction whose bit is set in `hidden_sides`.
+  void append_back_to_front(const std::array<double, 3>& eye, std::vector<QuadSpan>& out,
+                            std::uint8_t hidden_sides = 0) const;
 
  private:
   QuadSpan span(int direction, int from, int to) const;  // layers [from, to)

@@ -75,6 +75,10 @@ void Renderer::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& m
   state_->terrain.upload(key, edge, mesh, voxels);
 }
 
+void Renderer::upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh) {
+  state_->terrain.upload_tile(key, edge, mesh);
+}
+
 void Renderer::remove(const ChunkKey& key) { state_->terrain.remove(key); }
 
 RenderStats Renderer::draw(const Camera& camera, int width, int height,
@@ -85,10 +89,11 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   };
   const double far = camera.far * kFarPlane;
   FrameView view{.far = far, .depth = {camera.near, far}};
+  view.shadow_far = camera.shadow_far > 0 ? camera.shadow_far : far;
   view.eye = {camera.x, camera.y, camera.z};
   view.clip = clip_of(camera, view.depth, width, height);
   view.pixel = 2 * std::tan(camera.fov_y / 2) / scaled(height);
-  view.light = day_light(contents.look.time_of_day, camera.far);
+  view.light = day_light(contents.look.time_of_day, camera.far, camera.shadow_far > 0);
   view.look = contents.look;
 
   glDepthMask(GL_TRUE);
@@ -125,7 +130,8 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   }
   return {drawn.chunks_drawn,    drawn.chunks_culled,
           drawn.quads_drawn,     s.terrain.quad_bytes(),
-          s.terrain.gpu_bytes(), s.terrain.has_transparent() || !contents.ghosts.empty()};
+          s.terrain.gpu_bytes(), s.terrain.has_transparent() || !contents.ghosts.empty(),
+          drawn.tile_parts_drawn};
 }
 
 void Renderer::draw_overlay(const OverlayFrame& overlay) {

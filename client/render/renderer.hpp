@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "client/far/tile_mesh.hpp"
 #include "client/render/frame_contents.hpp"
 #include "client/render/image.hpp"
 #include "client/render/overlay_frame.hpp"
@@ -24,16 +25,20 @@ struct Camera {
   double yaw = 0, pitch = 0;
   double fov_y = 1.2;  // vertical field of view
   double near = 0.1, far = 1000;
+  /// How far the chunks reach, if tiles reach farther: ground beyond it is in no shadow, and fog
+  /// begins nearer. 0: there are no tiles.
+  double shadow_far = 0;
 };
 
 struct RenderStats {
-  std::uint32_t chunks_drawn = 0, chunks_culled = 0;
+  std::uint32_t chunks_drawn = 0, chunks_culled = 0;  // bodies of tiles included
   std::uint64_t quads_drawn = 0;
   std::uint64_t quad_bytes = 0;  // on the GPU, of all chunks
   std::uint64_t gpu_bytes = 0;   // those, the light field and the shadow maps
   /// True if the frame changes with FrameLook::seconds, because it shows transparent faces or
   /// ghosts.
   bool is_animated = false;
+  std::uint32_t tile_parts_drawn = 0;  // tiles that are drawn whole, and octants of the others
 };
 
 /// A function that returns a GL function by name. eglGetProcAddress, OSMesaGetProcAddress and
@@ -54,6 +59,10 @@ class Renderer {
   /// as empty there.
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels = nullptr);
+  /// Replaces the quads of a tile on the GPU. `edge` is in voxels of the tile. Tiles and chunks
+  /// replace each other as FarCover says. Requires a key of level 1 or more.
+  void upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh);
+  /// Removes a chunk or tile.
   void remove(const ChunkKey& key);
 
   /// Draws into the renderer's off-screen target of width x height pixels.

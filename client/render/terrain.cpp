@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "client/render/frustum.hpp"
+#include "client/far/child_bits.hpp"
 #include "client/render/terrain_glsl.hpp"
 
 namespace runstone {
@@ -60,10 +60,12 @@ constexpr const char* kGhostFragmentShader =
     "  fragment = vec4(c + 0.25 * rim, opaque);\n"
     "}\n";
 
-std::string variant_of(const char* shader, Quality quality, bool has_field, bool is_fine,
-                       bool has_fog) {
+std::string variant_of(const char* shader, Quality quality, bool is_tile, bool has_field,
+                       bool is_fine, bool has_fog) {
   std::string out = "#version 330 core\n";
-  if (quality != Quality::low) out += "#define RUNSTONE_SHADOWS\n#define RUNSTONE_DEPTH\n";
+  if (quality != Quality::low) out += "#define RUNSTONE_DEPTH\n";
+  if (quality != Quality::low && !is_tile) out += "#define RUNSTONE_SHADOWS\n";
+  if (is_tile) out += "#define RUNSTONE_TILE\n";
   if (has_field) out += "#define RUNSTONE_FIELD\n";
   if (is_fine) out += "#define RUNSTONE_FINE\n";
   if (has_fog) out += "#define RUNSTONE_FOG\n";
@@ -115,10 +117,10 @@ void Terrain::set_materials(const MaterialTable& materials) {
   light_codes_ = light_codes(materials);
 }
 
-Terrain::Chunk Terrain::add_quads(std::int32_t edge, const ChunkMesh& mesh) {
+Terrain::Chunk Terrain::add_quads(std::int32_t edge, const ChunkMesh& mesh, bool with_tree) {
   Chunk out;
   out.edge = edge;
-  out.tree = TransparentTree::build(mesh.transparent.quads);
+  if (with_tree) out.tree = TransparentTree::build(mesh.transparent.quads);
   // Both passes lie in one span, so that a chunk has one range of the buffer.
   const auto opaque_count = static_cast<std::uint32_t>(mesh.opaque.quads.size());
   std::vector<Quad> quads = mesh.opaque.quads;
@@ -139,7 +141,8 @@ void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& me
     quads_.remove(before->second.quads);
     chunks_.erase(before);
   }
-  if (!mesh.empty()) chunks_.emplace(key, add_quads(edge, mesh));
+  if (!mesh.empty()) chunks_.emplace(key, add_quads(edge, mesh, true));
+  cover_.put(key, true);
   if (key.lod == 0) {
     if (voxels != nullptr) {
       field_.set(key.at, edge, light_chunk(*voxels, light_codes_));
@@ -152,7 +155,32 @@ void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& me
   shadows_.changed(min, min + static_cast<double>(edge));
 }
 
+void Terrain::upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh) {
+  if (const auto before = tiles_.find(key); before != tiles_.end()) {
+    remove_quads(before->second);
+    tiles_.erase(before);
+  }
+  cover_.put(key, mesh.empty() || !mesh.octants.empty());
+  if (mesh.empty()) return;
+  Tile tile;
+  tile.whole = add_quads(edge, mesh.whole, false);
+  for (const ChunkMesh& octant : mesh.octants)
+    tile.octants.push_back(octant.empty() ? Chunk{} : add_quads(edge / 2, octant, false));
+  tiles_.emplace(key, std::move(tile));
+}
+
+void Terrain::remove_quads(const Tile& tile) {
+  quads_.remove(tile.whole.quads);
+  for (const Chunk& octant : tile.octants) quads_.remove(octant.quads);
+}
+
 void Terrain::remove(const ChunkKey& key) {
+  cover_.remove(key);
+  if (const auto tile = tiles_.find(key); tile != tiles_.end()) {
+    remove_quads(tile->second);
+    tiles_.erase(tile);
+    return;
+  }
   if (key.lod == 0) field_.remove(key.at);
   const auto found = chunks_.find(key);
   if (found == chunks_.end()) return;
@@ -167,22 +195,24 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigne
   if (!out.gl) {
     const char* fragment = is_transparent ? kTransparentFragmentShader : kTerrainFragmentShader;
     const auto text = [&](const char* shader) {
-      return variant_of(shader, quality, (variant & kInField) != 0, (variant & kFine) != 0,
-                        (variant & kInFog) != 0);
+      return variant_of(shader, quality, (variant & kTile) != 0, (variant & kInField) != 0,
+                        (variant & kFine) != 0, (variant & kInFog) != 0);
     };
     out.gl = link_program(is_transparent ? "transparent" : "terrain",
                           text(kTerrainVertexShader).c_str(), text(fragment).c_str());
     out.origin = glGetUniformLocation(out.gl.get(), "origin");
     out.pattern = glGetUniformLocation(out.gl.get(), "pattern");
+    out.scale = glGetUniformLocation(out.gl.get(), "scale");
   }
   return out;
 }
 
 void Terrain::update_light(const FrameView& view) {
   if (view.look.quality == Quality::low) return;
-  shadows_.update(
-      view.eye, view.light, kShadowEdges * edge_, view.far, view.look.quality, view.look.exact,
-      [this](ShadowPass& pass, std::size_t quads_max) { return draw_depth(pass, quads_max); });
+  shadows_.update(view.eye, view.light, kShadowEdges * edge_, view.shadow_far, view.look.quality,
+                  view.look.exact, [this](ShadowPass& pass, std::size_t quads_max) {
+                    return draw_depth(pass, quads_max);
+                  });
   relit_.clear();
   field_.update(voxel_at(view.eye), view.look.exact, relit_);
   field_texture_.copy(field_, relit_);
@@ -250,6 +280,7 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
       ++stats.chunks_culled;
       continue;
     }
+    if (!tiles_.empty() && !cover_.shows(key)) continue;
     const glm::vec3 centre = at + 0.5F * edge;
     has_transparent_ = has_transparent_ || chunk.transparent.count != 0;
     unsigned variant = 0;
@@ -264,11 +295,85 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
                         pattern_of(key, chunk.edge),
                         {-origin.x, -origin.y, -origin.z},
                         glm::dot(centre, centre),
+                        1,
                         variant,
+                        0,
                         key});
   }
+  find_visible_tiles(view, frustum, stats);
   std::sort(visible_.begin(), visible_.end(),
             [](const Visible& a, const Visible& b) { return a.distance2 < b.distance2; });
+}
+
+std::uint8_t Terrain::joined_sides(const ChunkKey& key, std::uint8_t octants) const {
+  std::uint8_t out = 0;
+  for (const Direction d :
+       {Direction::neg_x, Direction::pos_x, Direction::neg_z, Direction::pos_z}) {
+    const unsigned across = 1U << static_cast<unsigned>(axis_of(d));
+    const ChunkKey beside{key.lod, neighbour(key.at, d)};
+    bool is_joined = true;
+    for (unsigned i = 0; i < kTileChildren && is_joined; ++i) {
+      if (!has_child(octants, i)) continue;
+      const bool is_at_side = ((i & across) != 0) == is_positive(d);
+      // Of a whole tile, the octants at this side continue in the tile beside it.
+      if (octants == kAllChildren && !is_at_side) continue;
+      const TileParts parts = cover_.parts(is_at_side ? beside : key);
+      is_joined = parts.is_whole || has_child(parts.octants, i ^ across);
+    }
+    if (is_joined) out = static_cast<std::uint8_t>(out | 1U << static_cast<unsigned>(d));
+  }
+  return out;
+}
+
+void Terrain::find_visible_tiles(const FrameView& view, const Frustum& frustum,
+                                 TerrainStats& stats) {
+  for (const auto& [key, tile] : tiles_) {
+    const double scale = std::ldexp(1.0, key.lod);
+    // The limits of the world hold for its voxels, so the origin in voxels of the tile is exact.
+    const VoxelPos first = origin_of(key.at, tile.whole.edge);
+    const double side = scale * tile.whole.edge;
+    const glm::dvec3 corner = glm::dvec3{first.x, first.y, first.z} * scale - view.eye;
+    const auto add = [&](const Chunk& part, std::uint8_t octants, const glm::dvec3& at,
+                         const glm::vec3& pattern) {
+      if (part.quads.count == 0) return;
+      const double width = scale * part.edge;
+      if (nearest_of(at, width) > view.far ||
+          !frustum.may_see(glm::vec3(at), glm::vec3(at + width))) {
+        ++stats.chunks_culled;
+        return;
+      }
+      const glm::vec3 centre(at + 0.5 * width);
+      has_transparent_ = has_transparent_ || part.transparent.count != 0;
+      const unsigned variant =
+          farthest_of(at, width) > double{view.light.fog_start} ? kTile | kInFog : kTile;
+      has_variant_[variant] = true;
+      ++stats.tile_parts_drawn;
+      const glm::dvec3 eye = -at / scale;
+      visible_.push_back(
+          {&part,
+           glm::vec3(at),
+           pattern,
+           {eye.x, eye.y, eye.z},
+           glm::dot(centre, centre),
+           static_cast<float>(scale),
+           variant,
+           part.transparent.count == 0 ? std::uint8_t{0} : joined_sides(key, octants),
+           key});
+    };
+    if (!frustum.may_see(glm::vec3(corner), glm::vec3(corner + side))) {
+      ++stats.chunks_culled;
+      continue;
+    }
+    const TileParts parts = cover_.parts(key);
+    const glm::vec3 pattern = pattern_of(key, tile.whole.edge);
+    if (parts.is_whole) add(tile.whole, kAllChildren, corner, pattern);
+    for (unsigned i = 0; i < tile.octants.size(); ++i) {
+      if (!has_child(parts.octants, i)) continue;
+      const glm::dvec3 place{i & 1U, i >> 1U & 1U, i >> 2U};
+      add(tile.octants[i], static_cast<std::uint8_t>(1U << i), corner + place * (0.5 * side),
+          pattern + glm::vec3(place * (0.5 * tile.whole.edge)));
+    }
+  }
 }
 
 void Terrain::begin_pass(const FrameView& view, bool is_transparent,
@@ -285,7 +390,7 @@ void Terrain::begin_pass(const FrameView& view, bool is_transparent,
                        glm::value_ptr(view.clip));
     materials_.bind(of_pass.gl, kMaterialUnit);
     quads_.bind(of_pass.gl, kQuadUnit);
-    if (!is_low) shadows_.bind(of_pass.gl, kShadowUnit);
+    if (!is_low && (variant & kTile) == 0) shadows_.bind(of_pass.gl, kShadowUnit);
     if ((variant & kInField) != 0) field_texture_.bind(of_pass.gl, kFieldUnit, field_, view.eye);
     set(of_pass.gl);
   }
@@ -299,7 +404,8 @@ void Terrain::use_for(const Visible& chunk, const FrameView& view, bool is_trans
   }
   glUniform3fv(of_chunk.origin, 1, glm::value_ptr(chunk.origin));
   glUniform3fv(of_chunk.pattern, 1, glm::value_ptr(chunk.pattern));
-  if (view.look.quality == Quality::low) return;
+  glUniform1f(of_chunk.scale, chunk.scale);
+  if (view.look.quality == Quality::low || (chunk.variant & kTile) != 0) return;
   const double half = 0.5 * chunk.chunk->edge;
   const glm::dvec3 middle = view.eye + glm::dvec3(chunk.origin) + half;
   const int cascade = shadows_.cascade_of(middle, half * std::sqrt(3.0));
@@ -353,7 +459,7 @@ void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
     if (chunk->chunk->tree) {
       chunk->chunk->tree->append_back_to_front(chunk->eye, chunk->chunk->transparent.first, spans_);
     } else {
-      chunk->chunk->layers.append_back_to_front(chunk->eye, spans_);
+      chunk->chunk->layers.append_back_to_front(chunk->eye, spans_, chunk->joined_sides);
     }
     if (spans_.empty()) continue;
     use_for(*chunk, view, true);
@@ -368,6 +474,7 @@ void Terrain::draw_inspection(const FrameView& view, const Inspection& inspectio
   if (!inspection_) inspection_.emplace();
   inspection_->begin(inspection, view.clip, view.depth, quads_, view.look.exact);
   for (const Visible& chunk : visible_) {
+    if (chunk.key.lod > 0) continue;
     spans_.clear();
     chunk.chunk->opaque.append_facing(chunk.eye, spans_);
     if (chunk.chunk->transparent.count != 0) spans_.push_back(chunk.chunk->transparent);
@@ -406,6 +513,7 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
   glUniformMatrix4fv(glGetUniformLocation(ghost_program_.get(), "clip"), 1, GL_FALSE,
                      glm::value_ptr(view.clip));
   glUniform1f(glGetUniformLocation(ghost_program_.get(), "seam"), 0);
+  glUniform1f(glGetUniformLocation(ghost_program_.get(), "scale"), 1);
   materials_.bind(ghost_program_, kMaterialUnit);
   quads_.bind(ghost_program_, kQuadUnit);
   const auto pulse = static_cast<float>(0.08 * std::sin(view.look.seconds * 4));

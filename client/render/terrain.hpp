@@ -1,5 +1,6 @@
-// Terrain: the chunks on the GPU, and the passes that draw them: shadows, opaque faces, transparent
-// faces and ghosts. Thread: the GL thread.
+// Terrain: the chunks and tiles on the GPU, and the passes that draw them: shadows, opaque faces,
+// transparent faces and ghosts. Tiles cast and receive no shadows, and the light on them is that of
+// the open sky. Thread: the GL thread.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,9 +12,12 @@
 #include <span>
 #include <vector>
 
+#include "client/far/far_cover.hpp"
+#include "client/far/tile_mesh.hpp"
 #include "client/render/day_light.hpp"
 #include "client/render/depth_range.hpp"
 #include "client/render/frame_look.hpp"
+#include "client/render/frustum.hpp"
 #include "client/render/ghost.hpp"
 #include "client/render/inspection_painter.hpp"
 #include "client/render/light_field.hpp"
@@ -31,9 +35,10 @@ namespace runstone {
 
 /// The view of a frame.
 struct FrameView {
-  glm::dvec3 eye{0};  // world voxels
-  glm::mat4 clip{1};  // clip space from eye-relative space
-  double far = 1000;  // what is farther is not drawn
+  glm::dvec3 eye{0};         // world voxels
+  glm::mat4 clip{1};         // clip space from eye-relative space
+  double far = 1000;         // what is farther is not drawn
+  double shadow_far = 1000;  // what is farther is in no shadow
   DepthRange depth;
   double pixel = 0.002;  // the side of a pixel at distance 1
   DayLight light{};
@@ -43,6 +48,7 @@ struct FrameView {
 struct TerrainStats {
   std::uint32_t chunks_drawn = 0, chunks_culled = 0;
   std::uint64_t quads_drawn = 0;
+  std::uint32_t tile_parts_drawn = 0;  // of chunks_drawn
 };
 
 class Terrain {
@@ -52,6 +58,9 @@ class Terrain {
   void set_materials(const MaterialTable& materials);
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels);
+  /// Requires a key of level 1 or more.
+  void upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh);
+  /// Removes a chunk or tile.
   void remove(const ChunkKey& key);
 
   /// Draws the shadow maps and computes the light that need it. Leaves another framebuffer bound.
@@ -82,12 +91,18 @@ class Terrain {
     std::optional<TransparentTree> tree;
     QuadSpans layers;  // of the transparent quads, without a tree
   };
+  struct Tile {
+    Chunk whole;
+    std::vector<Chunk> octants;  // as in TileMesh
+  };
   struct Visible {
     const Chunk* chunk;
-    glm::vec3 origin, pattern;    // origin minus eye; origin modulo kPattern
-    std::array<double, 3> eye{};  // relative to the origin
+    glm::vec3 origin, pattern;    // origin minus eye; origin in voxels modulo kPattern
+    std::array<double, 3> eye{};  // relative to the origin, in voxels of its level
     float distance2;
-    unsigned variant = 0;  // of the programs
+    float scale = 1;                // the side of a voxel
+    unsigned variant = 0;           // of the programs
+    std::uint8_t joined_sides = 0;  // of a part of a tile, see joined_sides()
     ChunkKey key;
   };
   /// The quads of a ghost's mesh, kept as long as frames show it.
@@ -97,17 +112,24 @@ class Terrain {
     bool is_used = false;
   };
 
-  Chunk add_quads(std::int32_t edge, const ChunkMesh& mesh);
+  /// Without a tree, the order of transparent quads is that of their layers.
+  Chunk add_quads(std::int32_t edge, const ChunkMesh& mesh, bool with_tree);
+  void remove_quads(const Tile& tile);
   void find_visible(const FrameView& view, TerrainStats& stats);
+  /// Returns a bit for each lateral Direction in which ground of the same level continues the part.
+  /// Water has no waterline there. `octants` are those that the part covers.
+  std::uint8_t joined_sides(const ChunkKey& key, std::uint8_t octants) const;
+  void find_visible_tiles(const FrameView& view, const Frustum& frustum, TerrainStats& stats);
   /// The variants of a program: bits that add what not every chunk needs.
   static constexpr unsigned kInField = 1;  // it reads the light field
   static constexpr unsigned kFine = 2;     // grain and joints are seen
   static constexpr unsigned kInFog = 4;    // a part of the chunk is in the fog
-  static constexpr std::size_t kVariants = 8;
+  static constexpr unsigned kTile = 8;     // it is a part of a tile, without shadows
+  static constexpr std::size_t kVariants = 16;
   struct Program {
     GlProgram gl;
-    GLint origin = -1, pattern = -1;  // the uniforms of a chunk
-    int cascade = -1;                 // of the last chunk in this pass; -1: none
+    GLint origin = -1, pattern = -1, scale = -1;  // the uniforms of a chunk
+    int cascade = -1;                             // of the last chunk in this pass; -1: none
   };
   /// Sets the uniforms of a pass in its programs. `set` sets those that only this pass has.
   void begin_pass(const FrameView& view, bool is_transparent,
@@ -128,6 +150,8 @@ class Terrain {
   QuadBuffer quads_;
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
+  std::map<ChunkKey, Tile> tiles_;    // likewise
+  FarCover cover_;                    // of all chunks and tiles
   std::map<const ChunkMesh*, GhostQuads> ghosts_;
   std::optional<InspectionPainter> inspection_;  // while a mode is on
   std::vector<Visible> visible_;                 // of the present frame, from near to far

@@ -1,7 +1,7 @@
 // The shaders of terrain, in GLSL 3.30. Their variants are chosen by definitions before the text:
 // RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH
-// reads the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, and RUNSTONE_FOG
-// fades.
+// reads the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, RUNSTONE_FOG
+// fades, and RUNSTONE_TILE is for parts of tiles.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"
@@ -15,6 +15,7 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "uniform mat4 clip;\n"     // clip space from eye-relative space
     "uniform vec3 origin;\n"   // chunk origin minus eye
     "uniform vec3 pattern;\n"  // chunk origin modulo 8192: coordinates fixed to the world
+    "uniform float scale;\n"   // the side of a voxel
     "uniform sampler2D palette, looks;\n"
     "uniform float seam;\n"  // growth of a quad as a share of the distance
     "out vec3 relative;\n"
@@ -27,7 +28,7 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "#endif\n"
     "void main() {\n"
     "  QuadCorner c = quad_corner();\n"
-    "  relative = origin + c.at;\n"
+    "  relative = origin + c.at * scale;\n"
     // Merged quads meet in T-junctions, where rounding leaves pinholes. So each quad grows by a
     // small fraction of a pixel along both of its axes, whatever the angle at which they are seen:
     // an axis of length 1 is seen with the length sqrt(q) / distance^2.
@@ -127,6 +128,10 @@ inline constexpr const char* kTransparentFragmentShader =
     "  vec3 sight = relative / far;\n"
     "  vec3 n = dot(normal, sight) > 0.0 ? -normal : normal;\n"
     "  float liquid = is_liquid() ? 1.0 : 0.0;\n"
+    "#ifdef RUNSTONE_TILE\n"
+    // The waterline where levels meet looks like the surface.
+    "  if (liquid > 0.5 && abs(n.y) < 0.5) n = vec3(0.0, 1.0, 0.0);\n"
+    "#endif\n"
     "  vec3 wave = n;\n"
     "  vec2 p = voxel.xz;\n"
     "  float calm = 1.0 / (1.0 + 0.02 * far);\n"

@@ -22,6 +22,7 @@ std::vector<ClientSequence> Replica::open(const SessionParameters& parameters) {
   ground_.clear();
   updater_.clear_requests();
   parameters_ = parameters;
+  if (view()) far_tiles_.set_view(*view(), parameters.chunk_edge);
   durable_ = parameters.durable;
   newest_ = parameters.head;
   expect_all_chunks(SharedHistory(before, {parameters.epoch, parameters.durable, parameters.head}));
@@ -56,6 +57,7 @@ void Replica::expect_all_chunks(const SharedHistory& history) {
 void Replica::reset() {
   for (const auto& [key, chunk] : chunks_) updater_.forget(chunk);
   chunks_.clear();
+  far_tiles_.clear();
   claims_.clear();
   local_edits_.clear();
   ground_.clear();
@@ -66,6 +68,7 @@ void Replica::reset() {
 
 void Replica::set_view(const View& view) {
   views_.set(view);
+  if (parameters_) far_tiles_.set_view(view, parameters_->chunk_edge);
   chunks_.erase_if([&](const TrackedChunk& chunk) {
     if (view.contains(chunk.key.at)) return false;
     updater_.forget(chunk);
@@ -208,6 +211,10 @@ bool Replica::accepts(const ChunkKey& key, std::uint32_t view) {
 void Replica::receive(Chunks chunks, const Arrival& arrival) {
   if (!parameters_) return;
   for (ChunkAnswer& answer : chunks.chunks) {
+    if (key_of(answer).lod > 0) {
+      receive_tile(answer);
+      continue;
+    }
     if (!accepts(key_of(answer), chunks.view)) continue;
     if (auto* snapshot = std::get_if<ChunkSnapshot>(&answer)) {
       receive_snapshot(snapshot->key, std::move(snapshot->chunk), arrival.now_us);
@@ -215,6 +222,12 @@ void Replica::receive(Chunks chunks, const Arrival& arrival) {
       receive_missing_edits(std::get<ChunkEdits>(answer), arrival.now_us);
     }
   }
+}
+
+void Replica::receive_tile(ChunkAnswer& answer) {
+  auto* const tile = std::get_if<ChunkSnapshot>(&answer);
+  if (tile == nullptr || !far_tiles_.receive(tile->key, std::move(tile->chunk.voxels)))
+    ++counters_.answers_outside;
 }
 
 void Replica::receive_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us) {
@@ -247,6 +260,10 @@ void Replica::receive(const UniformChunks& uniform, const Arrival& arrival) {
   const Extent extent = Extent::cube(static_cast<unsigned>(parameters_->chunk_edge));
   Chunk chunk;
   for (const UniformChunk& each : uniform.chunks) {
+    if (each.key.lod > 0) {
+      if (!far_tiles_.receive_uniform(each.key, each.material)) ++counters_.answers_outside;
+      continue;
+    }
     if (!accepts(each.key, uniform.view)) continue;
     // Most chunks are of the material of the one before: air or stone.
     if (chunk.voxels.runs.size() == 0 || material_at(chunk.voxels, {0, 0, 0}) != each.material) {
@@ -365,6 +382,12 @@ std::vector<ChunkKey> Replica::missing() const {
 
 std::vector<KeyedChunk> Replica::take_for_cache(std::size_t count_max) {
   return outbox_.take(past_.is_past() ? nullptr : &chunks_, count_max);
+}
+
+ReplicaChanges Replica::drain_changes() {
+  ReplicaChanges out = changes_.drain();
+  out.tiles = far_tiles_.drain_changes();
+  return out;
 }
 
 // Reading.

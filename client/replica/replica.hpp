@@ -20,9 +20,10 @@
 //   - A chunk with a gap, or with a wrong digest, accepts nothing but a snapshot, which it
 //     requests.
 //   - A snapshot older than the confirmed chunk is ignored.
-// An answer to a view is ignored if the chunk has left the view since (RecentViews).
-// After a restart of the server (new epoch) only versions that it kept for sure are trusted
-// (SharedHistory).
+// An answer to a view is ignored if the chunk has left the view since (RecentViews). Tiles, the
+// keys of level 1 or more, are kept apart (FarTiles). They have no versions and are never
+// predicted, requested, claimed or cached. After a restart of the server (new epoch) only versions
+// that it kept for sure are trusted (SharedHistory).
 //
 // Pure: no clock and no socket. Times are arguments, in microseconds of the client's steady clock.
 // One thread; the chunks that are returned are immutable and may be read from any thread. Bounds:
@@ -36,6 +37,7 @@
 #include <optional>
 #include <vector>
 
+#include "client/far/far_tiles.hpp"
 #include "client/replica/cache_outbox.hpp"
 #include "client/replica/change_queue.hpp"
 #include "client/replica/chunk_updater.hpp"
@@ -102,8 +104,8 @@ class Replica {
                                 ClientSequence action = 0);
   void mark_sent(ClientSequence seq, TimeUs now_us) { local_edits_.mark_sent(seq, now_us); }
 
-  /// Takes snapshots, and completes claimed chunks by the edits that they lack. Requests a chunk if
-  /// its edits do not fit.
+  /// Takes snapshots, also of tiles, and completes claimed chunks by the edits that they lack.
+  /// Requests a chunk if its edits do not fit.
   void receive(Chunks chunks, const Arrival& arrival);
   /// Takes the answer that claimed chunks are current. Requests those whose claimed copy is not
   /// held any more.
@@ -147,7 +149,7 @@ class Replica {
   std::vector<KeyedChunk> take_for_cache(std::size_t count_max);
 
   /// Returns what changed since the last call.
-  ReplicaChanges drain_changes() { return changes_.drain(); }
+  ReplicaChanges drain_changes();
   /// Returns the chunks to request from the server, ascending.
   std::vector<ChunkKey> take_requests() { return updater_.take_requests(); }
 
@@ -177,6 +179,9 @@ class Replica {
   /// Returns true if the server sends this chunk sooner or later: the view and the world have it,
   /// and it is not unavailable.
   bool is_expected(const ChunkKey& key) const;
+  /// Returns the tiles of the view that arrived. Tiles show the live world, also while the past is
+  /// shown.
+  const FarTiles& far_tiles() const { return far_tiles_; }
   const LocalEdits& local_edits() const { return local_edits_; }
   const KnownGround& ground() const { return ground_; }
   /// Returns the memory of all chunks: confirmed and shown runs, and edits that wait beside them.
@@ -190,6 +195,7 @@ class Replica {
   bool is_in_view(const ChunkKey& key) const { return views_.contains(key); }
   bool accepts(const ChunkKey& key, std::uint32_t view);
   TrackedChunk& track(const ChunkKey& key);
+  void receive_tile(ChunkAnswer& answer);
   void receive_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us);
   void receive_missing_edits(const ChunkEdits& edits, TimeUs now_us);
   void expect_all_chunks(const SharedHistory& history);
@@ -201,6 +207,7 @@ class Replica {
   std::optional<SessionParameters> parameters_;
   RecentViews views_;
   ReplicaChunks chunks_;
+  FarTiles far_tiles_;
   PastView past_;
   Claims claims_;
   CacheOutbox outbox_;

@@ -101,6 +101,7 @@ struct ReplicaChanges {
   /// are durable, or were rejected: the chunks show which.
   std::vector<ClientSequence> unseen;
   std::vector<UnavailableChunk> unavailable;
+  std::vector<ChunkKey> tiles;  // of FarTiles that arrived, changed or left; ascending
 };
 
 /// Counts since the replica was made. A `chunk edit` is an edit in one chunk: an edit counts once

@@ -115,6 +115,12 @@ Json memory_json(const MemoryUse& use, const BudgetReport& budget) {
               {"view_radius_wanted", budget.wanted.h}};
 }
 
+Json far_json(const FarReport& far) {
+  return Json{
+      {"tiles", far.tiles},   {"bytes", far.bytes},          {"budget_bytes", far.bytes_max},
+      {"levels", far.levels}, {"levels_wanted", far.wanted}, {"reach", far.reach}};
+}
+
 Json cache_json(const std::optional<CacheCounters>& c) {
   if (!c) return nullptr;
   return Json{{"hits", c->hits},
@@ -212,6 +218,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
                      {"whole_ns", histogram_summary(meshes.whole_ns)},
                      {"layers_ns", histogram_summary(meshes.layers_ns)}};
   out["memory"] = memory_json(report.memory, report.budget);
+  out["far_ground"] = far_json(report.far);
   out["cache"] = cache_json(report.cache);
   out["frames"] = Json{{"presented", report.frames.presented},
                        {"draw_us", histogram_summary(report.frames.draw_us)},

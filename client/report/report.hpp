@@ -45,6 +45,14 @@ struct NetCounts {
   std::uint64_t messages_received = 0, connections = 0;
 };
 
+/// The distant ground at the end.
+struct FarReport {
+  std::size_t tiles = 0, bytes = 0;  // held; bytes with their meshes
+  std::size_t bytes_max = 0;         // of the budget
+  unsigned levels = 0, wanted = 0;   // of the view; as FarBudget
+  double reach = 0;                  // how far ground is seen, voxels
+};
+
 /// What MemoryBudget did.
 struct BudgetReport {
   std::size_t bytes_max = 0, peak_bytes = 0;
@@ -64,6 +72,7 @@ struct ClientReport {
   NetCounts net;
   MemoryUse memory;  // at the end
   BudgetReport budget;
+  FarReport far;
   std::optional<CacheCounters> cache;  // nullopt without a cache
 };
 

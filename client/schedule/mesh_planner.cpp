@@ -44,7 +44,14 @@ void MeshPlanner::take(std::span<const ChunkChange> changes) {
         borders_.erase(chunk.key);
         states_.erase(it);
       }
-      for_each_beside(chunk.key, [this](const ChunkKey& key, State& state) { place(key, state); });
+      // The neighbours show their faces towards it from now on.
+      for_each_beside(chunk.key, [this](const ChunkKey& key, State& state) {
+        if (state.counted) {
+          mark_whole(key, state);
+        } else {
+          place(key, state);
+        }
+      });
       continue;
     }
     State& state = states_[chunk.key];

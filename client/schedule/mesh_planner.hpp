@@ -3,7 +3,7 @@
 //     changes are for the next job.
 //   - A chunk waits for neighbours that are in view and have not arrived. Beyond the view, or where
 //     the server has no chunk, a missing neighbour means that the faces at that border are drawn.
-//     If the neighbour arrives later, the chunk is meshed again.
+//     If the neighbour arrives later or leaves, the chunk is meshed again.
 //   - An edited chunk does not wait, so that late terrain does not delay an edit.
 //   - A change at a border also meshes the neighbour again.
 //   - The order is: chunks of which layers changed, other edited chunks, then the nearest to the

@@ -31,6 +31,7 @@ MeshPool::MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, 
       // The capacity is large enough that no worker is idle until the main thread pushes again, and
       // small enough that new work does not queue behind old work.
       capacity_(workers == 0 ? 1 : workers * 8),
+      tiles_max_(workers == 0 ? 1 : workers * kTilesPerWorker),
       visibility_(std::make_shared<const VisibilityTable>(std::move(visibility))) {
   for (unsigned i = 0; i < workers; ++i) {
     threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
@@ -66,6 +67,35 @@ bool MeshPool::push(MeshJob job) {
   return true;
 }
 
+bool MeshPool::push(FarMeshJob job) {
+  if (threads_.empty()) {
+    FarMeshResult result = mesh_tile(job, *visibility_, push_scratch_.rdm);
+    const std::lock_guard lock(mutex_);
+    ++tiles_in_flight_;
+    tile_results_.push_back(std::move(result));
+    return true;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (tiles_in_flight_ >= tiles_max_) return false;
+    ++tiles_in_flight_;
+    tile_jobs_.push_back(std::move(job));
+  }
+  work_there_.notify_one();
+  return true;
+}
+
+std::vector<FarMeshResult> MeshPool::take_tiles() {
+  const std::lock_guard lock(mutex_);
+  tiles_in_flight_ -= tile_results_.size();
+  return std::exchange(tile_results_, {});
+}
+
+std::size_t MeshPool::tiles_in_flight() const {
+  const std::lock_guard lock(mutex_);
+  return tiles_in_flight_;
+}
+
 std::vector<MeshResult> MeshPool::take_results() {
   const std::lock_guard lock(mutex_);
   in_flight_ -= results_.size();
@@ -77,21 +107,40 @@ std::size_t MeshPool::in_flight() const {
   return in_flight_;
 }
 
+MeshPool::Job MeshPool::take_job(unsigned& chunks_since_tile) {
+  const bool is_tile =
+      !tile_jobs_.empty() && (jobs_.empty() || chunks_since_tile >= kChunksPerTile);
+  if (is_tile) {
+    chunks_since_tile = 0;
+    Job out = std::move(tile_jobs_.front());
+    tile_jobs_.pop_front();
+    return out;
+  }
+  ++chunks_since_tile;
+  Job out = std::move(jobs_.front());
+  jobs_.pop_front();
+  return out;
+}
+
 void MeshPool::work(const std::stop_token& stop) {
   Scratch scratch;
+  unsigned chunks_since_tile = 0;
   for (;;) {
-    MeshJob job;
+    Job job;
     std::shared_ptr<const VisibilityTable> visibility;
     {
       std::unique_lock lock(mutex_);
-      if (!work_there_.wait(lock, stop, [this] { return !jobs_.empty(); }) || stop.stop_requested())
-        return;
-      job = std::move(jobs_.front());
-      jobs_.pop_front();
+      const auto has_work = [this] { return !jobs_.empty() || !tile_jobs_.empty(); };
+      if (!work_there_.wait(lock, stop, has_work) || stop.stop_requested()) return;
+      job = take_job(chunks_since_tile);
       visibility = visibility_;
     }
-    MeshResult result = mesh(job, *visibility, scratch);
-    {
+    if (const auto* const tile = std::get_if<FarMeshJob>(&job)) {
+      FarMeshResult result = mesh_tile(*tile, *visibility, scratch.rdm);
+      const std::lock_guard lock(mutex_);
+      tile_results_.push_back(std::move(result));
+    } else {
+      MeshResult result = mesh(std::get<MeshJob>(job), *visibility, scratch);
       const std::lock_guard lock(mutex_);
       results_.push_back(std::move(result));
     }
@@ -113,6 +162,8 @@ MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
   for (std::size_t i = 0; i < neighbours.size(); ++i) {
     neighbours[i] = job.neighbours[i].get();
     borders[i] = job.borders[i].get();
+    if (neighbours[i] == nullptr)
+      result.open_sides = static_cast<std::uint8_t>(result.open_sides | 1U << i);
   }
   const std::int64_t start = clock_();
   if (job.before) {

@@ -1,7 +1,8 @@
-// MeshPool: threads that mesh chunks. One thread, the client's main thread, pushes jobs and takes
-// results. At most `capacity` jobs wait or run. Beyond that, push() returns false, and the planner
-// keeps the changes and merges them. Without workers push() meshes the job itself, which is for
-// tests and machines with one core.
+// MeshPool: threads that mesh chunks and tiles. One thread, the client's main thread, pushes jobs
+// and takes results. At most `capacity` jobs wait or run. Beyond that, push() returns false, and
+// the planner keeps the changes and merges them. Without workers push() meshes the job itself,
+// which is for tests and machines with one core. Tiles are meshed while no chunk waits, and at
+// least once for each kChunksPerTile chunks of a worker.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -11,8 +12,10 @@
 #include <mutex>
 #include <stop_token>
 #include <thread>
+#include <variant>
 #include <vector>
 
+#include "client/far/tile_mesh.hpp"
 #include "client/schedule/mesh_planner.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
@@ -29,6 +32,7 @@ struct MeshResult {
   BordersPtr borders;                    // of the chunk; null unless all of it was meshed
   bool layers_only = false;              // the other layers are those of the previous mesh
   Urgency urgency = Urgency::terrain;    // of the job
+  std::uint8_t open_sides = 0;           // bit per Direction: there was no neighbour
   DirtyLayers layers;                    // that were meshed, of those in which a voxel changed
   std::int64_t mesh_ns = 0;              // duration
   TimeUs meshed_us = 0;                  // when meshing ended
@@ -56,6 +60,16 @@ class MeshPool {
   std::size_t in_flight() const;
   std::size_t capacity() const { return capacity_; }
 
+  /// Queues a tile. Returns false if kTilesPerWorker of each worker wait or run.
+  bool push(FarMeshJob job);
+  std::vector<FarMeshResult> take_tiles();
+  /// Returns the number of tiles that wait or run, plus the results that were not taken.
+  std::size_t tiles_in_flight() const;
+  bool has_room_for_tiles() const { return tiles_in_flight() < tiles_max_; }
+
+  static constexpr std::size_t kTilesPerWorker = 4;
+  static constexpr unsigned kChunksPerTile = 8;
+
  private:
   struct Scratch {
     RdmScratch rdm;
@@ -63,20 +77,26 @@ class MeshPool {
     ChunkMesh mesh;
     ChunkBorders borders;
   };
+  using Job = std::variant<MeshJob, FarMeshJob>;
   void work(const std::stop_token& stop);
+  /// Takes the job that comes next. Requires that one waits, and mutex_.
+  Job take_job(unsigned& chunks_since_tile);
   MeshResult mesh(const MeshJob& job, const VisibilityTable& visibility, Scratch& scratch) const;
 
   const ClockNs clock_;
   const Wake wake_;
-  const std::size_t capacity_;
+  const std::size_t capacity_, tiles_max_;
   const MeshPtr empty_ = std::make_shared<const ChunkMesh>();
   mutable std::mutex mutex_;
   // Never null. The thread that pushes replaces it, under mutex_. Workers copy it under mutex_.
   std::shared_ptr<const VisibilityTable> visibility_;
   std::condition_variable_any work_there_;
-  std::deque<MeshJob> jobs_;  // guarded by mutex_, as are the next two
+  std::deque<MeshJob> jobs_;  // guarded by mutex_, as are the next five
+  std::deque<FarMeshJob> tile_jobs_;
   std::vector<MeshResult> results_;
+  std::vector<FarMeshResult> tile_results_;
   std::size_t in_flight_ = 0;
+  std::size_t tiles_in_flight_ = 0;
   Scratch push_scratch_;  // used by the thread that pushes
   std::vector<std::jthread> threads_;
 };

@@ -10,6 +10,7 @@
 
 #include "client/settings/toml_text.hpp"
 #include "common/core/text.hpp"
+#include "common/core/tile_keys.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -82,6 +83,7 @@ const std::map<std::pair<std::string, std::string>, SetField>& fields() {
         {{"view", "quality"}, set_quality},
         {{"view", "field_of_view"}, number_field(&S::field_of_view, 30, 110)},
         {{"view", "radius"}, number_field(&S::view_radius, 1, kViewRadiusMax)},
+        {{"view", "far_levels"}, number_field(&S::far_levels, 0, kTileLevelMax)},
         {{"view", "memory_mib"}, number_field(&S::memory_mib, 64, 65'536)},
         {{"hand", "sensitivity"}, number_field(&S::sensitivity, 0.1, 10)},
         {{"hand", "invert_y"}, switch_field(&S::invert_y)},
@@ -181,6 +183,10 @@ std::string to_toml(const ClientSettings& settings) {
   out += fmt::format("# Horizontal view radius in chunks, 1 to {}. The server may reduce it.\n",
                      kViewRadiusMax);
   out += fmt::format("radius = {}\n", s.view_radius);
+  out += fmt::format(
+      "# Levels of coarser ground beyond it, 0 to {}. Each one lets you see twice as far.\n",
+      kTileLevelMax);
+  out += fmt::format("far_levels = {}\n", s.far_levels);
   out += "# Memory for chunks, edits and meshes in MiB, 64 to 65536.\n";
   out += fmt::format("memory_mib = {}\n\n[hand]\n", s.memory_mib);
   out += "# Speed of looking with the mouse, 0.1 to 10.\n";

@@ -25,6 +25,7 @@ struct ClientSettings {
   QualityChoice quality = QualityChoice::automatic;
   double field_of_view = 69;        // degrees, vertical, 30 to 110
   std::uint8_t view_radius = 6;     // chunks, horizontal, 1 to kViewRadiusMax
+  std::uint8_t far_levels = 5;      // of tiles beyond the view radius; each sees twice as far
   std::uint64_t memory_mib = 1024;  // of chunks, edits and meshes, 64 to 65,536
   double sensitivity = 1;           // of the mouse, 0.1 to 10
   bool invert_y = false;            // mouse up looks down

@@ -7,6 +7,7 @@
 
 #include "client/ui/text_field.hpp"
 #include "common/core/text.hpp"
+#include "common/core/tile_keys.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -41,10 +42,13 @@ SettingsForm::Result SettingsForm::build(double scale) {
   ImGui::Separator();
   quality_control(s.quality);
   slider("field of view", s.field_of_view, 30, 110, "%.0f degrees");
-  int radius = s.view_radius, memory = static_cast<int>(s.memory_mib);
+  int radius = s.view_radius, levels = s.far_levels, memory = static_cast<int>(s.memory_mib);
   if (ImGui::SliderInt("view radius", &radius, 1, int{kViewRadiusMax}, "%d chunks",
                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic))
     s.view_radius = static_cast<std::uint8_t>(radius);
+  if (ImGui::SliderInt("far ground", &levels, 0, int{kTileLevelMax}, "%d levels",
+                       ImGuiSliderFlags_AlwaysClamp))
+    s.far_levels = static_cast<std::uint8_t>(levels);
   if (ImGui::SliderInt("memory", &memory, 64, 65'536, "%d MiB",
                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
     s.memory_mib = static_cast<std::uint64_t>(memory);

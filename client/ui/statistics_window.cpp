@@ -51,6 +51,10 @@ void counts(const StatisticsState& state) {
                         bytes_text(static_cast<double>(state.mesh_bytes)),
                         bytes_text(static_cast<double>(state.gpu_bytes)),
                         bytes_text(static_cast<double>(state.bytes_max))));
+  text_line(fmt::format("far ground: {} tiles of {} levels, {} parts drawn, {} of {}; reach {:.0f}",
+                        state.tiles, state.tile_levels, state.tile_parts_drawn,
+                        bytes_text(static_cast<double>(state.far_bytes)),
+                        bytes_text(static_cast<double>(state.far_bytes_max)), state.reach));
   const auto median = [](const std::optional<double>& us) {
     return us ? fmt::format("{:.0f} us", *us) : std::string("none");
   };

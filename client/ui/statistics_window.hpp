@@ -33,6 +33,11 @@ struct StatisticsState {
   std::uint32_t chunks_drawn = 0, chunks_culled = 0;
   std::uint64_t quads_drawn = 0;
   std::uint64_t chunk_bytes = 0, edit_bytes = 0, mesh_bytes = 0, gpu_bytes = 0, bytes_max = 0;
+  std::size_t tiles = 0;
+  unsigned tile_levels = 0;  // of the view
+  std::uint32_t tile_parts_drawn = 0;
+  std::uint64_t far_bytes = 0, far_bytes_max = 0;  // of tiles and their meshes
+  double reach = 0;                                // how far ground is seen, voxels
   std::uint64_t mesh_jobs = 0;
   std::optional<double> mesh_whole_us, mesh_layers_us;  // medians
   std::array<ClassTraffic, 4> traffic{};

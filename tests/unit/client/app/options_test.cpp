@@ -167,6 +167,9 @@ TEST_CASE("sizes, views and encodings become numbers", "[client_app]") {
   CHECK(refused({"--connect", "a:1", "--size", "640"}) == 2);
   CHECK(refused({"--connect", "a:1", "--size", "1x1"}) == 2);
   CHECK(refused({"--connect", "a:1", "--view", "65"}) == 2);
+  CHECK(accepted({"--connect", "a:1"}).far_levels == 0);
+  CHECK(accepted({"--connect", "a:1", "--far-levels", "6"}).far_levels == 6);
+  CHECK(refused({"--connect", "a:1", "--far-levels", "9"}) == 2);
   CHECK(refused({"--connect", "a:1", "--encoding", "morse"}) == 2);
   CHECK(refused({"--connect", "a:1", "--script", "/does/not/exist"}) == 2);
   CHECK(refused({"--connect", "a:1", "--name", "a name of more than thirty-two bytes"}) == 2);

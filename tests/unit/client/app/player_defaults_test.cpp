@@ -21,6 +21,7 @@ ClientSettings ana_settings(const std::string& key_file) {
   settings.name = "ana";
   settings.key_file = key_file;
   settings.view_radius = 9;
+  settings.far_levels = 7;
   settings.memory_mib = 2048;
   return settings;
 }
@@ -36,6 +37,7 @@ TEST_CASE("settings hold where the command line says nothing", "[client_app]") {
   CHECK(options.key_file == folder / "keys/ana");
   CHECK(options.view_radius == 9);
   CHECK(options.view_radius_v == 5);
+  CHECK(options.far_levels == 7);
   CHECK(options.memory_mib == 2048);
   CHECK(std::filesystem::is_directory(folder / "keys"));
 }
@@ -56,13 +58,14 @@ TEST_CASE("changed keys are used, and those that name nothing are reported", "[c
 TEST_CASE("options of the command line win over the settings", "[client_app]") {
   const test::TempFolder folder;
   ClientOptions options = parsed({"--connect", "a", "--name", "bea", "--key", "bea.key", "--view",
-                                  "4", "--memory-mib", "100"});
+                                  "4", "--memory-mib", "100", "--far-levels", "0"});
   apply_settings(ana_settings(folder / "keys/ana"), options);
   CHECK(options.name == "bea");
   CHECK(options.key_file == "bea.key");
   CHECK(options.view_radius == 4);
   CHECK(options.view_radius_v == 2);
   CHECK(options.memory_mib == 100);
+  CHECK(options.far_levels == 0);
   CHECK_FALSE(std::filesystem::exists(folder / "keys"));
   ClientOptions flat = parsed({"--connect", "a", "--view-vertical", "1"});
   apply_settings(ana_settings(folder / "keys/ana"), flat);

@@ -105,3 +105,23 @@ TEST_CASE_METHOD(FollowerBench, "other radii are requested at once, and kept whe
   CHECK(session.view().radius_v == 1);
   CHECK(sent_radius() == 2);
 }
+
+TEST_CASE_METHOD(FollowerBench,
+                 "the view has levels of tiles if the server knows them, and only useful ones",
+                 "[client_app]") {
+  server.features = kFeatureTiles;
+  static_cast<void>(open());
+  follower.set_far_levels(5);
+  CHECK(session.view().levels == 5);
+  follower.set_radii({64, 1});
+  CHECK(session.view().levels == 5);
+  follower.set_far_levels(8);
+  CHECK(session.view().levels < 8);
+}
+
+TEST_CASE_METHOD(FollowerBench, "a server without tiles gets a view without levels",
+                 "[client_app]") {
+  static_cast<void>(open());
+  follower.set_far_levels(5);
+  CHECK(session.view().levels == 0);
+}

@@ -103,6 +103,10 @@ class FakeScreen final : public Screen {
     log_.upload("upload " + std::to_string(key.at.x) + " quads " +
                 std::to_string(mesh.quad_count()));
   }
+  void upload_tile(const ChunkKey& key, std::int32_t /*edge*/, const TileMesh& mesh) override {
+    log_.upload("tile " + std::to_string(key.lod) + " " + std::to_string(key.at.x) + " quads " +
+                std::to_string(mesh.whole.quad_count()));
+  }
   void remove(const ChunkKey& key) override { log_.write("remove " + std::to_string(key.at.x)); }
   void set_overlay(std::shared_ptr<const OverlayFrame> overlay) override {
     if (overlay) log_.write("overlay " + std::to_string(overlay->vertices.size()));

@@ -308,3 +308,43 @@ TEST_CASE("without room for meshes one job is made at a time", "[client_app]") {
   CHECK(jobs() >= chunks);
   CHECK(pipeline.mesh_bytes() > chunks * 12'000 * sizeof(Quad));
 }
+
+TEST_CASE_METHOD(Fixture, "a tile is meshed, uploaded and drawn, and leaves with its view",
+                 "[client_app]") {
+  View view{2, {0, 0, 0}, 2, 0};
+  view.levels = 1;
+  replica.set_view(view);
+  pipeline.view_changed();
+  RunChunk ground = uniform_chunk(Extent::cube(kEdge), kEmpty);
+  fill(ground, 0, 10, 1);
+  Chunk chunk;
+  chunk.voxels = ground;
+  replica.receive(chunks_of(ChunkSnapshot{{1, {1, 0, 0}}, chunk}), {});
+  replica.receive(UniformChunks{2, {{{1, {-1, 0, 0}}, kEmpty, {}}}}, {});
+  pipeline.take(replica.drain_changes(), ClockOffset{}, steady_now_us());
+  CHECK_FALSE(pipeline.is_far_meshed());
+  pipeline.mesh();
+  pipeline.mesh();
+  CHECK(pipeline.is_far_meshed());
+  CHECK_FALSE(pipeline.is_up_to_date());
+  const std::size_t bytes = pipeline.far_bytes();
+  CHECK(bytes > replica.far_tiles().bytes());
+  order_at(steady_now_us() + MeshPipeline::kFrameOffScreenUs);
+  take_frames(2);
+  const auto has_line = [this](const std::string& line) {
+    const auto lines = screen_log.lines();
+    return std::count(lines.begin(), lines.end(), line) == 1;
+  };
+  CHECK(has_line("tile 1 1 quads 6"));
+  CHECK(has_line("tile 1 -1 quads 0"));
+  CHECK(pipeline.is_up_to_date());
+  view.levels = 0;
+  view.number = 3;
+  replica.set_view(view);
+  turn();
+  CHECK(pipeline.far_bytes() == 0);
+  order_at(steady_now_us() + MeshPipeline::kFrameOffScreenUs);
+  take_frames(3);
+  CHECK(has_line("remove 1"));
+  CHECK(has_line("remove -1"));
+}

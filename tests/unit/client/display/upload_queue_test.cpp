@@ -119,3 +119,17 @@ TEST_CASE("the bytes of an upload are its quads and the runs of mixed chunks", "
   fill(mixed, 7, 3, 2);
   CHECK(gpu_bytes(mesh, &mixed) == 5 * sizeof(Quad) + mixed.runs.byte_size() + 256);
 }
+
+TEST_CASE("tiles come after chunks, finer levels first, then from near to far", "[client_app]") {
+  UploadQueue queue;
+  const auto tile = [&queue](std::uint8_t lod, std::int32_t x) {
+    ChunkUpload upload;
+    upload.tile = std::make_shared<const TileMesh>();
+    queue.put({lod, {x, 0, 0}}, std::move(upload));
+  };
+  tile(2, 1);
+  tile(1, -7);
+  tile(1, 6);
+  queue.put(row_chunk(99), upload_of(Urgency::terrain));
+  CHECK(order_of(queue) == Order{99, 6, -7, 1});
+}

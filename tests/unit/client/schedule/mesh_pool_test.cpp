@@ -136,3 +136,37 @@ TEST_CASE("a pool that is full takes no more jobs until results are taken", "[sc
   static_cast<void>(bench.result_of(pushed));
   CHECK(bench.pool->push(job_of(pushed + 1, chunk_with({}))));
 }
+
+TEST_CASE("a worker meshes a tile while chunks wait, and takes a bounded number of tiles",
+          "[schedule]") {
+  const unsigned workers = GENERATE(0U, 1U);
+  CAPTURE(workers);
+  Bench bench(workers);
+  std::size_t pushed = 0;
+  while (bench.pool->has_room_for_tiles()) {
+    FarMeshJob job{{1, {0, 0, 0}}, ++pushed, chunk_with({{5, 5, 5}}), true};
+    REQUIRE(bench.pool->push(std::move(job)));
+  }
+  CHECK(pushed <= MeshPool::kTilesPerWorker);
+  for (std::uint64_t i = 1; workers == 1 && i <= 8; ++i)
+    REQUIRE(bench.pool->push(job_of(i, chunk_with({}))));
+  std::vector<FarMeshResult> tiles;
+  while (tiles.size() < pushed) {
+    for (FarMeshResult& tile : bench.pool->take_tiles()) tiles.push_back(std::move(tile));
+    std::this_thread::yield();
+  }
+  CHECK(bench.pool->tiles_in_flight() == 0);
+  for (const FarMeshResult& tile : tiles) {
+    CHECK(tile.edge == kEdge);
+    CHECK(tile.mesh->whole.quad_count() == 6);
+    CHECK(tile.mesh->octants.size() == 8);
+  }
+}
+
+TEST_CASE("a result names the sides without a neighbour", "[schedule]") {
+  Bench bench(0);
+  MeshJob job = job_of(1, chunk_with({{5, 5, 5}}));
+  job.neighbours[2] = chunk_with({});
+  REQUIRE(bench.pool->push(std::move(job)));
+  CHECK(bench.result_of(1).open_sides == 0b111011);
+}

@@ -31,6 +31,7 @@ struct Server {
   Welcome welcome;
   ClientSequence resolved = 0;
   EditBudget edit_budget;
+  std::uint64_t features = 0;
   AuthorityModel world{kEdge, 3};
 
   Welcome make_welcome() {
@@ -45,6 +46,7 @@ struct Server {
     welcome.view_radius_max = 8;
     welcome.edit_volume_max = 1000;
     welcome.edit_budget = edit_budget;
+    welcome.features = features;
     welcome.signature = sign(keys_of_server, server_transcript(hello, welcome, std::nullopt));
     return welcome;
   }

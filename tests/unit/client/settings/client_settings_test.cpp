@@ -12,6 +12,7 @@ ClientSettings unusual_settings() {
   out.quality = QualityChoice::low;
   out.field_of_view = 91.5;
   out.view_radius = 11;
+  out.far_levels = 3;
   out.memory_mib = 4096;
   out.sensitivity = 0.35;
   out.invert_y = true;
@@ -75,6 +76,8 @@ TEST_CASE("a setting that cannot be used is named with its line, and the others 
   CHECK(only_warning("view.radius = 6.5") ==
         "client.toml:1: view.radius: must be a whole number from 1 to 64");
   CHECK_THAT(only_warning("view.radius = -1"), Catch::Contains("must be a whole number"));
+  CHECK(only_warning("view.far_levels = 9") ==
+        "client.toml:1: view.far_levels: must be a whole number from 0 to 8");
   CHECK_THAT(only_warning("view.field_of_view = nan"), Catch::Contains("must be a number"));
   CHECK_THAT(only_warning("view.memory_mib = \"all\""), Catch::Contains("must be a whole number"));
   CHECK_THAT(only_warning("interface = 2"), Catch::Contains("interface: must be a table"));

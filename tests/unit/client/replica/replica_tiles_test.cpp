@@ -1,0 +1,88 @@
+// Tiles: keys of level 1 or more never reach the chunks.
+#include "tests/unit/client/far/some_tile.hpp"
+#include "tests/unit/client/replica/replica_bench.hpp"
+
+using namespace runstone;
+using runstone::test::chunks_of;
+using runstone::test::ReplicaBench;
+using runstone::test::some_tile;
+
+namespace {
+
+struct TileBench : ReplicaBench {
+  TileBench() {
+    View view{2, {0, 0, 0}, 2, 2};
+    view.levels = 2;
+    replica.set_view(view);
+  }
+  static Chunks message_of(const ChunkKey& key, RunChunk voxels, std::uint32_t view = 2) {
+    Chunk chunk;
+    chunk.voxels = std::move(voxels);
+    return chunks_of(ChunkSnapshot{key, std::move(chunk)}, view);
+  }
+};
+
+constexpr ChunkKey kTile{1, {0, 0, 0}}, kCoarse{2, {0, 0, 0}};
+
+}  // namespace
+
+TEST_CASE_METHOD(TileBench, "tiles are kept apart from the chunks of the same place", "[replica]") {
+  load(kHere);
+  SplitMix64 rng{1};
+  const RunChunk tile = some_tile(rng);
+  replica.receive(message_of(kTile, tile), kNow);
+  replica.receive(UniformChunks{2, {{kCoarse, 1, {}}}}, kNow);
+  REQUIRE(replica.far_tiles().find(kTile));
+  CHECK(*replica.far_tiles().find(kTile) == tile);
+  CHECK(replica.far_tiles().count() == 2);
+  CHECK(replica.confirmed_count() == 1);
+  CHECK(replica.current_count() == 1);
+  CHECK(*replica.shown(kHere) == world.chunk(kHere.at).voxels);
+  const ReplicaChanges changes = replica.drain_changes();
+  CHECK(changes.chunks.empty());
+  CHECK(changes.tiles == std::vector<ChunkKey>{kTile, kCoarse});
+  CHECK(replica.drain_changes().tiles.empty());
+}
+
+TEST_CASE_METHOD(TileBench, "the newest tile counts, whatever view it answers", "[replica]") {
+  SplitMix64 rng{2};
+  const RunChunk first = some_tile(rng), second = some_tile(rng);
+  replica.receive(message_of(kTile, first, 2), kNow);
+  replica.receive(message_of(kTile, second, 1), kNow);
+  CHECK(*replica.far_tiles().find(kTile) == second);
+}
+
+TEST_CASE_METHOD(TileBench, "tiles outside of the view and edits of tiles are ignored",
+                 "[replica]") {
+  SplitMix64 rng{3};
+  replica.receive(message_of({1, {9, 0, 0}}, some_tile(rng)), kNow);
+  replica.receive(message_of({3, {0, 0, 0}}, some_tile(rng)), kNow);
+  replica.receive(UniformChunks{2, {{{8, {0, 0, 0}}, 1, {}}}}, kNow);
+  replica.receive(chunks_of(ChunkEdits{kTile, 0, {}, {}, {}}, 2), kNow);
+  replica.receive(ChunkUnavailable{2, {kTile}, UnavailableReason::damaged});
+  replica.receive(ChunksNotModified{2, {{kTile, 1}}}, 5);
+  replica.receive(DigestCheck{{{kTile, {}, {}}}}, 6);
+  CHECK(replica.far_tiles().count() == 0);
+  CHECK(replica.unavailable_count() == 0);
+  CHECK(replica.confirmed_count() == 0);
+  CHECK(replica.counters().answers_outside == 6);
+  CHECK(replica.take_requests().empty());
+}
+
+TEST_CASE_METHOD(TileBench, "tiles stay in the past and on a new connection, and leave with a view",
+                 "[replica]") {
+  SplitMix64 rng{4};
+  replica.receive(message_of(kTile, some_tile(rng)), kNow);
+  replica.show_moment(PastMoment{1, 0});
+  CHECK(replica.far_tiles().count() == 1);
+  replica.receive(UniformChunks{2, {{kCoarse, 1, {}}}}, kNow);
+  CHECK(replica.far_tiles().count() == 2);
+  replica.show_moment(std::nullopt);
+  static_cast<void>(replica.open(parameters()));
+  CHECK(replica.far_tiles().count() == 2);
+  CHECK(replica.take_claims().empty());
+  replica.set_view({3, {0, 0, 0}, 2, 2});
+  CHECK(replica.far_tiles().count() == 0);
+  replica.reset();
+  CHECK(replica.far_tiles().bytes() == 0);
+}
