@@ -41,6 +41,9 @@ class ClientRig::WatchedScreen final : public Screen {
               const RunChunk* voxels) override {
     screen_->upload(key, edge, mesh, voxels);
   }
+  void upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh) override {
+    screen_->upload_tile(key, edge, mesh);
+  }
   void remove(const ChunkKey& key) override { screen_->remove(key); }
   void set_overlay(std::shared_ptr<const OverlayFrame> overlay) override {
     screen_->set_overlay(std::move(overlay));
