@@ -16,6 +16,7 @@
 #include "client/report/exit_code.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/steady_clock.hpp"
+#include "protocol/codec/view_tiles.hpp"
 
 namespace runstone {
 namespace {
@@ -139,6 +140,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     if (panels_.step(hud_.shown_panels(), now_us)) pipeline_.moved();
     limit_memory(now_us);
     limit_far_memory(now_us);
+    look_at_horizon(now_us);
     poll_window();
     handle_input(now_us);
     step_menu(now_us);
@@ -295,6 +297,13 @@ void Client::limit_far_memory(TimeUs now_us) {
   drain_changes();
 }
 
+void Client::look_at_horizon(TimeUs now_us) {
+  if (!session_.replica().opened() || tile_levels(session_.view()) == 0) return;
+  horizon_.begin(started_us_);
+  if (horizon_.is_open())
+    horizon_.look(session_.replica().far_tiles(), pipeline_.is_far_meshed(), now_us);
+}
+
 void Client::drain_changes() {
   const ReplicaChanges changes = session_.replica().drain_changes();
   pipeline_.take(changes, session_.clock(), steady_now_us());
@@ -437,7 +446,8 @@ ClientReport Client::report() const {
              far_budget_.bytes_max(),
              session_.view().levels,
              far_budget_.wanted(),
-             scene_.reach()};
+             scene_.reach(),
+             horizon_.report()};
   network_.add_to(out);
   pipeline_.add_to(out);
   return out;

@@ -67,6 +67,7 @@ class Client {
   void limit_memory(TimeUs now_us);
   /// Keeps the memory of tiles within their share of the budget.
   void limit_far_memory(TimeUs now_us);
+  void look_at_horizon(TimeUs now_us);
   /// Sends what is queued, and meshes what changed.
   void flush();
   /// Logs who came and left, once a second.
@@ -107,6 +108,7 @@ class Client {
   PreviewExchange previews_;
   InputRouter input_;
   FarBudget far_budget_;
+  HorizonRecorder horizon_;
   MemoryBudget budget_;  // of all but the tiles
   ViewFollower view_;
   TerminalChat chat_;

@@ -91,6 +91,12 @@ bool ScriptActions::loaded() const {
   return pipeline_.is_up_to_date() || (since_us && steady_now_us() - *since_us >= kMeshWaitUsMax);
 }
 
+bool ScriptActions::sees_horizon() const {
+  if (!loaded() || !pipeline_.is_far_meshed()) return false;
+  const FarTiles::Missing missing = session_.replica().far_tiles().missing();
+  return missing.roots + missing.others == 0;
+}
+
 bool ScriptActions::synced(std::uint64_t mark) const {
   // Two pongs are needed, because the first one may answer a ping that was sent before the mark.
   return view_.is_complete() && session_.pongs() >= mark + 2 &&

@@ -55,6 +55,7 @@ class ScriptActions final : public ScriptHost {
     return tool_.submit(edit, due_us, now_us, part);
   }
   bool loaded() const override;
+  bool sees_horizon() const override;
   bool durable() const override { return session_.replica().local_edits().all().empty(); }
   std::uint64_t sync_mark() const override { return session_.pongs(); }
   bool synced(std::uint64_t mark) const override;

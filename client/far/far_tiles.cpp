@@ -100,6 +100,31 @@ TilePtr FarTiles::find(const ChunkKey& key) const {
   return held == tiles_.end() ? nullptr : held->second;
 }
 
+FarTiles::Missing FarTiles::missing() const {
+  Missing out;
+  if (!view_ || tile_levels(*view_) == 0) return out;
+  const CoordLimit world = CoordLimit::of(edge_);
+  const std::uint8_t levels = tile_levels(*view_);
+  const ChunkCoord centre = tile_at(view_->centre, levels);
+  const std::int32_t radius = view_->radius_h;
+  for (std::int32_t dx = -radius; dx <= radius; ++dx) {
+    for (std::int32_t dz = -radius; dz <= radius; ++dz) {
+      for (std::int32_t dy = -kTileRadiusV; dy <= kTileRadiusV; ++dy) {
+        const ChunkKey root{levels, {centre.x + dx, centre.y + dy, centre.z + dz}};
+        if (has_key(*view_, world, root) && !tiles_.contains(root)) ++out.roots;
+      }
+    }
+  }
+  for (const auto& [key, tile] : tiles_) {
+    if (key.lod <= 1 || is_empty_tile(*tile)) continue;
+    for (unsigned i = 0; i < kTileChildren; ++i) {
+      const ChunkKey child = tile_child(key, i);
+      if (has_key(*view_, world, child) && !tiles_.contains(child)) ++out.others;
+    }
+  }
+  return out;
+}
+
 std::vector<ChunkKey> FarTiles::drain_changes() {
   std::vector<ChunkKey> out(changed_.begin(), changed_.end());
   changed_.clear();

@@ -42,6 +42,13 @@ class FarTiles {
 
   /// Returns null if the tile is not held.
   TilePtr find(const ChunkKey& key) const;
+  struct Missing {
+    std::size_t roots = 0;   // tiles of the view's highest level
+    std::size_t others = 0;  // tiles whose parent is held and is not empty
+  };
+  /// Returns the number of tiles that the server is expected to send and that are not held. Cost:
+  /// O(tiles of the view * log tiles).
+  Missing missing() const;
   std::size_t count() const { return tiles_.size(); }
   /// Returns the number of tiles that are not empty.
   std::size_t solid_count() const { return solid_count_; }

@@ -52,10 +52,11 @@ Json path_json(const PathReport& path) {
   return out;
 }
 
+Json ms(const std::optional<TimeUs>& us) {
+  return us ? Json(static_cast<double>(*us) / 1000) : Json(nullptr);
+}
+
 Json part_json(const JoinedPart& part) {
-  const auto ms = [](const std::optional<TimeUs>& us) {
-    return us ? Json(static_cast<double>(*us) / 1000) : Json(nullptr);
-  };
   return Json{{"chunks", part.chunks},
               {"meshed", part.done},
               {"first_ms", ms(part.first_us)},
@@ -116,9 +117,14 @@ Json memory_json(const MemoryUse& use, const BudgetReport& budget) {
 }
 
 Json far_json(const FarReport& far) {
-  return Json{
-      {"tiles", far.tiles},   {"bytes", far.bytes},          {"budget_bytes", far.bytes_max},
-      {"levels", far.levels}, {"levels_wanted", far.wanted}, {"reach", far.reach}};
+  return Json{{"tiles", far.tiles},
+              {"bytes", far.bytes},
+              {"budget_bytes", far.bytes_max},
+              {"levels", far.levels},
+              {"levels_wanted", far.wanted},
+              {"reach", far.reach},
+              {"coarse_ms", ms(far.horizon.coarse_us)},
+              {"all_ms", ms(far.horizon.all_us)}};
 }
 
 Json cache_json(const std::optional<CacheCounters>& c) {

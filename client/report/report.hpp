@@ -5,6 +5,7 @@
 
 #include "client/cache/chunk_cache.hpp"
 #include "client/schedule/histogram.hpp"
+#include "client/far/horizon_recorder.hpp"
 #include "client/schedule/join_recorder.hpp"
 #include "client/schedule/latency_recorder.hpp"
 #include "client/schedule/memory_budget.hpp"
@@ -51,6 +52,7 @@ struct FarReport {
   std::size_t bytes_max = 0;         // of the budget
   unsigned levels = 0, wanted = 0;   // of the view; as FarBudget
   double reach = 0;                  // how far ground is seen, voxels
+  HorizonReport horizon;
 };
 
 /// What MemoryBudget did.

@@ -100,7 +100,7 @@ script::Step travel_step(ScriptWords& words) {
 }
 
 script::Step wait_step(ScriptWords& words) {
-  const std::string_view what = words.word("SECONDS, loaded, durable, synced or chat");
+  const std::string_view what = words.word("SECONDS, loaded, horizon, durable, synced or chat");
   if (what == "chat") {
     script::WaitChat wait{read_number<double>(words, "SECONDS", 0, 1e6), {}};
     wait.text = words.rest();
@@ -109,6 +109,7 @@ script::Step wait_step(ScriptWords& words) {
   }
   std::optional<script::Until> until;
   if (what == "loaded") until = script::Until::loaded;
+  if (what == "horizon") until = script::Until::horizon;
   if (what == "durable") until = script::Until::durable;
   if (what == "synced") until = script::Until::synced;
   if (until) {
@@ -119,7 +120,7 @@ script::Step wait_step(ScriptWords& words) {
   const auto seconds = to_number<double>(what);
   if (!seconds || *seconds < 0) {
     throw LineError{"\"" + std::string(what) +
-                    "\" is none of SECONDS, loaded, durable, synced, chat"};
+                    "\" is none of SECONDS, loaded, horizon, durable, synced, chat"};
   }
   return script::Wait{*seconds};
 }

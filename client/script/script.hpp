@@ -97,7 +97,7 @@ struct Place {
 struct Wait {
   double seconds = 0;
 };
-enum class Until : std::uint8_t { loaded, durable, synced };
+enum class Until : std::uint8_t { loaded, horizon, durable, synced };
 struct WaitUntil {
   Until what = Until::loaded;
   double seconds_max = 0;

@@ -64,6 +64,8 @@ class ScriptHost {
   /// Returns true if every chunk in the view around the player is here and, in a client that draws,
   /// drawn.
   virtual bool loaded() const = 0;
+  /// Returns true if loaded(), and every tile of distant ground in the view is here and drawn, too.
+  virtual bool sees_horizon() const = 0;
   /// Returns true if all local edits are known to be on the server's disk.
   virtual bool durable() const = 0;
   /// Returns a mark for synced().

@@ -327,6 +327,10 @@ ScriptRunner::Progress ScriptRunner::run(const script::WaitUntil& c) {
     case script::Until::loaded:
       reached = host_.loaded();
       break;
+    case script::Until::horizon:
+      reached = host_.sees_horizon();
+      name = "complete to the horizon";
+      break;
     case script::Until::durable:
       reached = host_.durable();
       name = "durable";

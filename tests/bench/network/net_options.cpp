@@ -69,7 +69,8 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
       ->delimiter(',')
       ->check(
           CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack",
-                                              "memory", "siege", "strangers", "floods", "backup"}));
+                                              "horizon", "memory", "siege", "strangers", "floods",
+                                              "backup"}));
   net->add_option("--profiles", options.profiles, "links; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(profiles));

@@ -90,6 +90,20 @@ TEST_CASE("the testbed measures joins and edits over a link", "[testbed]") {
   CHECK_FALSE(testbed["bars"].empty());
 }
 
+TEST_CASE("the testbed measures joins to the horizon", "[testbed]") {
+  std::string tables;
+  const json testbed = run_testbed({"--experiments", "horizon", "--profiles", "loopback"}, tables);
+  for (const char* far : {"sees 4096", "sees 16384"}) {
+    CAPTURE(far);
+    CHECK(figure(testbed, "horizon", far, "coarse_ms") > 0);
+    CHECK(figure(testbed, "horizon", far, "coarse_ms") <=
+          figure(testbed, "horizon", far, "all_ms"));
+    CHECK(figure(testbed, "horizon", far, "bytes") >
+          figure(testbed, "horizon", "sees 256", "bytes"));
+  }
+  CHECK(tables.find("### Horizon") != std::string::npos);
+}
+
 TEST_CASE("the testbed measures transfers without privileges", "[testbed]") {
   std::string tables;
   const json testbed = run_testbed(

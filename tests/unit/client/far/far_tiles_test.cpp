@@ -115,3 +115,35 @@ TEST_CASE("random tiles and views keep the tiles within the view and their bytes
   CHECK(tiles.solid_count() == 0);
   CHECK(tiles.bytes() == 0);
 }
+
+TEST_CASE("tiles are missing until they or an empty one above them are held", "[far]") {
+  SplitMix64 rng{7};
+  FarTiles tiles;
+  CHECK(tiles.missing().roots == 0);
+  const View view = view_at({0, 0, 0}, 2);
+  tiles.set_view(view, kTileEdge);
+  const CoordLimit world = CoordLimit::of(kTileEdge);
+  std::vector<ChunkKey> roots;
+  for (std::int32_t x = -3; x <= 3; ++x) {
+    for (std::int32_t y = -2; y <= 2; ++y) {
+      for (std::int32_t z = -3; z <= 3; ++z) {
+        if (has_key(view, world, {2, {x, y, z}})) roots.push_back({2, {x, y, z}});
+      }
+    }
+  }
+  CHECK(tiles.missing().roots == roots.size());
+  for (const ChunkKey& root : roots) {
+    if (root.at == ChunkCoord{}) {
+      REQUIRE(tiles.receive(root, some_tile(rng)));
+    } else {
+      REQUIRE(tiles.receive_uniform(root, kEmpty));
+    }
+  }
+  CHECK(tiles.missing().roots == 0);
+  CHECK(tiles.missing().others == kTileChildren);
+  REQUIRE(tiles.receive_uniform({1, {0, 0, 0}}, kEmpty));
+  REQUIRE(tiles.receive({1, {1, 0, 0}}, some_tile(rng)));
+  CHECK(tiles.missing().others == kTileChildren - 2);
+  REQUIRE(tiles.receive_uniform({2, {0, 0, 0}}, kEmpty));
+  CHECK(tiles.missing().others == 0);
+}

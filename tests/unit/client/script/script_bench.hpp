@@ -22,7 +22,7 @@ struct FakeScriptHost final : ScriptHost {
     TimeUs due_us, now_us;
     ActionPart part;
   };
-  bool open = true, is_loaded = true, is_durable = true, draws = true, takes = true;
+  bool open = true, is_loaded = true, is_horizon_seen = true, is_durable = true, draws = true, takes = true;
   std::optional<bool> picture = true;
   std::uint64_t pongs = 0;
   WorldPos at{10, 20, 30};
@@ -103,6 +103,7 @@ struct FakeScriptHost final : ScriptHost {
     return {};
   }
   bool loaded() const override { return is_loaded; }
+  bool sees_horizon() const override { return is_horizon_seen; }
   bool durable() const override { return is_durable; }
   std::uint64_t sync_mark() const override { return pongs; }
   bool synced(std::uint64_t mark) const override { return pongs >= mark + 2; }

@@ -150,13 +150,16 @@ TEST_CASE_METHOD(ScriptBench, "digging and placing go through the picked voxel",
 }
 
 TEST_CASE_METHOD(ScriptBench, "waiting for seconds and for states blocks until then", "[bots]") {
-  load("wait 1.5\nwait loaded\nwait durable\nwait synced");
-  host.is_loaded = host.is_durable = false;
+  load("wait 1.5\nwait loaded\nwait horizon\nwait durable\nwait synced");
+  host.is_loaded = host.is_horizon_seen = host.is_durable = false;
   runner->step(100);
   CHECK(runner->due_us() == 1'500'100);
   runner->step(1'500'100);
   CHECK_FALSE(runner->finished());
   host.is_loaded = true;
+  runner->step(1'550'000);
+  CHECK_FALSE(runner->finished());
+  host.is_horizon_seen = true;
   runner->step(1'600'000);
   host.is_durable = true;
   runner->step(1'700'000);

@@ -132,9 +132,9 @@ TEST_CASE("an error names file, line and mistake", "[bots]") {
   CHECK(message_of("box 1 2 3 4 5 6 stone some") ==
         "s.txt:1: MASK: \"some\" is none of empty, solid, only:MATERIAL");
   CHECK(message_of("wait ready") ==
-        "s.txt:1: \"ready\" is none of SECONDS, loaded, durable, synced, chat");
+        "s.txt:1: \"ready\" is none of SECONDS, loaded, horizon, durable, synced, chat");
   CHECK(message_of("wait -1") ==
-        "s.txt:1: \"-1\" is none of SECONDS, loaded, durable, synced, chat");
+        "s.txt:1: \"-1\" is none of SECONDS, loaded, horizon, durable, synced, chat");
   CHECK(message_of("repeat 2\ndig") == "s.txt:1: repeat without end");
   CHECK(message_of("end") == "s.txt:1: end without repeat");
   CHECK(message_of("look 10 91") == "s.txt:1: PITCH: \"91\" is not a number in its range");
