@@ -29,6 +29,7 @@ constexpr TimeUs kRestUsWindow = 2'000;
 constexpr TimeUs kRestUsBackground = 10'000;
 /// A view whose chunks have been here for this long is taken as meshed.
 constexpr TimeUs kMeshedUs = 2'000'000;
+constexpr TimeUs kHorizonLookUs = 20'000;  // between two looks at the distant ground
 constexpr TimeUs kPlayerLogUs = 1'000'000;
 /// The connecting screen ends with this many meshed chunks, or this long after the world opened.
 constexpr std::uint64_t kGroundChunks = 27;
@@ -140,7 +141,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     if (panels_.step(hud_.shown_panels(), now_us)) pipeline_.moved();
     limit_memory(now_us);
     limit_far_memory(now_us);
-    look_at_horizon(now_us);
+    if (now_us >= horizon_due_us_) look_at_horizon(now_us);
     poll_window();
     handle_input(now_us);
     step_menu(now_us);
@@ -299,6 +300,7 @@ void Client::limit_far_memory(TimeUs now_us) {
 
 void Client::look_at_horizon(TimeUs now_us) {
   if (!session_.replica().opened() || tile_levels(session_.view()) == 0) return;
+  horizon_due_us_ = now_us + kHorizonLookUs;
   horizon_.begin(started_us_);
   if (horizon_.is_open())
     horizon_.look(session_.replica().far_tiles(), pipeline_.is_far_meshed(), now_us);
@@ -454,6 +456,7 @@ ClientReport Client::report() const {
 }
 
 int Client::finish(int code) {
+  look_at_horizon(steady_now_us());
   network_.finish();
   if (runner_) {
     for (const std::string& failure : runner_->failures())

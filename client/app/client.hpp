@@ -67,6 +67,7 @@ class Client {
   void limit_memory(TimeUs now_us);
   /// Keeps the memory of tiles within their share of the budget.
   void limit_far_memory(TimeUs now_us);
+  /// Records how much of the distant ground is here.
   void look_at_horizon(TimeUs now_us);
   /// Sends what is queued, and meshes what changed.
   void flush();
@@ -109,6 +110,7 @@ class Client {
   InputRouter input_;
   FarBudget far_budget_;
   HorizonRecorder horizon_;
+  TimeUs horizon_due_us_ = 0;  // when it looks again
   MemoryBudget budget_;  // of all but the tiles
   ViewFollower view_;
   TerminalChat chat_;

@@ -16,21 +16,18 @@ struct HorizonReport {
 
 class HorizonRecorder {
  public:
-  /// The least time between two looks, because each visits the tiles.
-  static constexpr TimeUs kLookUs = 20'000;
-
   /// Begins unless it has begun.
   void begin(TimeUs began_us) {
     if (!began_us_) began_us_ = began_us;
   }
   /// Returns true if it has begun and not all of the ground was there yet.
   bool is_open() const { return began_us_ && !report_.all_us; }
-  /// Looks at the tiles, unless the last look was a moment ago. Requires is_open().
+  /// Looks at the tiles. Requires is_open(). Cost: that of FarTiles::missing().
   void look(const FarTiles& tiles, bool is_meshed, TimeUs now_us);
   const HorizonReport& report() const { return report_; }
 
  private:
-  std::optional<TimeUs> began_us_, looked_us_;
+  std::optional<TimeUs> began_us_;
   HorizonReport report_;
 };
 

@@ -11,12 +11,14 @@
 namespace runstone {
 namespace {
 
-/// What a tile costs the player for whom it was made, in chunks: those that were loaded, and the
-/// tiles.
+/// Returns what a tile costs the player for whom it was made, besides its request: a load for each
+/// tile that was made, and another one for the eight chunks of a tile of level 1. A chunk that is
+/// neither kept nor sent takes a fraction of the time of a load. Uniform tiles are free, as most of
+/// them need no chunks.
 std::size_t price_of(const std::vector<MadeTile>& made) {
   std::size_t price = 0;
   for (const MadeTile& one : made) {
-    if (!one.is_known) price += one.key.lod == 1 ? 1 + kTileChildren : 1;
+    if (!one.is_known && !one.tile->voxels.is_uniform()) price += one.key.lod == 1 ? 2 : 1;
   }
   return price;
 }
@@ -104,7 +106,7 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
 void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
   std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
   for (const MadeTile& one : made) {
-    if (!one.is_worth_storing()) continue;
+    if (!one.is_worth_storing() || one.tile->voxels.is_uniform()) continue;
     if (world.environment.newest_tile_edit(one.key) > one.through) continue;
     tiles.emplace_back(one.key, one.tile);
   }

@@ -15,7 +15,9 @@ WorldConfig with_tiles() {
 
 /// A world whose ground is the layer of chunks at y = 0. Each tile that has ground is dotted.
 struct TileBench : WorldBench {
-  TileBench() : WorldBench(with_tiles()) { has_empty_base = true; }
+  explicit TileBench(WorldConfig c = with_tiles()) : WorldBench(std::move(c)) {
+    has_empty_base = true;
+  }
 
   void enter(SessionId session, std::uint8_t levels = 3, std::uint64_t features = kFeatureTiles) {
     const auto who = static_cast<std::uint8_t>(session);
@@ -146,19 +148,43 @@ TEST_CASE("a tile that is edited while it is made is made once more and not save
   CHECK(std::ranges::count(again, first.key, &TileRequest::key) == 1);
 }
 
-TEST_CASE("tiles are saved unless they are approximate or stored already") {
+TEST_CASE("tiles are saved unless they are approximate, uniform or stored already") {
   TileBench bench;
   bench.enter(1);
   const ChunkKey key = bench.environment.tile_requests.front().key;
   bench.environment.tile_requests.pop_front();
-  MadeTile stored = bench.made({1, {9, 9, 9}}, 0), approximate = bench.made({1, {8, 9, 9}}, 0);
+  // Those at y = 0 have ground.
+  MadeTile stored = bench.made({1, {9, 0, 9}}, 0), approximate = bench.made({1, {8, 0, 9}}, 0);
   stored.is_known = true;
   approximate.is_approximate = true;
-  bench.server.tiles_made(
-      key, {stored, approximate, bench.made({2, {7, 7, 7}}, 0), bench.made(key, 0)}, bench.now());
+  bench.server.tiles_made(key,
+                          {stored, approximate, bench.made({1, {7, 7, 7}}, 0),
+                           bench.made({2, {7, 0, 7}}, 0), bench.made(key, 0)},
+                          bench.now());
   REQUIRE(bench.environment.saved_tiles.size() == 2);
-  CHECK(bench.environment.saved_tiles[0].first == ChunkKey{2, {7, 7, 7}});
+  CHECK(bench.environment.saved_tiles[0].first == ChunkKey{2, {7, 0, 7}});
   CHECK(bench.environment.saved_tiles[1].first == key);
+}
+
+TEST_CASE("a player pays for tiles with chunk loads, and gets the others when they come back") {
+  WorldConfig c = with_tiles();
+  c.chunk_loads = {20, 150};
+  TileBench bench(c);
+  bench.enter(1);
+  const std::size_t at_once = bench.answer_tiles().size();
+  // The view has 39 chunks and 65 roots. The 13 roots with ground cost one load more each.
+  CHECK(at_once > 65);
+  CHECK(at_once < 150 - 39);
+  const std::size_t before = bench.answer_tiles().size();
+  bench.tick(1'000'000);
+  const std::size_t later = before + bench.answer_tiles().size();
+  CHECK(later > 0);
+  CHECK(later <= 22);
+  for (int n = 0; n < 20; ++n) {
+    bench.tick(1'000'000);
+    bench.answer_tiles();
+  }
+  CHECK(bench.tiles_of(1).size() == 13 * (5 + 2 + 2));
 }
 
 TEST_CASE("a tile that could not be made is requested again after a pause") {
