@@ -1,6 +1,7 @@
 #include "server/interest/tile_interest.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/core/assert.hpp"
 
@@ -42,8 +43,19 @@ TileInterest::Place TileInterest::place_of(const ChunkKey& key) const {
 }
 
 TileStatus TileInterest::status(const ChunkKey& key) const {
-  const auto found = tiles_.find(key);
-  return found == tiles_.end() ? TileStatus::unknown : found->second;
+  return view_ && has_key(*view_, limit_, key) ? tiles_.at(key) : TileStatus::unknown;
+}
+
+std::vector<ChunkKey> TileInterest::known() const {
+  std::vector<ChunkKey> out;
+  if (!view_) return out;
+  out.reserve(known_);
+  for (std::uint8_t level = 1; level <= tile_levels(*view_); ++level) {
+    for_each_tile(*view_, limit_, level, [&](const ChunkKey& key) {
+      if (tiles_.at(key) != TileStatus::unknown) out.push_back(key);
+    });
+  }
+  return out;
 }
 
 bool TileInterest::is_due(const ChunkKey& key) const {
@@ -52,15 +64,14 @@ bool TileInterest::is_due(const ChunkKey& key) const {
 
 void TileInterest::set(const ChunkKey& key, TileStatus now) {
   const TileStatus was = status(key);
+  if (was == now) return;
   if (was == TileStatus::wanted) queue_.erase(place_of(key));
   if (was == TileStatus::waiting) --waiting_;
   if (now == TileStatus::wanted) queue_.insert(place_of(key));
   if (now == TileStatus::waiting) ++waiting_;
-  if (now == TileStatus::unknown) {
-    tiles_.erase(key);
-  } else {
-    tiles_.insert_or_assign(key, now);
-  }
+  if (was == TileStatus::unknown) ++known_;
+  if (now == TileStatus::unknown) --known_;
+  tiles_.set(key, now);
 }
 
 void TileInterest::drop(const ChunkKey& key, std::vector<ChunkKey>& left) {
@@ -93,8 +104,6 @@ TileInterest::Moved TileInterest::set_view(const View& view, std::span<const Vie
   const std::optional<View> before = view_;
   const std::uint8_t levels = tile_levels(view);
   const std::uint8_t levels_before = before ? tile_levels(*before) : std::uint8_t{0};
-  // The places in the queue depend on the centre, so the queue is made anew at the end.
-  queue_.clear();
   const auto leaves = [&](const ChunkKey& key) {
     return !has_key(view, limit_, key) ||
            std::any_of(skipped.begin(), skipped.end(),
@@ -106,22 +115,28 @@ TileInterest::Moved TileInterest::set_view(const View& view, std::span<const Vie
       if (has_same_tiles(*before, view, level)) continue;
       for_each_tile(*before, limit_, level, [&](const ChunkKey& key) {
         ++moved.steps;
-        if (status(key) != TileStatus::unknown && leaves(key)) leaving.push_back(key);
+        if (tiles_.at(key) != TileStatus::unknown && leaves(key)) leaving.push_back(key);
       });
     }
   } else {
-    moved.steps += tiles_.size();
-    for (const auto& [key, status] : tiles_) {
-      if (leaves(key)) leaving.push_back(key);
-    }
-    std::sort(leaving.begin(), leaving.end());
+    leaving = known();
+    moved.steps += leaving.size();
+    std::erase_if(leaving, [&](const ChunkKey& key) { return !leaves(key); });
   }
   for (const ChunkKey& key : leaving) drop(key, moved.left);
-  view_ = view;
-  for (const auto& [key, status] : tiles_) {
-    if (status == TileStatus::wanted) queue_.insert(place_of(key));
+  if (!before || before->radius_h != view.radius_h) {
+    const std::vector<ChunkKey> kept = known();
+    std::vector<TileStatus> statuses;
+    for (const ChunkKey& key : kept) statuses.push_back(tiles_.at(key));
+    moved.steps += kept.size();
+    tiles_.reset(view.radius_h);
+    for (std::size_t i = 0; i < kept.size(); ++i) tiles_.set(kept[i], statuses[i]);
   }
-  moved.steps += queue_.size();
+  // The places in the queue depend on the centre.
+  const std::set<Place> queue = std::exchange(queue_, {});
+  moved.steps += queue.size();
+  view_ = view;
+  for (const Place& place : queue) queue_.insert(place_of(std::get<ChunkKey>(place)));
   // Parents come first, because a tile is due only if its parent is sent.
   for (std::uint8_t level = levels; level >= 1; --level) {
     const bool is_root = level == levels && levels != levels_before;
@@ -166,14 +181,11 @@ std::vector<ChunkKey> TileInterest::set_sent(const ChunkKey& key, bool is_empty)
 }
 
 std::vector<ChunkKey> TileInterest::clear() {
-  std::vector<ChunkKey> left;
-  for (const auto& [key, status] : tiles_) {
-    if (is_with_client(status)) left.push_back(key);
-  }
-  std::sort(left.begin(), left.end());
-  tiles_.clear();
+  std::vector<ChunkKey> left = known();
+  std::erase_if(left, [this](const ChunkKey& key) { return !is_with_client(tiles_.at(key)); });
+  tiles_.reset(0);
   queue_.clear();
-  waiting_ = 0;
+  waiting_ = known_ = 0;
   view_.reset();
   return left;
 }

@@ -6,7 +6,7 @@
 //             view first;
 //   waiting   it is being made for the session;
 //   sent      the session has it. A changed one is sent again.
-// One thread.
+// Memory: a byte for each tile of the view, and an entry of a set for each wanted one. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,12 +14,11 @@
 #include <set>
 #include <span>
 #include <tuple>
-#include <unordered_map>
 #include <vector>
 
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/view_tiles.hpp"
-#include "server/interest/chunk_key_hash.hpp"
+#include "server/interest/tile_grid.hpp"
 
 namespace runstone {
 
@@ -34,8 +33,8 @@ class TileInterest {
     std::size_t steps = 0;       // tiles visited: the cost of the call
   };
   /// Sets the view. `skipped`: views that the client had in between; tiles outside of one of them are
-  /// sent again. Cost: O(tiles that change + discs of the levels whose centre or size changes), and
-  /// O(tiles of the view) if there are skipped views.
+  /// sent again. Cost: O(wanted tiles * log) and O(discs of the levels whose centre or size changes);
+  /// O(tiles of the view) if there are skipped views or the radius changes.
   Moved set_view(const View& view, std::span<const View> skipped = {});
 
   /// Returns the first wanted tile, or nullopt. It stays wanted.
@@ -54,11 +53,13 @@ class TileInterest {
 
   std::size_t waiting_count() const { return waiting_; }
   /// Returns the number of tiles that are wanted, waiting or sent.
-  std::size_t known_count() const { return tiles_.size(); }
+  std::size_t known_count() const { return known_; }
 
  private:
   using Place = std::tuple<int, std::int64_t, ChunkKey>;
   Place place_of(const ChunkKey& key) const;
+  /// Returns the known tiles, level by level.
+  std::vector<ChunkKey> known() const;
   /// Returns true if the session is to get this tile of the view.
   bool is_due(const ChunkKey& key) const;
   void set(const ChunkKey& key, TileStatus status);
@@ -71,9 +72,9 @@ class TileInterest {
 
   CoordLimit limit_;
   std::optional<View> view_;
-  std::unordered_map<ChunkKey, TileStatus, ChunkKeyHash> tiles_;  // without the unknown ones
-  std::set<Place> queue_;                                         // the wanted tiles
-  std::size_t waiting_ = 0;
+  TileGrid<TileStatus> tiles_;  // of view_
+  std::set<Place> queue_;       // the wanted tiles
+  std::size_t waiting_ = 0, known_ = 0;
 };
 
 }  // namespace runstone
