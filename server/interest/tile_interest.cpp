@@ -127,6 +127,7 @@ TileInterest::Moved TileInterest::set_view(const View& view, std::span<const Vie
   if (!before || before->radius_h != view.radius_h) {
     const std::vector<ChunkKey> kept = known();
     std::vector<TileStatus> statuses;
+    statuses.reserve(kept.size());
     for (const ChunkKey& key : kept) statuses.push_back(tiles_.at(key));
     moved.steps += kept.size();
     tiles_.reset(view.radius_h);
