@@ -111,7 +111,7 @@ class Client {
   FarBudget far_budget_;
   HorizonRecorder horizon_;
   TimeUs horizon_due_us_ = 0;  // when it looks again
-  MemoryBudget budget_;  // of all but the tiles
+  MemoryBudget budget_;        // of all but the tiles
   ViewFollower view_;
   TerminalChat chat_;
   WorldPanels panels_;

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "client/cache/chunk_cache.hpp"
-#include "client/schedule/histogram.hpp"
 #include "client/far/horizon_recorder.hpp"
+#include "client/schedule/histogram.hpp"
 #include "client/schedule/join_recorder.hpp"
 #include "client/schedule/latency_recorder.hpp"
 #include "client/schedule/memory_budget.hpp"

@@ -16,8 +16,7 @@ constexpr const char* kNoLevel = "chunks have a level of detail above 8";
 }  // namespace
 
 Result<Message> BodyReader::read(const wire::View& t) const {
-  View m{t.number(), {}, t.radius_h(), t.radius_v(), t.yaw(), t.pitch(), t.cone(),
-         t.levels()};
+  View m{t.number(), {}, t.radius_h(), t.radius_v(), t.yaw(), t.pitch(), t.cone(), t.levels()};
   if (m.number == 0) return bad("views are numbered from 1");
   if (m.cone > kViewConeMax) return bad("view cone exceeds half a turn");
   if (!take_coord(t.x(), t.y(), t.z(), key_edge(), m.centre))

@@ -151,8 +151,7 @@ ChunkEntry encode_chunk_edits(const ChunkEdits& edits) {
 bool ChunksBuilder::fits(const ChunkEntry& entry) const {
   if (entries_.empty()) return true;
   return entry.key.lod == entries_.front().key.lod && entries_.size() < kChunksPerMessageMax &&
-         runs_ + entry.runs <= kRunsPerMessageMax &&
-         bytes_ + entry.bytes->size() <= kBytesMax &&
+         runs_ + entry.runs <= kRunsPerMessageMax && bytes_ + entry.bytes->size() <= kBytesMax &&
          std::none_of(
              entries_.begin(), entries_.end(),
              [&](const ChunkEntry& other) { return other.key == entry.key; });

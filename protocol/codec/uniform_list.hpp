@@ -14,6 +14,7 @@ namespace runstone {
 Bytes encode_uniform(const std::vector<UniformChunk>& chunks);
 /// Decodes the list. `edge` is that of the world's chunks and bounds their coordinates; `level` is
 /// that of all chunks. The list is not canonical: equal chunks may be several entries.
-Result<std::vector<UniformChunk>> decode_uniform(ByteView in, std::uint8_t level, std::int32_t edge);
+Result<std::vector<UniformChunk>> decode_uniform(ByteView in, std::uint8_t level,
+                                                 std::int32_t edge);
 
 }  // namespace runstone

@@ -15,7 +15,9 @@ struct CoordLimit {
   /// Returns the limit of a world whose chunks have this edge, in voxels.
   static CoordLimit of(std::int32_t chunk_edge) { return {kWorldLimit / chunk_edge}; }
   constexpr bool contains(std::int64_t c) const { return c >= -limit && c < limit; }
-  constexpr bool contains(ChunkCoord c) const { return contains(c.x) && contains(c.y) && contains(c.z); }
+  constexpr bool contains(ChunkCoord c) const {
+    return contains(c.x) && contains(c.y) && contains(c.z);
+  }
 };
 
 /// Returns true if the view has this chunk and the world has it too.

@@ -26,7 +26,11 @@ class ServerEnvironment final : public WorldEnvironment {
   /// All must outlive the object.
   ServerEnvironment(ConnectedSessions& sessions, Listener& listener, ChunkSender& sender,
                     WorldReaders& readers, TileMaking& tiles)
-      : sessions_(sessions), listener_(listener), sender_(sender), readers_(readers), tiles_(tiles) {}
+      : sessions_(sessions),
+        listener_(listener),
+        sender_(sender),
+        readers_(readers),
+        tiles_(tiles) {}
 
   /// Connects the parts that are made after recovery, because they need the world. Call it once,
   /// before the first session connects. All must outlive the object.

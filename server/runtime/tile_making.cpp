@@ -9,9 +9,9 @@ namespace runstone {
 
 TileMaking::TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator& generator,
                        std::int32_t edge)
-    : strand_(strand),
-      source_(chunks, generator, edge, ledger_,
-              [](const std::string& text) { logger("store").warn("{}", text); }) {}
+    : strand_(strand), source_(chunks, generator, edge, ledger_, [](const std::string& text) {
+        logger("store").warn("{}", text);
+      }) {}
 
 void TileMaking::make(TileRequest request, const MaterialTable& materials, Then then) {
   if (!visibility_ || materials_ != materials.size()) {
@@ -22,9 +22,8 @@ void TileMaking::make(TileRequest request, const MaterialTable& materials, Then 
                          then = std::move(then)] {
     auto made = source_.make(request, *visibility);
     if (!made) logger("store").error("{}", made.error().message());
-    strand_.post([key = request.key, then, made = made ? *std::move(made) : std::vector<MadeTile>{}] {
-      then(key, made);
-    });
+    strand_.post([key = request.key, then,
+                  made = made ? *std::move(made) : std::vector<MadeTile>{}] { then(key, made); });
   });
 }
 

@@ -31,7 +31,8 @@ class TileMaking {
   using Then = std::function<void(const ChunkKey&, const std::vector<MadeTile>&)>;
 
   /// All must outlive the object.
-  TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator& generator, std::int32_t edge);
+  TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator& generator,
+             std::int32_t edge);
 
   /// Makes a tile. `materials` are those in force.
   void make(TileRequest request, const MaterialTable& materials, Then then);

@@ -124,7 +124,7 @@ class LogWriter {
   struct Job {
     SnapshotChunks chunks;
     std::optional<Sequence> checkpoint;
-    std::size_t written = 0;  // chunks that are on disk
+    std::size_t written = 0;           // chunks that are on disk
     std::optional<Keyframe> keyframe;  // only in a job for a keyframe
     JobDone done;                      // in a job for a keyframe or for tiles
     bool is_of_tiles = false;

@@ -60,8 +60,7 @@ class TileSource::Making {
     auto voxels =
         source_.generator_.coarse(tile_origin(key, source_.edge_), source_.edge_, key.lod);
     if (!voxels) return std::nullopt;
-    return tile_of_voxels(key, veiled(*std::move(voxels), visibility_, scratch_), {},
-                          true);
+    return tile_of_voxels(key, veiled(*std::move(voxels), visibility_, scratch_), {}, true);
   }
 
   /// Returns the stored tile, or nullopt if there is none, if it is damaged, or if it lacks edit
@@ -99,8 +98,7 @@ class TileSource::Making {
       version = std::max(version, children[i].chunk->version);
     }
     return tile_of_voxels(
-        key,
-        veiled_tile(runs, static_cast<unsigned>(source_.edge_), visibility_, scratch_),
+        key, veiled_tile(runs, static_cast<unsigned>(source_.edge_), visibility_, scratch_),
         version, is_approximate);
   }
 
@@ -154,7 +152,7 @@ TileSource::TileSource(ChunkSource& chunks, const Generator& generator, std::int
       cache_(options.cache_bytes) {}
 
 StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
-                                                       const VisibilityTable& visibility) {
+                                                    const VisibilityTable& visibility) {
   RUNSTONE_ASSERT(request.key.lod >= 1 && request.key.lod <= kTileLevelMax);
   if (auto found = find_ground(); !found) return Unexpected<StoreError>{found.error()};
   Making making(*this, request, visibility);

@@ -90,8 +90,9 @@ bool send_uniform(WorldState& world, SessionId session, const Clocks& now) {
                      mine.uniform.end());
   while (!mine.uniform.empty()) {
     const std::uint8_t level = mine.uniform.front().key.lod;
-    const auto end = std::find_if(mine.uniform.begin(), mine.uniform.end(),
-                                  [level](const UniformChunk& one) { return one.key.lod != level; });
+    const auto end =
+        std::find_if(mine.uniform.begin(), mine.uniform.end(),
+                     [level](const UniformChunk& one) { return one.key.lod != level; });
     const UniformChunks message{view_in_force(world, session), {mine.uniform.begin(), end}};
     if (!world.environment.send(session, encode_message(message))) {
       ++world.counters.queue_full;

@@ -67,10 +67,9 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--experiments", options.experiments,
                   "which; all but siege, strangers, floods and backup by default")
       ->delimiter(',')
-      ->check(
-          CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack",
-                                              "horizon", "memory", "siege", "strangers", "floods",
-                                              "backup"}));
+      ->check(CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack",
+                                                  "horizon", "memory", "siege", "strangers",
+                                                  "floods", "backup"}));
   net->add_option("--profiles", options.profiles, "links; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(profiles));

@@ -16,8 +16,8 @@ namespace runstone::bench {
 struct NetOptions {
   // All experiments but "siege", "strangers" and "floods", which take ten minutes each, and
   // "backup", which writes some GB.
-  std::vector<std::string> experiments = {"latency", "join",   "transfer",
-                                          "horizon", "crowd",  "attack", "memory"};
+  std::vector<std::string> experiments = {"latency", "join",   "transfer", "horizon",
+                                          "crowd",   "attack", "memory"};
   std::vector<std::string> profiles;  // of the links; empty: all
   std::vector<std::string> worlds;    // of the transfers; empty: all
   std::string luanti;                 // folder of the real world

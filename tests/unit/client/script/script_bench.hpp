@@ -22,7 +22,8 @@ struct FakeScriptHost final : ScriptHost {
     TimeUs due_us, now_us;
     ActionPart part;
   };
-  bool open = true, is_loaded = true, is_horizon_seen = true, is_durable = true, draws = true, takes = true;
+  bool open = true, is_loaded = true, is_horizon_seen = true, is_durable = true, draws = true,
+       takes = true;
   std::optional<bool> picture = true;
   std::uint64_t pongs = 0;
   WorldPos at{10, 20, 30};

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "common/core/hash.hpp"
+#include "common/core/tile_keys.hpp"
 #include "common/generate/columns_world.hpp"
 #include "common/generate/generator.hpp"
-#include "common/core/tile_keys.hpp"
 #include "common/tiles/veiled_tile.hpp"
 
 using namespace runstone;

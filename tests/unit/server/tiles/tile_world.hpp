@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
+#include "common/core/tile_keys.hpp"
 #include "common/generate/generator.hpp"
 #include "common/mesh/visibility.hpp"
-#include "common/core/tile_keys.hpp"
 #include "server/history/base_chunk.hpp"
 #include "server/history/chunk_source.hpp"
 #include "server/store/store.hpp"
