@@ -12,8 +12,20 @@
 namespace runstone::bench {
 namespace {
 
-constexpr unsigned kFarViewRadius = 8, kFarViewRadiusV = 3;  // chunks
-constexpr std::array<unsigned, 3> kFarLevels = {0, 4, 6};
+constexpr unsigned kFarViewRadiusV = 3;  // chunks
+
+/// The view radius in chunks, and the levels of tiles that are measured.
+struct FarViews {
+  unsigned radius = 8;
+  std::array<unsigned, 3> levels = {0, 4, 6};
+  /// Returns how far a view with these levels sees, in voxels, at chunks of 32 voxels.
+  unsigned reach(unsigned levels_of_view) const { return radius * 32U << levels_of_view; }
+};
+
+FarViews views_of(const NetOptions& options) {
+  return options.quick ? FarViews{3, {0, 1, 2}} : FarViews{};
+}
+
 constexpr double kHorizonSeconds = 120;
 constexpr double kCoarseMsMax = 1'000, kAllMsMax = 5'000;  // the targets on broadband
 
@@ -30,11 +42,12 @@ Result<HorizonJoin, std::string> horizon_once(Testbed& testbed, TestbedLink& lin
   const std::string script = testbed.fresh("script.txt"),
                     report_file = testbed.fresh("report.json");
   write_text(script, fmt::format("wait horizon {}\nquit\n", kHorizonSeconds));
-  auto client = testbed.start_client(
-      link, "runstone-client",
-      {"--connect", server->address, "--name", "newcomer", "--no-render", "--view",
-       fmt::to_string(kFarViewRadius), "--view-vertical", fmt::to_string(kFarViewRadiusV),
-       "--far-levels", fmt::to_string(levels), "--script", script, "--report", report_file});
+  auto client =
+      testbed.start_client(link, "runstone-client",
+                           {"--connect", server->address, "--name", "newcomer", "--no-render",
+                            "--view", fmt::to_string(views_of(testbed.options()).radius),
+                            "--view-vertical", fmt::to_string(kFarViewRadiusV), "--far-levels",
+                            fmt::to_string(levels), "--script", script, "--report", report_file});
   if (!client) return failed(client);
   if (const auto ended = testbed.finish(**client, 2 * kHorizonSeconds); !ended)
     return failed(ended);
@@ -78,14 +91,11 @@ double slowest_of(const std::vector<HorizonJoin>& joins, double HorizonJoin::* w
   return out;
 }
 
-/// Returns how far a view with these levels sees, in voxels, at chunks of 32 voxels.
-unsigned reach_of(unsigned levels) { return kFarViewRadius * 32U << levels; }
-
-void add_targets(const std::vector<HorizonJoin>& joins, unsigned levels, NetFindings& findings) {
+void add_targets(const std::vector<HorizonJoin>& joins, unsigned reach, NetFindings& findings) {
   const auto add = [&](const char* what, double HorizonJoin::* time, double most) {
     const double slowest = slowest_of(joins, time);
     findings.targets.push_back(
-        {fmt::format("first join on broadband, {} voxels far: horizon {}", reach_of(levels), what),
+        {fmt::format("first join on broadband, {} voxels far: horizon {}", reach, what),
          number_text(most) + " ms",
          fmt::format("{} ms; the slowest {} ms", number_text(median_of(joins, time)),
                      number_text(slowest)),
@@ -98,6 +108,7 @@ void add_targets(const std::vector<HorizonJoin>& joins, unsigned levels, NetFind
 }  // namespace
 
 Done measure_horizon(Testbed& testbed, NetFindings& findings) {
+  const FarViews views = views_of(testbed.options());
   const auto into = std::back_inserter(findings.tables);
   fmt::format_to(
       into,
@@ -107,16 +118,17 @@ Done measure_horizon(Testbed& testbed, NetFindings& findings) {
       "their stand-ins, without meshes.\n\n"
       "| link | sees, voxels | near view 80 %, ms | coarse, ms | complete, ms | tiles | "
       "KB received | MB in the client |\n|---|---|---|---|---|---|---|---|\n",
-      kFarViewRadius, testbed.options().repetitions);
+      views.radius, testbed.options().repetitions);
   for (const test::LinkProfile& profile : testbed.profiles()) {
     const char* link = name_of(profile.passes_all() ? LinkKind::loopback : testbed.kind());
-    for (const unsigned levels : kFarLevels) {
+    for (const unsigned levels : views.levels) {
+      const unsigned reach = views.reach(levels);
       const auto joins = horizons_of(testbed, profile, levels);
       if (!joins)
         return Unexpected<std::string>{
             fmt::format("horizon, {}, {} levels: {}", profile.name, levels, joins.error())};
       const auto middle = [&](double HorizonJoin::* what) { return median_of(*joins, what); };
-      fmt::format_to(into, "| {} ({}) | {} | {} |", profile.name, link, reach_of(levels),
+      fmt::format_to(into, "| {} ({}) | {} | {} |", profile.name, link, reach,
                      number_text(middle(&HorizonJoin::near_ms)));
       if (levels == 0) {
         fmt::format_to(into, " – | – | – |");
@@ -127,7 +139,7 @@ Done measure_horizon(Testbed& testbed, NetFindings& findings) {
       }
       fmt::format_to(into, " {} | {} |\n", number_text(middle(&HorizonJoin::bytes) / 1e3),
                      number_text(middle(&HorizonJoin::memory_mb)));
-      const std::string sees = fmt::format("sees {}", reach_of(levels));
+      const std::string sees = fmt::format("sees {}", reach);
       const auto figure = [&](const char* what, double value) {
         findings.figures.push_back({"horizon", std::string(profile.name), link, sees, what, value});
       };
@@ -136,9 +148,9 @@ Done measure_horizon(Testbed& testbed, NetFindings& findings) {
       if (levels > 0) {
         figure("coarse_ms", middle(&HorizonJoin::coarse_ms));
         figure("all_ms", middle(&HorizonJoin::all_ms));
-        if (profile.name == "broadband") add_targets(*joins, levels, findings);
+        if (profile.name == "broadband") add_targets(*joins, reach, findings);
       }
-      fmt::print(testbed.progress(), "horizon {} {}\n", profile.name, reach_of(levels));
+      fmt::print(testbed.progress(), "horizon {} {}\n", profile.name, reach);
       testbed.progress().flush();
     }
   }

@@ -93,13 +93,13 @@ TEST_CASE("the testbed measures joins and edits over a link", "[testbed]") {
 TEST_CASE("the testbed measures joins to the horizon", "[testbed]") {
   std::string tables;
   const json testbed = run_testbed({"--experiments", "horizon", "--profiles", "loopback"}, tables);
-  for (const char* far : {"sees 4096", "sees 16384"}) {
+  for (const char* far : {"sees 192", "sees 384"}) {
     CAPTURE(far);
     CHECK(figure(testbed, "horizon", far, "coarse_ms") > 0);
     CHECK(figure(testbed, "horizon", far, "coarse_ms") <=
           figure(testbed, "horizon", far, "all_ms"));
     CHECK(figure(testbed, "horizon", far, "bytes") >
-          figure(testbed, "horizon", "sees 256", "bytes"));
+          figure(testbed, "horizon", "sees 96", "bytes"));
   }
   CHECK(tables.find("### Horizon") != std::string::npos);
 }
