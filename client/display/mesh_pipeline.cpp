@@ -57,11 +57,10 @@ void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock,
   recorder_.take(changes, clock, now_us);
   planner_.take(changes.chunks);
   for (const auto& [key, reason] : changes.unavailable) join_.done(key, now_us);
-  if (!draw_thread_) return;
   far_planner_.take(changes.tiles);
   for (const ChunkChange& chunk : changes.chunks) {
     far_planner_.set_chunk(chunk.key.at, !chunk.removed);
-    if (!chunk.removed) continue;
+    if (!chunk.removed || !draw_thread_) continue;
     draw_thread_->remove(chunk.key);
     tracker_.removed(chunk.key);
     gpu_bytes_.erase(chunk.key);
@@ -153,6 +152,7 @@ void MeshPipeline::push_jobs() {
 void MeshPipeline::push_tiles() {
   for (FarMeshResult& result : pool_->take_tiles()) take_tile(std::move(result));
   for (const ChunkKey& key : far_planner_.take_removals()) {
+    if (!draw_thread_) continue;
     draw_thread_->remove(key);
     tracker_.removed(key);
     far_gpu_bytes_.erase(key);
@@ -161,7 +161,7 @@ void MeshPipeline::push_tiles() {
   while (pool_->has_room_for_tiles()) {
     auto job = far_planner_.next();
     if (!job) return;
-    if (is_empty_tile(*job->tile)) {
+    if (is_empty(*job->tile)) {
       take_tile({job->key, job->number, job->tile->extent.x, std::make_shared<const TileMesh>()});
     } else {
       pool_->push(std::move(*job));
@@ -170,7 +170,7 @@ void MeshPipeline::push_tiles() {
 }
 
 void MeshPipeline::take_tile(FarMeshResult result) {
-  if (!far_planner_.finish(result.key, result.number)) return;
+  if (!far_planner_.finish(result.key, result.number) || !draw_thread_) return;
   far_gpu_bytes_.set(result.key, runstone::gpu_bytes(*result.mesh));
   tracker_.queued(result.key, result.number, Urgency::terrain);
   ChunkUpload upload;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "client/schedule/chunk_distance.hpp"
+#include "common/core/chunk_distance.hpp"
 #include "common/core/tile_keys.hpp"
 
 namespace runstone {

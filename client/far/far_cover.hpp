@@ -23,7 +23,7 @@
 
 namespace runstone {
 
-/// What is drawn of a tile: all of it, or octants, one bit for each child.
+/// The drawn parts of a tile: the whole tile, or a set of octants with a bit for each child.
 struct TileParts {
   bool is_whole = false;
   std::uint8_t octants = 0;
@@ -48,8 +48,8 @@ class FarCover {
     std::uint8_t present_children = 0;  // bit per child that is present
     bool is_present = false, is_open = false, is_shown = false;
   };
-  /// What is above a place: nothing that is present, a parent that is shown and open, or something
-  /// that hides the place.
+  /// The tiles above a place: none of them is present; or the parent is present, shown and open; or
+  /// one of them hides the place.
   enum class Above : std::uint8_t { nothing, open, hiding };
 
   const Node* find(const ChunkKey& key) const;

@@ -4,18 +4,9 @@
 
 #include "client/far/child_bits.hpp"
 #include "client/far/stand_in.hpp"
+#include "common/core/chunk_distance.hpp"
 
 namespace runstone {
-namespace {
-
-std::int64_t squared_distance(ChunkCoord a, ChunkCoord b) {
-  const std::int64_t dx = std::int64_t{a.x} - b.x, dy = std::int64_t{a.y} - b.y,
-                     dz = std::int64_t{a.z} - b.z;
-  return dx * dx + dy * dy + dz * dz;
-}
-
-}  // namespace
-
 bool FarPlanner::Order::operator()(const Rank& a, const Rank& b) const {
   const auto& [distance_a, key_a] = a;
   const auto& [distance_b, key_b] = b;
@@ -144,7 +135,7 @@ void FarPlanner::place(const ChunkKey& key, Node& node) {
     node.rank.reset();
   }
   if (!is_ready(key, node)) return;
-  node.rank = Rank{squared_distance(key.at, tile_at(eye_, key.lod)), key};
+  node.rank = Rank{distance_squared(key.at, tile_at(eye_, key.lod)), key};
   ready_.insert(*node.rank);
 }
 

@@ -19,10 +19,6 @@ std::size_t bytes_of(const RunChunk& tile) {
 
 }  // namespace
 
-bool is_empty_tile(const RunChunk& tile) {
-  return tile.is_uniform() && material_at(tile, {0, 0, 0}) == kEmpty;
-}
-
 void FarTiles::set_view(const View& view, std::int32_t edge) {
   if (edge != edge_) clear();
   edge_ = edge;
@@ -67,7 +63,7 @@ bool FarTiles::keep(const ChunkKey& key, TilePtr tile) {
   count(*tile, true);
   held = std::move(tile);
   changed_.insert(key);
-  if (is_empty_tile(*held)) drop_below(key);
+  if (is_empty(*held)) drop_below(key);
   return true;
 }
 
@@ -90,7 +86,7 @@ void FarTiles::drop_below(const ChunkKey& key) {
 }
 
 void FarTiles::count(const RunChunk& tile, bool is_added) {
-  const std::size_t bytes = bytes_of(tile), solid = is_empty_tile(tile) ? 0 : 1;
+  const std::size_t bytes = bytes_of(tile), solid = is_empty(tile) ? 0 : 1;
   bytes_ = is_added ? bytes_ + bytes : bytes_ - bytes;
   solid_count_ = is_added ? solid_count_ + solid : solid_count_ - solid;
 }
@@ -116,7 +112,7 @@ FarTiles::Missing FarTiles::missing() const {
     }
   }
   for (const auto& [key, tile] : tiles_) {
-    if (key.lod <= 1 || is_empty_tile(*tile)) continue;
+    if (key.lod <= 1 || is_empty(*tile)) continue;
     for (unsigned i = 0; i < kTileChildren; ++i) {
       const ChunkKey child = tile_child(key, i);
       if (has_key(*view_, world, child) && !tiles_.contains(child)) ++out.others;

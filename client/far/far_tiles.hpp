@@ -24,9 +24,6 @@ namespace runstone {
 
 using TilePtr = std::shared_ptr<const RunChunk>;
 
-/// Returns true if the tile has no voxel but empty ones.
-bool is_empty_tile(const RunChunk& tile);
-
 class FarTiles {
  public:
   /// Sets the view and the edge of a tile in voxels of the tile. Drops the tiles outside of the

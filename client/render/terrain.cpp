@@ -315,7 +315,7 @@ std::uint8_t Terrain::joined_sides(const ChunkKey& key, std::uint8_t octants) co
     for (unsigned i = 0; i < kTileChildren && is_joined; ++i) {
       if (!has_child(octants, i)) continue;
       const bool is_at_side = ((i & across) != 0) == is_positive(d);
-      // Of a whole tile, the octants at this side continue in the tile beside it.
+      // A whole tile meets the tile beside it with the octants at this side only.
       if (octants == kAllChildren && !is_at_side) continue;
       const TileParts parts = cover_.parts(is_at_side ? beside : key);
       is_joined = parts.is_whole || has_child(parts.octants, i ^ across);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "client/schedule/chunk_distance.hpp"
+#include "common/core/chunk_distance.hpp"
 
 namespace runstone {
 namespace {

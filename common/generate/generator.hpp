@@ -37,7 +37,8 @@ class Generator {
   /// close, and enclosed voxels may have any opaque material. It is exact where the tile is empty.
   /// Returns nullopt if the generator has no such form for this place: then only the chunks give the
   /// tile. Requires `edge` 16, 32, 64 or 128, level at most 8, and an origin that is a
-  /// multiple of edge * 2^level. Cost: about that of generate() for the same edge. Thread: any.
+  /// multiple of edge * 2^level. Cost: up to three times that of generate() for the same edge.
+  /// Thread: any.
   virtual std::optional<RunChunk> coarse(VoxelPos origin, std::int32_t edge,
                                          std::uint8_t level) const;
   /// Return the vertical range outside of which chunks are uniform: empty or of one material.

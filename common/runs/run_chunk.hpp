@@ -34,6 +34,11 @@ struct RunChunk {
 /// Returns a chunk of one material: a single run.
 RunChunk uniform_chunk(Extent extent, Material material, AxisOrder order = AxisOrder::xyz);
 
+/// Returns true if no voxel has a material.
+inline bool is_empty(const RunChunk& chunk) {
+  return chunk.is_uniform() && chunk.runs.material(0) == kEmpty;
+}
+
 /// Returns the index of the run that covers `voxel`. Requires voxel < volume. Cost: O(log runs).
 std::size_t find_run(const RunChunk& chunk, VoxelIndex voxel);
 

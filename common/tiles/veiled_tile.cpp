@@ -6,14 +6,6 @@
 #include "common/runs/reorder.hpp"
 
 namespace runstone {
-namespace {
-
-bool is_empty(const RunChunk* child) {
-  return child == nullptr || (child->is_uniform() && child->runs.material(0) == kEmpty);
-}
-
-}  // namespace
-
 RunChunk veiled(RunChunk tile, const VisibilityTable& visibility, VeiledTileScratch& scratch) {
   if (tile.order != kTileOrder) tile = reorder(tile, kTileOrder);
   veil(tile, visibility, scratch.veil);
@@ -22,7 +14,8 @@ RunChunk veiled(RunChunk tile, const VisibilityTable& visibility, VeiledTileScra
 
 RunChunk veiled_tile(const TileChildren& children, unsigned edge, const VisibilityTable& visibility,
                      VeiledTileScratch& scratch) {
-  if (std::all_of(children.begin(), children.end(), is_empty))
+  if (std::all_of(children.begin(), children.end(),
+                  [](const RunChunk* child) { return child == nullptr || is_empty(*child); }))
     return uniform_chunk(Extent::cube(edge), kEmpty, kTileOrder);
   return veiled(build_tile(children, edge, kTileOrder, visibility, scratch.build), visibility,
                 scratch);

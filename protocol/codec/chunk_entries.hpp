@@ -30,8 +30,8 @@ ChunkEntry encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncodin
 ChunkEntry encode_chunk_edits(const ChunkEdits& edits);
 
 /// Makes a Chunks message. Requires 1 .. kChunksPerMessageMax entries, strictly ascending by key and
-/// of one level of detail, and more than one only if they have at most kRunsPerMessageMax runs together. Cost: it copies
-/// the bytes. Thread: any.
+/// of one level of detail. Several entries may have at most kRunsPerMessageMax runs together. Cost:
+/// it copies the bytes. Thread: any.
 EncodedMessage join_entries(std::uint32_t view, std::span<const ChunkEntry> entries);
 
 /// Gathers the entries of one message, as many as a sender should join. Thread: one.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/assert.hpp"
+#include "common/core/chunk_distance.hpp"
 
 namespace runstone {
 namespace {
@@ -37,9 +38,7 @@ bool is_with_client(TileStatus status) {
 }  // namespace
 
 TileInterest::Place TileInterest::place_of(const ChunkKey& key) const {
-  const ChunkCoord centre = tile_at(view_->centre, key.lod);
-  const std::int64_t dx = key.at.x - centre.x, dy = key.at.y - centre.y, dz = key.at.z - centre.z;
-  return {-int{key.lod}, dx * dx + dy * dy + dz * dz, key};
+  return {-int{key.lod}, distance_squared(key.at, tile_at(view_->centre, key.lod)), key};
 }
 
 TileStatus TileInterest::status(const ChunkKey& key) const {

@@ -25,12 +25,17 @@ std::uint64_t BudgetLedger::address_price(const Budget& of_key, std::uint64_t pr
   return std::clamp<std::uint64_t>(scaled, 1, of_address_.burst);
 }
 
-std::optional<BudgetLedger::Refusal> BudgetLedger::charge(const Payer& payer, std::uint64_t price,
-                                                          TimeUs now_us) {
-  if (!payer.budget.is_limited()) return std::nullopt;
+BudgetLedger::Account& BudgetLedger::account_of(const Payer& payer, TimeUs now_us) {
   if (size() > 2 * size_kept_ + kForgetStep) forget_full(now_us);
   Account& key = keys_.try_emplace(payer.key, payer.budget).first->second;
   if (key.budget != payer.budget) key = Account(payer.budget);
+  return key;
+}
+
+std::optional<BudgetLedger::Refusal> BudgetLedger::charge(const Payer& payer, std::uint64_t price,
+                                                          TimeUs now_us) {
+  if (!payer.budget.is_limited()) return std::nullopt;
+  Account& key = account_of(payer, now_us);
   if (const TimeUs wait_us = key.left.wait_us(price, now_us); wait_us > 0)
     return Refusal{"key", wait_us};
   if (payer.address && of_address_.is_limited()) {
@@ -42,6 +47,14 @@ std::optional<BudgetLedger::Refusal> BudgetLedger::charge(const Payer& payer, st
   }
   key.left.take(price, now_us);
   return std::nullopt;
+}
+
+void BudgetLedger::owe(const Payer& payer, std::uint64_t price, TimeUs now_us) {
+  if (!payer.budget.is_limited() || price == 0) return;
+  account_of(payer, now_us).left.charge(price, now_us);
+  if (!payer.address || !of_address_.is_limited()) return;
+  Account& address = addresses_.try_emplace(*payer.address, of_address_).first->second;
+  address.left.charge(address_price(payer.budget, price), now_us);
 }
 
 void BudgetLedger::forget_full(TimeUs now_us) {

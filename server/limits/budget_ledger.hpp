@@ -40,6 +40,10 @@ class BudgetLedger {
   /// limited. Cost: O(log payers).
   std::optional<Refusal> charge(const Payer& payer, std::uint64_t price, TimeUs now_us);
 
+  /// Takes the price of work that was done already from both budgets. What they lack is owed: later
+  /// tokens pay for it first, up to a full budget.
+  void owe(const Payer& payer, std::uint64_t price, TimeUs now_us);
+
   /// Returns the number of budgets that are kept: all that are not full, and some that are.
   std::size_t size() const { return keys_.size() + addresses_.size(); }
   /// Forgets the budgets that have refilled. Cost: O(size()).
@@ -51,6 +55,8 @@ class BudgetLedger {
     Budget budget;
     TokenBucket left;
   };
+  /// Returns the account of the payer's key.
+  Account& account_of(const Payer& payer, TimeUs now_us);
   /// Returns the price of the same work in the units of an address.
   std::uint64_t address_price(const Budget& of_key, std::uint64_t price) const;
 

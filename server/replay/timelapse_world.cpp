@@ -18,10 +18,6 @@ VoxelBox joined(const VoxelBox& a, const VoxelBox& b) {
           {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
 }
 
-bool is_empty(const RunChunk& chunk) {
-  return chunk.is_uniform() && material_at(chunk, {0, 0, 0}) == kEmpty;
-}
-
 }  // namespace
 
 StoreResult<TimelapseWorld> TimelapseWorld::open(WorldReader& reader, const Generator& generator,

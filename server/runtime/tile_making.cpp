@@ -13,11 +13,35 @@ TileMaking::TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator
         logger("store").warn("{}", text);
       }) {}
 
+void TileMaking::edited(std::span<const ChunkKey> chunks, Sequence seq) {
+  if (waiting_edits_.empty() && ledger_.try_edited(chunks, seq)) return;
+  waiting_edits_.emplace_back(std::vector<ChunkKey>(chunks.begin(), chunks.end()), seq);
+  std::size_t passed = 0;
+  while (passed < waiting_edits_.size() &&
+         ledger_.try_edited(waiting_edits_[passed].first, waiting_edits_[passed].second)) {
+    ++passed;
+  }
+  waiting_edits_.erase(waiting_edits_.begin(),
+                       waiting_edits_.begin() + static_cast<std::ptrdiff_t>(passed));
+}
+
+void TileMaking::flush_edits() {
+  for (const auto& [chunks, seq] : waiting_edits_)
+    ledger_.edited(std::span<const ChunkKey>(chunks), seq);
+  waiting_edits_.clear();
+}
+
+Sequence TileMaking::newest_edit(const ChunkKey& tile) {
+  flush_edits();
+  return ledger_.newest_edit(tile);
+}
+
 void TileMaking::make(TileRequest request, const MaterialTable& materials, Then then) {
   if (!visibility_ || materials_ != materials.size()) {
     visibility_ = std::make_shared<const VisibilityTable>(visibilities(materials));
     materials_ = materials.size();
   }
+  flush_edits();
   asio::post(*threads_, [this, request = std::move(request), visibility = visibility_,
                          then = std::move(then)] {
     auto made = source_.make(request, *visibility);
@@ -35,6 +59,7 @@ void TileMaking::save(Tiles tiles, LogWriter& writer) {
 }
 
 void TileMaking::save_next(LogWriter& writer) {
+  flush_edits();
   std::erase_if(unsaved_, [this](const auto& tile) {
     return ledger_.newest_edit(tile.first) > tile.second->version.seq;
   });

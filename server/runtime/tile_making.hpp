@@ -36,8 +36,10 @@ class TileMaking {
 
   /// Makes a tile. `materials` are those in force.
   void make(TileRequest request, const MaterialTable& materials, Then then);
-  void edited(std::span<const ChunkKey> chunks, Sequence seq) { ledger_.edited(chunks, seq); }
-  Sequence newest_edit(const ChunkKey& tile) const { return ledger_.newest_edit(tile); }
+  /// Records that `seq` is the newest edit of these chunks. It does not wait for the other threads.
+  void edited(std::span<const ChunkKey> chunks, Sequence seq);
+  /// Returns the newest edit below a tile, or 0. It may wait for the other threads for a moment.
+  Sequence newest_edit(const ChunkKey& tile);
   /// Writes tiles when the earlier ones are written. Drops tiles if too many wait. The writer must not
   /// call back after the strand has ended.
   void save(Tiles tiles, LogWriter& writer);
@@ -52,9 +54,13 @@ class TileMaking {
   static constexpr std::size_t kSavedAtOnceMax = 256;
 
   void save_next(LogWriter& writer);
+  /// Passes the edits that wait on to the ledger.
+  void flush_edits();
 
   WorldStrand& strand_;
   TileLedger ledger_;
+  // Edits that found the ledger in use.
+  std::vector<std::pair<std::vector<ChunkKey>, Sequence>> waiting_edits_;
   TileSource source_;
   std::shared_ptr<const VisibilityTable> visibility_;
   std::size_t materials_ = 0;  // rows that visibility_ has

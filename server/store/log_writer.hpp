@@ -16,9 +16,9 @@
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
 //     batches are dropped. They were never acknowledged. The program must end and recover from the
 //     log. A keyframe or a tile that cannot be written ends only its job.
-// Threads: append(), change_names(), save_snapshots(), save_keyframe(), save_tiles() and has_room() from any
-// thread. The writer thread calls the callbacks, which must return soon. The mutex is a leaf: no callback and no disk
-// access happens while it is locked.
+// Threads: append(), change_names(), save_snapshots(), save_keyframe(), save_tiles() and has_room()
+// from any thread. The writer thread calls the callbacks, which must return soon. The mutex is a
+// leaf: no callback and no disk access happens while it is locked.
 #pragma once
 #include <atomic>
 #include <chrono>

@@ -21,14 +21,6 @@ CREATE TABLE meta(
   value ANY NOT NULL,
   checksum INTEGER NOT NULL
 ) STRICT, WITHOUT ROWID;
-CREATE TABLE base(
-  lod INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL, z INTEGER NOT NULL,
-  epoch INTEGER NOT NULL, seq INTEGER NOT NULL,
-  digest0 INTEGER NOT NULL, digest1 INTEGER NOT NULL,
-  checksum INTEGER NOT NULL,
-  data BLOB NOT NULL,
-  PRIMARY KEY(lod, x, y, z)
-) STRICT;
 CREATE TABLE edit_log(
   log INTEGER NOT NULL, seq INTEGER NOT NULL, epoch INTEGER NOT NULL,
   author INTEGER NOT NULL, instance INTEGER NOT NULL, client_seq INTEGER NOT NULL,
@@ -39,14 +31,6 @@ CREATE TABLE edit_log(
   checksum INTEGER NOT NULL,
   PRIMARY KEY(log, seq)
 ) STRICT, WITHOUT ROWID;
-CREATE TABLE snapshot(
-  lod INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL, z INTEGER NOT NULL,
-  epoch INTEGER NOT NULL, seq INTEGER NOT NULL,
-  digest0 INTEGER NOT NULL, digest1 INTEGER NOT NULL,
-  checksum INTEGER NOT NULL,
-  data BLOB NOT NULL,
-  PRIMARY KEY(lod, x, y, z)
-) STRICT;
 CREATE TABLE player(
   author INTEGER NOT NULL PRIMARY KEY,
   key BLOB NOT NULL UNIQUE,
@@ -87,9 +71,9 @@ CREATE TABLE rights_record(
 ) STRICT;
 )sql";
 
-// Levels of detail of the chunks. The table is a cache, so `meta` does not count its rows.
-constexpr const char* kTiles = R"sql(
-CREATE TABLE tile(
+// The columns of the tables `base`, `snapshot` and `tile`, which have a row for each chunk or tile. The
+// table `tile` is a cache, so `meta` does not count its rows.
+constexpr const char* kChunkColumns = R"sql((
   lod INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL, z INTEGER NOT NULL,
   epoch INTEGER NOT NULL, seq INTEGER NOT NULL,
   digest0 INTEGER NOT NULL, digest1 INTEGER NOT NULL,
@@ -129,12 +113,20 @@ CREATE TABLE keyframe_chunk(
 CREATE INDEX keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1);
 )sql";
 
+StoreResult<void> make_chunk_table(sql::Database& database, const char* name) {
+  const std::string statement = std::string("CREATE TABLE ") + name + kChunkColumns;
+  return store_result(database.run(statement.c_str()));
+}
+
 }  // namespace
 
 StoreResult<void> create_schema(sql::Database& database) {
   const std::string mark = "PRAGMA application_id=" + std::to_string(kApplicationId) + ";";
   for (const char* part : {mark.c_str(), kTables, kPlayerNames, kIndexes, kKeyframes}) {
     if (auto made = database.run(part); !made) return failed(made.error());
+  }
+  for (const char* name : {"base", "snapshot"}) {
+    if (auto made = make_chunk_table(database, name); !made) return made;
   }
   if (auto made = add_tables_of_format_3(database); !made) return made;
   return add_tables_of_format_4(database);
@@ -148,7 +140,7 @@ StoreResult<void> add_tables_of_format_3(sql::Database& database) {
 }
 
 StoreResult<void> add_tables_of_format_4(sql::Database& database) {
-  if (auto made = database.run(kTiles); !made) return failed(made.error());
+  if (auto made = make_chunk_table(database, "tile"); !made) return made;
   const std::string mark = "PRAGMA user_version=" + std::to_string(kWorldFormat);
   return store_result(database.run(mark.c_str()));
 }

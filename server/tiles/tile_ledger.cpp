@@ -40,6 +40,13 @@ void TileLedger::edited(std::span<const ChunkKey> chunks, Sequence seq) {
   for (const ChunkKey& chunk : chunks) edited(chunk.at, seq);
 }
 
+bool TileLedger::try_edited(std::span<const ChunkKey> chunks, Sequence seq) {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock.owns_lock()) return false;
+  for (const ChunkKey& chunk : chunks) edited(chunk.at, seq);
+  return true;
+}
+
 void TileLedger::stored(std::span<const ChunkKey> chunks) {
   while (!chunks.empty()) {
     const std::size_t count = std::min(chunks.size(), kSliceChunks);

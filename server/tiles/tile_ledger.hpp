@@ -22,6 +22,9 @@ class TileLedger {
   void edited(std::span<const ChunkCoord> chunks, Sequence seq);
   /// Does the same for keys of level of detail 0.
   void edited(std::span<const ChunkKey> chunks, Sequence seq);
+  /// Does the same unless another thread uses the ledger at the moment; then it returns false and does nothing. A thread that must not wait calls it: threads of low
+  /// priority use the ledger, too.
+  bool try_edited(std::span<const ChunkKey> chunks, Sequence seq);
   /// Reports chunks that the world's folder has rows for. Keys of tiles are ignored.
   void stored(std::span<const ChunkKey> chunks);
 
@@ -32,7 +35,7 @@ class TileLedger {
   bool has_ground(const ChunkKey& tile) const;
 
  private:
-  /// Of a chunk or a tile. Invariant: no edit of `above` is older than the newest of this one.
+  /// The entry of a chunk or a tile. Invariant: no edit of `above` is older than the newest of this one.
   struct Entry {
     Sequence newest_edit = 0;
     Entry* above = nullptr;  // null: of level kTileLevelMax

@@ -33,12 +33,15 @@ Payer edit_payer(const WorldState& world, const PublicKey& key,
   return {key, address, edit_budget_of(world, key)};
 }
 
-bool pay_load(WorldState& world, const WorldSession& session, const Clocks& now) {
+Payer load_payer(const WorldState& world, const WorldSession& session) {
   const Role* role = role_with_quotas(world, session.key);
   const bool has_own = role != nullptr && role->chunk_loads_per_second != 0;
-  const Budget budget =
-      has_own ? chunk_load_budget(role->chunk_loads_per_second) : world.config.chunk_loads;
-  return !world.load_ledger.charge({session.key, session.address, budget}, 1, now.steady_us);
+  return {session.key, session.address,
+          has_own ? chunk_load_budget(role->chunk_loads_per_second) : world.config.chunk_loads};
+}
+
+bool pay_load(WorldState& world, const WorldSession& session, const Clocks& now) {
+  return !world.load_ledger.charge(load_payer(world, session), 1, now.steady_us);
 }
 
 }  // namespace runstone

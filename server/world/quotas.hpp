@@ -16,6 +16,8 @@ std::uint8_t view_radius_max_of(const WorldState& world, const PublicKey& key);
 /// Returns who pays for the edits of a player. `address`: see Payer.
 Payer edit_payer(const WorldState& world, const PublicKey& key,
                  const std::optional<AddressBlock>& address);
+/// Returns who pays for the chunk loads of a session.
+Payer load_payer(const WorldState& world, const WorldSession& session);
 /// Takes the price of a chunk that is generated or read from the budgets of the session's player and
 /// address. Returns false, and takes nothing, if one of them is used up.
 bool pay_load(WorldState& world, const WorldSession& session, const Clocks& now);

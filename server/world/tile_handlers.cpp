@@ -23,14 +23,6 @@ std::size_t price_of(const std::vector<MadeTile>& made) {
   return price;
 }
 
-/// Takes what the session's player owes for tiles. Returns false if a budget is used up.
-bool pay_tiles(WorldState& world, WorldSession& session, const Clocks& now) {
-  for (; session.tile_debt > 0; --session.tile_debt) {
-    if (!pay_load(world, session, now)) return false;
-  }
-  return true;
-}
-
 void add_receiver(WorldState& world, const ChunkKey& key, SessionId session) {
   std::vector<SessionId>& sessions = world.tiles.receivers[key].sessions;
   const auto at = std::ranges::lower_bound(sessions, session);
@@ -57,6 +49,8 @@ TileRequest request_of(WorldState& world, const ChunkKey& tile, const Clocks& no
   const WorldChunks& chunks = world.authority.chunks();
   std::vector<ChunkKey> absent;
   TileRequest request{tile, world.authority.head(), {}};
+  // Up to the checkpoint, snapshots contain all edits.
+  if (world.environment.newest_tile_edit(tile) <= world.checkpointer.checkpoint()) return request;
   const ChunkCoord first = first_chunk(tile);
   const std::set<ChunkKey>& dirty = chunks.dirty();
   for (auto at = dirty.lower_bound({0, first}); at != dirty.end(); ++at) {
@@ -98,8 +92,7 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
     return;
   }
   ++world.counters.tiles_sent;
-  const bool is_empty = tile->voxels.is_uniform() && material_at(tile->voxels, {0, 0, 0}) == kEmpty;
-  leave_tiles(world, session, mine.tiles->set_sent(key, is_empty));
+  leave_tiles(world, session, mine.tiles->set_sent(key, is_empty(tile->voxels)));
   add_receiver(world, key, session);
 }
 
@@ -138,7 +131,7 @@ void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
   if (!mine.tiles || world.is_stopping || is_stalled(world, mine, now)) return;
   while (mine.tiles->waiting_count() < kTilesWaitingMax) {
     const auto key = mine.tiles->next_wanted();
-    if (!key || !pay_tiles(world, mine, now) || !pay_load(world, mine, now)) break;
+    if (!key || !pay_load(world, mine, now)) break;
     mine.tiles->set_waiting(*key);
     world.tiles.queue.want(*key, session);
   }
@@ -147,13 +140,18 @@ void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
 
 void start_tiles(WorldState& world, const Clocks& now) {
   if (world.is_stopping) return;
-  while (const auto key = world.tiles.queue.next(now.steady_us, kTilesInFlightMax))
+  while (const auto key = world.tiles.queue.next(now.steady_us, kTilesInFlightMax)) {
+    // A session may leave before its tile is made. Its player pays all the same.
+    if (const auto waits = world.tiles.queue.first_waiting(*key))
+      world.tiles.payers.insert_or_assign(*key, load_payer(world, *world.find(*waits)));
     world.environment.make_tile(request_of(world, *key, now));
+  }
 }
 
 void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
                    const Clocks& now) {
   if (made.empty()) {
+    world.tiles.payers.erase(key);
     world.tiles.queue.failed(key, now.steady_us + kTileRetryUs);
     if (!world.tiles.queue.is_waited_for(key) && !world.tiles.receivers.contains(key))
       world.tiles.queue.cancel_again(key);
@@ -161,7 +159,8 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   }
   const std::vector<SessionId> waiting = world.tiles.queue.finished(key);
   const MadeTile& tile = made.back();
-  if (!waiting.empty()) world.find(waiting.front())->tile_debt += price_of(made);
+  if (const auto payer = world.tiles.payers.extract(key))
+    world.load_ledger.owe(payer.mapped(), price_of(made), now.steady_us);
   std::vector<SessionId> receivers;
   if (const TileReceivers* found = world.tiles.receivers.find(key)) receivers = found->sessions;
   for (const SessionId session : waiting) {

@@ -44,6 +44,11 @@ class TileQueue {
   void failed(const ChunkKey& key, TimeUs due_us);
 
   bool is_waited_for(const ChunkKey& key) const { return waiting_.contains(key); }
+  /// Returns the session that has waited for the tile the longest, or nullopt.
+  std::optional<SessionId> first_waiting(const ChunkKey& key) const {
+    const Waiting* waiting = waiting_.find(key);
+    return waiting == nullptr ? std::nullopt : std::optional(waiting->sessions.front());
+  }
   std::size_t in_flight() const { return in_flight_.size(); }
   /// Returns the number of tiles that wait to be made.
   std::size_t count() const { return wanted_.size() + due_.size(); }

@@ -1,4 +1,5 @@
-// What the world strand and the workers that make tiles exchange.
+// TileRequest and MadeTile: what the world strand sends to the workers that make tiles, and what they
+// send back.
 #pragma once
 #include <cstddef>
 #include <utility>

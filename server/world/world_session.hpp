@@ -103,7 +103,6 @@ struct WorldSession {
   SentGround ground;
   // Tiles (tile_handlers.hpp).
   std::optional<TileInterest> tiles;  // nullopt: no view had tiles yet
-  std::size_t tile_debt = 0;          // chunks that the player is still to pay for
   // Cached chunks (cached_chunk_handlers.hpp).
   CacheClaims claims;
   std::vector<UnmodifiedChunk> not_modified_due;  // subscribed, and not answered yet

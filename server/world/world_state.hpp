@@ -60,6 +60,7 @@ struct TileReceivers {
 /// Tiles (tile_handlers.hpp).
 struct TileState {
   TileQueue queue;
+  std::map<ChunkKey, Payer> payers;       // of the tiles that workers make because a session waits
   ChunkHashMap<TileReceivers> receivers;  // no entry is without sessions for long
 };
 

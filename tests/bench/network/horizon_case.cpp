@@ -114,7 +114,7 @@ Done measure_horizon(Testbed& testbed, NetFindings& findings) {
       into,
       "\n### Horizon\n\nFirst joins of a new world of terrain, view radius {} chunks; medians "
       "of {}. ms from the start of the connection. *coarse*: all tiles of the highest level "
-      "are here. *complete*: all tiles are here. The memory is that of tiles and "
+      "are here. *complete*: all tiles are here and meshed. The memory is that of tiles and "
       "their stand-ins, without meshes.\n\n"
       "| link | sees, voxels | near view 80 %, ms | coarse, ms | complete, ms | tiles | "
       "KB received | MB in the client |\n|---|---|---|---|---|---|---|---|\n",

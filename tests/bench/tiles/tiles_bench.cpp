@@ -39,10 +39,6 @@ struct Tile {
 };
 using Level = std::map<ChunkCoord, Tile>;
 
-bool has_voxels(const RunChunk& chunk) {
-  return !chunk.is_uniform() || chunk.runs.material(0) != kEmpty;
-}
-
 Level chunks_of(const VoxelWorld& world, unsigned edge) {
   const auto side = static_cast<std::int32_t>(edge);
   const VoxelBox box = world.bounds.value_or(kPart);
@@ -52,7 +48,7 @@ Level chunks_of(const VoxelWorld& world, unsigned edge) {
     for (std::int32_t y = first.y; y * side < box.max.y; ++y) {
       for (std::int32_t x = first.x; x * side < box.max.x; ++x) {
         RunChunk chunk = chunk_of_world(world, {x * side, y * side, z * side}, edge);
-        if (!has_voxels(chunk)) continue;
+        if (is_empty(chunk)) continue;
         out[{x, y, z}].voxels = std::move(chunk);
       }
     }

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "client/replica/surface.hpp"
-#include "client/schedule/chunk_distance.hpp"
 #include "common/core/assert.hpp"
+#include "common/core/chunk_distance.hpp"
 #include "common/core/hash.hpp"
 #include "common/os/steady_clock.hpp"
 #include "tests/bench/worlds/seeded_worlds.hpp"

@@ -47,14 +47,14 @@ class FarWorld {
     if (!is_new) return found->second;
     std::array<TilePtr, 8> children;
     TileChildren pointers{};
-    bool is_empty = true;
+    bool has_ground = false;
     for (unsigned i = 0; i < kTileChildren; ++i) {
       children[i] = built(tile_child(key, i));
       pointers[i] = children[i].get();
-      is_empty = is_empty && (!children[i] || is_empty_tile(*children[i]));
+      has_ground = has_ground || (children[i] && !is_empty(*children[i]));
     }
     TilePtr out;
-    if (!is_empty) {
+    if (has_ground) {
       out = std::make_shared<const RunChunk>(build_tile(
           pointers, static_cast<unsigned>(edge_), AxisOrder::yxz, visibility_, tile_scratch_));
     }
@@ -97,7 +97,7 @@ class FarScene {
         if (!has_key(view, limit, key) || tiles_.find(key)) return;
         const bool has_empty_parent =
             level < tile_levels(view) &&
-            (!tiles_.find(tile_parent(key)) || is_empty_tile(*tiles_.find(tile_parent(key))));
+            (!tiles_.find(tile_parent(key)) || is_empty(*tiles_.find(tile_parent(key))));
         if (!has_empty_parent) REQUIRE(tiles_.receive(key, world_.sent(key)));
       });
     }

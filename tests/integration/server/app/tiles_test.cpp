@@ -41,10 +41,6 @@ View far_view(ChunkCoord centre) {
   return view;
 }
 
-bool is_empty(const Chunk& tile) {
-  return tile.voxels == uniform_chunk(tile.voxels.extent, kEmpty, tile.voxels.order);
-}
-
 /// A client that keeps the tiles of its view.
 class Watcher {
  public:
@@ -82,7 +78,7 @@ class Watcher {
   bool has_below(const ChunkKey& key) const {
     const Chunk* tile = find(key);
     if (tile == nullptr) return false;
-    if (key.lod == 1 || is_empty(*tile)) return true;
+    if (key.lod == 1 || is_empty(tile->voxels)) return true;
     for (unsigned i = 0; i < kTileChildren; ++i) {
       const ChunkKey child = tile_child(key, i);
       if (contains_key(view_, child) && !has_below(child)) return false;

@@ -63,7 +63,7 @@ struct FarBench {
   bool upload() {
     if (uploads.empty()) return false;
     const FarMeshJob& job = uploads.front();
-    cover.put(job.key, job.with_octants || is_empty_tile(*job.tile));
+    cover.put(job.key, job.with_octants || is_empty(*job.tile));
     present.insert(job.key);
     drawn[job.key] = job.tile;
     uploads.erase(uploads.begin());
@@ -220,7 +220,7 @@ TEST_CASE("known ground is drawn exactly once while tiles and chunks come, go an
     if (step % 5 == 0) {
       model.present = bench.present;
       REQUIRE(model.faults(bench.cover).empty());
-      // What is known stays known until something leaves.
+      // Ground that is drawn stays drawn until a chunk or a tile leaves.
       for (const ChunkCoord at : known) REQUIRE(model.is_known(at));
       for (const auto& [at, count] : model.drawn(bench.cover)) {
         if (count == 1) known.insert(at);

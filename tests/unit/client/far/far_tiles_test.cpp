@@ -66,7 +66,7 @@ TEST_CASE("an empty tile drops what is below it", "[far]") {
   REQUIRE(tiles.receive_uniform(top, kEmpty));
   CHECK(tiles.count() == 2);
   CHECK(tiles.solid_count() == 1);
-  CHECK(is_empty_tile(*tiles.find(top)));
+  CHECK(is_empty(*tiles.find(top)));
   CHECK(tiles.find(beside) != nullptr);
   CHECK(tiles.drain_changes() == std::vector<ChunkKey>{low, middle, top});
 }

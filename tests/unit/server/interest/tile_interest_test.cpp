@@ -21,8 +21,7 @@ View view_at(ChunkCoord centre, std::uint8_t radius = 3, std::uint8_t levels = 3
   return view;
 }
 
-/// Whether the ground below a tile is empty, as a function of the tile: a tile with ground below it
-/// is not empty, and neither are those above it.
+/// A world in which some tiles have ground. All tiles above one of them have ground, too.
 struct Ground {
   std::set<ChunkKey> solid;  // tiles that are not empty
   Ground() {

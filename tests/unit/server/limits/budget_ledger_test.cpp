@@ -84,6 +84,19 @@ TEST_CASE("budgets that have refilled are forgotten", "[server]") {
   CHECK(largest < 2'000);
 }
 
+TEST_CASE("work that was done already is owed by key and address, up to a full budget",
+          "[server]") {
+  BudgetLedger ledger(kUsual, 3);
+  ledger.owe(payer(1, kHome), 1'000, 0);
+  const auto refusal = ledger.charge(payer(1, kHome), 1, 0);
+  REQUIRE(refusal.has_value());
+  CHECK(refusal->wait_us == 2'100'000);  // 20 that are owed, and the one that is asked for
+  CHECK(ledger.charge(payer(1, kSchool), 1, 2'000'000).has_value());
+  CHECK(ledger.charge(payer(2, kHome), 1, 0).has_value());  // the address owes, too
+  CHECK_FALSE(ledger.charge(payer(2, kSchool), 1, 0));
+  CHECK_FALSE(ledger.charge(payer(1, kSchool), 1, 2'100'000));
+}
+
 TEST_CASE("huge budgets do not overflow", "[server]") {
   constexpr Budget kHuge{~0ULL, ~0ULL}, kNormal{100, 4'000};
   BudgetLedger ledger(kHuge, ~0ULL);

@@ -11,7 +11,7 @@ using namespace runstone;
 
 namespace {
 
-/// What a ledger should know, level by level.
+/// A model of the ledger: the newest edit of each chunk and tile, and which of them have ground.
 struct LedgerModel {
   void edited(const std::vector<ChunkCoord>& chunks, Sequence seq) {
     for (const ChunkCoord& chunk : chunks) {

@@ -20,14 +20,7 @@ struct MarksBench : WorldBench {
 
   AuthorId join_with(SessionId session, std::uint8_t who,
                      std::uint64_t features = kFeatureLogMarks) {
-    server.connected(session, now());
-    Hello h = hello(who);
-    h.features = features;
-    server.received(session, h, now());
-    const auto welcome = environment.messages<Welcome>(session, 0);
-    REQUIRE(welcome.size() == 1);
-    server.received(session, client_auth(who, h, welcome[0]), now());
-    return environment.messages<SessionAccepted>(session, kEdge).at(0).author;
+    return join(session, who, 1, {}, features).author;
   }
   void ask(SessionId session, std::uint32_t request) {
     server.received(session, LogMarksRequest{request, 1, 100, 10}, now());

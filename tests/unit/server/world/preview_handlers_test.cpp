@@ -10,13 +10,7 @@ struct PreviewBench : WorldBench {
   explicit PreviewBench(WorldConfig c = config()) : WorldBench(std::move(c)) {}
   /// Joins with these features, and sees five chunks around one.
   void enter(SessionId session, std::uint64_t features = kFeaturePreviews, ChunkCoord at = {}) {
-    server.connected(session, now());
-    Hello h = hello(static_cast<std::uint8_t>(session), session);
-    h.features = features;
-    server.received(session, h, now());
-    const auto welcome = environment.messages<Welcome>(session, 0);
-    REQUIRE(welcome.size() == 1);
-    server.received(session, client_auth(static_cast<std::uint8_t>(session), h, welcome[0]), now());
+    join(session, static_cast<std::uint8_t>(session), session, {}, features);
     view(session, View{1, at, 1, 0});
   }
   void share(SessionId session, std::vector<EditDescriptor> edits) {

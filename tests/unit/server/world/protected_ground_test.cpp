@@ -24,14 +24,7 @@ struct GroundBench : WorldBench {
   using WorldBench::WorldBench;
 
   void join_with(SessionId session, std::uint8_t who, std::uint64_t features = kFeatureRights) {
-    server.connected(session, now(), {});
-    Hello h = hello(who);
-    h.features = features;
-    server.received(session, h, now());
-    const auto welcome = environment.messages<Welcome>(session, 0);
-    REQUIRE(welcome.size() == 1);
-    server.received(session, client_auth(who, h, welcome[0]), now());
-    REQUIRE(environment.messages<SessionAccepted>(session, kEdge).size() == 1);
+    join(session, who, 1, {}, features);
   }
   Sequence change(const RightsChange& change) {
     const auto done = server.change_rights(change, RightsActor{}, 0, now());

@@ -20,14 +20,7 @@ struct TileBench : WorldBench {
   }
 
   void enter(SessionId session, std::uint8_t levels = 3, std::uint64_t features = kFeatureTiles) {
-    const auto who = static_cast<std::uint8_t>(session);
-    server.connected(session, now());
-    Hello h = hello(who);
-    h.features = features;
-    server.received(session, h, now());
-    const auto welcome = environment.messages<Welcome>(session, 0);
-    REQUIRE(welcome.size() == 1);
-    server.received(session, client_auth(who, h, welcome[0]), now());
+    join(session, static_cast<std::uint8_t>(session), 1, {}, features);
     look(session, levels, {});
   }
   void look(SessionId session, std::uint8_t levels, ChunkCoord at) {
@@ -185,6 +178,22 @@ TEST_CASE("a player pays for tiles with chunk loads, and gets the others when th
     bench.answer_tiles();
   }
   CHECK(bench.tiles_of(1).size() == 13 * (5 + 2 + 2));
+}
+
+TEST_CASE("a player who leaves before a tile is made owes its price at the next session") {
+  WorldConfig c = with_tiles();
+  c.chunk_loads = {1, 200};
+  TileBench bench(c);
+  bench.enter(1);
+  const ChunkKey key = bench.environment.tile_requests.front().key;
+  bench.environment.tile_requests.clear();
+  bench.server.disconnected(1);
+  std::vector<MadeTile> made(100, bench.made({1, {9, 0, 9}}, 0));
+  made.push_back(bench.made(key, 0));
+  bench.server.tiles_made(key, made, bench.now());
+  bench.join(2, 1, 2, {}, kFeatureTiles);  // the same player
+  bench.look(2, 3, {});
+  CHECK(bench.environment.tile_requests.empty());
 }
 
 TEST_CASE("a tile that could not be made is requested again after a pause") {

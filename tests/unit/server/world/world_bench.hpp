@@ -65,9 +65,10 @@ struct WorldBench {
     return {sign(key_pair_of(seed_of(who)), client_transcript(h, w, binding)), {}};
   }
   SessionAccepted join(SessionId session, std::uint8_t who, ClientInstance instance = 1,
-                       AddressBlock from = {}) {
+                       AddressBlock from = {}, std::uint64_t features = 0) {
     server.connected(session, now(), from);
-    const Hello h = hello(who, instance);
+    Hello h = hello(who, instance);
+    h.features = features;
     server.received(session, h, now());
     const auto welcome = environment.messages<Welcome>(session, 0);
     REQUIRE(welcome.size() == 1);
