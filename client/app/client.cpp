@@ -228,12 +228,11 @@ void Client::handle_input(TimeUs now_us) {
   const RoutedInput routed = input_.route(hud_.focus());
   // By escape. Beside a window it only frees the mouse.
   const bool is_freed = was_captured && !input_.is_captured();
-  if (menu_ != nullptr && is_freed && hud_.focus().panels == 0) menu_->pause();
+  if (menu_ != nullptr && is_freed && hud_.focus().panels == 0) pause();
   controls_.take(routed.player, std::min(seconds, 0.1), settings(), now_us);
   if (controls_.take_release()) {
     if (menu_ != nullptr) {
-      input_.release();
-      menu_->pause();
+      pause();
     } else {
       end_requested_ = true;
     }
@@ -247,6 +246,13 @@ void Client::handle_input(TimeUs now_us) {
   input_.set_windows(focus.has_window, focus.panels);
   if (window_) window_->set_captured(input_.is_captured());
   if (!routed.for_ui.empty()) pipeline_.moved();
+}
+
+void Client::pause() {
+  input_.release();
+  menu_->pause();
+  // What was pressed after escape is for the menu, also if all of it came in one turn.
+  menu_->feed(input_.take_waiting());
 }
 
 void Client::follow_player(TimeUs now_us) {

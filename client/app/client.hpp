@@ -60,6 +60,8 @@ class Client {
   void poll_window();
   /// Gives the events of the window, or of the script, to the player and to the interface.
   void handle_input(TimeUs now_us);
+  /// Opens the pause menu. Requires menu_.
+  void pause();
   void follow_player(TimeUs now_us);
   MemoryUse memory_use() const;
   /// Keeps the memory within the budget: shrinks the view, or lets it grow again, and bounds the

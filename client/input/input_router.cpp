@@ -33,12 +33,15 @@ void InputRouter::push(const std::vector<InputEvent>& events) {
 
 RoutedInput InputRouter::route(const UiFocus& focus) {
   RoutedInput out;
-  while (!events_.empty() && out.player.actions.empty()) {
+  bool is_freed = false;
+  while (!events_.empty() && out.player.actions.empty() && !is_freed) {
     if (is_press_after_move(events_.front(), out)) break;
     const InputEvent event = events_.front();
     events_.pop_front();
     if (const auto* key = std::get_if<KeyEvent>(&event)) {
+      const bool was_captured = is_captured_;
       if (takes_key(*key, focus, out)) {
+        is_freed = was_captured && !is_captured_;
         // The interface knows which of these keys are held, for a click with control.
         if (!is_captured_ && is_modifier(key->key)) out.for_ui.push_back(event);
         // The character of this key belongs to no text.
@@ -66,6 +69,12 @@ RoutedInput InputRouter::route(const UiFocus& focus) {
     }
   }
   add_held(out.player);
+  return out;
+}
+
+std::vector<InputEvent> InputRouter::take_waiting() {
+  std::vector<InputEvent> out(events_.begin(), events_.end());
+  events_.clear();
   return out;
 }
 

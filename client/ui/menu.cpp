@@ -76,6 +76,7 @@ Menu::Menu(const ClientSettings& settings)
 }
 
 void Menu::reset() {
+  shown_ = Screen::none;
   shows_settings_ = false;
   password_.clear();
   context_.release_all();
@@ -83,28 +84,35 @@ void Menu::reset() {
 
 std::shared_ptr<const OverlayFrame> Menu::title(const TitleState& state, std::array<int, 2> size,
                                                 double seconds) {
-  return context_.make_frame(size, seconds, [&] {
-    if (shows_settings_) {
-      build_settings(size);
-    } else if (!state.asks_password_of.empty()) {
-      build_password(state.asks_password_of, size);
-    } else {
-      build_title(state, size);
-    }
+  const Screen screen = state.asks_password_of.empty() ? Screen::title : Screen::password;
+  return make_frame(screen, size, seconds, [&] {
+    if (shows_settings_) return build_settings(size);
+    if (screen == Screen::password) return build_password(state.asks_password_of, size);
+    build_title(state, size);
   });
 }
 
 std::shared_ptr<const OverlayFrame> Menu::connecting(const ConnectingState& state,
                                                      std::array<int, 2> size, double seconds) {
-  return context_.make_frame(size, seconds, [&] { build_connecting(state, size); });
+  return make_frame(Screen::connecting, size, seconds, [&] { build_connecting(state, size); });
 }
 
 std::shared_ptr<const OverlayFrame> Menu::pause(const PauseState& state, std::array<int, 2> size,
                                                 double seconds) {
-  return context_.make_frame(size, seconds, [&] {
+  return make_frame(Screen::pause, size, seconds, [&] {
     if (shows_settings_) return build_settings(size);
     build_pause(state, size);
   });
+}
+
+std::shared_ptr<const OverlayFrame> Menu::make_frame(Screen screen, std::array<int, 2> size,
+                                                     double seconds,
+                                                     const std::function<void()>& build) {
+  if (screen != Screen::connecting && shows_settings_) screen = Screen::settings;
+  if (std::exchange(shown_, screen) != screen) {
+    for (int i = 0; i < UiContext::kFocusFrames; ++i) context_.make_hidden_frame(size, build);
+  }
+  return context_.make_frame(size, seconds, build);
 }
 
 void Menu::join(std::string address) {

@@ -3,6 +3,8 @@
 // One thread.
 #pragma once
 #include <array>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -36,6 +38,11 @@ class Menu {
   std::vector<MenuAction> take_actions() { return std::exchange(actions_, {}); }
 
  private:
+  enum class Screen : std::uint8_t { none, title, password, settings, connecting, pause };
+  /// If `screen` has just come, it has its first button chosen before it takes events.
+  std::shared_ptr<const OverlayFrame> make_frame(Screen screen, std::array<int, 2> size,
+                                                 double seconds,
+                                                 const std::function<void()>& build);
   void build_title(const TitleState& state, std::array<int, 2> size);
   void build_servers(const TitleState& state);
   void build_worlds(const TitleState& state);
@@ -49,6 +56,7 @@ class Menu {
   UiContext context_;
   ClientSettings settings_;
   SettingsForm form_;
+  Screen shown_ = Screen::none;  // by the last frame
   bool shows_settings_ = false;
   std::string address_, name_, password_, world_, seed_ = "1";
   int generator_ = 0;

@@ -113,6 +113,18 @@ TEST_CASE("a second panel frees the mouse too, until both are closed", "[client_
   CHECK(router.is_captured());
 }
 
+TEST_CASE("what comes after the key that frees the mouse waits for who opens then",
+          "[client_input]") {
+  InputRouter router;
+  capture(router);
+  const RoutedInput out =
+      turn(router, {key(Key::escape, true), key(Key::down, true), key(Key::down, false)});
+  CHECK_FALSE(router.is_captured());
+  CHECK(out.for_ui.empty());
+  CHECK(router.take_waiting().size() == 2);
+  CHECK_FALSE(router.has_events());
+}
+
 TEST_CASE("what is held ends when other code takes the events", "[client_input]") {
   InputRouter router;
   capture(router);

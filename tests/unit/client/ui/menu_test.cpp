@@ -90,6 +90,18 @@ TEST_CASE_METHOD(MenuBench, "the pause menu goes on, leaves and quits", "[client
   only_action<QuitProgram>();
 }
 
+TEST_CASE_METHOD(MenuBench, "keys that came before the first frame of a screen count on it",
+                 "[client_ui]") {
+  std::vector<InputEvent> events;
+  for (const Key key : {Key::down, Key::down, Key::down, Key::space}) {
+    for (const bool is_pressed : {true, false}) events.emplace_back(key_event(key, is_pressed));
+  }
+  menu.reset();
+  menu.feed(events);
+  static_cast<void>(menu.pause(pause, kMenuSize, 0.02));
+  only_action<QuitProgram>();
+}
+
 TEST_CASE_METHOD(MenuBench, "a failure is drawn above the lists", "[client_ui]") {
   const std::size_t before = title_frames()->vertices.size();
   title.failure = {"The server is full", "no room for one more player"};
