@@ -88,7 +88,7 @@ TEST_CASE("an edit that was made while the server is gone reaches it when it is 
   bench.server = start_server(bench.config, flat_creation());
   CHECK(bench.logs("world open", 2));
   CHECK(reaches(bench.config.world, 1));
-  bench.press({"Escape", "Down", "Down", "space"});  // leave
+  bench.leave();
   CHECK_FALSE(text_in(bench.log).find("not confirmed") != std::string::npos);
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("a player who leaves while the server is gone reads how many edits may
           "[integration]") {
   if (!has_display_programs()) return;
   ServerGoneBench bench;
-  bench.press({"Escape", "Down", "Down", "space"});  // leave
+  bench.leave();
   CHECK(bench.logs("1 of your edits was not confirmed, and may be lost"));
 }
 

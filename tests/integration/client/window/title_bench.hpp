@@ -50,14 +50,16 @@ struct TitleBench {
     out.push_back(std::string("RUNSTONE_SERVER=") + RUNSTONE_SERVER_PROGRAM);
     return out;
   }
+  /// Returns how often the log has `part`.
+  std::size_t count_of(const std::string& part) const {
+    const std::string text = text_in(log);
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+      ++count;
+    return count;
+  }
   bool logs(const std::string& part, std::size_t times = 1) {
-    const bool found = wait_for(kWait, [&] {
-      const std::string text = text_in(log);
-      std::size_t count = 0;
-      for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-        ++count;
-      return count >= times;
-    });
+    const bool found = wait_for(kWait, [&] { return count_of(part) >= times; });
     UNSCOPED_INFO("log: " << text_in(log));
     return found;
   }
@@ -69,29 +71,30 @@ struct TitleBench {
   /// Presses the first button of the title screen until the log says that it worked: the window may
   /// not be drawn yet when it has the focus.
   void press_first_button(std::size_t worlds_before) {
-    const std::string opened = "world open";
     REQUIRE(wait_for(kWait, [&] {
       press({"space"});
-      return wait_for(std::chrono::seconds(3), [&] {
-        const std::string text = text_in(log);
-        std::size_t count = 0;
-        for (std::size_t at = text.find(opened); at != std::string::npos;
-             at = text.find(opened, at + 1))
-          ++count;
-        return count > worlds_before;
-      });
+      return wait_for(std::chrono::seconds(3),
+                      [&] { return count_of("world open") > worlds_before; });
     }));
   }
 
-  /// Quits by the last button of the pause menu, and returns the exit code. On a busy machine a key
-  /// may come before the menu is drawn, so it tries again.
+  /// Leaves the world by the third button of the pause menu.
+  void leave() { end_play({"Escape", "Down", "Down", "space"}); }
+  /// Quits by the last button of the pause menu, and returns the exit code.
   std::optional<int> quit() {
-    std::optional<int> code;
-    for (int attempt = 0; attempt < 5 && !code; ++attempt) {
-      press({"Escape", "Down", "Down", "Down", "space"});
-      code = client->wait(std::chrono::seconds(8));
-    }
-    return code;
+    end_play({"Escape", "Down", "Down", "Down", "space"});
+    return client->wait(kWait);
+  }
+  /// Presses keys until the log says that the client has left its world, and no key after that: it
+  /// would press a button of the title screen.
+  void end_play(const std::vector<std::string>& keys) {
+    const std::size_t before = count_of("exit code=");
+    const bool has_ended = wait_for(kWait, [&] {
+      press(keys);
+      return wait_for(std::chrono::seconds(15), [&] { return count_of("exit code=") > before; });
+    });
+    INFO(text_in(log));
+    REQUIRE(has_ended);
   }
 
   TempFolder folder;

@@ -36,11 +36,9 @@ TEST_CASE("without arguments the client builds in a local world, leaves it and c
     REQUIRE(bench.display.hand({"mousemove_relative", "--", "0", "80"}));
   const std::string server_log = bench.folder / "data/runstone/worlds/home/server.log";
   REQUIRE(bench.display.hand({"click", "1"}));
-  REQUIRE(wait_for(kWait, [&] {  // save and leave
-    bench.press({"Escape", "Down", "Down", "space"});
-    return wait_for(std::chrono::seconds(8),
-                    [&] { return text_in(server_log).find("stopped seq=") != std::string::npos; });
-  }));
+  bench.leave();
+  CHECK(wait_for(kWait,
+                 [&] { return text_in(server_log).find("stopped seq=") != std::string::npos; }));
   INFO(text_in(server_log));
   CHECK(text_in(server_log).find("stopped seq=1 ") != std::string::npos);
   bench.press_first_button(1);
