@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/key_text.hpp"
+#include "protocol/codec/view_tiles.hpp"
 
 namespace runstone {
 
@@ -28,6 +29,7 @@ std::uint64_t Violations::total() const {
 
 void VersionCounts::merge(const VersionCounts& other) {
   snapshots += other.snapshots;
+  tiles += other.tiles;
   stale += other.stale;
   outside += other.outside;
   followed += other.followed;
@@ -109,6 +111,7 @@ void VersionTracker::take(const ChunkKey& key, std::uint32_t view, Version versi
                     "chunk " + text_of(key) + " is of epoch " + std::to_string(version.epoch));
   }
   ++counts_.snapshots;
+  if (key.lod > 0) return take_tile(key, view);
   if (!accepts(key, view)) return;
   Known& chunk = chunks_[key.at];
   if (std::exchange(chunk.unavailable, false)) --unavailable_;
@@ -123,6 +126,15 @@ void VersionTracker::take(const ChunkKey& key, std::uint32_t view, Version versi
   chunk.latest = std::max(chunk.latest, version.seq);
   chunk.is_asked = false;
   advance(chunk, now_us);
+}
+
+void VersionTracker::take_tile(const ChunkKey& key, std::uint32_t view) {
+  ++counts_.tiles;
+  const auto& current = views_.current();
+  // A tile of a view before the newest one may be on its way when its place leaves the view.
+  if (current && view == current->number && !contains_key(*current, key))
+    violations_.add("tile outside",
+                    "tile " + text_of(key) + " is not in view " + std::to_string(view));
 }
 
 void VersionTracker::receive(const ChunkUnavailable& unavailable) {

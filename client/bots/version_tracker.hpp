@@ -6,6 +6,7 @@
 //     sends a snapshot within kResendUsMax, without a request.
 //   - A digest check may name a version newer than what arrived for kResendUsMax at most.
 //   - The digest of a snapshot is that of its voxels.
+//   - A tile lies in the view, or in one before it. It has no edits.
 //   - Edits in place of a snapshot answer claims only, and this client makes none.
 //   - An answer names a view that was sent.
 //   - When the view is complete, every chunk of it was answered.
@@ -53,6 +54,7 @@ class Violations {
 /// Counts since the tracker was made. An edit counts once per chunk in view.
 struct VersionCounts {
   std::uint64_t snapshots = 0;         // verified, digest included
+  std::uint64_t tiles = 0;             // of them and of uniform ones: tiles of distant ground
   std::uint64_t stale = 0;             // older than what is known: allowed, and ignored
   std::uint64_t outside = 0;           // answers for chunks that are not in view, or left it since
   std::uint64_t followed = 0;          // chunk edits that continued the version of their chunk
@@ -108,6 +110,7 @@ class VersionTracker {
   void take(const ChunkSnapshot& snapshot, std::uint32_t view, TimeUs now_us);
   bool accepts(const ChunkKey& key, std::uint32_t view);
   void take(const ChunkKey& key, std::uint32_t view, Version version, TimeUs now_us);
+  void take_tile(const ChunkKey& key, std::uint32_t view);
   void advance(Known& chunk, TimeUs now_us);
   void forget(const Known& chunk);
 

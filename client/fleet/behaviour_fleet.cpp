@@ -38,6 +38,7 @@ BotConfig config_of(const BotOptions& options, std::size_t index) {
   config.session.instance = random_instance();
   config.session.view.radius_h = options.view_radius;
   config.session.view.radius_v = options.view_radius_v;
+  config.session.view.levels = options.far_levels;
   config.role = options.roles[index % options.roles.size()];
   config.site = index % options.sites;
   config.sites = options.sites;

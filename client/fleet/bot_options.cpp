@@ -52,7 +52,7 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   // The last value wins, as in the other programs.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   std::string address, role = "build", mix, password_file;
-  unsigned view = out.view_radius;
+  unsigned view = out.view_radius, far_levels = out.far_levels;
   std::uint64_t edits = 0;
   app.add_option("--connect", address,
                  "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort))
@@ -97,6 +97,9 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   app.add_option("--seed", out.seed, "seed of everything that bots choose at random");
   app.add_option("--view", view, "view radius in chunks, both ways")
       ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
+  app.add_option("--far-levels", far_levels,
+                 "levels of tiles beyond the view; each one doubles the distance")
+      ->check(CLI::Range(0U, unsigned{kTileLevelMax}));
   app.add_option(
          "--patience", out.load_seconds,
          "seconds to wait for the world at the start and for the disk at the end; default 60")
@@ -114,7 +117,7 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
       ->needs(play);
   for (const char* other :
        {"--count", "--behaviour", "--mix", "--replicas", "--join-rate", "--name", "--key-dir",
-        "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {
+        "--rate", "--duration", "--edits", "--sites", "--seed", "--view", "--far-levels"}) {
     play->excludes(app.get_option(other));
   }
   try {
@@ -136,6 +139,7 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   if (app.count("--edits") != 0) out.edits = edits;
   if (out.sites == 0) out.sites = out.count;
   out.view_radius = out.view_radius_v = static_cast<std::uint8_t>(view);
+  out.far_levels = static_cast<std::uint8_t>(far_levels);
   return {out, 0};
 }
 

@@ -30,6 +30,7 @@ struct BotOptions {
   std::size_t sites = 0;               // building sites of all fleets in the world; set by parsing
   std::uint64_t seed = 1;
   std::uint8_t view_radius = 2, view_radius_v = 2;  // chunks
+  std::uint8_t far_levels = 0;                      // of tiles beyond them
   /// The time limit for joining and for the wait at the end; with `play`, for a lack of progress.
   double load_seconds = 60;
   std::string report;  // file; empty: none

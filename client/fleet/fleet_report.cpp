@@ -32,6 +32,7 @@ Json versions_json(const FleetReport& report) {
   return {{"commits", report.commits},
           {"edits", report.commit_edits},
           {"snapshots", v.snapshots},
+          {"tiles", v.tiles},
           {"chunk_edits_followed", v.followed},
           {"chunk_edits_contained", v.contained},
           {"chunk_edits_held_back", v.held_back},

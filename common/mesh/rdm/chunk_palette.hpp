@@ -42,11 +42,19 @@ class ChunkPalette {
     seen_.clear();
     for (auto& numbered : of_class_) numbered.clear();
   }
-  /// Returns the index of a material of the chunk. The first call for a material assigns it. Cost:
-  /// O(1).
-  PaletteIndex index_of(Material material, const VisibilityTable& visibility) {
-    const PaletteIndex index = of_[material];
-    return index != kUnseen ? index : enter(material, visibility[material]);
+  /// Writes the index of the material of each run to `out`. The first run of a material assigns it.
+  /// `runs` is a view of a RunList. Cost: O(runs).
+  template <class Runs, class Index>
+  void list(Runs runs, const VisibilityTable& visibility, Index* out) {
+    // In a register: for the compiler, a write of bytes may change the members.
+    const PaletteIndex* const of = of_.data();
+    const std::size_t size = runs.size();
+    for (std::size_t i = 0; i < size; ++i) {
+      const Material material = runs.material(i);
+      PaletteIndex index = of[material];
+      if (index == kUnseen) index = enter(material, visibility[material]);
+      out[i] = index_as<Index>(index);
+    }
   }
   /// Returns the index of a material if it is a transparent one of the chunk, otherwise 0.
   PaletteIndex transparent_index(Material material) const {

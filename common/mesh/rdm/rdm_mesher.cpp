@@ -43,12 +43,7 @@ rdm::IndexedRuns index_runs(const RunChunk& chunk, const VisibilityTable& visibi
   palette.clear();
   const auto list = [&](auto& indices) {
     indices.resize(chunk.runs.size());
-    chunk.runs.visit([&, out = indices.data()](const auto& runs) {
-      const std::size_t size = runs.size();
-      for (std::size_t i = 0; i < size; ++i)
-        out[i] = rdm::index_as<std::decay_t<decltype(*out)>>(
-            palette.index_of(runs.material(i), visibility));
-    });
+    chunk.runs.visit([&](const auto& runs) { palette.list(runs, visibility, indices.data()); });
   };
   list(scratch.byte_indices);
   if (!palette.fit_bytes()) {

@@ -39,7 +39,9 @@ FleetReport fleet_report(const json& report) {
   const json& losses = report.value("losses", none);
   for (const auto& [reason, count] : losses.items()) out.disconnects += number_in(count);
   out.drifted = number_at(report, "drifted");
-  const json& violations = report.value("verified", none).value("violations", none);
+  const json& verified = report.value("verified", none);
+  out.tiles = number_at(verified, "tiles");
+  const json& violations = verified.value("violations", none);
   for (const auto& [name, entry] : violations.items()) out.violations += number_at(entry, "count");
   out.bytes_received = number_at(report, "bytes_received");
   return out;
@@ -50,15 +52,16 @@ Result<Fleet, std::string> Fleet::join(Testbed& testbed, TestbedLink& link,
   Fleet out;
   out.plan_ = plan;
   out.report_ = testbed.fresh("report.json");
-  std::vector<std::string> words = {"--connect",   address,
-                                    "--count",     fmt::to_string(plan.clients),
-                                    "--sites",     fmt::to_string(plan.sites),
-                                    "--behaviour", "build",
-                                    "--rate",      fmt::to_string(plan.edits_per_second),
-                                    "--duration",  fmt::to_string(plan.seconds),
-                                    "--seed",      fmt::to_string(testbed.options().seed),
-                                    "--patience",  fmt::to_string(kPatience),
-                                    "--report",    out.report_};
+  std::vector<std::string> words = {"--connect",    address,
+                                    "--count",      fmt::to_string(plan.clients),
+                                    "--sites",      fmt::to_string(plan.sites),
+                                    "--behaviour",  "build",
+                                    "--far-levels", fmt::to_string(plan.far_levels),
+                                    "--rate",       fmt::to_string(plan.edits_per_second),
+                                    "--duration",   fmt::to_string(plan.seconds),
+                                    "--seed",       fmt::to_string(testbed.options().seed),
+                                    "--patience",   fmt::to_string(kPatience),
+                                    "--report",     out.report_};
   if (!plan.has_replicas) words.insert(words.end(), {"--replicas", "0"});
   auto bots = testbed.start_client(link, "runstone-bot", std::move(words));
   if (!bots) return Unexpected<std::string>{bots.error()};

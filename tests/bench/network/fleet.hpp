@@ -27,6 +27,7 @@ struct FleetReport {
   double disconnects = 0, rejected = 0;
   // Chunks whose voxels differ from the server's; broken rules of the protocol.
   double drifted = 0, violations = 0;
+  double tiles = 0;           // received by the bots that only verify
   double bytes_received = 0;  // by all bots, from start to end
 };
 
@@ -39,6 +40,7 @@ struct FleetPlan {
   double edits_per_second = kFleetEditsPerSecond;
   unsigned sites = 1;        // places where they build; clients of different ones see little of
                              // each other
+  unsigned far_levels = 0;   // of tiles beyond the views
   bool has_replicas = true;  // some bots mesh and compare whole chunks; without, all bots verify
                              // what they receive
 };

@@ -99,6 +99,13 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--crowd-sites", options.fleet_sites, "places where a fleet builds")
       ->capture_default_str()
       ->check(CLI::Range(1, 10'000));
+  net->add_option(
+         "--crowd-levels", options.fleet_levels,
+         "levels of tiles that a fleet sees beyond its chunks; each fleet is measured with "
+         "each")
+      ->capture_default_str()
+      ->delimiter(',')
+      ->check(CLI::Range(0, 8));
   net->add_option("--attacks", options.attacks,
                   "which attacks, strangers or floods; all by default")
       ->delimiter(',')

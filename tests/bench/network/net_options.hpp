@@ -26,17 +26,18 @@ struct NetOptions {
   unsigned repetitions = 5;           // joins and transfers
   std::vector<unsigned> clients = {1, 10, 100, 300, 1000};  // sizes of the fleets
   double fleet_seconds = 20;
-  unsigned fleet_sites = 1;          // places where a fleet builds
-  std::vector<std::string> attacks;  // empty: all
-  double attack_seconds = 8;         // of each attack, and of the phases before and after it
-  unsigned attackers = 24;           // threads with a hostile client each
-  unsigned attacker_addresses = 1;   // that they come from
-  unsigned attack_bots = 20;         // honest clients under attack
-  unsigned strangers = 5000;         // connections that never become players
-  double siege_seconds = 600;        // of the windows of a siege together
-  unsigned siege_bots = 100;         // honest clients in a siege
-  unsigned backup_mib = 1024;        // size of the world that is backed up
-  unsigned backup_rounds = 5;        // windows with backups, and as many without
+  unsigned fleet_sites = 1;                  // places where a fleet builds
+  std::vector<unsigned> fleet_levels = {0};  // of tiles beyond the bots' views, one after another
+  std::vector<std::string> attacks;          // empty: all
+  double attack_seconds = 8;        // of each attack, and of the phases before and after it
+  unsigned attackers = 24;          // threads with a hostile client each
+  unsigned attacker_addresses = 1;  // that they come from
+  unsigned attack_bots = 20;        // honest clients under attack
+  unsigned strangers = 5000;        // connections that never become players
+  double siege_seconds = 600;       // of the windows of a siege together
+  unsigned siege_bots = 100;        // honest clients in a siege
+  unsigned backup_mib = 1024;       // size of the world that is backed up
+  unsigned backup_rounds = 5;       // windows with backups, and as many without
   std::uint64_t seed = 1;
   bool insecure = false;  // without encryption
   bool quick = false;     // small sizes, for tests on a busy machine

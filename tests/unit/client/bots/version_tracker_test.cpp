@@ -43,6 +43,29 @@ TEST_CASE("versions follow edits that continue them", "[bots][headless]") {
   CHECK(tracker.violations().total() == 0);
 }
 
+TEST_CASE("tiles are counted, and one outside of the view is a violation", "[bots][headless]") {
+  VersionTracker tracker;
+  tracker.open(1, {});
+  View view{1, kTracked, 2, 2};
+  view.levels = 1;
+  tracker.set_view(view);
+  ChunkSnapshot tile = snapshot_at({1, 0, 0}, 3);
+  tile.key.lod = 1;
+  tracker.receive(chunks_of(tile, 1), 0);
+  CHECK(tracker.counts().tiles == 1);
+  CHECK(tracker.known() == 0);
+  CHECK(tracker.violations().total() == 0);
+  tile.key.lod = 2;  // the view has one level
+  tracker.receive(chunks_of(tile, 1), 0);
+  CHECK(tracker.violations().all().at("tile outside").count == 1);
+  view.number = 2;
+  view.levels = 0;
+  tracker.set_view(view);
+  tile.key.lod = 1;
+  tracker.receive(chunks_of(tile, 1), 0);  // it was on its way
+  CHECK(tracker.violations().total() == 1);
+}
+
 TEST_CASE("an edit that overtakes its snapshot is held back, and one in the snapshot is dropped",
           "[bots][headless]") {
   VersionTracker tracker;
