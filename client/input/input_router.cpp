@@ -16,7 +16,7 @@ bool is_function_key(Key key) { return key >= Key::f1 && key <= Key::f12; }
 bool is_press_after_move(const InputEvent& event, const RoutedInput& out) {
   const auto* const button = std::get_if<ButtonEvent>(&event);
   return button != nullptr && button->is_pressed &&
-         std::ranges::any_of(out.for_ui, [](const InputEvent& routed) {
+         std::any_of(out.for_ui.begin(), out.for_ui.end(), [](const InputEvent& routed) {
            return std::holds_alternative<CursorEvent>(routed);
          });
 }

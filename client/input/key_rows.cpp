@@ -1,6 +1,7 @@
 #include "client/input/key_rows.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace runstone {
 namespace {
@@ -22,9 +23,10 @@ constexpr JoinedRow kJoinedRows[] = {
 /// Returns the joined row that has this action, or null.
 const JoinedRow* joined_row(const KeyMap& keys, Action action) {
   static const KeyMap defaults;
+  const std::span<const ActionInfo> all = action_table();
   for (const JoinedRow& row : kJoinedRows) {
     if (action < row.first || action > row.last) continue;
-    const bool are_default = std::ranges::all_of(action_table(), [&](const ActionInfo& info) {
+    const bool are_default = std::all_of(all.begin(), all.end(), [&](const ActionInfo& info) {
       return info.action < row.first || info.action > row.last ||
              keys.keys_of(info.action) == defaults.keys_of(info.action);
     });

@@ -327,7 +327,9 @@ std::uint8_t Terrain::joined_sides(const ChunkKey& key, std::uint8_t octants) co
 
 void Terrain::find_visible_tiles(const FrameView& view, const Frustum& frustum,
                                  TerrainStats& stats) {
-  for (const auto& [key, tile] : tiles_) {
+  for (const auto& entry : tiles_) {
+    const ChunkKey& key = entry.first;
+    const auto& tile = entry.second;
     const double scale = std::ldexp(1.0, key.lod);
     // The limits of the world hold for its voxels, so the origin in voxels of the tile is exact.
     const VoxelPos first = origin_of(key.at, tile.whole.edge);

@@ -33,14 +33,16 @@ MeshPool::MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, 
       capacity_(workers == 0 ? 1 : workers * 8),
       tiles_max_(workers == 0 ? 1 : workers * kTilesPerWorker),
       visibility_(std::make_shared<const VisibilityTable>(std::move(visibility))) {
-  for (unsigned i = 0; i < workers; ++i) {
-    threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
-  }
+  for (unsigned i = 0; i < workers; ++i) threads_.emplace_back([this] { work(); });
 }
 
 MeshPool::~MeshPool() {
-  for (std::jthread& thread : threads_) thread.request_stop();
-  threads_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    stops_ = true;
+  }
+  work_there_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
 }
 
 void MeshPool::set_visibility(VisibilityTable visibility) {
@@ -122,7 +124,7 @@ MeshPool::Job MeshPool::take_job(unsigned& chunks_since_tile) {
   return out;
 }
 
-void MeshPool::work(const std::stop_token& stop) {
+void MeshPool::work() {
   Scratch scratch;
   unsigned chunks_since_tile = 0;
   for (;;) {
@@ -130,8 +132,8 @@ void MeshPool::work(const std::stop_token& stop) {
     std::shared_ptr<const VisibilityTable> visibility;
     {
       std::unique_lock lock(mutex_);
-      const auto has_work = [this] { return !jobs_.empty() || !tile_jobs_.empty(); };
-      if (!work_there_.wait(lock, stop, has_work) || stop.stop_requested()) return;
+      work_there_.wait(lock, [this] { return stops_ || !jobs_.empty() || !tile_jobs_.empty(); });
+      if (stops_) return;
       job = take_job(chunks_since_tile);
       visibility = visibility_;
     }

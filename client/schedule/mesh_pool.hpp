@@ -10,7 +10,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <stop_token>
 #include <thread>
 #include <variant>
 #include <vector>
@@ -78,7 +77,7 @@ class MeshPool {
     ChunkBorders borders;
   };
   using Job = std::variant<MeshJob, FarMeshJob>;
-  void work(const std::stop_token& stop);
+  void work();
   /// Takes the job that comes next. Requires that one waits, and mutex_.
   Job take_job(unsigned& chunks_since_tile);
   MeshResult mesh(const MeshJob& job, const VisibilityTable& visibility, Scratch& scratch) const;
@@ -90,15 +89,16 @@ class MeshPool {
   mutable std::mutex mutex_;
   // Never null. The thread that pushes replaces it, under mutex_. Workers copy it under mutex_.
   std::shared_ptr<const VisibilityTable> visibility_;
-  std::condition_variable_any work_there_;
-  std::deque<MeshJob> jobs_;  // guarded by mutex_, as are the next five
+  std::condition_variable work_there_;
+  std::deque<MeshJob> jobs_;  // guarded by mutex_, as are the next six
   std::deque<FarMeshJob> tile_jobs_;
   std::vector<MeshResult> results_;
   std::vector<FarMeshResult> tile_results_;
   std::size_t in_flight_ = 0;
   std::size_t tiles_in_flight_ = 0;
+  bool stops_ = false;
   Scratch push_scratch_;  // used by the thread that pushes
-  std::vector<std::jthread> threads_;
+  std::vector<std::thread> threads_;
 };
 
 }  // namespace runstone

@@ -19,7 +19,7 @@ Result<EditDescriptor, std::string> paste_of(std::vector<Cell> cells, Mask mask)
   placed.reserve(cells.size());
   for (const Cell& c : cells)
     placed.emplace_back(Place(c.at.z, c.at.y, c.at.x, placed.size()), c.material);
-  std::ranges::sort(placed);
+  std::sort(placed.begin(), placed.end());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto& [z, y, x, order] = placed[i].first;
     cells[i] = {{x, y, z}, placed[i].second};

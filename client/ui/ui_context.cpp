@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -184,7 +185,7 @@ void UiContext::release_all() {
   ImGuiIO& io = ImGui::GetIO();
   io.ClearInputKeys();
   io.ClearInputCharacters();
-  std::ranges::fill(io.MouseDown, false);
+  std::fill(std::begin(io.MouseDown), std::end(io.MouseDown), false);
 }
 
 void UiContext::feed(const std::vector<InputEvent>& events) {

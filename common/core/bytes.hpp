@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,12 @@ class ByteWriter {
   void u16(std::uint16_t v) { little_endian(v, 2); }
   void u32(std::uint32_t v) { little_endian(v, 4); }
   void u64(std::uint64_t v) { little_endian(v, 8); }
+  /// Writes the bits of an IEEE 754 number as a u64.
+  void f64(double v) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &v, sizeof bits);
+    u64(bits);
+  }
   void varint(std::uint64_t v) {
     for (; v >= 0x80; v >>= 7) out_.push_back(static_cast<std::uint8_t>(v | 0x80));
     out_.push_back(static_cast<std::uint8_t>(v));
@@ -66,6 +73,12 @@ class ByteReader {
   std::uint16_t u16() { return static_cast<std::uint16_t>(little_endian(2)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(little_endian(4)); }
   std::uint64_t u64() { return little_endian(8); }
+  double f64() {
+    const std::uint64_t bits = u64();
+    double v;
+    std::memcpy(&v, &bits, sizeof v);
+    return v;
+  }
   std::uint64_t varint() {
     const bool is_one_byte = !failed_ && at_ < in_.size() && in_[at_] < 0x80;
     return is_one_byte ? in_[at_++] : long_varint();

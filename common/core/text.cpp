@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 
 namespace runstone {
 namespace {
@@ -33,9 +34,10 @@ std::uint32_t next_character(std::string_view text, std::size_t& at) {
 }
 
 bool is_unseen(std::uint32_t character) {
-  return std::ranges::any_of(kUnseen, [character](const CharacterRange& range) {
-    return character >= range.first && character <= range.last;
-  });
+  return std::any_of(std::begin(kUnseen), std::end(kUnseen),
+                     [character](const CharacterRange& range) {
+                       return character >= range.first && character <= range.last;
+                     });
 }
 
 }  // namespace

@@ -84,9 +84,9 @@ std::string with_single_blanks(std::string_view text) {
 std::optional<std::string> mixed_scripts(std::string_view folded) {
   std::optional<unsigned> first;
   for (const CodePoint character : characters_of(folded)) {
-    const auto range = std::ranges::find_if(kScriptRanges, [&](const ScriptRange& r) {
-      return character >= r.first && character <= r.last;
-    });
+    const auto range = std::find_if(
+        kScriptRanges.begin(), kScriptRanges.end(),
+        [&](const ScriptRange& r) { return character >= r.first && character <= r.last; });
     if (range == kScriptRanges.end()) continue;
     if (!first) first = range->script;
     if (*first == range->script) continue;

@@ -39,7 +39,7 @@ Bytes encode_rlog_world(const RlogWorld& world) {
   w.varint(world.generator.version);
   w.u64(world.generator.seed);
   write_text(w, world.generator.parameters);
-  for (const double coordinate : world.spawn) w.u64(std::bit_cast<std::uint64_t>(coordinate));
+  for (const double coordinate : world.spawn) w.f64(coordinate);
   w.u8(world.has_base ? 1 : 0);
   w.varint(world.head.epoch);
   write_text(w, world.materials);
@@ -61,7 +61,7 @@ Result<RlogWorld> decode_rlog_world(ByteView in) {
   world.generator.seed = r.u64();
   world.generator.parameters = read_text(r, kRlogRawBytesMax);
   for (double& coordinate : world.spawn) {
-    coordinate = std::bit_cast<double>(r.u64());
+    coordinate = r.f64();
     // The condition is also false for a NaN.
     if (r.ok() && !(coordinate >= -kWorldLimit && coordinate < kWorldLimit)) {
       r.reject(ErrorCode::bad_value, "spawn lies outside the world");

@@ -18,7 +18,7 @@ RunList RunList::of_narrow(std::vector<PackedRun> runs) {
 RunList RunList::of_wide(std::vector<std::uint32_t> ends, std::vector<Material> materials) {
   RUNSTONE_ASSERT(ends.size() == materials.size());
   RunList list;
-  list.form_.emplace<Wide>(std::move(ends), std::move(materials));
+  list.form_.emplace<Wide>(Wide{std::move(ends), std::move(materials)});
   return list;
 }
 

@@ -1,7 +1,6 @@
 #include "protocol/codec/draw_order.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -50,9 +49,6 @@ constexpr bool is_edge(std::int32_t edge) {
   return edge == 16 || edge == 32 || edge == 64 || edge == 128;
 }
 
-void write_f64(ByteWriter& w, double v) { w.u64(std::bit_cast<std::uint64_t>(v)); }
-double read_f64(ByteReader& r) { return std::bit_cast<double>(r.u64()); }
-
 ByteView bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
@@ -89,8 +85,7 @@ Result<DrawOrder> decode_chunk_order(ByteReader& r, std::int32_t edge) {
 Result<DrawOrder> decode_picture(ByteReader& r) {
   DrawPicture picture;
   DrawCamera& c = picture.camera;
-  for (double* v : {&c.x, &c.y, &c.z, &c.yaw, &c.pitch, &c.fov_y, &c.near, &c.far})
-    *v = read_f64(r);
+  for (double* v : {&c.x, &c.y, &c.z, &c.yaw, &c.pitch, &c.fov_y, &c.near, &c.far}) *v = r.f64();
   picture.size.width = r.u16();
   picture.size.height = r.u16();
   picture.file = text_of(r.bytes(r.left()));
@@ -164,7 +159,7 @@ void append_draw_picture(const DrawPicture& picture, Bytes& out) {
   RUNSTONE_ASSERT(validate(picture).has_value());
   append_frame(Kind::picture, out, [&](ByteWriter& w) {
     const DrawCamera& c = picture.camera;
-    for (const double v : {c.x, c.y, c.z, c.yaw, c.pitch, c.fov_y, c.near, c.far}) write_f64(w, v);
+    for (const double v : {c.x, c.y, c.z, c.yaw, c.pitch, c.fov_y, c.near, c.far}) w.f64(v);
     w.u16(picture.size.width);
     w.u16(picture.size.height);
     w.bytes(bytes_of(picture.file));

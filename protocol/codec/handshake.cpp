@@ -2,7 +2,6 @@
 
 #include <sodium.h>
 
-#include <bit>
 #include <string_view>
 
 #include "common/core/assert.hpp"
@@ -36,7 +35,10 @@ class Transcript {
     writer_.u32(bytes);
     for (std::uint32_t i = 0; i < bytes; ++i) writer_.u8(static_cast<std::uint8_t>(v >> (8 * i)));
   }
-  void number(double v) { number(std::bit_cast<std::uint64_t>(v), 8); }
+  void number(double v) {
+    writer_.u32(sizeof v);
+    writer_.f64(v);
+  }
   Bytes take() { return std::move(bytes_); }
 
  private:

@@ -82,9 +82,7 @@ constexpr std::int64_t kIntegerMax = std::numeric_limits<std::int64_t>::max();
 MetaRows rows_of(const WorldMeta& meta) {
   Bytes spawn;
   ByteWriter writer(spawn);
-  for (const double coordinate : {meta.spawn.x, meta.spawn.y, meta.spawn.z}) {
-    writer.u64(std::bit_cast<std::uint64_t>(coordinate));
-  }
+  for (const double coordinate : {meta.spawn.x, meta.spawn.y, meta.spawn.z}) writer.f64(coordinate);
   return {{"world_id", bytes_of(meta.world_id)},
           {"chunk_edge", std::int64_t{meta.chunk_edge}},
           {"generator", meta.generator.name},
@@ -116,9 +114,8 @@ Result<WorldMeta, std::string> meta_of(const MetaRows& rows) {
   meta.server_key_seed = in.bytes<32>("server_key_seed");
   const auto spawn = in.bytes<24>("spawn");
   ByteReader reader(spawn);
-  for (double* coordinate : {&meta.spawn.x, &meta.spawn.y, &meta.spawn.z}) {
-    *coordinate = std::bit_cast<double>(reader.u64());
-  }
+  for (double* coordinate : {&meta.spawn.x, &meta.spawn.y, &meta.spawn.z})
+    *coordinate = reader.f64();
   if (!in.bad_key().empty()) return Unexpected<std::string>{in.bad_key()};
   return meta;
 }

@@ -25,7 +25,7 @@ std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const Edi
     const std::size_t before = stack.size();
     for_each_part(edit, origin, chunk.extent, chunk.order,
                   [&](const OrderedShape& shape, Material material) {
-                    stack.emplace_back(shape, edit.mask, material);
+                    stack.push_back({shape, edit.mask, material});
                   });
     count += stack.size() != before ? 1 : 0;
   }
