@@ -36,6 +36,20 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 target_link_libraries(runstone_asio INTERFACE Threads::Threads)
 
+# Boost is used for Beast, with the Asio that is part of it. Its types never meet those of the
+# standalone Asio.
+find_package(Boost 1.74 REQUIRED)
+find_package(prometheus-cpp REQUIRED CONFIG)
+add_library(runstone_beast INTERFACE)
+target_compile_definitions(runstone_beast INTERFACE BOOST_ASIO_NO_DEPRECATED BOOST_ASIO_HAS_STD_ALIGNED_ALLOC=1)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  target_compile_definitions(runstone_beast INTERFACE BOOST_ASIO_HAS_CO_AWAIT=1 BOOST_ASIO_HAS_STD_COROUTINE=1)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(runstone_beast INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-mismatched-new-delete>)
+endif()
+target_link_libraries(runstone_beast INTERFACE Boost::headers OpenSSL::SSL OpenSSL::Crypto Threads::Threads)
+
 if(RUNSTONE_TESTS)
   find_package(Catch2 2.13 REQUIRED CONFIG)
   find_package(benchmark 1.7 REQUIRED CONFIG)

@@ -174,18 +174,24 @@ Result<std::unique_ptr<ControlSocket>, std::string> ControlSocket::listen(asio::
                                                                           Handler handler) {
   auto path = control_path(world);
   if (!path) return Unexpected<std::string>{path.error()};
-  auto parts = std::make_shared<Parts>(io, *path, std::move(handler));
+  return listen_at(io, *path, false, std::move(handler));
+}
+
+Result<std::unique_ptr<ControlSocket>, std::string> ControlSocket::listen_at(
+    asio::io_context& io, const std::string& path, bool is_for_group, Handler handler) {
+  auto parts = std::make_shared<Parts>(io, path, std::move(handler));
   std::error_code ignored;
-  if (std::filesystem::is_socket(*path, ignored)) std::filesystem::remove(*path, ignored);
+  if (std::filesystem::is_socket(path, ignored)) std::filesystem::remove(path, ignored);
   asio::error_code error;
   parts->acceptor.open(Local(), error);
-  if (!error) parts->acceptor.bind(Local::endpoint(*path), error);
+  if (!error) parts->acceptor.bind(Local::endpoint(path), error);
   // Nobody can connect before listen(), so the mode takes effect in time.
-  if (!error && ::chmod(path->c_str(), S_IRUSR | S_IWUSR) != 0) {
+  const mode_t mode = S_IRUSR | S_IWUSR | (is_for_group ? S_IRGRP | S_IWGRP : 0);
+  if (!error && ::chmod(path.c_str(), mode) != 0) {
     error = asio::error_code(errno, asio::error::get_system_category());
   }
   if (!error) parts->acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) return Unexpected<std::string>{*path + ": " + error.message()};
+  if (error) return Unexpected<std::string>{path + ": " + error.message()};
   parts->accept();
   return std::unique_ptr<ControlSocket>(new ControlSocket(std::move(parts)));
 }

@@ -37,6 +37,11 @@ struct ServerConfig {
   /// certificate of its own.
   std::string tls_certificate, tls_key;
   std::string public_address;  // HOST or HOST:PORT in links for players
+  /// Path of a Unix socket for a gateway such as runstone-web, which names the address of each
+  /// player by a PROXY header. Empty: none. Beside it the server answers questions at the socket
+  /// with ".status" behind its name.
+  std::string gateway_socket;
+  bool gateway_group = false;  // programs of the file's group may use these sockets as well
   LogLevel log_level = LogLevel::info;
   LogFormat log_format = LogFormat::text;
   AddressForm log_addresses = AddressForm::full;  // of players, in log lines

@@ -38,6 +38,18 @@ void use_certificate(ServerCore& core, const std::optional<TlsContext>& certific
   core.set_tls(certificate ? *certificate : TlsContext::self_signed_server(own_key));
 }
 
+/// Returns the path at which the server answers questions of a gateway.
+std::string status_path(const ServerConfig& config) { return config.gateway_socket + ".status"; }
+
+Result<void, std::string> can_listen_for_gateway(const ServerConfig& config) {
+  if (config.gateway_socket.empty()) return {};
+  for (const std::string& path : {config.gateway_socket, status_path(config)}) {
+    if (const auto can = can_listen_at_path(path); !can)
+      return failure("gateway_socket = " + can.error());
+  }
+  return {};
+}
+
 }  // namespace
 
 // Members are destroyed in reverse order: the core before the objects that it refers to.
@@ -49,6 +61,7 @@ struct Server::Parts {
   std::unique_ptr<asio::thread_pool> workers, decoders;
   std::vector<std::thread> io_threads;
   std::unique_ptr<ControlSocket> control;  // null if the folder's path is too long
+  std::unique_ptr<ControlSocket> status;   // for a gateway; null if there is none
   std::unique_ptr<ServerCore> core;
   bool is_unclaimed = false;
   bool is_running = false;
@@ -74,6 +87,8 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
     return failure(allowed.error());
   const auto certificate = configured_certificate(config);
   if (!certificate) return failure(certificate.error());
+  if (const auto gateway = can_listen_for_gateway(config); !gateway)
+    return failure(gateway.error());
   auto world = open_or_create_world(config.world, creation, accept_losses);
   if (!world) return Unexpected<std::string>{world.error()};
   if (accept_losses) log_losses(world->losses);
@@ -88,8 +103,21 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   if (!config.insecure) use_certificate(*parts->core, *certificate, parts->world);
   if (const auto bound = parts->core->listen(config.listen); !bound)
     return Unexpected<std::string>{bound.error()};
+  if (!config.gateway_socket.empty()) {
+    const auto bound = parts->core->listen_for_gateway(config.gateway_socket, config.gateway_group);
+    if (!bound) return failure(bound.error());
+  }
   if (const auto recovered = parts->core->recover(); !recovered) {
     return Unexpected<std::string>{recovered.error()};
+  }
+  if (!config.gateway_socket.empty()) {
+    auto status = ControlSocket::listen_at(
+        parts->io, status_path(config), config.gateway_group,
+        [core = parts->core.get()](const std::string& question, CommandReply reply) {
+          core->answer_gateway(question, std::move(reply));
+        });
+    if (!status) return failure("gateway_socket = " + status.error());
+    parts->status = *std::move(status);
   }
   parts->is_unclaimed = parts->core->is_unclaimed();
   parts->work.emplace(parts->io.get_executor());
@@ -153,6 +181,7 @@ StopReport Server::stop() {
   Parts& parts = *parts_;
   parts.is_running = false;
   if (parts.control) parts.control->stop();
+  if (parts.status) parts.status->stop();
   const TimeUs due_us =
       steady_now_us() + static_cast<TimeUs>(parts.config.stop_s) * std::int64_t{1'000'000};
   parts.core->begin_stop().wait();
@@ -161,6 +190,7 @@ StopReport Server::stop() {
   parts.workers->join();
   parts.core->log_counters();
   parts.control.reset();  // closes connections that have not read their answer
+  parts.status.reset();
   parts.work.reset();
   for (std::thread& thread : parts.io_threads) thread.join();
   parts.decoders->join();

@@ -1,4 +1,4 @@
-// ByteStream: the byte stream of a session. TCP implements it, and TLS over TCP.
+// ByteStream: the byte stream of a session. TCP implements it, TLS over TCP, and a Unix socket.
 // Threads: the session's strand. At most one read and one write are under way at a time.
 #pragma once
 #include <asio/any_io_executor.hpp>
@@ -6,6 +6,7 @@
 #include <asio/buffer.hpp>
 #include <asio/error_code.hpp>
 #include <asio/ip/tcp.hpp>
+#include <asio/local/stream_protocol.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -78,6 +79,11 @@ class ByteStream {
 /// terrain waits in the kernel before an edit. `log_form`: of peer().
 std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
                                             AddressForm log_form);
+
+/// Makes a stream over a Unix socket, through which a gateway speaks for the client at this endpoint.
+std::unique_ptr<ByteStream> make_local_stream(asio::local::stream_protocol::socket socket,
+                                              const asio::ip::tcp::endpoint& client,
+                                              AddressForm log_form);
 
 /// Makes a stream over TLS and TCP. The costly steps of the handshake run on `handshakes`. A peer
 /// that does not speak TLS gets `plain_answer`, unencrypted.

@@ -110,7 +110,7 @@ asio::awaitable<void> Listener::accept_loop(std::shared_ptr<Listener> self) {
     asio::ip::tcp::socket socket(self->io_);
     const auto [error] = co_await self->acceptor_.async_accept(socket, kTuple);
     if (!error) {
-      self->admit(std::move(socket));
+      self->admit_socket(std::move(socket));
     } else if (self->acceptor_.is_open()) {
       // The process is probably out of file descriptors. Sessions that end release some.
       self->pause_.expires_after(std::chrono::milliseconds(100));
@@ -120,24 +120,41 @@ asio::awaitable<void> Listener::accept_loop(std::shared_ptr<Listener> self) {
   }
 }
 
-void Listener::admit(asio::ip::tcp::socket socket) {
+void Listener::admit_socket(asio::ip::tcp::socket socket) {
   asio::error_code gone;
   const AddressBlock from = address_block(socket.remote_endpoint(gone).address());
   if (gone) return;
-  if (!connections_.take(from, 1, steady_now_us())) return refuse(socket);
+  if (!make_place(from)) return refuse(socket);
+  add(make_stream(std::move(socket)), from);
+}
+
+void Listener::admit(std::unique_ptr<ByteStream> stream) {
+  asio::post(strand_, [self = shared_from_this(), stream = std::move(stream)]() mutable {
+    const AddressBlock from = stream->address();
+    if (self->make_place(from)) return self->add(std::move(stream), from);
+    self->counters_.refused.fetch_add(1);
+  });
+}
+
+bool Listener::make_place(AddressBlock from) {
+  if (!connections_.take(from, 1, steady_now_us())) return false;
   std::optional<std::vector<std::shared_ptr<NetSession>>> ended;
   {
     const std::lock_guard lock(mutex_);
     ended = make_room(from);
   }
-  if (!ended) return refuse(socket);
+  if (!ended) return false;
   counters_.refused.fetch_add(ended->size());
   for (const auto& session : *ended) session->abort();
+  return true;
+}
+
+void Listener::add(std::unique_ptr<ByteStream> stream, AddressBlock from) {
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
   auto session =
-      std::make_shared<NetSession>(id, io_, decoders_, make_stream(std::move(socket)), limits_,
-                                   chunk_edge_, budget_, reads_of(from), events_, counters_);
+      std::make_shared<NetSession>(id, io_, decoders_, std::move(stream), limits_, chunk_edge_,
+                                   budget_, reads_of(from), events_, counters_);
   {
     const std::lock_guard lock(mutex_);
     if (is_stopped_) return;

@@ -42,6 +42,9 @@ class Listener : public std::enable_shared_from_this<Listener> {
   void start();
   /// Accepts no more connections.
   void stop();
+  /// Treats a connection that somebody else accepted like one of its own: the same limits hold for
+  /// its address. If there is no room, it is closed. Requires start(). Thread: any.
+  void admit(std::unique_ptr<ByteStream> stream);
 
   /// Returns null if there is no such session.
   std::shared_ptr<NetSession> find(SessionId session) const;
@@ -66,7 +69,12 @@ class Listener : public std::enable_shared_from_this<Listener> {
   static constexpr std::size_t kLeavingMax = 64;
 
   static asio::awaitable<void> accept_loop(std::shared_ptr<Listener> self);
-  void admit(asio::ip::tcp::socket socket);
+  void admit_socket(asio::ip::tcp::socket socket);
+  /// Returns true if one more connection from this address may be added. It then has paid for it,
+  /// and others that it replaces are being closed.
+  bool make_place(AddressBlock from);
+  /// Adds a connection for which there is a place.
+  void add(std::unique_ptr<ByteStream> stream, AddressBlock from);
   /// Closes a connection that was accepted just now.
   void refuse(asio::ip::tcp::socket& socket);
   std::unique_ptr<ByteStream> make_stream(asio::ip::tcp::socket socket);

@@ -36,6 +36,14 @@ void log_failed_handshake(SessionId session, const std::string& peer, const std:
                *left_out);
 }
 
+void log_refused_gateway(const std::string& why) {
+  static SharedThrottle throttle;
+  const auto left_out = throttle.take();
+  const auto logger = left_out ? spdlog::get("net") : nullptr;
+  if (logger == nullptr) return;
+  logger->warn("a connection of the gateway was closed: {} left_out={}", why, *left_out);
+}
+
 void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason reason,
                      const Error& error) {
   static SharedThrottle throttle;

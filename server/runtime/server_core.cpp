@@ -27,7 +27,8 @@ constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for t
 ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,
                        const Generator& generator, std::function<void()> on_failure,
                        OperatorActions actions)
-    : config_(config),
+    : io_(threads.io),
+      config_(config),
       store_(store),
       generator_(generator),
       on_failure_(std::move(on_failure)),
@@ -53,6 +54,18 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       }) {}
 
 ServerCore::~ServerCore() = default;
+
+Result<void, std::string> ServerCore::listen_for_gateway(const std::string& path,
+                                                         bool is_for_group) {
+  const NetLimits limits = net_limits_of(config_);
+  gateway_ = std::make_shared<GatewayListener>(
+      io_, std::chrono::milliseconds(limits.handshake_ms),
+      [listener = listener_, form = limits.log_addresses](
+          asio::local::stream_protocol::socket socket, const asio::ip::tcp::endpoint& client) {
+        listener->admit(make_local_stream(std::move(socket), client, form));
+      });
+  return gateway_->listen(path, is_for_group);
+}
 
 Result<void, std::string> ServerCore::recover() {
   auto start = read_world_start(store_);
@@ -122,6 +135,7 @@ DurableLog::Events ServerCore::log_events() {
 
 void ServerCore::start() {
   listener_->start();
+  if (gateway_) gateway_->start();
   ticks_.start();
   if (chat_log_) chat_retention_.start();
   stalls_.start();
@@ -149,10 +163,20 @@ void ServerCore::log_counters() {
   strand_.post([this] { write_counters(); });
 }
 
-void ServerCore::write_counters() {
+void ServerCore::write_counters() { logger("app").info("{}", all_counters()); }
+
+std::string ServerCore::all_counters() const {
   const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000};
-  logger("app").info(
-      "{}", counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime));
+  return counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime);
+}
+
+void ServerCore::answer_gateway(const std::string& question, CommandReply reply) {
+  if (question != "status") return refuse(reply, "the only question is `status`");
+  strand_.post([this, reply = std::move(reply)] {
+    std::string text = all_counters();
+    for (const auto& player : world_->online_players()) text += "\nplayer " + player.name;
+    reply({std::move(text), true, true});
+  });
 }
 
 void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply reply) {
@@ -182,6 +206,7 @@ void ServerCore::write_activity() {
 
 std::future<void> ServerCore::begin_stop() {
   listener_->stop();
+  if (gateway_) gateway_->stop();
   auto promise = std::make_shared<std::promise<void>>();
   std::future<void> answer = promise->get_future();
   strand_.post([this, promise = std::move(promise)]() mutable {

@@ -16,6 +16,7 @@
 
 #include "server/admin/server_config.hpp"
 #include "server/history/chunk_source.hpp"
+#include "server/net/gateway_listener.hpp"
 #include "server/net/listener.hpp"
 #include "server/runtime/activity_line.hpp"
 #include "server/runtime/chat_logging.hpp"
@@ -57,6 +58,8 @@ class ServerCore final : public NetEvents {
   Result<void, std::string> listen(const std::string& address) {
     return listener_->listen(address);
   }
+  /// Makes the Unix socket for a gateway. Does not touch the world.
+  Result<void, std::string> listen_for_gateway(const std::string& path, bool is_for_group);
   /// Encrypts connections from now on. Without this call they are not encrypted. Thread: any.
   void set_tls(const TlsContext& tls) { listener_->set_tls(tls); }
   /// Reads what the store remembers, raises the epoch, replays the log above the checkpoint, and
@@ -94,6 +97,10 @@ class ServerCore final : public NetEvents {
     commands_->run(line, std::move(reply));
   }
 
+  /// Answers a question of a gateway, of which there is one: "status". The answer is the line of all
+  /// counters (counters_line.hpp) and a line "player NAME" for each session. Thread: any.
+  void answer_gateway(const std::string& question, CommandReply reply);
+
   /// Takes over the settings that a running server may change, logs which, and replies. `read` is the
   /// new configuration, or why there is none. Thread: any.
   void reload(Result<ServerConfig, std::string> read, CommandReply reply);
@@ -122,9 +129,11 @@ class ServerCore final : public NetEvents {
   void schedule_delivery();
   void finish_stop_if_flushed();
   void write_counters();
+  std::string all_counters() const;
   /// Logs what happened since the last call, if anything did.
   void write_activity();
 
+  asio::io_context& io_;
   const ServerConfig& config_;
   Store& store_;
   const Generator& generator_;
@@ -133,6 +142,7 @@ class ServerCore final : public NetEvents {
   ServerConfig running_;  // config_ with what was reloaded. Used on the world strand
   WorldStrand strand_;
   std::shared_ptr<Listener> listener_;
+  std::shared_ptr<GatewayListener> gateway_;  // null: there is no gateway
   ConnectedSessions sessions_;
   MessageTurns messages_;                                     // used on the world strand
   bool is_turn_posted_ = false, is_delivery_posted_ = false;  // likewise

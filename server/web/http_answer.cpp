@@ -1,0 +1,89 @@
+#include "server/web/http_answer.hpp"
+
+#include <array>
+
+#include "server/web/metrics_text.hpp"
+#include "server/web/web_pages.hpp"
+
+namespace runstone {
+namespace {
+
+struct Route {
+  std::string_view path;
+  bool shows_status;
+  HttpAnswer (*answer)(const WebConfig&, const ServerStatus&, const WebCounters&);
+};
+
+constexpr const char* kHtml = "text/html; charset=utf-8";
+
+constexpr std::array<Route, 5> kRoutes = {{
+    {"/", true,
+     [](const WebConfig& config, const ServerStatus& server, const WebCounters& /*web*/) {
+       return HttpAnswer{200, kHtml, world_page(config, server), "", false};
+     }},
+    {"/status", true,
+     [](const WebConfig& config, const ServerStatus& server, const WebCounters& web) {
+       return HttpAnswer{200, kHtml, status_page(config, server, web), "", false};
+     }},
+    {"/metrics", true,
+     [](const WebConfig& /*config*/, const ServerStatus& server, const WebCounters& web) {
+       return HttpAnswer{200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(server, web),
+                         "", false};
+     }},
+    {"/style.css", false,
+     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
+       return HttpAnswer{200, "text/css; charset=utf-8", std::string(style_sheet()), "", true};
+     }},
+    {kPlayPath, false,
+     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
+       return plain_answer(426, "this address is for WebSockets");
+     }},
+}};
+
+const Route* find_route(std::string_view target) {
+  for (const Route& route : kRoutes) {
+    if (route.path == path_of(target)) return &route;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string_view path_of(std::string_view target) { return target.substr(0, target.find('?')); }
+
+bool shows_status(std::string_view target) {
+  const Route* route = find_route(target);
+  return route != nullptr && route->shows_status;
+}
+
+HttpAnswer answer_request(std::string_view method, std::string_view target, const WebConfig& config,
+                          const ServerStatus& server, const WebCounters& web) {
+  const Route* route = find_route(target);
+  if (route == nullptr) return plain_answer(404, "there is no such page");
+  if (method != "GET" && method != "HEAD") {
+    HttpAnswer answer = plain_answer(405, "this page can only be read");
+    answer.allow = "GET, HEAD";
+    return answer;
+  }
+  return route->answer(config, server, web);
+}
+
+HttpAnswer plain_answer(unsigned status, std::string sentence) {
+  return {status, "text/plain; charset=utf-8", std::move(sentence) + "\n", "", false};
+}
+
+const std::vector<std::pair<std::string, std::string>>& safety_headers() {
+  static const std::vector<std::pair<std::string, std::string>> all = {
+      {"Content-Security-Policy",
+       "default-src 'none'; style-src 'self'; base-uri 'none'; form-action 'none'; "
+       "frame-ancestors 'none'"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Cross-Origin-Embedder-Policy", "require-corp"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+  };
+  return all;
+}
+
+}  // namespace runstone

@@ -1,0 +1,42 @@
+#include "server/web/metrics_text.hpp"
+
+#include <prometheus/text_serializer.h>
+
+#include <vector>
+
+namespace runstone {
+namespace {
+
+void add_metric(std::vector<prometheus::MetricFamily>& out, const std::string& name,
+                const std::string& help, double value) {
+  prometheus::ClientMetric metric;
+  metric.untyped.value = value;
+  out.push_back({"runstone_" + name, help, prometheus::MetricType::Untyped, {std::move(metric)}});
+}
+
+}  // namespace
+
+std::string metrics_text(const ServerStatus& server, const WebCounters& web) {
+  std::vector<prometheus::MetricFamily> families;
+  add_metric(families, "up", "1 if the server answers the gateway", server.is_up ? 1 : 0);
+  for (const auto& [name, value] : server.counters) {
+    add_metric(families, name, "counter of the server with this name", static_cast<double>(value));
+  }
+  const auto add = [&](const char* name, const char* help, std::uint64_t value) {
+    add_metric(families, std::string("web_") + name, help, static_cast<double>(value));
+  };
+  add("connections", "connections accepted since the start", web.connections);
+  add("refused", "connections closed at once because of a limit", web.refused);
+  add("connections_open", "connections now", web.connections_open);
+  add("requests", "requests answered since the start", web.requests);
+  add("websockets", "WebSockets opened since the start", web.websockets);
+  add("websockets_open", "WebSockets now", web.websockets_open);
+  add("rules_broken", "WebSockets closed because of what they sent", web.rules_broken);
+  add("frames_in", "frames from browsers", web.frames_in);
+  add("frames_out", "frames to browsers", web.frames_out);
+  add("bytes_in", "bytes of frames from browsers", web.bytes_in);
+  add("bytes_out", "bytes of frames to browsers", web.bytes_out);
+  return prometheus::TextSerializer().Serialize(families);
+}
+
+}  // namespace runstone

@@ -1,0 +1,52 @@
+#include "server/web/origin_check.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace runstone {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+bool is_origin(std::string_view text) {
+  std::string_view host = text;
+  if (host.starts_with("https://")) {
+    host.remove_prefix(8);
+  } else if (host.starts_with("http://")) {
+    host.remove_prefix(7);
+  } else {
+    return false;
+  }
+  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789.-:[]";
+  return !host.empty() && host.find_first_not_of(kAllowed) == std::string_view::npos;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>, std::string> parse_origins(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t begin = std::min(text.find_first_not_of(" ,", at), text.size());
+    const std::size_t end = std::min(text.find_first_of(" ,", begin), text.size());
+    at = end;
+    if (begin == end) break;
+    out.push_back(text.substr(begin, end - begin));
+    if (!is_origin(out.back()))
+      return failure("origins: \"" + out.back() +
+                     "\" is no origin such as https://play.example.org");
+  }
+  return out;
+}
+
+bool OriginCheck::allows(std::optional<std::string_view> origin, std::string_view host) const {
+  if (!origin) return true;
+  const std::string asked = lower(*origin);
+  if (allowed_.empty()) return !host.empty() && asked == scheme_ + lower(host);
+  return std::find(allowed_.begin(), allowed_.end(), asked) != allowed_.end();
+}
+
+}  // namespace runstone

@@ -1,0 +1,55 @@
+#include "server/web/server_status.hpp"
+
+#include <charconv>
+
+namespace runstone {
+namespace {
+
+/// Returns the text up to `end` and removes both from `text`. Without `end` it returns all of it.
+std::string_view take_until(std::string_view& text, char end) {
+  const std::size_t at = text.find(end);
+  const std::string_view taken = text.substr(0, at);
+  text.remove_prefix(at == std::string_view::npos ? text.size() : at + 1);
+  return taken;
+}
+
+void read_counters(std::string_view fields, std::map<std::string, std::int64_t>& out) {
+  while (!fields.empty()) {
+    std::string_view field = take_until(fields, ' ');
+    const std::string name(take_until(field, '='));
+    const std::string value(field);
+    std::int64_t number = 0;
+    const char* end = value.data() + value.size();
+    const auto [rest, error] = std::from_chars(value.data(), end, number);
+    if (error == std::errc{} && rest == end && !name.empty()) out[name] = number;
+  }
+}
+
+}  // namespace
+
+std::int64_t ServerStatus::counter(const std::string& name) const {
+  const auto found = counters.find(name);
+  return found == counters.end() ? 0 : found->second;
+}
+
+Result<ServerStatus> parse_server_status(std::string_view answer) {
+  constexpr std::string_view kCounters = "|counters ", kPlayer = "|player ";
+  ServerStatus out;
+  while (!answer.empty()) {
+    std::string_view line = take_until(answer, '\n');
+    if (line == "=ok") {
+      out.is_up = true;
+      return out;
+    }
+    if (line.starts_with(kCounters)) {
+      read_counters(line.substr(kCounters.size()), out.counters);
+    } else if (line.starts_with(kPlayer)) {
+      out.players.emplace_back(line.substr(kPlayer.size()));
+    } else if (!line.starts_with('|')) {
+      return fail(ErrorCode::bad_value, "the server refused the question for its status");
+    }
+  }
+  return fail(ErrorCode::truncated, "the answer with the status is cut");
+}
+
+}  // namespace runstone

@@ -1,0 +1,175 @@
+#include "server/web/web_connection.hpp"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <string_view>
+
+namespace runstone {
+namespace {
+
+namespace http = boost::beast::http;
+
+constexpr std::uint32_t kRequestHeaderBytesMax = 8 * 1024;
+constexpr std::uint64_t kFinishSeconds = 2;
+// What is read and dropped behind the last request.
+constexpr std::size_t kDroppedBytesMax = 64 * 1024;
+// Bytes that may wait in the kernel, so that little terrain is ahead of an edit.
+constexpr int kNotSentBytes = 16 * 1024;
+
+std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+HttpAnswer answer_to_broken_request(const boost::system::error_code& error) {
+  if (error == http::error::header_limit || error == http::error::buffer_overflow)
+    return plain_answer(431, "the headers of the request are too long");
+  if (error == http::error::body_limit || error == http::error::unexpected_body)
+    return plain_answer(413, "a request must not have a body");
+  return plain_answer(400, "the request is not understood");
+}
+
+}  // namespace
+
+WebConnection::WebConnection(WebState& state, std::uint64_t id, WebStream::Socket socket,
+                             AddressBlock from)
+    : state_(state),
+      id_(id),
+      from_(from),
+      stream_(std::move(socket), state.tls ? &*state.tls : nullptr),
+      read_(2 * kRequestHeaderBytesMax) {
+  state_.connections.emplace(id_, this);
+  ++state_.counters.connections_open;
+  boost::system::error_code ignored;
+  stream_.next_layer().set_option(boost::asio::ip::tcp::no_delay(true), ignored);
+  // It only makes edits faster.
+  (void)::setsockopt(stream_.next_layer().native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT,
+                     &kNotSentBytes, sizeof kNotSentBytes);
+}
+
+WebConnection::~WebConnection() {
+  state_.connections.erase(id_);
+  state_.limits.remove(from_);
+  --state_.counters.connections_open;
+}
+
+boost::asio::awaitable<void> WebConnection::run(std::shared_ptr<WebConnection> self) {
+  self->stream_.allow_s(self->state_.config.handshake_s);
+  if (self->stream_.tls() != nullptr) {
+    boost::system::error_code error;
+    co_await self->stream_.tls()->async_handshake(
+        boost::asio::ssl::stream_base::server,
+        boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    if (error) co_return;
+  }
+  const bool is_in_order = co_await serve(self);
+  if (is_in_order) co_await finish(self);
+  self->stream_.close();
+}
+
+boost::asio::awaitable<bool> WebConnection::serve(std::shared_ptr<WebConnection> self) {
+  for (;;) {
+    self->stream_.allow_s(self->state_.config.handshake_s);
+    http::request_parser<http::empty_body> parser;
+    parser.header_limit(kRequestHeaderBytesMax);
+    parser.body_limit(0);
+    boost::system::error_code error;
+    co_await http::async_read(self->stream_, self->read_, parser,
+                              boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    if (error == http::error::end_of_stream) co_return true;
+    const bool is_readable = !error;
+    if (!is_readable && error.category() != make_error_code(http::error::bad_method).category())
+      co_return false;  // the connection failed
+    ++self->state_.counters.requests;
+    if (!is_readable) {
+      const HttpAnswer broken = answer_to_broken_request(error);
+      const Request none;
+      co_return co_await write(self, broken, none, false);
+    }
+    Request request = parser.release();
+    if (boost::beast::websocket::is_upgrade(request)) {
+      const std::optional<HttpAnswer> refusal = self->refusal_of(request);
+      if (refusal) co_return co_await write(self, *refusal, request, false);
+      --self->state_.counters.requests;
+      self->websocket_ = std::make_shared<WebSocketSession>(self->state_, self->stream_);
+      co_await WebSocketSession::run(self->websocket_, std::move(request));
+      co_return false;
+    }
+    const HttpAnswer answer = co_await answer_to(self, request);
+    const bool keeps_alive = request.keep_alive();
+    const bool is_written = co_await write(self, answer, request, keeps_alive);
+    if (!is_written || !keeps_alive) co_return is_written;
+  }
+}
+
+std::optional<HttpAnswer> WebConnection::refusal_of(const Request& request) const {
+  if (path_of(view_of(request.target())) != kPlayPath)
+    return plain_answer(404, "there is no WebSocket at this address");
+  const auto origin = request.find(http::field::origin);
+  const bool has_origin = origin != request.end();
+  const bool is_allowed =
+      state_.origin.allows(has_origin ? std::optional(view_of(origin->value())) : std::nullopt,
+                           view_of(request[http::field::host]));
+  if (is_allowed && request.count(http::field::origin) <= 1) return std::nullopt;
+  return plain_answer(403, "pages of this origin may not join this world");
+}
+
+boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebConnection> self,
+                                                            const Request& request) {
+  static const auto kNoStatus = std::make_shared<const ServerStatus>();
+  std::shared_ptr<const ServerStatus> status = kNoStatus;
+  if (shows_status(view_of(request.target()))) status = co_await self->state_.status.newest();
+  co_return answer_request(view_of(request.method_string()), view_of(request.target()),
+                           self->state_.config, *status, self->state_.counters);
+}
+
+boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection> self,
+                                                  const HttpAnswer& answer, const Request& request,
+                                                  bool keeps_alive) {
+  http::response<http::string_body> response;
+  response.result(answer.status);
+  response.version(request.version());
+  response.set(http::field::content_type, answer.type);
+  response.set(http::field::cache_control, answer.is_fixed ? "max-age=3600" : "no-store");
+  if (!answer.allow.empty()) response.set(http::field::allow, answer.allow);
+  if (answer.status == 426) response.set(http::field::upgrade, "websocket");
+  for (const auto& [name, value] : safety_headers()) response.set(name, value);
+  response.content_length(answer.body.size());
+  response.keep_alive(keeps_alive);
+  if (request.method() != http::verb::head) response.body() = answer.body;
+  boost::system::error_code error;
+  co_await http::async_write(self->stream_, response,
+                             boost::asio::redirect_error(boost::asio::use_awaitable, error));
+  co_return !error;
+}
+
+boost::asio::awaitable<void> WebConnection::finish(std::shared_ptr<WebConnection> self) {
+  self->stream_.allow_s(kFinishSeconds);
+  boost::system::error_code error;
+  if (self->stream_.tls() != nullptr) {
+    co_await self->stream_.tls()->async_shutdown(
+        boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    co_return;
+  }
+  self->stream_.next_layer().shutdown(WebStream::Socket::shutdown_send, error);
+  std::size_t dropped = 0;
+  while (!error && dropped < kDroppedBytesMax) {
+    self->read_.clear();
+    const auto room = self->read_.prepare(kRequestHeaderBytesMax);
+    dropped += co_await self->stream_.async_read_some(
+        room, boost::asio::redirect_error(boost::asio::use_awaitable, error));
+  }
+}
+
+void WebConnection::end_because_of_stop() {
+  if (!websocket_ || !websocket_->is_open()) return close();
+  websocket_->end(WebSocketSession::CloseCode::going_away, "the gateway stops");
+}
+
+}  // namespace runstone

@@ -1,0 +1,21 @@
+// WebCounters: what the gateway counts of itself. Thread: the gateway's.
+#pragma once
+#include <cstdint>
+
+namespace runstone {
+
+struct WebCounters {
+  std::uint64_t connections = 0;       // accepted since the start
+  std::uint64_t refused = 0;           // closed at once because of a limit
+  std::uint64_t connections_open = 0;  // now, in any state
+  std::uint64_t requests = 0;          // answered, without those that became WebSockets
+  std::uint64_t websockets = 0;        // opened since the start
+  std::uint64_t websockets_open = 0;   // now
+  std::uint64_t rules_broken = 0;      // WebSockets that were closed because of what they sent
+  std::uint64_t frames_in = 0;         // from browsers
+  std::uint64_t frames_out = 0;        // to browsers
+  std::uint64_t bytes_in = 0;          // of these frames
+  std::uint64_t bytes_out = 0;
+};
+
+}  // namespace runstone

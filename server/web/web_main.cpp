@@ -1,0 +1,103 @@
+// runstone-web: a gateway for browsers in front of one server on the same machine.
+// Exit codes: 0 stopped by SIGINT or SIGTERM, 2 could not start (docs/server-reference.md).
+#include <signal.h>
+
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <string>
+
+#include "common/os/open_files.hpp"
+#include "common/os/output_file.hpp"
+#include "server/web/web_config.hpp"
+#include "server/web/web_gateway.hpp"
+#include "server/web/web_options.hpp"
+
+namespace runstone {
+namespace {
+
+enum ExitCode { kStopped = 0, kCannotStart = 2 };
+
+int cannot_start(const std::string& line) {
+  std::cerr << "runstone-web: " << line << "\n";
+  return kCannotStart;
+}
+
+Result<WebConfig, std::string> read_config(const WebOptions& options) {
+  WebConfig config;
+  if (!options.config_file.empty()) {
+    std::ifstream in(options.config_file, std::ios::binary);
+    if (!in) return failure(options.config_file + ": cannot be read");
+    const std::string toml((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    const auto read = read_web_config_toml(config, toml, options.config_file);
+    if (!read) return failure(read.error());
+  }
+  const auto look_up = [](const std::string& name) -> std::optional<std::string> {
+    const char* text = std::getenv(name.c_str());
+    if (text == nullptr) return std::nullopt;
+    return text;
+  };
+  const auto environment = read_web_config_environment(config, look_up);
+  if (!environment) return failure(environment.error());
+  for (const auto& [field, text] : options.settings) {
+    const auto set = set_web_config(config, field, text);
+    if (!set) return failure(web_flag_name(field) + ": " + set.error());
+  }
+  return config;
+}
+
+/// Raises the limit of open files: two sockets for each connection, and a reserve.
+void allow_files_for(const WebConfig& config) {
+  const std::size_t needed = 2 * config.sockets_max + 64;
+  const std::size_t allowed = allow_open_files(needed);
+  if (allowed >= needed) return;
+  std::cerr << "runstone-web: sockets_max=" << config.sockets_max << " needs " << needed
+            << " open files, and the hard limit is " << allowed << ": see ulimit -Hn\n";
+}
+
+int web_program(int argc, char** argv) {
+  const auto [options, exit_code] = parse_web_options(argc, argv);
+  if (!options) return exit_code;
+  const auto config = read_config(*options);
+  if (!config) return cannot_start(config.error());
+  if (options->print_config) {
+    std::cout << to_toml(*config);
+    return kStopped;
+  }
+  allow_files_for(*config);
+  // The threads inherit the mask, so the signals wait for sigwait().
+  sigset_t stops;
+  sigemptyset(&stops);
+  sigaddset(&stops, SIGINT);
+  sigaddset(&stops, SIGTERM);
+  ::pthread_sigmask(SIG_BLOCK, &stops, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+  const auto gateway = WebGateway::start(*config);
+  if (!gateway) return cannot_start(gateway.error());
+  const std::uint16_t port = (*gateway)->port();
+  if (!options->port_file.empty()) {
+    const auto written = write_output_file(options->port_file, std::to_string(port) + "\n");
+    if (!written) return cannot_start(written.error());
+  }
+  std::cerr << "runstone-web: listening port=" << port
+            << " encryption=" << ((*gateway)->is_encrypted() ? "tls" : "none")
+            << " server=" << config->gateway_socket << std::endl;
+  int signal = 0;
+  ::sigwait(&stops, &signal);
+  ::pthread_sigmask(SIG_UNBLOCK, &stops, nullptr);  // a second signal ends the process at once
+  std::cerr << "runstone-web: stopping" << std::endl;
+  return kStopped;
+}
+
+}  // namespace
+}  // namespace runstone
+
+int main(int argc, char** argv) {
+  try {
+    return runstone::web_program(argc, argv);
+  } catch (const std::exception& error) {
+    return runstone::cannot_start(error.what());
+  }
+}

@@ -1,0 +1,24 @@
+// The pages of the gateway. They are plain HTML without scripts and load nothing but the style sheet
+// of the gateway.
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "server/web/server_status.hpp"
+#include "server/web/web_config.hpp"
+#include "server/web/web_counters.hpp"
+
+namespace runstone {
+
+/// Returns the text with <, >, &, " and ' written as entities, for HTML between and within tags.
+std::string html_text(std::string_view text);
+
+/// Returns the page of the world: its name, who is there, and how to join.
+std::string world_page(const WebConfig& config, const ServerStatus& server);
+/// Returns the page of the state of server and gateway.
+std::string status_page(const WebConfig& config, const ServerStatus& server,
+                        const WebCounters& web);
+/// Returns the style sheet of both pages.
+std::string_view style_sheet();
+
+}  // namespace runstone

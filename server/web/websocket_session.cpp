@@ -1,0 +1,186 @@
+#include "server/web/websocket_session.hpp"
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <chrono>
+#include <string>
+
+#include "protocol/codec/proxy_header.hpp"
+#include "server/web/http_answer.hpp"
+
+namespace runstone {
+namespace {
+
+namespace websocket = boost::beast::websocket;
+
+// For the browser to answer the close frame.
+constexpr std::uint64_t kCloseSeconds = 3;
+
+PeerEndpoint peer_endpoint(const boost::asio::ip::tcp::endpoint& end) {
+  if (end.address().is_v4()) return peer_endpoint_v4(end.address().to_v4().to_uint(), end.port());
+  return {end.address().to_v6().to_bytes(), end.port()};
+}
+
+}  // namespace
+
+WebSocketSession::WebSocketSession(WebState& state, WebStream& stream)
+    : state_(state),
+      stream_(stream),
+      websocket_(stream),
+      link_(state.io),
+      message_(kFrameBytesMax + 1),
+      tasks_done_(state.io) {
+  tasks_done_.expires_at(boost::asio::steady_timer::time_point::max());
+  const std::chrono::seconds handshake(state.config.handshake_s), idle(state.config.idle_s);
+  // Beast sends a ping after half of the idle time, and closes the socket after all of it.
+  websocket_.set_option(websocket::stream_base::timeout{handshake, idle, true});
+  websocket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+    for (const auto& [name, value] : safety_headers()) response.set(name, value);
+  }));
+  websocket_.binary(true);
+  websocket_.auto_fragment(false);
+  // Longer messages are closed with words, see browser_to_server().
+  websocket_.read_message_max(0);
+}
+
+boost::asio::awaitable<void> WebSocketSession::run(std::shared_ptr<WebSocketSession> self,
+                                                   Request request) {
+  const bool has_server = co_await open_link(self);
+  boost::system::error_code error;
+  co_await self->websocket_.async_accept(
+      request, boost::asio::redirect_error(boost::asio::use_awaitable, error));
+  if (error) co_return;
+  self->is_open_ = true;
+  self->stream_.forget_due();  // from here on Beast's times hold
+  ++self->state_.counters.websockets;
+  ++self->state_.counters.websockets_open;
+  if (has_server) {
+    ++self->tasks_;
+    boost::asio::co_spawn(self->state_.io, server_to_browser(self), boost::asio::detached);
+    co_await browser_to_server(self);
+  } else {
+    self->end(CloseCode::try_again_later,
+              "the server of this world is not running, or it is restarting: try again soon");
+  }
+  self->close_link();
+  while (self->tasks_ > 0) {
+    co_await self->tasks_done_.async_wait(
+        boost::asio::redirect_error(boost::asio::use_awaitable, error));
+  }
+  --self->state_.counters.websockets_open;
+}
+
+void WebSocketSession::end(CloseCode code, const char* words) {
+  if (std::exchange(is_ending_, true)) return;
+  close_link();
+  stream_.allow_s(kCloseSeconds);
+  ++tasks_;
+  boost::asio::co_spawn(state_.io, close_websocket(shared_from_this(), code, words),
+                        boost::asio::detached);
+}
+
+boost::asio::awaitable<bool> WebSocketSession::open_link(std::shared_ptr<WebSocketSession> self) {
+  boost::system::error_code error;
+  const auto browser = self->stream_.next_layer().remote_endpoint(error);
+  if (error) co_return false;
+  const auto here = self->stream_.next_layer().local_endpoint(error);
+  if (error) co_return false;
+  const boost::asio::local::stream_protocol::endpoint server(self->state_.config.gateway_socket);
+  co_await self->link_.async_connect(
+      server, boost::asio::redirect_error(boost::asio::use_awaitable, error));
+  if (error) co_return false;
+  const Bytes header = write_proxy_header(peer_endpoint(browser), peer_endpoint(here));
+  co_await boost::asio::async_write(self->link_, boost::asio::buffer(header),
+                                    boost::asio::redirect_error(boost::asio::use_awaitable, error));
+  co_return !error;
+}
+
+boost::asio::awaitable<void> WebSocketSession::browser_to_server(
+    std::shared_ptr<WebSocketSession> self) {
+  WebCounters& counters = self->state_.counters;
+  const auto broke_rule = [&](CloseCode code, const char* words) {
+    ++counters.rules_broken;
+    self->end(code, words);
+  };
+  while (!self->is_ending_) {
+    boost::system::error_code error;
+    std::size_t bytes = 0;
+    do {
+      const auto room = boost::asio::buffer(self->message_) + bytes;
+      bytes += co_await self->websocket_.async_read_some(
+          room, boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    } while (!error && !self->websocket_.is_message_done() && bytes <= kFrameBytesMax);
+    if (error || self->is_ending_) break;  // the browser has closed, or the close is under way
+    if (!self->websocket_.got_binary()) {
+      broke_rule(CloseCode::unknown_data, "only binary messages are read here");
+      break;
+    }
+    const ByteView message = ByteView(self->message_).first(bytes);
+    if (const char* fault = fault_of_web_message(message)) {
+      broke_rule(bytes > kFrameBytesMax ? CloseCode::too_big : CloseCode::bad_payload, fault);
+      break;
+    }
+    co_await boost::asio::async_write(
+        self->link_, boost::asio::buffer(message.data(), message.size()),
+        boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    // If the write failed, server_to_browser() passes on what the server has said at last.
+    if (error) continue;
+    ++counters.frames_in;
+    counters.bytes_in += bytes;
+  }
+}
+
+boost::asio::awaitable<void> WebSocketSession::server_to_browser(
+    std::shared_ptr<WebSocketSession> self) {
+  WebCounters& counters = self->state_.counters;
+  boost::system::error_code error;
+  while (!error && !self->cutter_.broken()) {
+    self->cutter_.drop_taken();
+    const auto room = self->cutter_.room();
+    const std::size_t read = co_await self->link_.async_read_some(
+        boost::asio::buffer(room.data(), room.size()),
+        boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    if (error) break;
+    self->cutter_.add(read);
+    while (const auto frame = self->cutter_.next()) {
+      // A browser that reads nothing for so long is closed, even if it sends.
+      if (!self->is_ending_) self->stream_.allow_s(self->state_.config.idle_s);
+      co_await self->websocket_.async_write(
+          boost::asio::buffer(frame->data(), frame->size()),
+          boost::asio::redirect_error(boost::asio::use_awaitable, error));
+      if (!self->is_ending_) self->stream_.forget_due();
+      if (error) break;
+      ++counters.frames_out;
+      counters.bytes_out += frame->size();
+    }
+  }
+  const bool is_whole = self->cutter_.is_between_frames() && !self->cutter_.broken();
+  self->end(is_whole ? CloseCode::normal : CloseCode::internal_error,
+            is_whole ? "the server has ended the session" : "the server's stream is broken");
+  self->task_ended();
+}
+
+boost::asio::awaitable<void> WebSocketSession::close_websocket(
+    std::shared_ptr<WebSocketSession> self, CloseCode code, const char* words) {
+  boost::system::error_code error;
+  const websocket::close_reason reason(code, words);
+  co_await self->websocket_.async_close(
+      reason, boost::asio::redirect_error(boost::asio::use_awaitable, error));
+  self->stream_.close();  // a read of browser_to_server() ends
+  self->task_ended();
+}
+
+void WebSocketSession::close_link() {
+  boost::system::error_code ignored;
+  link_.close(ignored);
+}
+
+void WebSocketSession::task_ended() {
+  if (--tasks_ == 0) tasks_done_.cancel();
+}
+
+}  // namespace runstone

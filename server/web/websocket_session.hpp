@@ -1,0 +1,62 @@
+// WebSocketSession: passes frames between a browser's WebSocket and a connection to the server, in
+// both directions. Nothing is queued: each direction holds one message, and reads the next one when
+// the other side has taken it. So a slow side slows the other one down, as TCP does.
+// A WebSocket that breaks a rule is closed with a code and words. Its connection to the server then
+// just ends.
+// Thread: the gateway's.
+#pragma once
+#include <utility>
+// Boost 1.74 uses std::exchange without its header, so <utility> comes first.
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <memory>
+
+#include "server/web/web_frame.hpp"
+#include "server/web/web_state.hpp"
+#include "server/web/web_stream.hpp"
+
+namespace runstone {
+
+class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
+ public:
+  using Request = boost::beast::http::request<boost::beast::http::empty_body>;
+  using CloseCode = boost::beast::websocket::close_code;
+
+  /// Both must outlive the session.
+  WebSocketSession(WebState& state, WebStream& stream);
+
+  /// Answers the request for a WebSocket, and serves it until it has ended.
+  static boost::asio::awaitable<void> run(std::shared_ptr<WebSocketSession> self, Request request);
+  /// Returns true from the answer to the request on.
+  bool is_open() const { return is_open_; }
+  /// Closes the WebSocket with a code and words of at most 123 bytes. Later calls do nothing. Requires
+  /// is_open().
+  void end(CloseCode code, const char* words);
+
+ private:
+  /// Connects to the server, and sends the address of the browser. Returns false if that failed.
+  static boost::asio::awaitable<bool> open_link(std::shared_ptr<WebSocketSession> self);
+  static boost::asio::awaitable<void> browser_to_server(std::shared_ptr<WebSocketSession> self);
+  static boost::asio::awaitable<void> server_to_browser(std::shared_ptr<WebSocketSession> self);
+  static boost::asio::awaitable<void> close_websocket(std::shared_ptr<WebSocketSession> self,
+                                                      CloseCode code, const char* words);
+  void close_link();
+  void task_ended();
+
+  WebState& state_;
+  WebStream& stream_;
+  boost::beast::websocket::stream<WebStream&> websocket_;
+  boost::asio::local::stream_protocol::socket link_;
+  FrameCutter cutter_;
+  Bytes message_;  // from the browser
+  bool is_open_ = false;
+  bool is_ending_ = false;
+  int tasks_ = 0;                         // coroutines besides run()
+  boost::asio::steady_timer tasks_done_;  // never expires; cancelled when the last task ends
+};
+
+}  // namespace runstone

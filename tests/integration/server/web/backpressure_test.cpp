@@ -1,0 +1,120 @@
+#include <sys/time.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <thread>
+
+#include "protocol/codec/frame.hpp"
+#include "server/web/web_frame.hpp"
+#include "tests/integration/server/web/fake_server.hpp"
+#include "tests/integration/server/web/web_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+// What the kernel's buffers on the way may hold, with room to spare.
+constexpr std::size_t kOnTheWayMax = 16 * 1024 * 1024;
+
+Bytes frame_of(std::size_t body_bytes, std::uint8_t fill) {
+  FrameWriter writer;
+  const FrameHeader header = writer.next(0, body_bytes, false);
+  Bytes out(header.begin(), header.end());
+  out.resize(kFrameHeaderBytes + body_bytes, fill);
+  return out;
+}
+
+TEST_CASE("frames pass unchanged in both directions, however they are cut on the way",
+          "[integration]") {
+  const TempFolder folder;
+  FakeServer server(folder / "web.sock");
+  const auto gateway = start_gateway(web_config_of(folder));
+  WebPeer browser(gateway->port(), 0x7f000009);
+  REQUIRE(browser.upgrade().status == 101);
+  CHECK(server.accept().address == peer_endpoint_v4(0x7f000009, 0).address);
+  Bytes stream;
+  for (const std::size_t body : {std::size_t{1}, kFragmentBytesMax, std::size_t{300}}) {
+    const Bytes frame = frame_of(body, static_cast<std::uint8_t>(body));
+    browser.send_frame(WebMessage::binary, ByteView(frame).first(5), false);
+    browser.send_frame(0, ByteView(frame).subspan(5));
+    CHECK(server.read(frame.size()) == frame);
+    stream.insert(stream.end(), frame.begin(), frame.end());
+  }
+  for (const std::uint8_t byte : ByteView(stream).first(20)) server.write({&byte, 1});
+  server.write(ByteView(stream).subspan(20));
+  for (const std::size_t body : {std::size_t{1}, kFragmentBytesMax, std::size_t{300}}) {
+    const auto message = browser.next();
+    REQUIRE(message.has_value());
+    CHECK(message->kind == WebMessage::binary);
+    CHECK(message->bytes == frame_of(body, static_cast<std::uint8_t>(body)));
+  }
+}
+
+TEST_CASE("the gateway reads no more of the server than a browser takes, and ends a silent reader",
+          "[integration]") {
+  const TempFolder folder;
+  FakeServer server(folder / "web.sock");
+  WebConfig config = web_config_of(folder);
+  config.idle_s = 4;
+  const auto gateway = start_gateway(config);
+  WebPeer browser(gateway->port());
+  REQUIRE(browser.upgrade().status == 101);
+  server.accept();
+  CHECK(server.write_until_full(frame_of(kFragmentBytesMax, 7), 4 * kOnTheWayMax) < kOnTheWayMax);
+  // The other direction still passes, so the browser is not idle. It is ended all the same.
+  const Bytes small = frame_of(10, 9);
+  browser.send_frame(WebMessage::binary, small);
+  CHECK(server.read(small.size()) == small);
+  bool is_ended = false;
+  for (int i = 0; i < 600 && !is_ended; ++i) {
+    browser.send_frame(WebMessage::binary, small);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    is_ended = server.drops_until_closed();
+  }
+  CHECK(is_ended);
+}
+
+TEST_CASE("the gateway reads no more of a browser than the server takes", "[integration]") {
+  const TempFolder folder;
+  FakeServer server(folder / "web.sock");
+  const auto gateway = start_gateway(web_config_of(folder));
+  WebPeer browser(gateway->port());
+  REQUIRE(browser.upgrade().status == 101);
+  server.accept();
+  const timeval deadline{1, 0};
+  ::setsockopt(browser.native_handle(), SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof deadline);
+  const Bytes frame = frame_of(kFragmentBytesMax, 7);
+  std::size_t sent = 0;
+  while (browser.is_open() && sent < 4 * kOnTheWayMax) {
+    browser.send_frame(WebMessage::binary, frame);
+    sent += frame.size();
+  }
+  CHECK(sent < kOnTheWayMax);
+  CHECK(server.read(frame.size()) == frame);
+}
+
+TEST_CASE("a server that sends something else than frames ends the WebSocket, not the gateway",
+          "[integration]") {
+  const TempFolder folder;
+  FakeServer server(folder / "web.sock");
+  const auto gateway = start_gateway(web_config_of(folder));
+  const auto close_after = [&](const Bytes& bytes) {
+    WebPeer browser(gateway->port());
+    REQUIRE(browser.upgrade().status == 101);
+    server.accept();
+    server.write(bytes);
+    server.hang_up();
+    const auto closed = browser.next_close();
+    REQUIRE(closed.has_value());
+    return closed->close_code();
+  };
+  CHECK(close_after(Bytes(100)) == 1011);
+  Bytes cut = frame_of(100, 7);
+  cut.pop_back();
+  CHECK(close_after(cut) == 1011);
+  CHECK(close_after(frame_of(100, 7)) == 1000);
+  WebPeer page(gateway->port());
+  CHECK(page.get("/style.css").status == 200);
+}
+
+}  // namespace
+}  // namespace runstone::test

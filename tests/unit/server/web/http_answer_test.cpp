@@ -1,0 +1,117 @@
+#include "server/web/http_answer.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "server/web/web_pages.hpp"
+
+using namespace runstone;
+
+namespace {
+
+ServerStatus running_server() {
+  ServerStatus out;
+  out.is_up = true;
+  out.counters = {{"sessions", 2}, {"seq", 9120}, {"durable", 9118}};
+  out.players = {"ana", "<script>alert(1)</script>"};
+  return out;
+}
+
+HttpAnswer get(const std::string& target, const ServerStatus& server = running_server(),
+               const WebConfig& config = {}) {
+  return answer_request("GET", target, config, server, {});
+}
+
+bool has(const HttpAnswer& answer, const std::string& text) {
+  return answer.body.find(text) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("the page of the world names it, its players and the way in", "[web]") {
+  WebConfig config;
+  config.title = "Valley & town";
+  config.public_address = "play.example.org:4747";
+  const HttpAnswer answer = get("/?from=mail", running_server(), config);
+  CHECK(answer.status == 200);
+  CHECK(answer.type == "text/html; charset=utf-8");
+  CHECK(has(answer, "<h1>Valley &amp; town</h1>"));
+  CHECK(has(answer, "<li>ana</li>"));
+  CHECK(has(answer, "href=\"runstone://play.example.org:4747\""));
+  CHECK(has(answer, "href=\"/status\""));
+  CHECK(has(answer, "no client for the browser"));
+}
+
+TEST_CASE("names of players are text on every page, never tags", "[web]") {
+  for (const char* target : {"/", "/status"}) {
+    const HttpAnswer answer = get(target);
+    CHECK_FALSE(has(answer, "<script"));
+    CHECK(has(answer, "&lt;script&gt;alert(1)&lt;/script&gt;"));
+  }
+  CHECK(html_text("<a href=\"x\" title='y'>&") ==
+        "&lt;a href=&quot;x&quot; title=&#39;y&#39;&gt;&amp;");
+}
+
+TEST_CASE("the pages load nothing from elsewhere and need no script", "[web]") {
+  for (const char* target : {"/", "/status"}) {
+    const HttpAnswer answer = get(target);
+    CHECK_FALSE(has(answer, "<script"));
+    CHECK_FALSE(has(answer, "http://"));
+    CHECK_FALSE(has(answer, "https://"));
+    CHECK_FALSE(has(answer, "style="));  // the policy forbids styles within tags
+    CHECK(has(answer, "href=\"/style.css\""));
+  }
+  CHECK(get("/style.css").body.find("url(") == std::string::npos);
+  CHECK(get("/style.css").is_fixed);
+  CHECK_FALSE(get("/").is_fixed);
+}
+
+TEST_CASE("a page says in words that the server is not running", "[web]") {
+  ServerStatus down;
+  down.why = "Connection refused";
+  for (const char* target : {"/", "/status"}) {
+    const HttpAnswer answer = get(target, down);
+    CHECK(answer.status == 200);
+    CHECK(has(answer, "not running, or it is restarting: Connection refused"));
+    CHECK_FALSE(has(answer, "Nobody is in this world"));
+  }
+  CHECK(has(get("/metrics", down), "runstone_up 0"));
+  CHECK_FALSE(has(get("/metrics", down), "runstone_sessions"));
+}
+
+TEST_CASE("a long list of players is cut and counted", "[web]") {
+  ServerStatus crowd = running_server();
+  crowd.players.assign(1'000, "p");
+  CHECK(has(get("/", crowd), "and 800 more"));
+}
+
+TEST_CASE("the metrics are those of server and gateway", "[web]") {
+  WebCounters web;
+  web.frames_in = 77;
+  const HttpAnswer answer = answer_request("GET", "/metrics", {}, running_server(), web);
+  CHECK(answer.type == "text/plain; version=0.0.4; charset=utf-8");
+  CHECK(has(answer, "\nrunstone_seq 9120\n"));
+  CHECK(has(answer, "\nrunstone_up 1\n"));
+  CHECK(has(answer, "\nrunstone_web_frames_in 77\n"));
+  CHECK(has(answer, "# TYPE runstone_seq untyped"));
+}
+
+TEST_CASE("paths come from a table, so no path leads out of it", "[web]") {
+  for (const char* target :
+       {"/../etc/passwd", "/..%2f..%2fetc/passwd", "//etc/passwd", "/status/", "/Status", "",
+        "status", "*", "http://127.0.0.1/status", "/./", "/style.css/../../x", "/\\..\\x"}) {
+    CAPTURE(target);
+    CHECK(get(target).status == 404);
+    CHECK_FALSE(shows_status(target));
+  }
+  CHECK(shows_status("/"));
+  CHECK(shows_status("/metrics?a=/../b"));
+  CHECK_FALSE(shows_status("/style.css"));
+}
+
+TEST_CASE("other methods than GET and HEAD are refused with words", "[web]") {
+  const HttpAnswer answer = answer_request("POST", "/", {}, running_server(), {});
+  CHECK(answer.status == 405);
+  CHECK(answer.allow == "GET, HEAD");
+  CHECK(answer_request("HEAD", "/", {}, running_server(), {}).status == 200);
+  CHECK(get("/play").status == 426);
+}

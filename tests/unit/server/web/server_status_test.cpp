@@ -1,0 +1,29 @@
+#include "server/web/server_status.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace runstone;
+
+TEST_CASE("the answer of the status socket gives counters and players", "[web]") {
+  const auto read = parse_server_status(
+      "|counters sessions=2 seq=9120 stack_depths=\"0:3 1:4\" rate=1.5 bytes_in=-1\n"
+      "|player ana\n|player bea = 7\n|weather mild\n=ok\n");
+  REQUIRE(read.has_value());
+  CHECK(read->is_up);
+  CHECK(read->counter("sessions") == 2);
+  CHECK(read->counter("seq") == 9120);
+  CHECK(read->counter("bytes_in") == -1);
+  CHECK(read->counters.count("rate") == 0);
+  CHECK(read->counters.count("stack_depths") == 0);
+  CHECK(read->counter("nothing of this name") == 0);
+  CHECK(read->players == std::vector<std::string>{"ana", "bea = 7"});
+}
+
+TEST_CASE("an answer that is cut, refused or something else gives no status", "[web]") {
+  const std::string whole = "|counters sessions=2\n|player ana\n=ok";
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    CHECK_FALSE(parse_server_status(whole.substr(0, size)).has_value());
+  CHECK(parse_server_status(whole).has_value());
+  CHECK_FALSE(parse_server_status("|no such question\n=error\n").has_value());
+  CHECK_FALSE(parse_server_status("HTTP/1.1 200 OK\n=ok\n").has_value());
+}

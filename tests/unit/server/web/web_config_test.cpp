@@ -1,0 +1,52 @@
+#include "server/web/web_config.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace runstone;
+
+TEST_CASE("the settings of the gateway survive being printed and read", "[web]") {
+  WebConfig config;
+  config.title = "Ana's \"valley\" \\ town";
+  config.sockets_max = 77;
+  config.i_know = true;
+  config.origins = "https://play.example.org";
+  WebConfig read;
+  const auto done = read_web_config_toml(read, to_toml(config), "web.toml");
+  INFO((done ? std::string() : done.error()));
+  REQUIRE(done.has_value());
+  CHECK(read == config);
+}
+
+TEST_CASE("a wrong setting of the gateway names its line and changes nothing", "[web]") {
+  const auto error_of = [](const std::string& toml) {
+    WebConfig config;
+    const auto read = read_web_config_toml(config, toml, "web.toml");
+    REQUIRE_FALSE(read.has_value());
+    CHECK(config == WebConfig());
+    return read.error();
+  };
+  CHECK(error_of("title = \"a\"\nsocket_max = 4").find("web.toml:2: socket_max: no such") == 0);
+  CHECK(error_of("idle_s = 1").find("out of range") != std::string::npos);
+  CHECK(error_of("idle_s = -5").find("must be a whole number") != std::string::npos);
+  CHECK(error_of("idle_s = \"60\"").find("wrong type") != std::string::npos);
+  CHECK(error_of("title = \"\"").find("must not be empty") != std::string::npos);
+  CHECK(error_of("title = \"a\\nb\"").find("one line") != std::string::npos);
+  CHECK(error_of("title = ").find("web.toml:1: ") == 0);
+}
+
+TEST_CASE("settings of the gateway come from variables and flags", "[web]") {
+  CHECK(web_flag_name("sockets_per_address") == "--sockets-per-address");
+  CHECK(web_environment_name("idle_s") == "RUNSTONE_WEB_IDLE_S");
+  WebConfig config;
+  const auto look_up = [](const std::string& name) -> std::optional<std::string> {
+    if (name == "RUNSTONE_WEB_IDLE_S") return "90";
+    return std::nullopt;
+  };
+  REQUIRE(read_web_config_environment(config, look_up).has_value());
+  CHECK(config.idle_s == 90);
+  CHECK_FALSE(set_web_config(config, "idle_s", "9 0").has_value());
+  CHECK_FALSE(set_web_config(config, "world", "x").has_value());
+  REQUIRE(set_web_config(config, "i_know", "true").has_value());
+  CHECK(config.i_know);
+  for (const WebConfigField& field : web_config_fields()) CHECK_FALSE(field.help.empty());
+}
