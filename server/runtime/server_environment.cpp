@@ -102,6 +102,10 @@ Sequence ServerEnvironment::newest_tile_edit(const ChunkKey& tile) const {
   return tiles_.newest_edit(tile);
 }
 
+bool ServerEnvironment::is_tile_current(const CachedChunk& copy) const {
+  return tiles_.is_current(copy);
+}
+
 void ServerEnvironment::save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) {
   tiles_.save(std::move(tiles), log_->writer());
 }

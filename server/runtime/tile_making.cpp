@@ -36,6 +36,11 @@ Sequence TileMaking::newest_edit(const ChunkKey& tile) {
   return ledger_.newest_edit(tile);
 }
 
+bool TileMaking::is_current(const CachedChunk& copy) {
+  flush_edits();
+  return source_.is_current(copy.key, copy.version, copy.digest);
+}
+
 void TileMaking::make(TileRequest request, const MaterialTable& materials, Then then) {
   if (!visibility_ || materials_ != materials.size()) {
     visibility_ = std::make_shared<const VisibilityTable>(visibilities(materials));

@@ -53,6 +53,7 @@ class TileSource::Making {
   struct Child {
     ChunkPtr chunk;
     bool is_approximate = false;
+    bool is_damaged = false;
   };
 
   std::optional<MadeTile> coarse(const ChunkKey& key) {
@@ -60,7 +61,7 @@ class TileSource::Making {
     auto voxels =
         source_.generator_.coarse(tile_origin(key, source_.edge_), source_.edge_, key.lod);
     if (!voxels) return std::nullopt;
-    return tile_of_voxels(key, veiled(*std::move(voxels), visibility_, scratch_), {}, true);
+    return tile_of_voxels(key, veiled(*std::move(voxels), visibility_, scratch_), {}, true, false);
   }
 
   /// Returns the stored tile, or nullopt if there is none, if it is damaged, or if it lacks edit
@@ -87,50 +88,53 @@ class TileSource::Making {
     std::array<Child, 8> children;
     TileChildren runs{};
     Version version;
-    bool is_approximate = false;
+    bool is_approximate = false, is_damaged = false;
     for (unsigned i = 0; i < 8; ++i) {
       auto child = child_of(tile_child(key, i));
       if (!child) return Unexpected<StoreError>{child.error()};
       children[i] = *std::move(child);
       is_approximate = is_approximate || children[i].is_approximate;
+      is_damaged = is_damaged || children[i].is_damaged;
       if (children[i].chunk == nullptr) continue;
       runs[i] = &children[i].chunk->voxels;
       version = std::max(version, children[i].chunk->version);
     }
     return tile_of_voxels(
         key, veiled_tile(runs, static_cast<unsigned>(source_.edge_), visibility_, scratch_),
-        version, is_approximate);
+        version, is_approximate, is_damaged);
   }
 
   StoreResult<Child> child_of(const ChunkKey& key) {
     if (key.lod == 0) return chunk_at(key);
     auto made = tile(key);
     if (!made) return Unexpected<StoreError>{made.error()};
-    return Child{made->tile, made->is_approximate};
+    return Child{made->tile, made->is_approximate, made->is_damaged};
   }
 
   StoreResult<Child> chunk_at(const ChunkKey& key) {
     if (const auto fresh = fresh_.find(key.at); fresh != fresh_.end())
-      return Child{fresh->second, fresh->second == nullptr};
+      return Child{fresh->second, fresh->second == nullptr, fresh->second == nullptr};
     if (!source_.ledger_.has_ground(key)) {
       return Child{std::make_shared<const Chunk>(generated_chunk(
                        source_.generator_, key, static_cast<std::uint16_t>(source_.edge_))),
-                   false};
+                   false, false};
     }
     auto loaded = source_.chunks_.load(key);
-    if (loaded) return Child{std::make_shared<const Chunk>(*std::move(loaded)), false};
+    if (loaded) return Child{std::make_shared<const Chunk>(*std::move(loaded)), false, false};
     if (loaded.error().kind != StoreError::Kind::corrupt)
       return Unexpected<StoreError>{loaded.error()};
     source_.warn_once(key, loaded.error());
-    return Child{nullptr, true};
+    return Child{nullptr, true, true};
   }
 
   MadeTile tile_of_voxels(const ChunkKey& key, RunChunk voxels, Version version,
-                          bool is_approximate) const {
+                          bool is_approximate, bool is_damaged) const {
     Chunk tile{std::move(voxels), version, {}};
-    tile.digest = digest_of(tile.voxels);
-    return {key, std::make_shared<const Chunk>(std::move(tile)), request_.head, is_approximate,
-            false};
+    const bool is_complete = !is_damaged && version.seq <= request_.head;
+    if (is_complete) tile.digest = digest_of(tile.voxels);
+    return {key,           std::make_shared<const Chunk>(std::move(tile)),
+            request_.head, is_approximate,
+            false,         is_damaged};
   }
 
   TileSource& source_;
@@ -163,6 +167,17 @@ StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
   return tiles;
 }
 
+bool TileSource::is_current(const ChunkKey& key, const Version& version,
+                            std::uint64_t claim_digest) {
+  if (claim_digest == 0) return false;  // of an incomplete tile
+  const Sequence newest = ledger_.newest_edit(key);
+  if (const auto made = cache_.find(key); made && newest <= made->through) {
+    return made->is_complete() && made->tile->version == version &&
+           made->tile->digest.lane[0] == claim_digest;
+  }
+  return has_found_ground_.load() && newest == version.seq;
+}
+
 StoreResult<void> TileSource::find_ground() {
   if (has_found_ground_.load()) return {};
   StoreResult<void> found;
@@ -173,11 +188,11 @@ StoreResult<void> TileSource::find_ground() {
       found = Unexpected<StoreError>{snapshots ? base.error() : snapshots.error()};
       return;
     }
-    std::vector<ChunkKey> keys;
-    keys.reserve(snapshots->size() + base->size());
-    for (const auto& [key, version] : *snapshots) keys.push_back(key);
-    for (const StoredChunk& chunk : *base) keys.push_back(chunk.key);
-    ledger_.stored(keys);
+    ledger_.stored(*snapshots);
+    std::vector<std::pair<ChunkKey, Version>> chunks;
+    chunks.reserve(base->size());
+    for (const StoredChunk& chunk : *base) chunks.emplace_back(chunk.key, chunk.version);
+    ledger_.stored(chunks);
   });
   if (!read) return read;
   // Two threads may get here. The ledger is the same then.

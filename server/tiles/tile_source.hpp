@@ -56,6 +56,10 @@ class TileSource {
   /// the folder cannot be read.
   StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
                                           const VisibilityTable& visibility);
+  /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now. It
+  /// makes no tile and reads none from the disk: where it does not know the digest, the newest edit
+  /// below the tile decides. Returns false if it does not know that either. Cost: two look-ups.
+  bool is_current(const ChunkKey& key, const Version& version, std::uint64_t claim_digest);
 
  private:
   class Making;  // one call of make()

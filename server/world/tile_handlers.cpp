@@ -75,12 +75,33 @@ void make_again(WorldState& world, const ChunkKey& key, const TileReceivers& rec
   world.tiles.queue.make_again(key, std::max(now.steady_us + kTileRemakeUs, due));
 }
 
+/// Records that the session has a tile.
+void tile_sent(WorldState& world, SessionId session, const ChunkKey& key, bool is_empty) {
+  leave_tiles(world, session, world.find(session)->tiles->set_sent(key, is_empty));
+  add_receiver(world, key, session);
+}
+
+/// Queues "not modified". The session claims only tiles that are not uniform.
+void send_same_tile(WorldState& world, SessionId session, const ChunkKey& key, Sequence seq) {
+  WorldSession& mine = *world.find(session);
+  mine.claims.drop(key);
+  mine.not_modified_due.push_back({key, seq});
+  ++world.counters.tiles_not_modified;
+  tile_sent(world, session, key, false);
+}
+
 /// Sends a tile, unless the session wants it again after its queue was full: then a later request
 /// sends it.
 void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
                const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (mine.tiles->status(key) == TileStatus::wanted) return;
+  if (const CachedChunk* claim = mine.claims.find(key)) {
+    const bool is_same = claim->version == tile->version &&
+                         claim->digest == claim_digest(tile->digest) && !tile->voxels.is_uniform();
+    if (is_same) return send_same_tile(world, session, key, tile->version.seq);
+    mine.claims.drop(key);
+  }
   const bool is_sent =
       tile->voxels.is_uniform()
           ? queue_uniform(world, session, key, *tile, now)
@@ -92,8 +113,7 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
     return;
   }
   ++world.counters.tiles_sent;
-  leave_tiles(world, session, mine.tiles->set_sent(key, is_empty(tile->voxels)));
-  add_receiver(world, key, session);
+  tile_sent(world, session, key, is_empty(tile->voxels));
 }
 
 void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
@@ -114,6 +134,13 @@ void limit_levels(const WorldState& world, const WorldSession& session, View& vi
   view.levels = has_tiles ? std::min(view.levels, world.config.tile_levels_max) : std::uint8_t{0};
 }
 
+bool accepts_claim(const WorldState& world, const WorldSession& session, const ChunkKey& key) {
+  if ((session.features & kFeatureTiles) == 0 || key.lod > world.config.tile_levels_max)
+    return false;
+  const TileStatus status = session.tiles ? session.tiles->status(key) : TileStatus::unknown;
+  return status != TileStatus::sent && status != TileStatus::sent_empty;
+}
+
 std::size_t set_tile_view(WorldState& world, SessionId session, const View& view,
                           std::span<const View> skipped) {
   WorldSession& mine = *world.find(session);
@@ -129,9 +156,22 @@ std::size_t set_tile_view(WorldState& world, SessionId session, const View& view
 void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (!mine.tiles || world.is_stopping || is_stalled(world, mine, now)) return;
+  std::size_t claims_left = kTileClaimsPerCall;
   while (mine.tiles->waiting_count() < kTilesWaitingMax) {
     const auto key = mine.tiles->next_wanted();
-    if (!key || !pay_load(world, mine, now)) break;
+    if (!key) break;
+    if (const CachedChunk* claim = mine.claims.find(*key)) {
+      if (claims_left-- == 0) {
+        world.deliveries.insert(session);  // the others have a task of their own
+        break;
+      }
+      if (world.environment.is_tile_current(*claim)) {
+        mine.tiles->set_waiting(*key);
+        send_same_tile(world, session, *key, claim->version.seq);
+        continue;
+      }
+    }
+    if (!pay_load(world, mine, now)) break;
     mine.tiles->set_waiting(*key);
     world.tiles.queue.want(*key, session);
   }

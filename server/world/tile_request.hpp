@@ -21,7 +21,8 @@ struct TileRequest {
   std::vector<std::pair<ChunkCoord, ChunkPtr>> fresh;
 };
 
-/// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty.
+/// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty. The digest of an
+/// incomplete tile is 0, so that no client claims it later.
 struct MadeTile {
   ChunkKey key;
   ChunkPtr tile;         // its version is the greatest version of the chunks below it
@@ -31,12 +32,14 @@ struct MadeTile {
   bool is_approximate = false;
   /// It was read from the folder, or an earlier request made it.
   bool is_known = false;
+  /// A chunk below it is damaged and left out.
+  bool is_damaged = false;
 
-  /// Returns true if the tile should be stored. A tile that contains some edits behind `through` may
-  /// lack others, and its version would not tell.
-  bool is_worth_storing() const {
-    return !is_approximate && !is_known && tile->version.seq <= through;
-  }
+  /// Returns true if its version determines its voxels. A tile that contains some edits behind
+  /// `through` may lack others, and its version would not tell.
+  bool is_complete() const { return !is_damaged && tile->version.seq <= through; }
+  /// Returns true if the tile should be stored.
+  bool is_worth_storing() const { return !is_approximate && !is_known && is_complete(); }
 };
 
 }  // namespace runstone

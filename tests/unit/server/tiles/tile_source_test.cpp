@@ -144,7 +144,7 @@ TEST_CASE("a damaged chunk is reported once, and tiles show nothing there", "[ti
   REQUIRE(raw_sql(world.file(), "UPDATE snapshot SET seq = 9 WHERE x = 0; SELECT changes()") ==
           "1");
   REQUIRE(raw_sql(world.file(), "SELECT count(*) FROM snapshot") == "2");
-  world.ledger->stored(std::vector{ChunkKey{0, {0, 0, 0}}});
+  world.ledger->stored(std::vector<std::pair<ChunkKey, Version>>{{{0, {0, 0, 0}}, {1, 1}}});
   const auto made = world.source->make(world.request({1, {0, 0, 0}}), *world.visibility);
   // The fold of the table is wrong as well, so the keys of the chunks cannot be read.
   CHECK_FALSE(made.has_value());
@@ -225,4 +225,69 @@ TEST_CASE("a folder that cannot be read fails a tile, and the next call tries ag
   REQUIRE(raw_sql(world.file(), "UPDATE meta SET checksum = checksum - 1 WHERE key = 'base_fold'")
               .empty());
   CHECK(world.source->make(world.request({1, {0, 0, 0}}), *world.visibility).has_value());
+}
+
+namespace {
+
+bool is_current(TileWorld& world, const ChunkKey& key, const Chunk& copy) {
+  return world.source->is_current(key, copy.version, copy.digest.lane[0]);
+}
+
+}  // namespace
+
+TEST_CASE("a copy of a tile is known to be current until an edit below, without making it",
+          "[tiles]") {
+  TileWorld world({"terrain", 1, 3, ""});
+  const ChunkKey near{1, {0, 0, 0}}, above{2, {0, 0, 0}}, far{1, {2, 0, 0}};
+  world.edit({{0, 0, 0}});
+  world.save_all();
+  std::map<ChunkKey, Chunk> copies;
+  for (const ChunkKey& key : {near, above, far}) copies[key] = *world.make(key).back().tile;
+  for (const auto& [key, copy] : copies) {
+    CHECK(is_current(world, key, copy));
+    Chunk other = copy;
+    other.digest.lane[0] ^= 1;
+    CHECK_FALSE(is_current(world, key, other));
+    other = copy;
+    other.version.seq += 1;
+    CHECK_FALSE(is_current(world, key, other));
+  }
+  world.start();
+  // The ground of a folder is not known before the first tile is made.
+  for (const auto& [key, copy] : copies) CHECK_FALSE(is_current(world, key, copy));
+  static_cast<void>(world.make({1, {50, 0, 50}}));
+  for (const auto& [key, copy] : copies) CHECK(is_current(world, key, copy));
+  world.edit({{1, 0, 0}});
+  CHECK_FALSE(is_current(world, near, copies[near]));
+  CHECK_FALSE(is_current(world, above, copies[above]));
+  CHECK(is_current(world, far, copies[far]));
+  CHECK(is_current(world, near, *world.make(near).back().tile));
+  world.start();  // the edit is in no snapshot
+  static_cast<void>(world.make({1, {50, 0, 50}}));
+  CHECK_FALSE(is_current(world, near, copies[near]));
+  CHECK(is_current(world, far, copies[far]));
+}
+
+TEST_CASE("an incomplete tile has the digest 0, so that it is never claimed", "[tiles]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}, {1, 0, 0}});
+  TileRequest request = world.request({1, {0, 0, 0}});
+  request.head = 0;
+  request.fresh.pop_back();
+  const auto made = world.source->make(request, *world.visibility);
+  REQUIRE(made.has_value());
+  CHECK_FALSE(made->back().is_complete());
+  CHECK(made->back().tile->digest == Digest{});
+  CHECK_FALSE(is_current(world, {1, {0, 0, 0}}, *made->back().tile));
+  const MadeTile whole = world.make({1, {0, 0, 0}}).back();
+  CHECK(whole.is_complete());
+  CHECK(whole.tile->digest == digest_of(whole.tile->voxels));
+
+  world.save_all();
+  REQUIRE(raw_sql(world.file(), "UPDATE snapshot SET checksum = 0 WHERE x = 0; SELECT changes()") ==
+          "1");
+  world.start();
+  const MadeTile damaged = world.make({2, {0, 0, 0}}).back();
+  CHECK(damaged.is_damaged);
+  CHECK(damaged.tile->digest == Digest{});
 }
