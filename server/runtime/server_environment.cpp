@@ -89,7 +89,9 @@ void ServerEnvironment::load_chunk(const ChunkKey& key) {
 
 void ServerEnvironment::make_tile(TileRequest request) {
   tiles_.make(std::move(request), world_->materials(),
-              [this](const ChunkKey& key, const std::vector<MadeTile>& made) {
+              [this](const ChunkKey& key, const std::vector<MadeTile>& made, TileMaking::End end) {
+                if (end == TileMaking::End::stopped)
+                  return world_->tile_stopped(key, made, read_clocks());
                 world_->tiles_made(key, made, read_clocks());
               });
 }

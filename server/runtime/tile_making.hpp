@@ -28,8 +28,10 @@ namespace runstone {
 class TileMaking {
  public:
   using Tiles = std::vector<std::pair<ChunkKey, ChunkPtr>>;
-  /// Brings the tiles of a request. They are empty if the tile could not be made.
-  using Then = std::function<void(const ChunkKey&, const std::vector<MadeTile>&)>;
+  enum class End { made, stopped, failed };
+  /// Brings the tiles of a request, the requested one last if it was made. `stopped`: the request has
+  /// reached TileRequest::steps_max.
+  using Then = std::function<void(const ChunkKey&, const std::vector<MadeTile>&, End)>;
 
   /// All must outlive the object.
   TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator& generator,

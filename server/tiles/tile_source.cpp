@@ -45,6 +45,8 @@ class TileSource::Making {
     return *std::move(found);
   }
 
+  /// Returns true if tile() failed because it reached request.steps_max.
+  bool has_stopped() const { return has_stopped_; }
   /// Returns the tiles that tile() made below the requested one and that are worth storing.
   std::vector<MadeTile> take_on_the_way() { return std::move(on_the_way_); }
 
@@ -61,6 +63,7 @@ class TileSource::Making {
     auto voxels =
         source_.generator_.coarse(tile_origin(key, source_.edge_), source_.edge_, key.lod);
     if (!voxels) return std::nullopt;
+    ++steps_;
     return tile_of_voxels(key, veiled(*std::move(voxels), visibility_, scratch_), {}, true, false);
   }
 
@@ -69,6 +72,7 @@ class TileSource::Making {
   StoreResult<std::optional<MadeTile>> load(const ChunkKey& key, Sequence newest) {
     std::optional<MadeTile> out;
     if (!source_.options_.reads_stored_tiles) return out;
+    ++steps_;
     StoreResult<std::optional<Chunk>> row = std::optional<Chunk>();
     const auto read =
         source_.chunks_.with_reader([&](WorldReader& reader) { row = reader.load_tile(key); });
@@ -90,6 +94,10 @@ class TileSource::Making {
     Version version;
     bool is_approximate = false, is_damaged = false;
     for (unsigned i = 0; i < 8; ++i) {
+      if (steps_ >= request_.steps_max) {
+        has_stopped_ = true;
+        return Unexpected<StoreError>{{StoreError::Kind::cancelled, {}, {}, "stopped"}};
+      }
       auto child = child_of(tile_child(key, i));
       if (!child) return Unexpected<StoreError>{child.error()};
       children[i] = *std::move(child);
@@ -114,6 +122,7 @@ class TileSource::Making {
   StoreResult<Child> chunk_at(const ChunkKey& key) {
     if (const auto fresh = fresh_.find(key.at); fresh != fresh_.end())
       return Child{fresh->second, fresh->second == nullptr, fresh->second == nullptr};
+    ++steps_;
     if (!source_.ledger_.has_ground(key)) {
       return Child{std::make_shared<const Chunk>(generated_chunk(
                        source_.generator_, key, static_cast<std::uint16_t>(source_.edge_))),
@@ -143,6 +152,8 @@ class TileSource::Making {
   const std::map<ChunkCoord, ChunkPtr> fresh_;
   VeiledTileScratch scratch_;
   std::vector<MadeTile> on_the_way_;
+  std::size_t steps_ = 0;  // chunks and tiles that were read or generated
+  bool has_stopped_ = false;
 };
 
 TileSource::TileSource(ChunkSource& chunks, const Generator& generator, std::int32_t edge,
@@ -161,6 +172,7 @@ StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
   if (auto found = find_ground(); !found) return Unexpected<StoreError>{found.error()};
   Making making(*this, request, visibility);
   auto tile = making.tile(request.key);
+  if (making.has_stopped()) return making.take_on_the_way();
   if (!tile) return Unexpected<StoreError>{tile.error()};
   std::vector<MadeTile> tiles = making.take_on_the_way();
   tiles.push_back(*std::move(tile));

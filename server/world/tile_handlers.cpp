@@ -23,6 +23,14 @@ std::size_t price_of(const std::vector<MadeTile>& made) {
   return price;
 }
 
+/// Charges the player for whom a tile is made.
+void charge(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
+            const Clocks& now) {
+  const auto payer = world.tiles.payers.find(key);
+  if (payer != world.tiles.payers.end())
+    world.load_ledger.owe(payer->second, price_of(made), now.steady_us);
+}
+
 void add_receiver(WorldState& world, const ChunkKey& key, SessionId session) {
   std::vector<SessionId>& sessions = world.tiles.receivers[key].sessions;
   const auto at = std::ranges::lower_bound(sessions, session);
@@ -48,7 +56,8 @@ void leave_tiles(WorldState& world, SessionId session, std::span<const ChunkKey>
 TileRequest request_of(WorldState& world, const ChunkKey& tile, const Clocks& now) {
   const WorldChunks& chunks = world.authority.chunks();
   std::vector<ChunkKey> absent;
-  TileRequest request{tile, world.authority.head(), {}};
+  TileRequest request{
+      tile, world.authority.head(), {}, kTileSteps * (1 + world.tiles.queue.stops(tile))};
   // Up to the checkpoint, snapshots contain all edits.
   if (world.environment.newest_tile_edit(tile) <= world.checkpointer.checkpoint()) return request;
   const ChunkCoord first = first_chunk(tile);
@@ -199,8 +208,8 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   }
   const std::vector<SessionId> waiting = world.tiles.queue.finished(key);
   const MadeTile& tile = made.back();
-  if (const auto payer = world.tiles.payers.extract(key))
-    world.load_ledger.owe(payer.mapped(), price_of(made), now.steady_us);
+  charge(world, key, made, now);
+  world.tiles.payers.erase(key);
   std::vector<SessionId> receivers;
   if (const TileReceivers* found = world.tiles.receivers.find(key)) receivers = found->sessions;
   for (const SessionId session : waiting) {
@@ -214,6 +223,17 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   }
   save_tiles(world, made);
   for (const SessionId session : waiting) request_tiles(world, session, now);
+  start_tiles(world, now);
+}
+
+void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
+                     const Clocks& now) {
+  charge(world, key, made, now);
+  world.tiles.payers.erase(key);
+  world.tiles.queue.stopped(key, now.steady_us);
+  if (!world.tiles.queue.is_waited_for(key) && !world.tiles.receivers.contains(key))
+    world.tiles.queue.cancel_again(key);
+  save_tiles(world, made);
   start_tiles(world, now);
 }
 

@@ -23,6 +23,10 @@ inline constexpr std::size_t kTileLoadsMax = 64;
 inline constexpr std::size_t kTileClaimsPerCall = 512;
 /// Bytes that count as read for each claim of a tile, since it is answered without a load.
 inline constexpr std::size_t kTileClaimBytes = 64;
+/// A request of a tile stops after so many steps (TileRequest::steps_max). A tile that has stopped n
+/// times gets n + 1 times as many, so that it is made at last even if the tiles of earlier requests are
+/// forgotten meanwhile. A step takes up to a few hundred microseconds.
+inline constexpr std::size_t kTileSteps = 512;
 /// Tiles with the workers at a time.
 inline constexpr std::size_t kTilesInFlightMax = 4;
 
@@ -43,6 +47,10 @@ void start_tiles(WorldState& world, const Clocks& now);
 /// at an earlier state. Saves those that are worth it. `made` is empty if the tile could not be made.
 void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
                    const Clocks& now);
+/// Saves tiles that were made on the way to a tile. The tile is requested again when others had their
+/// turn.
+void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
+                     const Clocks& now);
 /// Makes the tiles above these chunks stale. The chunks are of level of detail 0, ascending.
 void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, Sequence seq,
                   const Clocks& now);

@@ -2,6 +2,7 @@
 // send back.
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct TileRequest {
   /// The chunks below the tile whose newest voxels are only in memory, ascending. A chunk that is null
   /// cannot be shown: the tile shows nothing there.
   std::vector<std::pair<ChunkCoord, ChunkPtr>> fresh;
+  /// The call stops when it has read or generated so many chunks and tiles, so that others get their
+  /// turn.
+  std::size_t steps_max = std::numeric_limits<std::size_t>::max();
 };
 
 /// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty. The digest of an

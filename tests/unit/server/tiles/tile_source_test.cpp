@@ -1,5 +1,6 @@
 #include "server/tiles/tile_source.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <thread>
 
@@ -290,4 +291,33 @@ TEST_CASE("an incomplete tile has the digest 0, so that it is never claimed", "[
   const MadeTile damaged = world.make({2, {0, 0, 0}}).back();
   CHECK(damaged.is_damaged);
   CHECK(damaged.tile->digest == Digest{});
+}
+
+TEST_CASE("a call that stops goes on where it was, and ends with the same tile", "[tiles]") {
+  TileWorld world({"terrain", 1, 7, ""});
+  for (std::int32_t i = 0; i < 12; ++i) world.edit({{i * 7 % 40, i % 3, i * 11 % 40}});
+  world.save_all();
+  world.start();
+  const ChunkKey key{6, {0, 0, 0}};
+  TileRequest request = world.request(key);
+  CHECK(request.steps_max > 1'000'000);
+  const auto at_once = world.source->make(request, *world.visibility);
+  REQUIRE(at_once.has_value());
+  world.start();
+  request.steps_max = 200;
+  std::vector<MadeTile> on_the_way;
+  int calls = 0;
+  for (;; ++calls) {
+    REQUIRE(calls < 1'000);
+    const auto made = world.source->make(request, *world.visibility);
+    REQUIRE(made.has_value());
+    on_the_way.insert(on_the_way.end(), made->begin(), made->end());
+    if (!made->empty() && made->back().key == key) break;
+  }
+  CHECK(calls > 5);
+  CHECK(*on_the_way.back().tile == *at_once->back().tile);
+  std::vector<ChunkKey> keys = keys_of(on_the_way), expected = keys_of(*at_once);
+  std::sort(keys.begin(), keys.end());
+  std::sort(expected.begin(), expected.end());
+  CHECK(keys == expected);  // nothing is made twice
 }

@@ -201,4 +201,40 @@ TEST_CASE("chunks with edits that are not in memory are loaded, and the tile is 
   CHECK(heads().empty());
 }
 
+TEST_CASE("a request of a tile that stops is made again with more steps, and others get a turn") {
+  TileBench bench;
+  bench.enter(1);
+  const TileRequest first = bench.environment.tile_requests.front();
+  bench.environment.tile_requests.pop_front();
+  CHECK(first.steps_max == kTileSteps);
+  MadeTile below = bench.made({2, {0, 0, 0}}, 0);
+  bench.server.tile_stopped(first.key, {below}, bench.now());
+  REQUIRE(bench.environment.saved_tiles.size() == 1);
+  CHECK(bench.environment.saved_tiles[0].first == below.key);
+  CHECK(bench.tiles_of(1).empty());
+  const std::vector<TileRequest> requests = bench.answer_tiles();
+  const auto again = std::ranges::find(requests, first.key, &TileRequest::key);
+  REQUIRE(again != requests.end());
+  CHECK(again != requests.begin());
+  CHECK(again->steps_max == 2 * kTileSteps);
+  CHECK(bench.tiles_of(1).size() == 13 * (5 + 2 + 2));
+}
+
+TEST_CASE("a player pays for each turn of a tile") {
+  WorldConfig c = with_tiles();
+  c.chunk_loads = {1, 200};
+  TileBench bench(c);
+  bench.enter(1);
+  const ChunkKey key = bench.environment.tile_requests.front().key;
+  std::vector<MadeTile> made(200, bench.made({1, {9, 0, 9}}, 0));
+  bench.environment.tile_requests.pop_front();
+  bench.server.tile_stopped(key, made, bench.now());
+  // What is under way and what waits goes on; nothing more is requested.
+  CHECK(bench.answer_tiles().size() <= kTilesWaitingMax);
+  bench.server.disconnected(1);
+  bench.join(2, 1, 2, {}, kFeatureTiles);  // the same player
+  bench.look(2, 3, {});
+  CHECK(bench.environment.tile_requests.empty());
+}
+
 }  // namespace runstone::test
