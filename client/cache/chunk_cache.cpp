@@ -25,14 +25,14 @@ constexpr const char* kSchema =
     "PRAGMA cell_size_check = ON;"
     "CREATE TABLE IF NOT EXISTS world (id INTEGER PRIMARY KEY, world_id BLOB NOT NULL UNIQUE, "
     "chunk_edge INTEGER NOT NULL, epoch INTEGER NOT NULL, durable INTEGER NOT NULL, "
-    "head INTEGER NOT NULL);"
-    "CREATE TABLE IF NOT EXISTS chunk (world INTEGER NOT NULL, x INTEGER NOT NULL, "
-    "y INTEGER NOT NULL, z INTEGER NOT NULL, epoch INTEGER NOT NULL, seq INTEGER NOT NULL, "
+    "head INTEGER NOT NULL, tile_rules INTEGER NOT NULL);"
+    "CREATE TABLE IF NOT EXISTS chunk (world INTEGER NOT NULL, level INTEGER NOT NULL, "
+    "x INTEGER NOT NULL, y INTEGER NOT NULL, z INTEGER NOT NULL, epoch INTEGER NOT NULL, seq INTEGER NOT NULL, "
     "used INTEGER NOT NULL, bytes INTEGER NOT NULL, checksum INTEGER NOT NULL, "
-    "digest BLOB NOT NULL, data BLOB NOT NULL, UNIQUE (world, x, y, z));"
+    "digest BLOB NOT NULL, data BLOB NOT NULL, UNIQUE (world, level, x, y, z));"
     "CREATE INDEX IF NOT EXISTS chunk_used ON chunk (used, bytes);"
     "CREATE INDEX IF NOT EXISTS chunk_version ON chunk (world, seq, epoch);";
-constexpr std::int64_t kLayout = 1;
+constexpr std::int64_t kLayout = 2;
 
 Bytes digest_bytes(const Digest& digest) {
   Bytes bytes;
@@ -47,6 +47,7 @@ std::int64_t checksum_of(const WorldId& world, const ChunkKey& key, const Versio
   Bytes bytes;
   ByteWriter out(bytes);
   out.bytes(world);
+  out.u8(key.lod);
   for (const std::int32_t c : {key.at.x, key.at.y, key.at.z})
     out.u32(static_cast<std::uint32_t>(c));
   out.u32(version.epoch);
@@ -68,26 +69,29 @@ std::string default_cache_folder() { return user_folder(UserFolder::cache); }
 struct ChunkCache::Tables {
   explicit Tables(CacheDatabase& d)
       : find_world(d.prepare(
-            "SELECT id, chunk_edge, epoch, durable, head FROM world WHERE world_id = ?1")),
-        add_world(d.prepare("INSERT INTO world (world_id, chunk_edge, epoch, durable, head) "
-                            "VALUES (?1,?2,?3,?4,?5)")),
+            "SELECT id, chunk_edge, epoch, durable, head, tile_rules FROM world WHERE world_id = ?1")),
+        add_world(d.prepare("INSERT INTO world (world_id, chunk_edge, epoch, durable, head, "
+                            "tile_rules) VALUES (?1,?2,?3,?4,?5,?6)")),
         mark_world(d.prepare(
-            "UPDATE world SET chunk_edge=?2, epoch=?3, durable=?4, head=?5 WHERE id = ?1")),
+            "UPDATE world SET chunk_edge=?2, epoch=?3, durable=?4, head=?5, tile_rules=?6 "
+            "WHERE id = ?1")),
         drop_lost(d.prepare("DELETE FROM chunk WHERE world = ?1 AND seq > ?2 AND epoch < ?3")),
         drop_all(d.prepare("DELETE FROM chunk WHERE world = ?1")),
         drop_edited(d.prepare("DELETE FROM chunk WHERE world = ?1 AND seq > 0")),
+        drop_tiles(d.prepare("DELETE FROM chunk WHERE world = ?1 AND level > 0")),
+        has_level(d.prepare("SELECT 1 FROM chunk WHERE world = ?1 AND level = ?2 LIMIT 1")),
         find(d.prepare("SELECT epoch, seq, used, checksum, digest, data, rowid FROM chunk "
-                       "WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4")),
+                       "WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4 AND level = ?5")),
         use(d.prepare("UPDATE chunk SET used = ?2 WHERE rowid = ?1")),
         drop(d.prepare("DELETE FROM chunk WHERE rowid = ?1")),
         keep(d.prepare(
-            "INSERT OR REPLACE INTO chunk (world, x, y, z, epoch, seq, used, bytes, checksum, "
-            "digest, data) VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11)")),
-        size(
-            d.prepare("SELECT bytes FROM chunk WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4")),
+            "INSERT OR REPLACE INTO chunk (world, x, y, z, level, epoch, seq, used, bytes, "
+            "checksum, digest, data) VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12)")),
+        size(d.prepare("SELECT bytes FROM chunk WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4 "
+                       "AND level = ?5")),
         oldest(d.prepare("SELECT rowid, bytes FROM chunk ORDER BY used LIMIT ?1")) {}
-  sql::Statement find_world, add_world, mark_world, drop_lost, drop_all, drop_edited, find, use,
-      drop, keep, size, oldest;
+  sql::Statement find_world, add_world, mark_world, drop_lost, drop_all, drop_edited, drop_tiles,
+      has_level, find, use, drop, keep, size, oldest;
 };
 
 ChunkCache::ChunkCache(std::string file, std::uint64_t bytes_max, FileLock lock)
@@ -172,7 +176,8 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
   };
   Tables& t = *tables_;
   std::optional<std::int64_t> id;
-  bool is_other_size = false;
+  bool is_other_size = false, has_other_rules = false;
+  std::int64_t rules = world.tile_rules;
   std::optional<ServerMark> before;
   t.find_world.bind(1, world.id);
   if (database_->step(t.find_world)) {
@@ -181,6 +186,9 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
     before = ServerMark{static_cast<Epoch>(t.find_world.integer(2)),
                         static_cast<Sequence>(t.find_world.integer(3)),
                         static_cast<Sequence>(t.find_world.integer(4))};
+    // 0: this connection has no tiles, so it says nothing about those that are kept.
+    if (rules == 0) rules = t.find_world.integer(5);
+    has_other_rules = t.find_world.integer(5) != rules;
   }
   t.find_world.reset();
   if (!id) {
@@ -188,10 +196,11 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
                        .bind(2, std::int64_t{world.chunk_edge})
                        .bind(3, std::int64_t{world.mark.epoch})
                        .bind(4, number(world.mark.durable))
-                       .bind(5, number(world.mark.head)));
+                       .bind(5, number(world.mark.head))
+                       .bind(6, rules));
     return database_->ok() ? database_->integer("SELECT last_insert_rowid()") : 0;
   }
-  if (before == world.mark && !is_other_size) return *id;
+  if (before == world.mark && !is_other_size && !has_other_rules) return *id;
   const SharedHistory kept(before, world.mark);
   const auto count = [&](sql::Statement& drop) {
     database_->run(drop);
@@ -209,11 +218,13 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
               .bind(2, number(kept.common()))
               .bind(3, std::int64_t{world.mark.epoch}));
   }
+  if (has_other_rules) count(t.drop_tiles.bind(1, *id));
   database_->run(t.mark_world.bind(1, *id)
                      .bind(2, std::int64_t{world.chunk_edge})
                      .bind(3, std::int64_t{world.mark.epoch})
                      .bind(4, number(world.mark.durable))
-                     .bind(5, number(world.mark.head)));
+                     .bind(5, number(world.mark.head))
+                     .bind(6, rules));
   return *id;
 }
 
@@ -223,8 +234,9 @@ std::optional<KeyedChunk> ChunkCache::read(const CachedWorld& world, std::int64_
   t.find.bind(1, row)
       .bind(2, std::int64_t{key.at.x})
       .bind(3, std::int64_t{key.at.y})
-      .bind(4, std::int64_t{key.at.z});
-  if (key.lod != 0 || !database_->step(t.find)) {
+      .bind(4, std::int64_t{key.at.z})
+      .bind(5, std::int64_t{key.lod});
+  if (!database_->step(t.find)) {
     t.find.reset();
     ++counters_.misses;
     return std::nullopt;
@@ -265,8 +277,20 @@ std::vector<KeyedChunk> ChunkCache::find(const CacheLookup& lookup) {
   if (has_ended_) return found;
   database_->run("BEGIN IMMEDIATE");
   const std::int64_t row = enter(lookup.world);
+  std::optional<std::uint8_t> level;
+  bool has_level = false;
   for (const ChunkKey& key : lookup.keys) {
     if (!database_->ok() || found_bytes >= lookup.bytes_max) break;
+    if (level != key.lod) {
+      // Most tiles of a view are not in a new cache, and a look-up of each would take long.
+      level = key.lod;
+      has_level = database_->step(tables_->has_level.bind(1, row).bind(2, std::int64_t{key.lod}));
+      tables_->has_level.reset();
+    }
+    if (!has_level) {
+      ++counters_.misses;
+      continue;
+    }
     auto chunk = read(lookup.world, row, key);
     if (!chunk) continue;
     found_bytes += sizeof(Chunk) + chunk->second->voxels.runs.byte_capacity();
@@ -283,12 +307,13 @@ void ChunkCache::keep(const CachedWorld& world, std::span<const KeyedChunk> chun
   database_->run("BEGIN IMMEDIATE");
   const std::int64_t row = enter(world);
   for (const auto& [key, chunk] : chunks) {
-    if (key.lod != 0 || chunk->version.seq > kSequenceMax || !database_->ok()) continue;
+    if (chunk->version.seq > kSequenceMax || !database_->ok()) continue;
     const auto at = [&](sql::Statement& s) -> sql::Statement& {
       return s.bind(1, row)
           .bind(2, std::int64_t{key.at.x})
           .bind(3, std::int64_t{key.at.y})
-          .bind(4, std::int64_t{key.at.z});
+          .bind(4, std::int64_t{key.at.z})
+          .bind(5, std::int64_t{key.lod});
     };
     if (database_->step(at(t.size)))
       bytes_ -= std::min(bytes_, static_cast<std::uint64_t>(t.size.integer(0)));
@@ -297,13 +322,13 @@ void ChunkCache::keep(const CachedWorld& world, std::span<const KeyedChunk> chun
     const Bytes digest = digest_bytes(chunk->digest);
     const std::uint64_t size = data.size() + kRowOverheadBytes;
     database_->run(at(t.keep)
-                       .bind(5, std::int64_t{chunk->version.epoch})
-                       .bind(6, static_cast<std::int64_t>(chunk->version.seq))
-                       .bind(7, stamp_)
-                       .bind(8, static_cast<std::int64_t>(size))
-                       .bind(9, checksum_of(world.id, key, chunk->version, digest, data))
-                       .bind(10, ByteView(digest))
-                       .bind(11, ByteView(data)));
+                       .bind(6, std::int64_t{chunk->version.epoch})
+                       .bind(7, static_cast<std::int64_t>(chunk->version.seq))
+                       .bind(8, stamp_)
+                       .bind(9, static_cast<std::int64_t>(size))
+                       .bind(10, checksum_of(world.id, key, chunk->version, digest, data))
+                       .bind(11, ByteView(digest))
+                       .bind(12, ByteView(data)));
     bytes_ += size;
     ++counters_.kept;
   }

@@ -1,4 +1,4 @@
-// ChunkCache: chunks that a client keeps on disk between its runs. A row has world, chunk key,
+// ChunkCache: chunks and tiles that a client keeps on disk between its runs. A row has world, key,
 // version, digest and packed bytes. The cache returns a chunk exactly as it was stored, or not at
 // all:
 //   - every row has a checksum over its other columns, and the digest of its voxels must match; a
@@ -8,8 +8,11 @@
 //   - the write-ahead log of SQLite survives a kill at any moment; after a power failure the newest
 //     batches may be missing (synchronous NORMAL);
 //   - if the server of a world lost edits or was restored from a backup, chunks outside the common
-//     history are dropped (SharedHistory).
-// The size is bounded: beyond `bytes_max` the chunks that were unused for longest are evicted. One
+//     history are dropped (SharedHistory);
+//   - if the server of a world makes tiles by other rules, the tiles are dropped.
+// The size is bounded: beyond `bytes_max` the chunks and tiles that were unused for longest are
+// evicted. Tiles need no other rule: those of a view take a few per cent of the bytes of its chunks,
+// and a client that comes back needs both. One
 // process at a time uses the folder. Calls wait for the disk.
 // Thread: one at a time.
 #pragma once

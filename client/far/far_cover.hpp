@@ -1,5 +1,5 @@
 // FarCover: decides which chunks and which parts of tiles are drawn. All places that a view knows
-// are drawn by exactly one of them at every time.
+// are drawn by exactly one of them at every time; FarFades draws another one with it for a moment.
 //
 // The chunks and tiles that are *present* are those whose quads are on the GPU. A tile is drawn as
 // a whole or as *octants*, one for each child. The rules are:

@@ -9,12 +9,12 @@ namespace runstone {
 namespace {
 
 /// An entry of a map takes about this much memory besides the runs.
-constexpr std::size_t kEntryBytes = 96;
+constexpr std::size_t kEntryBytes = 128;
 /// More shared tiles are not kept. A peer could otherwise fill the memory with materials.
 constexpr std::size_t kSharedMax = 64;
 
 std::size_t bytes_of(const RunChunk& tile) {
-  return kEntryBytes + (tile.is_uniform() ? 0 : sizeof(RunChunk) + tile.runs.byte_size());
+  return kEntryBytes + (tile.is_uniform() ? 0 : sizeof(Chunk) + tile.runs.byte_size());
 }
 
 }  // namespace
@@ -33,10 +33,26 @@ void FarTiles::clear() {
   uniform_.clear();
 }
 
-bool FarTiles::receive(const ChunkKey& key, RunChunk tile) {
-  if (tile.extent != Extent::cube(static_cast<unsigned>(edge_))) return false;
-  if (tile.is_uniform()) return receive_uniform(key, material_at(tile, {0, 0, 0}));
-  return keep(key, std::make_shared<const RunChunk>(std::move(tile)));
+void FarTiles::reopen(std::uint32_t rules, const std::function<bool(const Version&)>& trusts) {
+  const bool are_same_rules = rules != 0 && rules == rules_;
+  rules_ = rules;
+  looked_for_.reset();
+  for (auto& [key, tile] : tiles_) {
+    tile.is_vouched = false;
+    tile.can_be_kept = tile.can_be_kept && are_same_rules && trusts(tile.source->version);
+  }
+}
+
+bool FarTiles::receive(const ChunkKey& key, Chunk tile) {
+  if (tile.voxels.extent != Extent::cube(static_cast<unsigned>(edge_))) return false;
+  if (tile.voxels.is_uniform()) return receive_uniform(key, material_at(tile.voxels, {0, 0, 0}));
+  Held held;
+  held.source = std::make_shared<const Chunk>(std::move(tile));
+  held.voxels = TilePtr(held.source, &held.source->voxels);
+  held.is_vouched = true;
+  // The server marks a tile that it will replace soon by the digest 0.
+  held.can_be_kept = rules_ != 0 && held.source->digest != Digest{};
+  return keep(key, std::move(held));
 }
 
 bool FarTiles::receive_uniform(const ChunkKey& key, Material material) {
@@ -46,31 +62,67 @@ bool FarTiles::receive_uniform(const ChunkKey& key, Material material) {
     shared = std::make_shared<const RunChunk>(
         uniform_chunk(Extent::cube(static_cast<unsigned>(edge_)), material));
   }
-  TilePtr tile = shared;
+  Held held;
+  held.voxels = shared;
+  held.is_vouched = true;
   if (uniform_.size() > kSharedMax) uniform_.clear();
-  return keep(key, std::move(tile));
+  return keep(key, std::move(held));
 }
 
-bool FarTiles::keep(const ChunkKey& key, TilePtr tile) {
-  RUNSTONE_ASSERT(key.lod > 0);
-  if (!view_ || !has_key(*view_, CoordLimit::of(edge_), key)) return false;
-  TilePtr& held = tiles_[key];
-  if (held) {
-    // A tile is often sent again with the same voxels, after an edit that it does not show.
-    if (held == tile || *held == *tile) return true;
-    count(*held, false);
-  }
-  count(*tile, true);
-  held = std::move(tile);
-  changed_.insert(key);
-  if (is_empty(*held)) drop_below(key);
+bool FarTiles::receive_not_modified(const ChunkKey& key, Sequence seq) {
+  const auto held = tiles_.find(key);
+  if (held == tiles_.end() || !held->second.source || held->second.source->version.seq != seq)
+    return false;
+  held->second.is_vouched = true;
   return true;
 }
 
-std::map<ChunkKey, TilePtr>::iterator FarTiles::drop(std::map<ChunkKey, TilePtr>::iterator tile) {
-  count(*tile->second, false);
+bool FarTiles::adopt(const ChunkKey& key, ChunkPtr tile) {
+  const bool fits = rules_ != 0 && !tile->voxels.is_uniform() &&
+                    tile->voxels.extent == Extent::cube(static_cast<unsigned>(edge_));
+  if (!fits || tiles_.contains(key) || is_below_empty(key)) return false;
+  Held held;
+  held.voxels = TilePtr(tile, &tile->voxels);
+  held.source = std::move(tile);
+  held.can_be_kept = held.is_cached = true;
+  return keep(key, std::move(held));
+}
+
+bool FarTiles::keep(const ChunkKey& key, Held tile) {
+  RUNSTONE_ASSERT(key.lod > 0);
+  if (!view_ || !has_key(*view_, CoordLimit::of(edge_), key)) return false;
+  Held& held = tiles_[key];
+  if (held.voxels) {
+    // A tile is often sent again with the same voxels, after an edit that it does not show.
+    if (held.voxels == tile.voxels || *held.voxels == *tile.voxels) {
+      tile.voxels = held.voxels;
+      held = std::move(tile);
+      return true;
+    }
+    count(*held.voxels, false);
+  }
+  held = std::move(tile);
+  count(*held.voxels, true);
+  changed_.insert(key);
+  if (is_empty(*held.voxels)) drop_below(key);
+  return true;
+}
+
+FarTiles::Tiles::iterator FarTiles::drop(Tiles::iterator tile) {
+  count(*tile->second.voxels, false);
   changed_.insert(tile->first);
   return tiles_.erase(tile);
+}
+
+bool FarTiles::is_below_empty(const ChunkKey& key) const {
+  ChunkKey above = key;
+  while (above.lod < kTileLevelMax) {
+    above = tile_parent(above);
+    const auto held = tiles_.find(above);
+    // Nothing above a tile that is held is empty.
+    if (held != tiles_.end()) return is_empty(*held->second.voxels);
+  }
+  return false;
 }
 
 void FarTiles::drop_below(const ChunkKey& key) {
@@ -93,7 +145,50 @@ void FarTiles::count(const RunChunk& tile, bool is_added) {
 
 TilePtr FarTiles::find(const ChunkKey& key) const {
   const auto held = tiles_.find(key);
-  return held == tiles_.end() ? nullptr : held->second;
+  return held == tiles_.end() ? nullptr : held->second.voxels;
+}
+
+void FarTiles::for_each_claimable(
+    const std::function<bool(const ChunkKey&, const Chunk&)>& visit) const {
+  for (const auto& [key, tile] : tiles_) {
+    if (!tile.is_vouched && tile.can_be_kept && !visit(key, *tile.source)) return;
+  }
+}
+
+std::vector<std::pair<ChunkKey, ChunkPtr>> FarTiles::take_for_cache(std::size_t count_max) {
+  std::vector<std::pair<ChunkKey, ChunkPtr>> out;
+  for (auto& [key, tile] : tiles_) {
+    if (out.size() >= count_max) break;
+    if (!tile.is_vouched || !tile.can_be_kept || tile.is_cached) continue;
+    tile.is_cached = true;
+    out.emplace_back(key, tile.source);
+  }
+  return out;
+}
+
+std::vector<ChunkKey> FarTiles::take_not_held() {
+  std::vector<ChunkKey> out;
+  if (!view_ || rules_ == 0) return out;
+  const std::optional<View> before = std::exchange(looked_for_, view_);
+  const CoordLimit world = CoordLimit::of(edge_);
+  const std::int32_t radius = view_->radius_h;
+  for (std::uint8_t level = 1; level <= tile_levels(*view_); ++level) {
+    const ChunkCoord centre = tile_at(view_->centre, level);
+    const bool is_listed = before && before->radius_h == view_->radius_h &&
+                           level <= tile_levels(*before) &&
+                           tile_at(before->centre, level) == centre;
+    if (is_listed) continue;
+    for (std::int32_t dx = -radius; dx <= radius; ++dx) {
+      for (std::int32_t dy = -kTileRadiusV; dy <= kTileRadiusV; ++dy) {
+        for (std::int32_t dz = -radius; dz <= radius; ++dz) {
+          const ChunkKey key{level, {centre.x + dx, centre.y + dy, centre.z + dz}};
+          if (has_key(*view_, world, key) && !tiles_.contains(key) && !is_below_empty(key))
+            out.push_back(key);
+        }
+      }
+    }
+  }
+  return out;
 }
 
 FarTiles::Missing FarTiles::missing() const {
@@ -112,7 +207,7 @@ FarTiles::Missing FarTiles::missing() const {
     }
   }
   for (const auto& [key, tile] : tiles_) {
-    if (key.lod <= 1 || is_empty(*tile)) continue;
+    if (key.lod <= 1 || is_empty(*tile.voxels)) continue;
     for (unsigned i = 0; i < kTileChildren; ++i) {
       const ChunkKey child = tile_child(key, i);
       if (has_key(*view_, world, child) && !tiles_.contains(child)) ++out.others;

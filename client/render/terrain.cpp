@@ -61,7 +61,7 @@ constexpr const char* kGhostFragmentShader =
     "}\n";
 
 std::string variant_of(const char* shader, Quality quality, bool is_tile, bool has_field,
-                       bool is_fine, bool has_fog) {
+                       bool is_fine, bool has_fog, bool is_fading) {
   std::string out = "#version 330 core\n";
   if (quality != Quality::low) out += "#define RUNSTONE_DEPTH\n";
   if (quality != Quality::low && !is_tile) out += "#define RUNSTONE_SHADOWS\n";
@@ -69,6 +69,7 @@ std::string variant_of(const char* shader, Quality quality, bool is_tile, bool h
   if (has_field) out += "#define RUNSTONE_FIELD\n";
   if (is_fine) out += "#define RUNSTONE_FINE\n";
   if (has_fog) out += "#define RUNSTONE_FOG\n";
+  if (is_fading) out += "#define RUNSTONE_FADE\n";
   return out + shader;
 }
 
@@ -142,7 +143,7 @@ void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& me
     chunks_.erase(before);
   }
   if (!mesh.empty()) chunks_.emplace(key, add_quads(edge, mesh, true));
-  cover_.put(key, true);
+  cover(key, true);
   if (key.lod == 0) {
     if (voxels != nullptr) {
       field_.set(key.at, edge, light_chunk(*voxels, light_codes_));
@@ -160,7 +161,7 @@ void Terrain::upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh
     remove_quads(before->second);
     tiles_.erase(before);
   }
-  cover_.put(key, mesh.empty() || !mesh.octants.empty());
+  cover(key, mesh.empty() || !mesh.octants.empty());
   if (mesh.empty()) return;
   Tile tile;
   tile.whole = add_quads(edge, mesh.whole, false);
@@ -174,9 +175,63 @@ void Terrain::remove_quads(const Tile& tile) {
   for (const Chunk& octant : tile.octants) quads_.remove(octant.quads);
 }
 
+void Terrain::cover(const ChunkKey& key, bool is_open) {
+  if (fades_.is_leaving(key)) end_fade(key);
+  const bool replaces = has_fades_ && !cover_.shows(key) && is_octant_drawn(key);
+  cover_.put(key, is_open);
+  if (replaces && is_drawn_whole(key)) fades_.begin(key, true);
+}
+
+bool Terrain::is_octant_drawn(const ChunkKey& key) const {
+  if (key.lod == kTileLevelMax) return false;
+  const TileParts parts = cover_.parts(tile_parent(key));
+  return parts.is_whole || (parts.octants & child_bit(key)) != 0;
+}
+
+bool Terrain::is_drawn_whole(const ChunkKey& key) const {
+  return key.lod == 0 ? cover_.shows(key) : cover_.parts(key).is_whole;
+}
+
+void Terrain::end_fade(const ChunkKey& key) {
+  fades_.end(key);
+  const auto left = leaving_.find(key);
+  if (left == leaving_.end()) return;
+  quads_.remove(left->second.quads);
+  leaving_.erase(left);
+}
+
+void Terrain::step_fades(const FrameView& view) {
+  has_fades_ = !view.look.exact && view.look.quality != Quality::low;
+  if (fades_.empty()) return;
+  for (const ChunkKey& key : fades_.advance(view.look.seconds)) end_fade(key);
+  for (const ChunkKey& key : fades_.keys()) {
+    const bool goes_on = fades_.is_leaving(key) ? is_octant_drawn(key) : is_drawn_whole(key);
+    if (!has_fades_ || !goes_on || !has_octants(tile_parent(key))) end_fade(key);
+  }
+}
+
+bool Terrain::has_octants(const ChunkKey& tile) const {
+  const auto found = tiles_.find(tile);
+  return found != tiles_.end() && !found->second.octants.empty();
+}
+
+bool Terrain::has_appearing_octant(const ChunkKey& key, const Tile& tile) const {
+  for (unsigned i = 0; i < tile.octants.size() && !fades_.empty(); ++i) {
+    if (fades_.is_leaving(tile_child(key, i))) return true;
+  }
+  return false;
+}
+
 void Terrain::remove(const ChunkKey& key) {
+  const bool was_drawn = has_fades_ && is_drawn_whole(key);
+  end_fade(key);
   cover_.remove(key);
+  const bool fades = was_drawn && is_octant_drawn(key) && fades_.begin(key, false);
   if (const auto tile = tiles_.find(key); tile != tiles_.end()) {
+    if (fades) {
+      leaving_.emplace(key, std::move(tile->second.whole));
+      tile->second.whole = {};
+    }
     remove_quads(tile->second);
     tiles_.erase(tile);
     return;
@@ -186,7 +241,11 @@ void Terrain::remove(const ChunkKey& key) {
   if (found == chunks_.end()) return;
   const glm::dvec3 min = origin_in_world(key, found->second.edge);
   shadows_.changed(min, min + static_cast<double>(found->second.edge));
-  quads_.remove(found->second.quads);
+  if (fades) {
+    leaving_.emplace(key, std::move(found->second));
+  } else {
+    quads_.remove(found->second.quads);
+  }
   chunks_.erase(found);
 }
 
@@ -196,13 +255,14 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigne
     const char* fragment = is_transparent ? kTransparentFragmentShader : kTerrainFragmentShader;
     const auto text = [&](const char* shader) {
       return variant_of(shader, quality, (variant & kTile) != 0, (variant & kInField) != 0,
-                        (variant & kFine) != 0, (variant & kInFog) != 0);
+                        (variant & kFine) != 0, (variant & kInFog) != 0, (variant & kFade) != 0);
     };
     out.gl = link_program(is_transparent ? "transparent" : "terrain",
                           text(kTerrainVertexShader).c_str(), text(fragment).c_str());
     out.origin = glGetUniformLocation(out.gl.get(), "origin");
     out.pattern = glGetUniformLocation(out.gl.get(), "pattern");
     out.scale = glGetUniformLocation(out.gl.get(), "scale");
+    out.gone = glGetUniformLocation(out.gl.get(), "gone");
   }
   return out;
 }
@@ -266,21 +326,21 @@ bool Terrain::draw_depth(ShadowPass& pass, std::size_t quads_max) {
 }
 
 void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
+  step_fades(view);
   visible_.clear();
   has_variant_ = {};
   has_transparent_ = false;
   // Grain fades out before a pixel is larger than this part of a voxel (kTerrainFragmentShader).
   const double fine_distance = 0.0625 / view.pixel;
   const Frustum frustum(view.clip, view.depth.is_reversed());
-  for (const auto& [key, chunk] : chunks_) {
+  const auto add = [&](const ChunkKey& key, const Chunk& chunk) {
     const glm::dvec3 origin = origin_in_world(key, chunk.edge) - view.eye;
     const glm::vec3 at(origin);
     const auto edge = static_cast<float>(chunk.edge);
     if (!frustum.may_see(at, at + edge)) {
       ++stats.chunks_culled;
-      continue;
+      return;
     }
-    if (!tiles_.empty() && !cover_.shows(key)) continue;
     const glm::vec3 centre = at + 0.5F * edge;
     has_transparent_ = has_transparent_ || chunk.transparent.count != 0;
     unsigned variant = 0;
@@ -299,6 +359,12 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
                         variant,
                         0,
                         key});
+  };
+  for (const auto& [key, chunk] : chunks_) {
+    if (tiles_.empty() || cover_.shows(key)) add(key, chunk);
+  }
+  for (const auto& [key, chunk] : leaving_) {
+    if (key.lod == 0) add(key, chunk);
   }
   find_visible_tiles(view, frustum, stats);
   std::sort(visible_.begin(), visible_.end(),
@@ -327,54 +393,62 @@ std::uint8_t Terrain::joined_sides(const ChunkKey& key, std::uint8_t octants) co
 
 void Terrain::find_visible_tiles(const FrameView& view, const Frustum& frustum,
                                  TerrainStats& stats) {
-  for (const auto& entry : tiles_) {
-    const ChunkKey& key = entry.first;
-    const auto& tile = entry.second;
-    const double scale = std::ldexp(1.0, key.lod);
+  const auto add = [&](const ChunkKey& key, const Chunk& part, std::uint8_t octants,
+                       const glm::dvec3& at, const glm::vec3& pattern, float gone) {
+    if (part.quads.count == 0) return;
+    const double scale = std::ldexp(1.0, key.lod), width = scale * part.edge;
+    if (nearest_of(at, width) > view.far ||
+        !frustum.may_see(glm::vec3(at), glm::vec3(at + width))) {
+      ++stats.chunks_culled;
+      return;
+    }
+    const glm::vec3 centre(at + 0.5 * width);
+    has_transparent_ = has_transparent_ || part.transparent.count != 0;
+    unsigned variant = kTile;
+    if (farthest_of(at, width) > double{view.light.fog_start}) variant |= kInFog;
+    if (gone > 0) variant |= kFade;
+    has_variant_[variant] = true;
+    ++stats.tile_parts_drawn;
+    const glm::dvec3 eye = -at / scale;
+    visible_.push_back({&part,
+                        glm::vec3(at),
+                        pattern,
+                        {eye.x, eye.y, eye.z},
+                        glm::dot(centre, centre),
+                        static_cast<float>(scale),
+                        variant,
+                        part.transparent.count == 0 ? std::uint8_t{0} : joined_sides(key, octants),
+                        key,
+                        gone});
+  };
+  const auto corner_of = [&](const ChunkKey& key, std::int32_t edge) {
     // The limits of the world hold for its voxels, so the origin in voxels of the tile is exact.
-    const VoxelPos first = origin_of(key.at, tile.whole.edge);
-    const double side = scale * tile.whole.edge;
-    const glm::dvec3 corner = glm::dvec3{first.x, first.y, first.z} * scale - view.eye;
-    const auto add = [&](const Chunk& part, std::uint8_t octants, const glm::dvec3& at,
-                         const glm::vec3& pattern) {
-      if (part.quads.count == 0) return;
-      const double width = scale * part.edge;
-      if (nearest_of(at, width) > view.far ||
-          !frustum.may_see(glm::vec3(at), glm::vec3(at + width))) {
-        ++stats.chunks_culled;
-        return;
-      }
-      const glm::vec3 centre(at + 0.5 * width);
-      has_transparent_ = has_transparent_ || part.transparent.count != 0;
-      const unsigned variant =
-          farthest_of(at, width) > double{view.light.fog_start} ? kTile | kInFog : kTile;
-      has_variant_[variant] = true;
-      ++stats.tile_parts_drawn;
-      const glm::dvec3 eye = -at / scale;
-      visible_.push_back(
-          {&part,
-           glm::vec3(at),
-           pattern,
-           {eye.x, eye.y, eye.z},
-           glm::dot(centre, centre),
-           static_cast<float>(scale),
-           variant,
-           part.transparent.count == 0 ? std::uint8_t{0} : joined_sides(key, octants),
-           key});
-    };
+    const VoxelPos first = origin_of(key.at, edge);
+    return glm::dvec3{first.x, first.y, first.z} * std::ldexp(1.0, key.lod) - view.eye;
+  };
+  for (const auto& [key, tile] : tiles_) {
+    const double side = std::ldexp(1.0, key.lod) * tile.whole.edge;
+    const glm::dvec3 corner = corner_of(key, tile.whole.edge);
     if (!frustum.may_see(glm::vec3(corner), glm::vec3(corner + side))) {
       ++stats.chunks_culled;
       continue;
     }
-    const TileParts parts = cover_.parts(key);
+    TileParts parts = cover_.parts(key);
+    if (parts.is_whole && has_appearing_octant(key, tile)) parts = {false, kAllChildren};
     const glm::vec3 pattern = pattern_of(key, tile.whole.edge);
-    if (parts.is_whole) add(tile.whole, kAllChildren, corner, pattern);
+    if (parts.is_whole) add(key, tile.whole, kAllChildren, corner, pattern, 0);
     for (unsigned i = 0; i < tile.octants.size(); ++i) {
-      if (!has_child(parts.octants, i)) continue;
+      const ChunkKey child = tile_child(key, i);
+      const bool dissolves = fades_.is_coming(child);
+      if (!has_child(parts.octants, i) && !dissolves) continue;
       const glm::dvec3 place{i & 1U, i >> 1U & 1U, i >> 2U};
-      add(tile.octants[i], static_cast<std::uint8_t>(1U << i), corner + place * (0.5 * side),
-          pattern + glm::vec3(place * (0.5 * tile.whole.edge)));
+      add(key, tile.octants[i], static_cast<std::uint8_t>(1U << i), corner + place * (0.5 * side),
+          pattern + glm::vec3(place * (0.5 * tile.whole.edge)), fades_.octant_gone(child));
     }
+  }
+  for (const auto& [key, part] : leaving_) {
+    if (key.lod > 0)
+      add(key, part, kAllChildren, corner_of(key, part.edge), pattern_of(key, part.edge), 0);
   }
 }
 
@@ -407,6 +481,7 @@ void Terrain::use_for(const Visible& chunk, const FrameView& view, bool is_trans
   glUniform3fv(of_chunk.origin, 1, glm::value_ptr(chunk.origin));
   glUniform3fv(of_chunk.pattern, 1, glm::value_ptr(chunk.pattern));
   glUniform1f(of_chunk.scale, chunk.scale);
+  if ((chunk.variant & kFade) != 0) glUniform1f(of_chunk.gone, chunk.gone);
   if (view.look.quality == Quality::low || (chunk.variant & kTile) != 0) return;
   const double half = 0.5 * chunk.chunk->edge;
   const glm::dvec3 middle = view.eye + glm::dvec3(chunk.origin) + half;

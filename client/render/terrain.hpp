@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "client/far/far_cover.hpp"
+#include "client/far/far_fades.hpp"
 #include "client/far/tile_mesh.hpp"
 #include "client/render/day_light.hpp"
 #include "client/render/depth_range.hpp"
@@ -104,6 +105,7 @@ class Terrain {
     unsigned variant = 0;           // of the programs
     std::uint8_t joined_sides = 0;  // of a part of a tile, see joined_sides()
     ChunkKey key;
+    float gone = 0;  // the share of its pixels that are not drawn, see FarFades
   };
   /// The quads of a ghost's mesh, kept as long as frames show it.
   struct GhostQuads {
@@ -115,6 +117,19 @@ class Terrain {
   /// Without a tree, the order of transparent quads is that of their layers.
   Chunk add_quads(std::int32_t edge, const ChunkMesh& mesh, bool with_tree);
   void remove_quads(const Tile& tile);
+  /// Records in the cover that a chunk or tile is there, and begins a fade if it replaces its octant.
+  void cover(const ChunkKey& key, bool is_open);
+  /// Returns true if its parent is drawn in the place of a chunk or tile.
+  bool is_octant_drawn(const ChunkKey& key) const;
+  /// Returns true if a chunk or tile is drawn, all of it.
+  bool is_drawn_whole(const ChunkKey& key) const;
+  /// Ends a fade, and removes the quads of what has left.
+  void end_fade(const ChunkKey& key);
+  /// Ends the fades whose time is over, or whose other body is gone.
+  void step_fades(const FrameView& view);
+  bool has_octants(const ChunkKey& tile) const;
+  /// Returns true if a child of the tile is being replaced by its octant.
+  bool has_appearing_octant(const ChunkKey& key, const Tile& tile) const;
   void find_visible(const FrameView& view, TerrainStats& stats);
   /// Returns a bit for each lateral Direction in which ground of the same level continues the part.
   /// Water has no waterline there. `octants` are those that the part covers.
@@ -125,11 +140,12 @@ class Terrain {
   static constexpr unsigned kFine = 2;     // grain and joints are seen
   static constexpr unsigned kInFog = 4;    // a part of the chunk is in the fog
   static constexpr unsigned kTile = 8;     // it is a part of a tile, without shadows
-  static constexpr std::size_t kVariants = 16;
+  static constexpr unsigned kFade = 16;    // it appears or dissolves
+  static constexpr std::size_t kVariants = 32;
   struct Program {
     GlProgram gl;
-    GLint origin = -1, pattern = -1, scale = -1;  // the uniforms of a chunk
-    int cascade = -1;                             // of the last chunk in this pass; -1: none
+    GLint origin = -1, pattern = -1, scale = -1, gone = -1;  // the uniforms of a chunk
+    int cascade = -1;  // of the last chunk in this pass; -1: none
   };
   /// Sets the uniforms of a pass in its programs. `set` sets those that only this pass has.
   void begin_pass(const FrameView& view, bool is_transparent,
@@ -152,6 +168,9 @@ class Terrain {
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
   std::map<ChunkKey, Tile> tiles_;    // likewise
   FarCover cover_;                    // of all chunks and tiles
+  FarFades fades_;
+  std::map<ChunkKey, Chunk> leaving_;  // quads of removed chunks and tiles whose octant appears
+  bool has_fades_ = false;             // the last frame was one with fades
   std::map<const ChunkMesh*, GhostQuads> ghosts_;
   std::optional<InspectionPainter> inspection_;  // while a mode is on
   std::vector<Visible> visible_;                 // of the present frame, from near to far

@@ -1,7 +1,7 @@
 // The shaders of terrain, in GLSL 3.30. Their variants are chosen by definitions before the text:
 // RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH
 // reads the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, RUNSTONE_FOG
-// fades, and RUNSTONE_TILE is for parts of tiles.
+// fades, RUNSTONE_TILE is for parts of tiles, and RUNSTONE_FADE draws a part of the pixels.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"
@@ -10,6 +10,21 @@
 #include "client/render/surface_glsl.hpp"
 
 namespace runstone {
+
+/// The screen door of fades: the pixels of a body get thresholds in a pattern of 4 x 4 (Bayer), and
+/// those below the share `gone` are not drawn (FarFades).
+#define RUNSTONE_FADE_GLSL                                                   \
+  "#ifdef RUNSTONE_FADE\n"                                                   \
+  "uniform float gone;\n"                                                    \
+  "void fade() {\n"                                                          \
+  "  ivec2 p = ivec2(gl_FragCoord.xy) & 3;\n"                                \
+  "  int q = p.x ^ p.y;\n"                                                   \
+  "  int rank = (q & 1) << 3 | (p.y & 1) << 2 | (q & 2) | (p.y & 2) >> 1;\n" \
+  "  if ((float(rank) + 0.5) / 16.0 < gone) discard;\n"                      \
+  "}\n"                                                                      \
+  "#else\n"                                                                  \
+  "void fade() {}\n"                                                         \
+  "#endif\n"
 
 inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL
     "uniform mat4 clip;\n"     // clip space from eye-relative space
@@ -55,7 +70,8 @@ inline constexpr const char* kTerrainFragmentShader =
     "#ifdef RUNSTONE_SHADOWS\n"
     "in vec3 in_shadow;\n"
     "#endif\n"
-    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL RUNSTONE_SHADOW_GLSL
+    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL
+        RUNSTONE_SHADOW_GLSL RUNSTONE_FADE_GLSL
     "float hash(ivec3 p) {\n"
     "  uint h = uint(p.x) * 73856093u ^ uint(p.y) * 19349663u ^ uint(p.z) * 83492791u;\n"
     "  h = (h ^ (h >> 13)) * 1274126177u;\n"
@@ -64,6 +80,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "#ifdef RUNSTONE_FINE\n" RUNSTONE_PATTERN_GLSL
     "#endif\n"
     "void main() {\n"
+    "  fade();\n"
     // Each voxel has a slightly different tint, so that merged faces still look like voxels. The
     // detail fades out with distance before it would flicker.
     "  vec3 face = abs(normal);\n"
@@ -114,12 +131,13 @@ inline constexpr const char* kTransparentFragmentShader =
     "#ifdef RUNSTONE_SHADOWS\n"
     "in vec3 in_shadow;\n"
     "#endif\n"
-    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL
-        RUNSTONE_SHADOW_GLSL RUNSTONE_SURFACE_PARTS_GLSL
+    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL RUNSTONE_SHADOW_GLSL
+        RUNSTONE_SURFACE_PARTS_GLSL RUNSTONE_FADE_GLSL
     "float distance_of(float depth) {\n"
     "  return distance_terms.x / (distance_terms.y * depth + distance_terms.z);\n"
     "}\n"
     "void main() {\n"
+    "  fade();\n"
     "#ifdef RUNSTONE_DEPTH\n"
     "  float scene = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).x;\n"
     "  if (distance_of(gl_FragCoord.z) >= distance_of(scene)) discard;\n"

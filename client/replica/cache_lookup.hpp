@@ -1,4 +1,4 @@
-// CacheLookup: chunks that a session wants to look up in a cache before it asks the server for
+// CacheLookup: chunks and tiles that a session wants to look up in a cache before it asks the server for
 // them.
 #pragma once
 #include <cstdint>
@@ -19,6 +19,8 @@ struct CachedWorld {
   WorldId id{};
   std::uint16_t chunk_edge = 32;
   ServerMark mark;
+  /// SessionAccepted::tile_rules. A cache returns only tiles that were kept under the same rules.
+  std::uint32_t tile_rules = 0;
 };
 
 struct CacheLookup {

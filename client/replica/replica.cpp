@@ -1,6 +1,7 @@
 #include "client/replica/replica.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -25,7 +26,10 @@ std::vector<ClientSequence> Replica::open(const SessionParameters& parameters) {
   if (view()) far_tiles_.set_view(*view(), parameters.chunk_edge);
   durable_ = parameters.durable;
   newest_ = parameters.head;
-  expect_all_chunks(SharedHistory(before, {parameters.epoch, parameters.durable, parameters.head}));
+  const SharedHistory history(before, {parameters.epoch, parameters.durable, parameters.head});
+  expect_all_chunks(history);
+  far_tiles_.reopen(parameters.tile_rules,
+                    [&](const Version& version) { return history.trusts(version); });
   const auto offers = local_edits_.resume(parameters.resolved);
   for (auto& [key, chunk] : chunks_) {
     for (TrackedChunk::PendingEdit& pending : chunk.pending) {
@@ -69,6 +73,7 @@ void Replica::reset() {
 void Replica::set_view(const View& view) {
   views_.set(view);
   if (parameters_) far_tiles_.set_view(view, parameters_->chunk_edge);
+  claims_.forget_tiles_outside(view);
   chunks_.erase_if([&](const TrackedChunk& chunk) {
     if (view.contains(chunk.key.at)) return false;
     updater_.forget(chunk);
@@ -226,7 +231,8 @@ void Replica::receive(Chunks chunks, const Arrival& arrival) {
 
 void Replica::receive_tile(ChunkAnswer& answer) {
   auto* const tile = std::get_if<ChunkSnapshot>(&answer);
-  if (tile == nullptr || !far_tiles_.receive(tile->key, std::move(tile->chunk.voxels)))
+  claims_.answer(key_of(answer));
+  if (tile == nullptr || !far_tiles_.receive(tile->key, std::move(tile->chunk)))
     ++counters_.answers_outside;
 }
 
@@ -247,8 +253,15 @@ void Replica::receive_missing_edits(const ChunkEdits& edits, TimeUs now_us) {
 }
 
 void Replica::receive(const ChunksNotModified& same, TimeUs now_us) {
-  if (!parameters_ || past_.is_past()) return;
+  if (!parameters_) return;
   for (const UnmodifiedChunk& entry : same.chunks) {
+    if (entry.key.lod > 0) {
+      claims_.answer(entry.key);
+      const bool is_held = far_tiles_.receive_not_modified(entry.key, entry.seq);
+      ++(is_held ? counters_.tiles_same : counters_.answers_outside);
+      continue;
+    }
+    if (past_.is_past()) return;
     if (!accepts(entry.key, same.view)) continue;
     claims_.answer(entry.key);
     updater_.apply_not_modified(track(entry.key), entry.seq, now_us);
@@ -261,6 +274,7 @@ void Replica::receive(const UniformChunks& uniform, const Arrival& arrival) {
   Chunk chunk;
   for (const UniformChunk& each : uniform.chunks) {
     if (each.key.lod > 0) {
+      claims_.answer(each.key);
       if (!far_tiles_.receive_uniform(each.key, each.material)) ++counters_.answers_outside;
       continue;
     }
@@ -341,7 +355,12 @@ void Replica::receive(const DigestCheck& check, TimeUs now_us) {
 // Caches.
 
 void Replica::adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us) {
-  if (!parameters_ || past_.is_past() || !is_in_view(key)) return;
+  if (!parameters_ || past_.is_past()) return;
+  if (key.lod > 0) {
+    counters_.tiles_adopted += far_tiles_.adopt(key, std::move(chunk)) ? 1 : 0;
+    return;
+  }
+  if (!is_in_view(key)) return;
   TrackedChunk& tracked = track(key);
   const bool is_answered = is_vouched(tracked.state()) || tracked.is_unavailable();
   if (!tracked.confirmed() && !is_answered) updater_.adopt(tracked, std::move(chunk), now_us);
@@ -349,7 +368,7 @@ void Replica::adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us) {
 
 std::vector<CachedChunk> Replica::take_claims() {
   if (!parameters_ || past_.is_past()) return {};
-  auto claims = claims_.take(chunks_);
+  auto claims = claims_.take(chunks_, far_tiles_);
   counters_.claimed += claims.size();
   return claims;
 }
@@ -380,8 +399,15 @@ std::vector<ChunkKey> Replica::missing() const {
   return keys;
 }
 
+std::vector<ChunkKey> Replica::take_missing_tiles() {
+  return !parameters_ || past_.is_past() ? std::vector<ChunkKey>{} : far_tiles_.take_not_held();
+}
+
 std::vector<KeyedChunk> Replica::take_for_cache(std::size_t count_max) {
-  return outbox_.take(past_.is_past() ? nullptr : &chunks_, count_max);
+  std::vector<KeyedChunk> out = outbox_.take(past_.is_past() ? nullptr : &chunks_, count_max);
+  std::vector<KeyedChunk> tiles = far_tiles_.take_for_cache(count_max - out.size());
+  std::move(tiles.begin(), tiles.end(), std::back_inserter(out));
+  return out;
 }
 
 ReplicaChanges Replica::drain_changes() {

@@ -21,8 +21,8 @@
 //     requests.
 //   - A snapshot older than the confirmed chunk is ignored.
 // An answer to a view is ignored if the chunk has left the view since (RecentViews). Tiles, the
-// keys of level 1 or more, are kept apart (FarTiles). They have no versions and are never
-// predicted, requested, claimed or cached. After a restart of the server (new epoch) only versions
+// keys of level 1 or more, are kept apart (FarTiles). They are claimed and cached like chunks, but
+// never predicted or requested. After a restart of the server (new epoch) only versions
 // that it kept for sure are trusted (SharedHistory).
 //
 // Pure: no clock and no socket. Times are arguments, in microseconds of the client's steady clock.
@@ -64,6 +64,7 @@ struct SessionParameters {
   Epoch epoch = 0;
   Sequence durable = 0, head = 0;
   ClientSequence resolved = 0;
+  std::uint32_t tile_rules = 0;  // SessionAccepted::tile_rules
   // Of edits. A default EditLimits would know no material but air.
   HeightLimits heights{};
   std::uint64_t edit_volume_max = std::numeric_limits<std::uint64_t>::max();
@@ -134,18 +135,21 @@ class Replica {
   /// Repeats the requests for chunks that did not arrive within kRequestAgainUs.
   void tick(TimeUs now_us) { updater_.tick(now_us); }
 
-  /// Takes a chunk from a cache: it is shown at once, and claimed. Ignored if a chunk is held, in
+  /// Takes a chunk or tile from a cache: it is shown at once, and claimed. Ignored if one is held, in
   /// the past, and outside of the view. Requires a version that SharedHistory trusts.
   void adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us);
-  /// Returns the chunks to claim before the next view is sent, see Claims::take(). Empty in the
+  /// Returns the chunks and tiles to claim before the next view is sent, see Claims::take(). Empty in the
   /// past.
   std::vector<CachedChunk> take_claims();
   /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may
   /// have them.
   std::vector<ChunkKey> missing() const;
-  /// Collects the chunks that leave the view for the cache from now on.
+  /// Does the same for tiles, see FarTiles::take_not_held().
+  std::vector<ChunkKey> take_missing_tiles();
+  /// Collects the chunks that leave the view for the cache from now on. A tile that leaves before it
+  /// was taken for the cache is not kept.
   void collect_for_cache() { outbox_.enable(); }
-  /// Returns at most `count_max` chunks to be cached, see CacheOutbox::take().
+  /// Returns at most `count_max` chunks to be cached, see CacheOutbox::take(). Tiles follow.
   std::vector<KeyedChunk> take_for_cache(std::size_t count_max);
 
   /// Returns what changed since the last call.

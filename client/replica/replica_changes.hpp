@@ -126,6 +126,8 @@ struct ReplicaCounters {
   std::uint64_t repaired = 0;         // snapshots that replaced other voxels of their version
   std::uint64_t claims_refuted = 0;   // cached chunks that were not the server's: replaced
   std::uint64_t adopted = 0;          // chunks that came from a cache
+  std::uint64_t tiles_adopted = 0;    // tiles that came from a cache
+  std::uint64_t tiles_same = 0;       // claimed tiles that the server confirmed
   std::uint64_t claimed = 0;          // chunks that this client claimed to hold
   std::uint64_t same_taken = 0;       // claimed chunks that the server has not modified
   std::uint64_t updates_taken = 0;    // claimed chunks that were completed by the edits they lacked

@@ -91,6 +91,8 @@ Json replica_json(const Replica& replica) {
               {"repaired", c.repaired},
               {"claims_refuted", c.claims_refuted},
               {"adopted", c.adopted},
+              {"tiles_adopted", c.tiles_adopted},
+              {"tiles_same", c.tiles_same},
               {"claimed", c.claimed},
               {"same_taken", c.same_taken},
               {"updates_taken", c.updates_taken},

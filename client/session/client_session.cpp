@@ -7,6 +7,7 @@
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
 #include "protocol/codec/view_size.hpp"
+#include "protocol/codec/view_tiles.hpp"
 #include "protocol/rules/chat_text.hpp"
 
 namespace runstone {
@@ -119,6 +120,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
 void ClientSession::on_session_accepted(const SessionAccepted& accepted, TimeUs now_us) {
   const Welcome& world = *welcome();
   opened_us_ = now_us;
+  tile_rules_ = accepted.tile_rules;
   is_server_read_only_ = false;
   allowance_.set(world.edit_budget, world.chunk_edge);
   replica_->set_view(view());
@@ -129,6 +131,7 @@ void ClientSession::on_session_accepted(const SessionAccepted& accepted, TimeUs 
                              .durable = world.durable,
                              .head = world.head,
                              .resolved = accepted.resolved,
+                             .tile_rules = accepted.tile_rules,
                              .heights = world.heights,
                              .edit_volume_max = world.edit_volume_max,
                              .material_count = world.materials.size()});
@@ -293,10 +296,12 @@ void ClientSession::on_view_state(const ViewState& state) {
 
 void ClientSession::refresh_view() {
   if (connection_.config().has_cache) {
-    std::erase_if(looked_up_, [v = view()](const ChunkKey& key) { return !v.contains(key.at); });
-    for (const ChunkKey& key : replica_->missing()) {
+    std::erase_if(looked_up_, [v = view()](const ChunkKey& key) { return !contains_key(v, key); });
+    const auto look_up = [this](const ChunkKey& key) {
       if (looked_up_.insert(key).second) lookup_keys_.push_back(key);
-    }
+    };
+    std::ranges::for_each(replica_->missing(), look_up);
+    std::ranges::for_each(replica_->take_missing_tiles(), look_up);
   }
   if (lookup_keys_.empty() && lookups_open_ == 0) return send_view();
   if (!view_waiting_since_us_) view_waiting_since_us_ = now_us_;
@@ -327,7 +332,8 @@ std::optional<CachedWorld> ClientSession::cached_world() const {
   if (!is_open()) return std::nullopt;
   return CachedWorld{welcome()->world_id,
                      welcome()->chunk_edge,
-                     {welcome()->epoch, replica_->durable(), replica_->newest()}};
+                     {welcome()->epoch, replica_->durable(), replica_->newest()},
+                     tile_rules_};
 }
 
 void ClientSession::send_view() {

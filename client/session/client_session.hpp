@@ -225,8 +225,9 @@ class ClientSession {
   std::size_t lookups_open_ = 0;       // results that will come
   std::size_t lookups_stale_ = 0;      // results that will come for earlier connections
   std::optional<TimeUs> view_waiting_since_us_;
-  TimeUs now_us_ = 0;     // the newest time passed in
-  TimeUs opened_us_ = 0;  // when the connection opened
+  TimeUs now_us_ = 0;             // the newest time passed in
+  TimeUs opened_us_ = 0;          // when the connection opened
+  std::uint32_t tile_rules_ = 0;  // of the server, see SessionAccepted
   std::map<AuthorId, OtherPlayer> others_;
 };
 

@@ -34,7 +34,8 @@ Result<Message> BodyReader::read(const wire::ChunkRequest& t) const {
 }
 
 Result<Message> BodyReader::read(const wire::CachedChunks& t) const {
-  auto chunks = decode_cached_chunks(view_of(t.chunks()), key_edge());
+  if (t.level() > kTileLevelMax) return bad(kNoLevel);
+  auto chunks = decode_cached_chunks(view_of(t.chunks()), t.level(), key_edge());
   if (!chunks) return Unexpected<Error>{chunks.error()};
   return Message{CachedChunks{*std::move(chunks)}};
 }
@@ -57,7 +58,8 @@ Result<Message> BodyReader::read(const wire::UniformChunks& t) const {
 
 Result<Message> BodyReader::read(const wire::ChunksNotModified& t) const {
   if (t.view() == 0) return bad(kNoView);
-  auto chunks = decode_unmodified(view_of(t.chunks()), key_edge());
+  if (t.level() > kTileLevelMax) return bad(kNoLevel);
+  auto chunks = decode_unmodified(view_of(t.chunks()), t.level(), key_edge());
   if (!chunks) return Unexpected<Error>{chunks.error()};
   return Message{ChunksNotModified{t.view(), *std::move(chunks)}};
 }

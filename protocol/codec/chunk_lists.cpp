@@ -21,7 +21,7 @@ Bytes encode_cached_chunks(std::span<const CachedChunk> chunks) {
   RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= kCachedChunksMax);
   Bytes bytes;
   ByteWriter out(bytes);
-  KeyWriter keys;
+  KeyWriter keys(chunks.front().key.lod);
   for (const CachedChunk& chunk : chunks) put_cached_chunk(out, keys, chunk);
   return bytes;
 }
@@ -30,9 +30,11 @@ std::size_t cached_chunks_that_fit(std::span<const CachedChunk> chunks) {
   RUNSTONE_ASSERT(!chunks.empty());
   Bytes bytes;
   ByteWriter out(bytes);
-  KeyWriter keys;
+  const std::uint8_t level = chunks.front().key.lod;
+  KeyWriter keys(level);
   std::size_t count = 0;
   for (const CachedChunk& chunk : chunks.first(std::min(chunks.size(), kCachedChunksMax))) {
+    if (chunk.key.lod != level) break;
     put_cached_chunk(out, keys, chunk);
     if (bytes.size() > kClientControlBytesMax - kMessageOverheadMax) break;
     ++count;
@@ -44,7 +46,7 @@ Bytes encode_unmodified(std::span<const UnmodifiedChunk> chunks) {
   RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= kChunksNotModifiedMax);
   Bytes bytes;
   ByteWriter out(bytes);
-  KeyWriter keys;
+  KeyWriter keys(chunks.front().key.lod);
   Sequence last = 0;
   for (const UnmodifiedChunk& chunk : chunks) {
     keys.put(out, chunk.key);
@@ -67,8 +69,9 @@ Bytes encode_digest_checks(std::span<const DigestCheckEntry> entries) {
   return bytes;
 }
 
-Result<std::vector<CachedChunk>> decode_cached_chunks(ByteView bytes, std::int32_t edge) {
-  KeyReader keys(edge);
+Result<std::vector<CachedChunk>> decode_cached_chunks(ByteView bytes, std::uint8_t level,
+                                                      std::int32_t edge) {
+  KeyReader keys(edge, level);
   return entries_of<CachedChunk>(bytes, kCachedChunksMax, [&keys](ByteReader& in) {
     CachedChunk chunk;
     chunk.key = keys.take(in);
@@ -78,8 +81,9 @@ Result<std::vector<CachedChunk>> decode_cached_chunks(ByteView bytes, std::int32
   });
 }
 
-Result<std::vector<UnmodifiedChunk>> decode_unmodified(ByteView bytes, std::int32_t edge) {
-  KeyReader keys(edge);
+Result<std::vector<UnmodifiedChunk>> decode_unmodified(ByteView bytes, std::uint8_t level,
+                                                       std::int32_t edge) {
+  KeyReader keys(edge, level);
   std::int64_t last = 0;
   return entries_of<UnmodifiedChunk>(bytes, kChunksNotModifiedMax, [&](ByteReader& in) {
     UnmodifiedChunk chunk;

@@ -13,20 +13,24 @@
 
 namespace runstone {
 
-// The encoders require at least one entry, strictly ascending keys, and counts within the limits.
+// The encoders require at least one entry, strictly ascending keys of one level of detail, and counts
+// within the limits. Digest checks have level 0.
 
 Bytes encode_cached_chunks(std::span<const CachedChunk> chunks);
 Bytes encode_unmodified(std::span<const UnmodifiedChunk> chunks);
 Bytes encode_digest_checks(std::span<const DigestCheckEntry> entries);
 
-// `edge` is that of the world's chunks, or the largest one. The decoders reject keys outside the
-// world.
+// `edge` is that of the world's chunks, or the largest one; `level` is the level of detail of all
+// keys. The decoders reject keys outside the world.
 
-Result<std::vector<CachedChunk>> decode_cached_chunks(ByteView bytes, std::int32_t edge);
-Result<std::vector<UnmodifiedChunk>> decode_unmodified(ByteView bytes, std::int32_t edge);
+Result<std::vector<CachedChunk>> decode_cached_chunks(ByteView bytes, std::uint8_t level,
+                                                      std::int32_t edge);
+Result<std::vector<UnmodifiedChunk>> decode_unmodified(ByteView bytes, std::uint8_t level,
+                                                       std::int32_t edge);
 Result<std::vector<DigestCheckEntry>> decode_digest_checks(ByteView bytes, std::int32_t edge);
 
-/// Returns how many of the first chunks fit one CachedChunks message. Requires at least one chunk.
+/// Returns how many of the first chunks fit one CachedChunks message: those of the first one's level
+/// of detail, within the limits. Requires at least one chunk.
 std::size_t cached_chunks_that_fit(std::span<const CachedChunk> chunks);
 
 }  // namespace runstone

@@ -63,7 +63,7 @@ struct BodyBuilder {
     return wire::CreateClientAuth(b, signature, ticket, optional_bytes(m.password_key));
   }
   Offset<wire::SessionAccepted> operator()(const SessionAccepted& m) {
-    return wire::CreateSessionAccepted(b, m.author, m.resolved);
+    return wire::CreateSessionAccepted(b, m.author, m.resolved, m.tile_rules);
   }
   Offset<wire::View> operator()(const View& m) {
     RUNSTONE_ASSERT(m.number != 0);
@@ -86,10 +86,12 @@ struct BodyBuilder {
                                         static_cast<std::uint8_t>(m.reason));
   }
   Offset<wire::CachedChunks> operator()(const CachedChunks& m) {
-    return wire::CreateCachedChunks(b, bytes_of(b, encode_cached_chunks(m.chunks)));
+    return wire::CreateCachedChunks(b, bytes_of(b, encode_cached_chunks(m.chunks)),
+                                    m.chunks.front().key.lod);
   }
   Offset<wire::ChunksNotModified> operator()(const ChunksNotModified& m) {
-    return wire::CreateChunksNotModified(b, m.view, bytes_of(b, encode_unmodified(m.chunks)));
+    return wire::CreateChunksNotModified(b, m.view, bytes_of(b, encode_unmodified(m.chunks)),
+                                         m.chunks.front().key.lod);
   }
   Offset<wire::HistoryRequest> operator()(const HistoryRequest& m) {
     return wire::CreateHistoryRequest(b, m.request, static_cast<std::uint8_t>(m.to), m.seq,

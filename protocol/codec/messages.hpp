@@ -94,6 +94,9 @@ struct ClientAuth {
 struct SessionAccepted {
   AuthorId author = 0;
   ClientSequence resolved = 0;
+  /// The rules by which the server makes tiles. Tiles that were made by other rules are not claimed.
+  /// 0: the server takes no claims of tiles.
+  std::uint32_t tile_rules = 0;
   friend bool operator==(const SessionAccepted&, const SessionAccepted&) = default;
 };
 
@@ -208,10 +211,11 @@ struct CachedChunk {
 /// next DigestCheck.
 inline std::uint64_t claim_digest(const Digest& digest) { return digest.lane[0]; }
 
-/// Claims for chunks of the view in force or of the next view, so that the server need not send
-/// them.
+/// Claims for chunks or tiles of the view in force or of the next view, so that the server need not
+/// send them.
 struct CachedChunks {
-  std::vector<CachedChunk> chunks;  // 1 .. kCachedChunksMax, strictly ascending by key
+  // 1 .. kCachedChunksMax, strictly ascending by key, all of one level of detail
+  std::vector<CachedChunk> chunks;
   friend bool operator==(const CachedChunks&, const CachedChunks&) = default;
 };
 /// The client's copy at this sequence equals the chunk at the moment when the session was
@@ -223,7 +227,8 @@ struct UnmodifiedChunk {
 };
 struct ChunksNotModified {
   std::uint32_t view = 1;
-  std::vector<UnmodifiedChunk> chunks;  // 1 .. kChunksNotModifiedMax, strictly ascending by key
+  // 1 .. kChunksNotModifiedMax, strictly ascending by key, all of one level of detail
+  std::vector<UnmodifiedChunk> chunks;
   friend bool operator==(const ChunksNotModified&, const ChunksNotModified&) = default;
 };
 /// Which state of the world a session asks for. Values are on the wire.

@@ -86,7 +86,7 @@ Result<Message> BodyReader::read(const wire::ClientAuth& t) const {
 }
 
 Result<Message> BodyReader::read(const wire::SessionAccepted& t) const {
-  return SessionAccepted{t.author(), t.resolved()};
+  return SessionAccepted{t.author(), t.resolved(), t.tile_rules()};
 }
 
 Result<Message> BodyReader::read(const wire::Ping& t) const {

@@ -1,5 +1,7 @@
 #include "server/interest/cache_claims.hpp"
 
+#include "protocol/codec/view_tiles.hpp"
+
 namespace runstone {
 
 bool CacheClaims::add(const CachedChunk& chunk) {
@@ -19,7 +21,7 @@ const CachedChunk* CacheClaims::find(const ChunkKey& key) const {
 }
 
 void CacheClaims::keep(const View& view) {
-  std::erase_if(claims_, [&view](const auto& claim) { return !view.contains(claim.first.at); });
+  std::erase_if(claims_, [&view](const auto& claim) { return !contains_key(view, claim.first); });
 }
 
 }  // namespace runstone

@@ -29,10 +29,12 @@ std::string chunks_part(const WorldServer& world, const RuntimeCounters& runtime
   return fmt::format(
       "chunks_resident={} resident_bytes={} stacked_bytes={} queued_bytes={} chunks_failed={} "
       "snapshots_sent={} snapshots_encoded={} same_sent={} updates_sent={} claims_drifted={} "
+      "tiles_sent={} tiles_same={} "
       "chunks_requested={} unavailable_sent={} chunks_stale={}",
       world.resident_chunks(), memory.voxels, memory.stacked, memory.queued, w.chunks_failed,
       w.snapshots_sent, runtime.snapshots_encoded, w.not_modified_sent, w.updates_sent,
-      w.claims_drifted, w.chunks_requested, w.unavailable_sent, w.chunks_stale);
+      w.claims_drifted, w.tiles_sent, w.tiles_not_modified, w.chunks_requested, w.unavailable_sent,
+      w.chunks_stale);
 }
 
 std::string sending_part(const WorldServer& world, const NetCounters& net,

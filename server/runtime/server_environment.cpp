@@ -89,7 +89,9 @@ void ServerEnvironment::load_chunk(const ChunkKey& key) {
 
 void ServerEnvironment::make_tile(TileRequest request) {
   tiles_.make(std::move(request), world_->materials(),
-              [this](const ChunkKey& key, const std::vector<MadeTile>& made) {
+              [this](const ChunkKey& key, const std::vector<MadeTile>& made, TileMaking::End end) {
+                if (end == TileMaking::End::stopped)
+                  return world_->tile_stopped(key, made, read_clocks());
                 world_->tiles_made(key, made, read_clocks());
               });
 }
@@ -100,6 +102,10 @@ void ServerEnvironment::tiles_edited(std::span<const ChunkKey> chunks, Sequence 
 
 Sequence ServerEnvironment::newest_tile_edit(const ChunkKey& tile) const {
   return tiles_.newest_edit(tile);
+}
+
+bool ServerEnvironment::is_tile_current(const CachedChunk& copy) const {
+  return tiles_.is_current(copy);
 }
 
 void ServerEnvironment::save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) {

@@ -68,6 +68,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void make_tile(TileRequest request) override;
   void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override;
   Sequence newest_tile_edit(const ChunkKey& tile) const override;
+  bool is_tile_current(const CachedChunk& copy) const override;
   void save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) override;
   void open_history(SessionId session, const HistoryRequest& request) override;
   void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,

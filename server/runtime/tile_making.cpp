@@ -36,6 +36,11 @@ Sequence TileMaking::newest_edit(const ChunkKey& tile) {
   return ledger_.newest_edit(tile);
 }
 
+bool TileMaking::is_current(const CachedChunk& copy) {
+  flush_edits();
+  return source_.is_current(copy.key, copy.version, copy.digest);
+}
+
 void TileMaking::make(TileRequest request, const MaterialTable& materials, Then then) {
   if (!visibility_ || materials_ != materials.size()) {
     visibility_ = std::make_shared<const VisibilityTable>(visibilities(materials));
@@ -46,8 +51,12 @@ void TileMaking::make(TileRequest request, const MaterialTable& materials, Then 
                          then = std::move(then)] {
     auto made = source_.make(request, *visibility);
     if (!made) logger("store").error("{}", made.error().message());
-    strand_.post([key = request.key, then,
-                  made = made ? *std::move(made) : std::vector<MadeTile>{}] { then(key, made); });
+    const bool has_tile = made && !made->empty() && made->back().key == request.key;
+    const End end = has_tile ? End::made : made ? End::stopped : End::failed;
+    strand_.post(
+        [key = request.key, then, end, made = made ? *std::move(made) : std::vector<MadeTile>{}] {
+          then(key, made, end);
+        });
   });
 }
 

@@ -14,6 +14,7 @@
 #include "common/generate/generator.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/mesh/visibility.hpp"
+#include "protocol/codec/messages.hpp"
 #include "server/history/chunk_source.hpp"
 #include "server/runtime/low_priority_threads.hpp"
 #include "server/runtime/world_strand.hpp"
@@ -27,8 +28,10 @@ namespace runstone {
 class TileMaking {
  public:
   using Tiles = std::vector<std::pair<ChunkKey, ChunkPtr>>;
-  /// Brings the tiles of a request. They are empty if the tile could not be made.
-  using Then = std::function<void(const ChunkKey&, const std::vector<MadeTile>&)>;
+  enum class End { made, stopped, failed };
+  /// Brings the tiles of a request, the requested one last if it was made. `stopped`: the request has
+  /// reached TileRequest::steps_max.
+  using Then = std::function<void(const ChunkKey&, const std::vector<MadeTile>&, End)>;
 
   /// All must outlive the object.
   TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator& generator,
@@ -40,6 +43,8 @@ class TileMaking {
   void edited(std::span<const ChunkKey> chunks, Sequence seq);
   /// Returns the newest edit below a tile, or 0. It may wait for the other threads for a moment.
   Sequence newest_edit(const ChunkKey& tile);
+  /// Returns true if the client's copy is the tile as it is now; see TileSource::is_current().
+  bool is_current(const CachedChunk& copy);
   /// Writes tiles when the earlier ones are written. Drops tiles if too many wait. The writer must not
   /// call back after the strand has ended.
   void save(Tiles tiles, LogWriter& writer);

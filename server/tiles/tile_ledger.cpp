@@ -47,12 +47,14 @@ bool TileLedger::try_edited(std::span<const ChunkKey> chunks, Sequence seq) {
   return true;
 }
 
-void TileLedger::stored(std::span<const ChunkKey> chunks) {
+void TileLedger::stored(std::span<const std::pair<ChunkKey, Version>> chunks) {
   while (!chunks.empty()) {
     const std::size_t count = std::min(chunks.size(), kSliceChunks);
     const std::lock_guard lock(mutex_);
-    for (const ChunkKey& key : chunks.first(count)) {
-      if (key.lod == 0) entry_of(key.at);
+    for (const auto& [key, version] : chunks.first(count)) {
+      if (key.lod != 0) continue;
+      entry_of(key.at);
+      edited(key.at, version.seq);
     }
     chunks = chunks.subspan(count);
   }

@@ -1,5 +1,6 @@
-// TileLedger: which tiles have ground, and the newest edit below each. A tile has *ground* if a
-// chunk below it is stored or was edited, so that the generator alone does not determine it.
+// TileLedger: which tiles have ground, and the newest edit below each, of this run or of a stored
+// chunk. A tile has *ground* if a chunk below it is stored or was edited, so that the generator alone
+// does not determine it.
 // Memory: an entry for each chunk that is stored or was edited in this run, and for each tile above
 // one of them.
 // Threads: any. The mutex is a leaf and is held for short times only.
@@ -7,6 +8,7 @@
 #include <cstddef>
 #include <mutex>
 #include <span>
+#include <utility>
 
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
@@ -25,10 +27,12 @@ class TileLedger {
   /// Does the same unless another thread uses the ledger at the moment; then it returns false and does nothing. A thread that must not wait calls it: threads of low
   /// priority use the ledger, too.
   bool try_edited(std::span<const ChunkKey> chunks, Sequence seq);
-  /// Reports chunks that the world's folder has rows for. Keys of tiles are ignored.
-  void stored(std::span<const ChunkKey> chunks);
+  /// Reports chunks that the world's folder has rows for, with their versions. Keys of tiles are
+  /// ignored.
+  void stored(std::span<const std::pair<ChunkKey, Version>> chunks);
 
-  /// Returns the newest edit below a tile, or 0 if there was none in this run.
+  /// Returns the newest edit below a tile, or 0 if there is none. Edits of stored chunks count once
+  /// stored() got them.
   Sequence newest_edit(const ChunkKey& tile) const;
   /// Returns true if a chunk below the tile, or the chunk itself at level 0, is stored or was
   /// edited. It is complete once stored() got all chunks of the folder.

@@ -45,6 +45,8 @@ class TileSource::Making {
     return *std::move(found);
   }
 
+  /// Returns true if tile() failed because it reached request.steps_max.
+  bool has_stopped() const { return has_stopped_; }
   /// Returns the tiles that tile() made below the requested one and that are worth storing.
   std::vector<MadeTile> take_on_the_way() { return std::move(on_the_way_); }
 
@@ -53,6 +55,7 @@ class TileSource::Making {
   struct Child {
     ChunkPtr chunk;
     bool is_approximate = false;
+    bool is_damaged = false;
   };
 
   std::optional<MadeTile> coarse(const ChunkKey& key) {
@@ -60,7 +63,8 @@ class TileSource::Making {
     auto voxels =
         source_.generator_.coarse(tile_origin(key, source_.edge_), source_.edge_, key.lod);
     if (!voxels) return std::nullopt;
-    return tile_of_voxels(key, veiled(*std::move(voxels), visibility_, scratch_), {}, true);
+    ++steps_;
+    return tile_of_voxels(key, veiled(*std::move(voxels), visibility_, scratch_), {}, true, false);
   }
 
   /// Returns the stored tile, or nullopt if there is none, if it is damaged, or if it lacks edit
@@ -68,6 +72,7 @@ class TileSource::Making {
   StoreResult<std::optional<MadeTile>> load(const ChunkKey& key, Sequence newest) {
     std::optional<MadeTile> out;
     if (!source_.options_.reads_stored_tiles) return out;
+    ++steps_;
     StoreResult<std::optional<Chunk>> row = std::optional<Chunk>();
     const auto read =
         source_.chunks_.with_reader([&](WorldReader& reader) { row = reader.load_tile(key); });
@@ -87,50 +92,58 @@ class TileSource::Making {
     std::array<Child, 8> children;
     TileChildren runs{};
     Version version;
-    bool is_approximate = false;
+    bool is_approximate = false, is_damaged = false;
     for (unsigned i = 0; i < 8; ++i) {
+      if (steps_ >= request_.steps_max) {
+        has_stopped_ = true;
+        return Unexpected<StoreError>{{StoreError::Kind::cancelled, {}, {}, "stopped"}};
+      }
       auto child = child_of(tile_child(key, i));
       if (!child) return Unexpected<StoreError>{child.error()};
       children[i] = *std::move(child);
       is_approximate = is_approximate || children[i].is_approximate;
+      is_damaged = is_damaged || children[i].is_damaged;
       if (children[i].chunk == nullptr) continue;
       runs[i] = &children[i].chunk->voxels;
       version = std::max(version, children[i].chunk->version);
     }
     return tile_of_voxels(
         key, veiled_tile(runs, static_cast<unsigned>(source_.edge_), visibility_, scratch_),
-        version, is_approximate);
+        version, is_approximate, is_damaged);
   }
 
   StoreResult<Child> child_of(const ChunkKey& key) {
     if (key.lod == 0) return chunk_at(key);
     auto made = tile(key);
     if (!made) return Unexpected<StoreError>{made.error()};
-    return Child{made->tile, made->is_approximate};
+    return Child{made->tile, made->is_approximate, made->is_damaged};
   }
 
   StoreResult<Child> chunk_at(const ChunkKey& key) {
     if (const auto fresh = fresh_.find(key.at); fresh != fresh_.end())
-      return Child{fresh->second, fresh->second == nullptr};
+      return Child{fresh->second, fresh->second == nullptr, fresh->second == nullptr};
+    ++steps_;
     if (!source_.ledger_.has_ground(key)) {
       return Child{std::make_shared<const Chunk>(generated_chunk(
                        source_.generator_, key, static_cast<std::uint16_t>(source_.edge_))),
-                   false};
+                   false, false};
     }
     auto loaded = source_.chunks_.load(key);
-    if (loaded) return Child{std::make_shared<const Chunk>(*std::move(loaded)), false};
+    if (loaded) return Child{std::make_shared<const Chunk>(*std::move(loaded)), false, false};
     if (loaded.error().kind != StoreError::Kind::corrupt)
       return Unexpected<StoreError>{loaded.error()};
     source_.warn_once(key, loaded.error());
-    return Child{nullptr, true};
+    return Child{nullptr, true, true};
   }
 
   MadeTile tile_of_voxels(const ChunkKey& key, RunChunk voxels, Version version,
-                          bool is_approximate) const {
+                          bool is_approximate, bool is_damaged) const {
     Chunk tile{std::move(voxels), version, {}};
-    tile.digest = digest_of(tile.voxels);
-    return {key, std::make_shared<const Chunk>(std::move(tile)), request_.head, is_approximate,
-            false};
+    const bool is_complete = !is_damaged && version.seq <= request_.head;
+    if (is_complete) tile.digest = digest_of(tile.voxels);
+    return {key,           std::make_shared<const Chunk>(std::move(tile)),
+            request_.head, is_approximate,
+            false,         is_damaged};
   }
 
   TileSource& source_;
@@ -139,6 +152,8 @@ class TileSource::Making {
   const std::map<ChunkCoord, ChunkPtr> fresh_;
   VeiledTileScratch scratch_;
   std::vector<MadeTile> on_the_way_;
+  std::size_t steps_ = 0;  // chunks and tiles that were read or generated
+  bool has_stopped_ = false;
 };
 
 TileSource::TileSource(ChunkSource& chunks, const Generator& generator, std::int32_t edge,
@@ -157,10 +172,22 @@ StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
   if (auto found = find_ground(); !found) return Unexpected<StoreError>{found.error()};
   Making making(*this, request, visibility);
   auto tile = making.tile(request.key);
+  if (making.has_stopped()) return making.take_on_the_way();
   if (!tile) return Unexpected<StoreError>{tile.error()};
   std::vector<MadeTile> tiles = making.take_on_the_way();
   tiles.push_back(*std::move(tile));
   return tiles;
+}
+
+bool TileSource::is_current(const ChunkKey& key, const Version& version,
+                            std::uint64_t claim_digest) {
+  if (claim_digest == 0) return false;  // of an incomplete tile
+  const Sequence newest = ledger_.newest_edit(key);
+  if (const auto made = cache_.find(key); made && newest <= made->through) {
+    return made->is_complete() && made->tile->version == version &&
+           made->tile->digest.lane[0] == claim_digest;
+  }
+  return has_found_ground_.load() && newest == version.seq;
 }
 
 StoreResult<void> TileSource::find_ground() {
@@ -173,11 +200,11 @@ StoreResult<void> TileSource::find_ground() {
       found = Unexpected<StoreError>{snapshots ? base.error() : snapshots.error()};
       return;
     }
-    std::vector<ChunkKey> keys;
-    keys.reserve(snapshots->size() + base->size());
-    for (const auto& [key, version] : *snapshots) keys.push_back(key);
-    for (const StoredChunk& chunk : *base) keys.push_back(chunk.key);
-    ledger_.stored(keys);
+    ledger_.stored(*snapshots);
+    std::vector<std::pair<ChunkKey, Version>> chunks;
+    chunks.reserve(base->size());
+    for (const StoredChunk& chunk : *base) chunks.emplace_back(chunk.key, chunk.version);
+    ledger_.stored(chunks);
   });
   if (!read) return read;
   // Two threads may get here. The ledger is the same then.

@@ -51,11 +51,17 @@ class TileSource {
       : TileSource(chunks, generator, edge, ledger, std::move(warn), Options()) {}
 
   /// Returns the tile as the last of the list. Before it come the tiles below it that were made on
-  /// the way and are worth storing. The first call reads the keys of all stored chunks. Requires a
+  /// the way and are worth storing. If request.steps_max is reached, the call stops between two tiles,
+  /// and the list lacks the requested one. The next call finds the tiles that this one made in memory.
+  /// The first call reads the keys of all stored chunks. Requires a
   /// tile inside the world, and that every edit up to request.head was reported to the ledger. Fails if
   /// the folder cannot be read.
   StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
                                           const VisibilityTable& visibility);
+  /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now. It
+  /// makes no tile and reads none from the disk: where it does not know the digest, the newest edit
+  /// below the tile decides. Returns false if it does not know that either. Cost: two look-ups.
+  bool is_current(const ChunkKey& key, const Version& version, std::uint64_t claim_digest);
 
  private:
   class Making;  // one call of make()

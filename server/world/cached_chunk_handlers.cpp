@@ -4,6 +4,7 @@
 
 #include "common/core/key_text.hpp"
 #include "server/world/delivery.hpp"
+#include "server/world/tile_handlers.hpp"
 
 namespace runstone {
 namespace {
@@ -22,7 +23,10 @@ void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& 
   WorldSession& mine = *world.find(session);
   if (mine.history) return;  // a session in the past gets nothing of the live world
   const SessionInterest& interest = *world.interest.find(session);
+  const bool are_tiles = cached.chunks.front().key.lod > 0;
+  if (are_tiles) world.environment.charge_reading(session, cached.chunks.size() * kTileClaimBytes);
   for (const CachedChunk& chunk : cached.chunks) {
+    if (are_tiles && !accepts_claim(world, mine, chunk.key)) continue;
     const auto state = interest.state(chunk.key);
     const bool is_answered =
         state && *state != ChunkInterest::wanted && *state != ChunkInterest::waiting;
@@ -72,13 +76,17 @@ bool send_not_modified(WorldState& world, SessionId session, bool is_more) {
   std::vector<UnmodifiedChunk>& due = mine->not_modified_due;
   while (due.size() >= (is_more ? kChunksNotModifiedMax : 1)) {
     const std::size_t count = std::min(due.size(), kChunksNotModifiedMax);
-    const auto end = due.begin() + static_cast<std::ptrdiff_t>(count);
-    ChunksNotModified same{view_in_force(world, session), {due.begin(), end}};
     // A chunk that left the view and came back may be due twice. The newer version is sent.
     const auto newest_first = [](const UnmodifiedChunk& a, const UnmodifiedChunk& b) {
       return a.key != b.key ? a.key < b.key : a.seq > b.seq;
     };
-    std::sort(same.chunks.begin(), same.chunks.end(), newest_first);
+    const auto first = due.begin();
+    std::sort(first, first + static_cast<std::ptrdiff_t>(count), newest_first);
+    // A message has chunks of one level of detail.
+    const auto end = std::find_if(
+        first, first + static_cast<std::ptrdiff_t>(count),
+        [level = first->key.lod](const UnmodifiedChunk& one) { return one.key.lod != level; });
+    ChunksNotModified same{view_in_force(world, session), {first, end}};
     const auto one_key = [](const UnmodifiedChunk& a, const UnmodifiedChunk& b) {
       return a.key == b.key;
     };

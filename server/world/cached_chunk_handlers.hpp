@@ -12,7 +12,8 @@
 
 namespace runstone {
 
-/// Stores the claims of chunks that were not sent yet. Closes the session (flooding) if it has more
+/// Stores the claims of chunks and tiles that were not sent yet. Claims of tiles are answered by the
+/// tile handlers. Closes the session (flooding) if it has more
 /// than kClaimsPerSessionMax claims.
 void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& cached);
 

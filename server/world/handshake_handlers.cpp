@@ -167,8 +167,10 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   ++world.counters.sessions_opened;
   world.environment.player_came(visit_of(world, session, mine));
   world.player_list_changed = true;
+  const bool has_tiles = (mine.features & kFeatureTiles) != 0;
   const SessionAccepted accepted{mine.author,
-                                 world.authority.resolved().of(mine.author, mine.instance)};
+                                 world.authority.resolved().of(mine.author, mine.instance),
+                                 has_tiles ? world.config.tile_rules : 0};
   if (!send_or_close(world, session, accepted)) return;
   send_materials(world, session);  // those that were added since Welcome
   if (world.find(session) == nullptr) return;

@@ -23,6 +23,14 @@ std::size_t price_of(const std::vector<MadeTile>& made) {
   return price;
 }
 
+/// Charges the player for whom a tile is made.
+void charge(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
+            const Clocks& now) {
+  const auto payer = world.tiles.payers.find(key);
+  if (payer != world.tiles.payers.end())
+    world.load_ledger.owe(payer->second, price_of(made), now.steady_us);
+}
+
 void add_receiver(WorldState& world, const ChunkKey& key, SessionId session) {
   std::vector<SessionId>& sessions = world.tiles.receivers[key].sessions;
   const auto at = std::ranges::lower_bound(sessions, session);
@@ -48,7 +56,8 @@ void leave_tiles(WorldState& world, SessionId session, std::span<const ChunkKey>
 TileRequest request_of(WorldState& world, const ChunkKey& tile, const Clocks& now) {
   const WorldChunks& chunks = world.authority.chunks();
   std::vector<ChunkKey> absent;
-  TileRequest request{tile, world.authority.head(), {}};
+  TileRequest request{
+      tile, world.authority.head(), {}, kTileSteps * (1 + world.tiles.queue.stops(tile))};
   // Up to the checkpoint, snapshots contain all edits.
   if (world.environment.newest_tile_edit(tile) <= world.checkpointer.checkpoint()) return request;
   const ChunkCoord first = first_chunk(tile);
@@ -75,12 +84,33 @@ void make_again(WorldState& world, const ChunkKey& key, const TileReceivers& rec
   world.tiles.queue.make_again(key, std::max(now.steady_us + kTileRemakeUs, due));
 }
 
+/// Records that the session has a tile.
+void tile_sent(WorldState& world, SessionId session, const ChunkKey& key, bool is_empty) {
+  leave_tiles(world, session, world.find(session)->tiles->set_sent(key, is_empty));
+  add_receiver(world, key, session);
+}
+
+/// Queues "not modified". The session claims only tiles that are not uniform.
+void send_same_tile(WorldState& world, SessionId session, const ChunkKey& key, Sequence seq) {
+  WorldSession& mine = *world.find(session);
+  mine.claims.drop(key);
+  mine.not_modified_due.push_back({key, seq});
+  ++world.counters.tiles_not_modified;
+  tile_sent(world, session, key, false);
+}
+
 /// Sends a tile, unless the session wants it again after its queue was full: then a later request
 /// sends it.
 void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
                const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (mine.tiles->status(key) == TileStatus::wanted) return;
+  if (const CachedChunk* claim = mine.claims.find(key)) {
+    const bool is_same = claim->version == tile->version &&
+                         claim->digest == claim_digest(tile->digest) && !tile->voxels.is_uniform();
+    if (is_same) return send_same_tile(world, session, key, tile->version.seq);
+    mine.claims.drop(key);
+  }
   const bool is_sent =
       tile->voxels.is_uniform()
           ? queue_uniform(world, session, key, *tile, now)
@@ -92,8 +122,7 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
     return;
   }
   ++world.counters.tiles_sent;
-  leave_tiles(world, session, mine.tiles->set_sent(key, is_empty(tile->voxels)));
-  add_receiver(world, key, session);
+  tile_sent(world, session, key, is_empty(tile->voxels));
 }
 
 void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
@@ -114,6 +143,13 @@ void limit_levels(const WorldState& world, const WorldSession& session, View& vi
   view.levels = has_tiles ? std::min(view.levels, world.config.tile_levels_max) : std::uint8_t{0};
 }
 
+bool accepts_claim(const WorldState& world, const WorldSession& session, const ChunkKey& key) {
+  if ((session.features & kFeatureTiles) == 0 || key.lod > world.config.tile_levels_max)
+    return false;
+  const TileStatus status = session.tiles ? session.tiles->status(key) : TileStatus::unknown;
+  return status != TileStatus::sent && status != TileStatus::sent_empty;
+}
+
 std::size_t set_tile_view(WorldState& world, SessionId session, const View& view,
                           std::span<const View> skipped) {
   WorldSession& mine = *world.find(session);
@@ -129,9 +165,22 @@ std::size_t set_tile_view(WorldState& world, SessionId session, const View& view
 void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (!mine.tiles || world.is_stopping || is_stalled(world, mine, now)) return;
+  std::size_t claims_left = kTileClaimsPerCall;
   while (mine.tiles->waiting_count() < kTilesWaitingMax) {
     const auto key = mine.tiles->next_wanted();
-    if (!key || !pay_load(world, mine, now)) break;
+    if (!key) break;
+    if (const CachedChunk* claim = mine.claims.find(*key)) {
+      if (claims_left-- == 0) {
+        world.deliveries.insert(session);  // the others have a task of their own
+        break;
+      }
+      if (world.environment.is_tile_current(*claim)) {
+        mine.tiles->set_waiting(*key);
+        send_same_tile(world, session, *key, claim->version.seq);
+        continue;
+      }
+    }
+    if (!pay_load(world, mine, now)) break;
     mine.tiles->set_waiting(*key);
     world.tiles.queue.want(*key, session);
   }
@@ -159,8 +208,8 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   }
   const std::vector<SessionId> waiting = world.tiles.queue.finished(key);
   const MadeTile& tile = made.back();
-  if (const auto payer = world.tiles.payers.extract(key))
-    world.load_ledger.owe(payer.mapped(), price_of(made), now.steady_us);
+  charge(world, key, made, now);
+  world.tiles.payers.erase(key);
   std::vector<SessionId> receivers;
   if (const TileReceivers* found = world.tiles.receivers.find(key)) receivers = found->sessions;
   for (const SessionId session : waiting) {
@@ -174,6 +223,17 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   }
   save_tiles(world, made);
   for (const SessionId session : waiting) request_tiles(world, session, now);
+  start_tiles(world, now);
+}
+
+void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
+                     const Clocks& now) {
+  charge(world, key, made, now);
+  world.tiles.payers.erase(key);
+  world.tiles.queue.stopped(key, now.steady_us);
+  if (!world.tiles.queue.is_waited_for(key) && !world.tiles.receivers.contains(key))
+    world.tiles.queue.cancel_again(key);
+  save_tiles(world, made);
   start_tiles(world, now);
 }
 

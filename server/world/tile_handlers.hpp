@@ -19,15 +19,27 @@ inline constexpr TimeUs kTileRemakeUs = 1'000'000;
 inline constexpr TimeUs kTileRetryUs = 1'000'000;
 /// Chunks that are loaded for one request of a tile because they have edits.
 inline constexpr std::size_t kTileLoadsMax = 64;
+/// Claims of tiles that one call answers. Each takes about a microsecond or two.
+inline constexpr std::size_t kTileClaimsPerCall = 512;
+/// Bytes that count as read for each claim of a tile, since it is answered without a load.
+inline constexpr std::size_t kTileClaimBytes = 64;
+/// A request of a tile stops after so many steps (TileRequest::steps_max). A tile that has stopped n
+/// times gets n + 1 times as many, so that it is made at last even if the tiles of earlier requests are
+/// forgotten meanwhile. A step takes up to a few hundred microseconds.
+inline constexpr std::size_t kTileSteps = 512;
 /// Tiles with the workers at a time.
 inline constexpr std::size_t kTilesInFlightMax = 4;
 
 /// Limits the levels of a view that the client sent to those that the server makes.
 void limit_levels(const WorldState& world, const WorldSession& session, View& view);
+/// Returns true if the server may use this claim of a tile: the session has tiles of its level, and
+/// waits for this one or may wait for it later.
+bool accepts_claim(const WorldState& world, const WorldSession& session, const ChunkKey& key);
 /// Moves a session's tiles to its view. `skipped`: as in TileInterest::set_view(). Returns the cost.
 std::size_t set_tile_view(WorldState& world, SessionId session, const View& view,
                           std::span<const View> skipped);
-/// Requests wanted tiles of the session, up to kTilesWaitingMax.
+/// Requests wanted tiles of the session, up to kTilesWaitingMax. A tile of which the session claims a
+/// current copy is answered by "not modified", at most kTileClaimsPerCall of them.
 void request_tiles(WorldState& world, SessionId session, const Clocks& now);
 /// Gives tiles to the workers. Call it on each tick and after requests.
 void start_tiles(WorldState& world, const Clocks& now);
@@ -35,6 +47,10 @@ void start_tiles(WorldState& world, const Clocks& now);
 /// at an earlier state. Saves those that are worth it. `made` is empty if the tile could not be made.
 void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
                    const Clocks& now);
+/// Saves tiles that were made on the way to a tile. The tile is requested again when others had their
+/// turn.
+void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
+                     const Clocks& now);
 /// Makes the tiles above these chunks stale. The chunks are of level of detail 0, ascending.
 void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, Sequence seq,
                   const Clocks& now);

@@ -1,6 +1,8 @@
 #include "server/world/tile_queue.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "common/core/assert.hpp"
 
@@ -11,7 +13,7 @@ void TileQueue::want(const ChunkKey& key, SessionId session) {
   RUNSTONE_ASSERT(std::ranges::find(waiting.sessions, session) == waiting.sessions.end());
   waiting.sessions.push_back(session);
   if (waiting.sessions.size() > 1 || in_flight_.contains(key)) return;
-  waiting.place = Place{-int{key.lod}, requests_++, key};
+  waiting.place = Place{false, -int{key.lod}, requests_++, key};
   wanted_.insert(*waiting.place);
 }
 
@@ -26,6 +28,7 @@ void TileQueue::cancel(const ChunkKey& key, SessionId session) {
   if (!waiting->sessions.empty()) return;
   if (waiting->place) wanted_.erase(*waiting->place);
   waiting_.erase(key);
+  if (!in_flight_.contains(key) && !again_.contains(key)) stops_.erase(key);
 }
 
 void TileQueue::cancel_again(const ChunkKey& key) {
@@ -33,14 +36,19 @@ void TileQueue::cancel_again(const ChunkKey& key) {
   if (found == again_.end()) return;
   due_.erase({found->second, key});
   again_.erase(found);
+  if (!in_flight_.contains(key) && !waiting_.contains(key)) stops_.erase(key);
 }
 
 std::optional<ChunkKey> TileQueue::next(TimeUs now_us, std::size_t in_flight_max) {
   if (in_flight_.size() >= in_flight_max) return std::nullopt;
   std::optional<ChunkKey> key;
   if (!wanted_.empty()) {
-    key = std::get<ChunkKey>(*wanted_.begin());
-    wanted_.erase(wanted_.begin());
+    auto first = wanted_.begin();
+    const auto stopped = wanted_.lower_bound(Place{true, std::numeric_limits<int>::min(), 0, {}});
+    if (stopped != wanted_.end() && std::exchange(is_turn_of_stopped_, !is_turn_of_stopped_))
+      first = stopped;
+    key = std::get<ChunkKey>(*first);
+    wanted_.erase(first);
     waiting_.find(*key)->place.reset();
   } else {
     // A tile under way that is due again is made after it has finished.
@@ -49,9 +57,21 @@ std::optional<ChunkKey> TileQueue::next(TimeUs now_us, std::size_t in_flight_max
     if (due == due_.end() || due->first > now_us) return std::nullopt;
     key = due->second;
   }
-  cancel_again(*key);  // it is made now, with all edits so far
   in_flight_.insert(*key);
+  cancel_again(*key);  // it is made now, with all edits so far
   return key;
+}
+
+void TileQueue::stopped(const ChunkKey& key, TimeUs now_us) {
+  const bool was_under_way = in_flight_.erase(key) != 0;
+  RUNSTONE_ASSERT(was_under_way);
+  ++stops_[key];
+  if (Waiting* waiting = waiting_.find(key)) {
+    waiting->place = Place{true, 0, requests_++, key};
+    wanted_.insert(*waiting->place);
+  } else {
+    make_again(key, now_us);
+  }
 }
 
 void TileQueue::failed(const ChunkKey& key, TimeUs due_us) {
@@ -63,6 +83,7 @@ void TileQueue::failed(const ChunkKey& key, TimeUs due_us) {
 std::vector<SessionId> TileQueue::finished(const ChunkKey& key) {
   const bool was_under_way = in_flight_.erase(key) != 0;
   RUNSTONE_ASSERT(was_under_way);
+  stops_.erase(key);
   Waiting* waiting = waiting_.find(key);
   if (waiting == nullptr) return {};
   std::vector<SessionId> sessions = std::move(waiting->sessions);

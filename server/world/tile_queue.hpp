@@ -2,6 +2,8 @@
 // session waits for comes before a tile that sessions have and an edit has changed. Of those that are
 // waited for, the coarsest level comes first, within a level the earliest request. Of the changed ones,
 // that comes first which has been due for the longest time.
+// A tile that takes long is made in several turns. Between them it waits behind the others, and every
+// second turn is given to such a tile, the one that waits for longest.
 // Bounds: the waited ones by kTilesWaitingMax for each session, the changed ones by the tiles that
 // sessions have. Thread: the world strand.
 #pragma once
@@ -43,6 +45,15 @@ class TileQueue {
   /// sessions go on waiting.
   void failed(const ChunkKey& key, TimeUs due_us);
 
+  /// Ends the turn of a tile that next() returned. The sessions go on waiting; if there are none, it is
+  /// due at this time.
+  void stopped(const ChunkKey& key, TimeUs now_us);
+  /// Returns how many turns of the tile have ended with stopped().
+  std::size_t stops(const ChunkKey& key) const {
+    const auto found = stops_.find(key);
+    return found == stops_.end() ? 0 : found->second;
+  }
+
   bool is_waited_for(const ChunkKey& key) const { return waiting_.contains(key); }
   /// Returns the session that has waited for the tile the longest, or nullopt.
   std::optional<SessionId> first_waiting(const ChunkKey& key) const {
@@ -54,7 +65,7 @@ class TileQueue {
   std::size_t count() const { return wanted_.size() + due_.size(); }
 
  private:
-  using Place = std::tuple<int, std::uint64_t, ChunkKey>;
+  using Place = std::tuple<bool, int, std::uint64_t, ChunkKey>;  // the first: it has stopped
   struct Waiting {
     std::vector<SessionId> sessions;
     std::optional<Place> place;  // in wanted_; nullopt while it is under way or due again
@@ -66,6 +77,8 @@ class TileQueue {
   std::map<ChunkKey, TimeUs> again_;
   std::set<std::pair<TimeUs, ChunkKey>> due_;  // the tiles of again_
   std::set<ChunkKey> in_flight_;
+  std::map<ChunkKey, std::size_t> stops_;  // of tiles that wait or are under way
+  bool is_turn_of_stopped_ = false;
 };
 
 }  // namespace runstone

@@ -2,6 +2,7 @@
 // send back.
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -19,9 +20,13 @@ struct TileRequest {
   /// The chunks below the tile whose newest voxels are only in memory, ascending. A chunk that is null
   /// cannot be shown: the tile shows nothing there.
   std::vector<std::pair<ChunkCoord, ChunkPtr>> fresh;
+  /// The call stops when it has read or generated so many chunks and tiles, so that others get their
+  /// turn.
+  std::size_t steps_max = std::numeric_limits<std::size_t>::max();
 };
 
-/// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty.
+/// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty. The digest of an
+/// incomplete tile is 0, so that no client claims it later.
 struct MadeTile {
   ChunkKey key;
   ChunkPtr tile;         // its version is the greatest version of the chunks below it
@@ -31,12 +36,14 @@ struct MadeTile {
   bool is_approximate = false;
   /// It was read from the folder, or an earlier request made it.
   bool is_known = false;
+  /// A chunk below it is damaged and left out.
+  bool is_damaged = false;
 
-  /// Returns true if the tile should be stored. A tile that contains some edits behind `through` may
-  /// lack others, and its version would not tell.
-  bool is_worth_storing() const {
-    return !is_approximate && !is_known && tile->version.seq <= through;
-  }
+  /// Returns true if its version determines its voxels. A tile that contains some edits behind
+  /// `through` may lack others, and its version would not tell.
+  bool is_complete() const { return !is_damaged && tile->version.seq <= through; }
+  /// Returns true if the tile should be stored.
+  bool is_worth_storing() const { return !is_approximate && !is_known && is_complete(); }
 };
 
 }  // namespace runstone

@@ -17,6 +17,8 @@ struct WorldCounters {
   std::uint64_t snapshots_sent = 0;
   // Tile times session, again after each change.
   std::uint64_t tiles_sent = 0;
+  // Tile times session: the client's copy was current.
+  std::uint64_t tiles_not_modified = 0;
   // Messages that carry many uniform chunks each.
   std::uint64_t uniform_messages = 0;
   // Chunk times session: the client's copy had the same version and digest.

@@ -115,7 +115,7 @@ class WorldEnvironment {
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().
   virtual void load_chunk(const ChunkKey& key) = 0;
   /// Makes a tile on a worker. Called at most once for a tile until it is answered. Answer:
-  /// WorldServer::tiles_made(). Without tiles (WorldConfig::tile_levels_max is 0), neither this nor the
+  /// WorldServer::tiles_made() or tile_stopped(). Without tiles (WorldConfig::tile_levels_max is 0), neither this nor the
   /// three calls below are made.
   virtual void make_tile(TileRequest /*request*/) {}
   /// Records that the newest edit of these chunks is `seq`, before any later make_tile(). Keys of
@@ -123,6 +123,8 @@ class WorldEnvironment {
   virtual void tiles_edited(std::span<const ChunkKey> /*chunks*/, Sequence /*seq*/) {}
   /// Returns the newest edit below a tile that tiles_edited() recorded, or 0.
   virtual Sequence newest_tile_edit(const ChunkKey& /*tile*/) const { return 0; }
+  /// Returns true if a client's copy of a tile is known to be the tile as it is now, without making it.
+  virtual bool is_tile_current(const CachedChunk& /*copy*/) const { return false; }
   /// Writes tiles to the folder, at a low priority. If the queue is full, they are not written.
   virtual void save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> /*tiles*/) {}
   /// Finds the view of the past that a session requests, on a worker. Requires that request.to is

@@ -356,6 +356,11 @@ void WorldServer::tiles_made(const ChunkKey& key, const std::vector<MadeTile>& m
   on_tiles_made(*state_, key, made, now);
 }
 
+void WorldServer::tile_stopped(const ChunkKey& key, const std::vector<MadeTile>& made,
+                               const Clocks& now) {
+  on_tile_stopped(*state_, key, made, now);
+}
+
 void WorldServer::history_opened(SessionId session, std::uint32_t request,
                                  const Result<OpenedHistory, std::string>& opened,
                                  const Clocks& now) {

@@ -148,6 +148,9 @@ class WorldServer {
   /// Brings a requested tile, the last one of `made`, and tiles that were made on the way to it.
   /// `made` is empty if it could not be made.
   void tiles_made(const ChunkKey& key, const std::vector<MadeTile>& made, const Clocks& now);
+  /// Brings tiles that were made on the way to a requested one, before the request reached
+  /// TileRequest::steps_max. The tile is requested again.
+  void tile_stopped(const ChunkKey& key, const std::vector<MadeTile>& made, const Clocks& now);
   /// Answers a session's history request, with the reason if it failed.
   void history_opened(SessionId session, std::uint32_t request,
                       const Result<OpenedHistory, std::string>& opened, const Clocks& now);

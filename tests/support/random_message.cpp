@@ -220,7 +220,7 @@ ViewState any_view_state(SplitMix64& rng) {
 
 CachedChunks any_cached_chunks(SplitMix64& rng) {
   CachedChunks m;
-  for (const ChunkKey& key : ascending_keys(rng, 100)) {
+  for (const ChunkKey& key : ascending_keys(rng, 100, any_level(rng))) {
     m.chunks.push_back({key, any_version(rng), claim_digest(any_digest(rng))});
   }
   return m;
@@ -229,7 +229,7 @@ CachedChunks any_cached_chunks(SplitMix64& rng) {
 ChunksNotModified any_chunks_not_modified(SplitMix64& rng) {
   ChunksNotModified m;
   m.view = any_view_number(rng);
-  for (const ChunkKey& key : ascending_keys(rng, kChunksNotModifiedMax))
+  for (const ChunkKey& key : ascending_keys(rng, kChunksNotModifiedMax, any_level(rng)))
     m.chunks.push_back({key, any_version(rng).seq});
   return m;
 }
@@ -493,7 +493,8 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
     case kKindOf<ClientAuth>:
       return any_client_auth(rng);
     case kKindOf<SessionAccepted>:
-      return SessionAccepted{static_cast<AuthorId>(any64(rng) >> 32), any64(rng)};
+      return SessionAccepted{static_cast<AuthorId>(any64(rng) >> 32), any64(rng),
+                             rng.below(2) == 0 ? 0 : rng.below(1000)};
     case kKindOf<View>:
       return any_view(rng);
     case kKindOf<ChunkRequest>:

@@ -68,13 +68,13 @@ TEST_CASE("cached and unmodified chunks have the bytes of the protocol page",
                                            {{0, {1, -2, 4}}, {2, 70}, 0}};
   const std::string cached_bytes = page_example("cached-chunks");
   CHECK(to_hex(encode_cached_chunks(cached)) == cached_bytes);
-  check_read(decode_cached_chunks(from_hex(cached_bytes), kEdge), cached);
+  check_read(decode_cached_chunks(from_hex(cached_bytes), 0, kEdge), cached);
 
   const std::vector<UnmodifiedChunk> unmodified = {
       {{0, {-3, 0, 7}}, 0}, {{0, {1, -2, 3}}, 500}, {{0, {1, -2, 4}}, 70}};
   const std::string unmodified_bytes = page_example("chunks-not-modified");
   CHECK(to_hex(encode_unmodified(unmodified)) == unmodified_bytes);
-  check_read(decode_unmodified(from_hex(unmodified_bytes), kEdge), unmodified);
+  check_read(decode_unmodified(from_hex(unmodified_bytes), 0, kEdge), unmodified);
 }
 
 TEST_CASE("lists of keys and of digests have the bytes of the protocol page",

@@ -2,13 +2,16 @@
 // ground are searched for the sky. If there is no OpenGL context, the case says so with WARN and
 // passes. The hidden case [.pictures] draws pictures to look at: RUNSTONE_PICTURES names their
 // folder, and RUNSTONE_LEVELS the levels of the view.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
+#include "client/far/far_fades.hpp"
 #include "client/far/far_reach.hpp"
 #include "client/platform/egl_context.hpp"
 #include "client/platform/osmesa_context.hpp"
@@ -163,6 +166,88 @@ TEST_CASE("no pixel shows the sky through the ground, at the borders of levels a
   }
   renderer.draw(down, kPlaceWidth, kPlaceHeight);
   CHECK(count_sky(renderer.read_image(), down, -64, 300).sky > 1'000);
+}
+
+TEST_CASE("levels fade into each other, and no pixel shows the sky meanwhile", "[render][far]") {
+  std::string tried;
+  const auto context = make_egl_surfaceless_context(tried);
+  if (!context) {
+    WARN("no context: " << tried);
+    return;
+  }
+  FarWorld world(16, red_materials(), "water = \"\"\nbeach = \"\"\n");
+  Renderer renderer(context->loader());
+  FarScene scene(world, renderer);
+  Camera camera;
+  camera.y = world.generator().surface_y(0, 0) + 30;
+  camera.pitch = -0.9;
+  camera.far = 32'000;
+  camera.shadow_far = 80;
+  View view;
+  view.centre = {0, static_cast<std::int32_t>(camera.y / 16), 0};
+  view.radius_h = 3;
+  view.radius_v = 2;
+  view.levels = 3;
+  scene.show(view);
+  FrameContents contents;
+  contents.look.time_of_day = 0.5;
+  contents.look.quality = Quality::medium;
+  contents.look.exact = false;
+  std::uint32_t parts = 0;
+  const auto picture_at = [&](double seconds) {
+    contents.look.seconds = seconds;
+    parts = renderer.draw(camera, kPlaceWidth, kPlaceHeight, contents).chunks_drawn;
+    const Image image = renderer.read_image();
+    CHECK(count_sky(image, camera, -64, 300).sky == 0);
+    return image.rgb;
+  };
+  const auto different = [](const std::vector<std::uint8_t>& a,
+                            const std::vector<std::uint8_t>& b) {
+    REQUIRE(a.size() == b.size());
+    std::size_t out = 0;
+    for (std::size_t at = 0; at < a.size(); at += 3)
+      out += std::equal(&a[at], &a[at] + 3, &b[at]) ? 0 : 1;
+    return out;
+  };
+  // The others stay, so that the tiles keep their octants.
+  const auto take_half_away = [&] {
+    for (std::int32_t x = -3; x <= 3; x += 2) {
+      for (std::int32_t y = -3; y <= 2; ++y) {
+        for (std::int32_t z = -3; z <= 3; ++z) scene.take_away({x, view.centre.y + y, z});
+      }
+    }
+  };
+  for (int frame = 0; frame < 30; ++frame) picture_at(0);  // until light and shadows are complete
+  const auto fine = picture_at(0);
+  const std::uint32_t parts_fine = parts;
+  take_half_away();
+  const auto begin = picture_at(10);
+  const std::uint32_t parts_begin = parts;
+  const auto middle = picture_at(10 + kFadeSeconds / 2);
+  const auto coarse = picture_at(11);
+  CHECK(parts < parts_begin);  // the chunks are not drawn any more
+  CHECK(picture_at(12) == coarse);
+  CHECK(different(fine, coarse) > 500);
+  CHECK(different(begin, fine) < different(fine, coarse) / 4);  // the light has changed
+  CHECK(different(middle, fine) > different(fine, coarse) / 4);
+  CHECK(different(middle, coarse) > different(fine, coarse) / 4);
+
+  scene.show(view);  // the chunks come back
+  const auto again = picture_at(20);
+  CHECK(parts > parts_fine);
+  CHECK(different(again, coarse) < different(fine, coarse) / 4);
+  const auto half = picture_at(20 + kFadeSeconds / 2);
+  CHECK(different(half, fine) < different(again, fine));
+  CHECK(different(half, fine) > different(fine, coarse) / 4);
+  CHECK(different(picture_at(21), fine) < different(fine, coarse) / 10);
+  CHECK(parts == parts_fine);
+
+  // Nothing fades at low quality.
+  contents.look.quality = Quality::low;
+  picture_at(30);
+  take_half_away();
+  const auto at_once = picture_at(30);
+  CHECK(picture_at(31) == at_once);
 }
 
 TEST_CASE("pictures of distant ground", "[.pictures]") {

@@ -98,7 +98,7 @@ class FarScene {
         const bool has_empty_parent =
             level < tile_levels(view) &&
             (!tiles_.find(tile_parent(key)) || is_empty(*tiles_.find(tile_parent(key))));
-        if (!has_empty_parent) REQUIRE(tiles_.receive(key, world_.sent(key)));
+        if (!has_empty_parent) REQUIRE(tiles_.receive(key, Chunk{world_.sent(key), {}, {}}));
       });
     }
     std::map<ChunkCoord, TilePtr> chunks;

@@ -211,4 +211,29 @@ TEST_CASE("a tower appears in the tiles of another client, and in those of the n
   CHECK(raw_sql(folder / "world.sqlite", "SELECT count(*) FROM tile WHERE seq > 0") != "0");
 }
 
+TEST_CASE("a view that flips its levels and place with each message delays nobody else",
+          "[integration]") {
+  TempFolder folder;
+  ServerConfig config = quiet_config(folder.path());
+  config.chunk_loads_per_second = 400;
+  const auto server = start_server(config, terrain_creation());
+  RawClient hostile(server->port());
+  hostile.features = kFeatureTiles;
+  REQUIRE(hostile.join(1).has_value());
+  for (std::int32_t i = 0; i < 1'500; ++i) {
+    View view = far_view({(i % 7) * 1'000, 2, i % 5});
+    view.levels = static_cast<std::uint8_t>(i % 9);
+    std::vector<CachedChunk> claims;  // of tiles that it never had
+    for (std::int32_t x = -2; x <= 2; ++x)
+      claims.push_back({tile_of({view.centre.x + 16 * x, 2, 0}, 4), {1, 9}, 77});
+    for (Message& message : cached_chunks_messages(claims)) hostile.send(std::move(message));
+    hostile.send(view);
+  }
+  Expected expected(folder.path());
+  Watcher watcher(server->port(), 2, far_view({0, 2, 0}));
+  watcher.read_all();
+  check_exact(watcher, expected);
+  server->stop();
+}
+
 }  // namespace runstone::test::tiles_test

@@ -232,4 +232,69 @@ TEST_CASE("a client that is killed while it writes leaves no wrong chunk", "[cac
   CHECK(found_ever > 0);
 }
 
+TEST_CASE("tiles and chunks of the same coordinates are kept apart", "[cache]") {
+  const TempFolder folder;
+  const CachedWorld world = world_at(3, 90, 100);
+  std::vector<KeyedChunk> kept = chunks_at(0, 3, {3, 50});
+  for (std::uint8_t level = 1; level <= 2; ++level) {
+    for (const auto& [key, chunk] : chunks_at(10 * level, 3, {3, 60}))
+      kept.emplace_back(ChunkKey{level, kept[kept.size() % 3].first.at}, chunk);
+  }
+  std::vector<ChunkKey> keys;
+  for (const auto& [key, chunk] : kept) keys.push_back(key);
+  {
+    const auto cache = opened(folder.path());
+    cache->keep(world, kept);
+  }
+  const auto cache = opened(folder.path());
+  CHECK(cache->find({world, keys}).size() == kept.size());
+  for (const KeyedChunk& one : kept) {
+    const auto found = cache->find({world, {one.first}});
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].first == one.first);
+    CHECK(*found[0].second == *one.second);
+  }
+  CHECK(cache->find({world, {{3, kept[0].first.at}}}).empty());
+  CHECK(cache->counters().misses == 1);
+}
+
+TEST_CASE("tiles of other rules are dropped, chunks stay", "[cache]") {
+  const TempFolder folder;
+  CachedWorld world = world_at(3, 90, 100);
+  world.tile_rules = 1;
+  const auto cache = opened(folder.path());
+  std::vector<KeyedChunk> kept = chunks_at(0, 2, {3, 50});
+  kept[1].first.lod = 4;
+  const std::vector<ChunkKey> keys = {kept[0].first, kept[1].first};
+  cache->keep(world, kept);
+  world.tile_rules = 0;  // a connection without tiles
+  CHECK(cache->find({world, keys}).size() == 2);
+  world.tile_rules = 2;
+  const auto found = cache->find({world, keys});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].first.lod == 0);
+  CHECK(cache->counters().not_common == 1);
+}
+
+TEST_CASE("tiles that were unused for longest are evicted like chunks", "[cache]") {
+  const TempFolder folder;
+  const CachedWorld world = world_at(3, 90, 100);
+  const auto cache = opened(folder.path(), kMiB / 4);
+  std::vector<KeyedChunk> tiles = chunks_at(0, 60, {3, 50});
+  for (KeyedChunk& tile : tiles) tile.first.lod = 1;
+  cache->keep(world, tiles);
+  std::int32_t next = 100;
+  while (cache->counters().evicted == 0) {
+    cache->keep(world, chunks_at(next, 10, {3, 50}));
+    next += 10;
+    REQUIRE(next < 4'000);
+  }
+  std::vector<ChunkKey> keys;
+  for (const KeyedChunk& tile : tiles) keys.push_back(tile.first);
+  CHECK(cache->find({world, keys}).size() < tiles.size());
+  CHECK(cache->find({world, keys_of(100, next - 100)}).size() ==
+        static_cast<std::size_t>(next - 100));
+  CHECK(cache->bytes() <= kMiB / 4);
+}
+
 }  // namespace runstone::test

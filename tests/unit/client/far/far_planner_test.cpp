@@ -91,7 +91,7 @@ TEST_CASE("a tile gets octants as soon as something below it is held", "[far]") 
   SplitMix64 rng{1};
   FarBench bench(2);
   const ChunkKey tile{1, {0, 0, 0}};
-  REQUIRE(bench.tiles.receive(tile, some_tile(rng)));
+  REQUIRE(bench.tiles.receive(tile, Chunk{some_tile(rng), {}, {}}));
   bench.pass();
   auto job = bench.planner.next();
   REQUIRE(job);
@@ -111,7 +111,7 @@ TEST_CASE("finer levels come first, and in a level the nearest tile", "[far]") {
   bench.planner.set_eye({3, 0, 0});
   for (const ChunkKey& key :
        {ChunkKey{3, {-1, 0, 0}}, ChunkKey{2, {4, 0, 0}}, ChunkKey{2, {-2, 0, 0}}})
-    REQUIRE(bench.tiles.receive(key, some_tile(rng)));
+    REQUIRE(bench.tiles.receive(key, Chunk{some_tile(rng), {}, {}}));
   bench.pass();
   CHECK(bench.planner.next()->key == ChunkKey{2, {-2, 0, 0}});
   CHECK(bench.planner.next()->key == ChunkKey{2, {4, 0, 0}});
@@ -124,7 +124,7 @@ TEST_CASE("coarse ground that arrives late does not hide finer ground for a mome
   FarBench bench(4);
   const ChunkKey top{4, {0, 0, 0}};
   bench.hold({5, 3, 9});
-  REQUIRE(bench.tiles.receive(top, some_tile(rng)));
+  REQUIRE(bench.tiles.receive(top, Chunk{some_tile(rng), {}, {}}));
   bench.pass();
   CHECK(bench.planner.stand_in_count() == 3);
   while (bench.begin_job() || !bench.jobs.empty() || bench.upload()) {
@@ -141,12 +141,12 @@ TEST_CASE("a tile that arrives replaces its stand-in and those made from it", "[
   const ChunkKey top{3, {0, 0, 0}};
   const ChunkKey middle = tile_child(top, 0), low = tile_child(middle, 0);
   bench.hold({0, 0, 0});
-  REQUIRE(bench.tiles.receive(top, some_tile(rng)));
+  REQUIRE(bench.tiles.receive(top, Chunk{some_tile(rng), {}, {}}));
   bench.settle();
   CHECK(bench.planner.stand_in_count() == 2);
   CHECK(bench.planner.bytes() > 0);
   const RunChunk arrived = some_tile(rng);
-  REQUIRE(bench.tiles.receive(middle, arrived));
+  REQUIRE(bench.tiles.receive(middle, Chunk{arrived, {}, {}}));
   bench.settle();
   CHECK(bench.planner.stand_in_count() == 1);
   CHECK(*bench.drawn.at(middle) == arrived);
@@ -164,8 +164,8 @@ TEST_CASE("a tile that arrives replaces its stand-in and those made from it", "[
 TEST_CASE("other materials mesh every tile again", "[far]") {
   SplitMix64 rng{5};
   FarBench bench(2);
-  REQUIRE(bench.tiles.receive({1, {0, 0, 0}}, some_tile(rng)));
-  REQUIRE(bench.tiles.receive({2, {0, 0, 0}}, some_tile(rng)));
+  REQUIRE(bench.tiles.receive({1, {0, 0, 0}}, Chunk{some_tile(rng), {}, {}}));
+  REQUIRE(bench.tiles.receive({2, {0, 0, 0}}, Chunk{some_tile(rng), {}, {}}));
   bench.pass();
   const auto open = bench.planner.next();
   REQUIRE(open);
@@ -203,7 +203,7 @@ TEST_CASE("known ground is drawn exactly once while tiles and chunks come, go an
         bench.tiles.receive_uniform(key, rng.below(4) == 0 ? kEmpty : Material{1});
         known.clear();
       } else {
-        bench.tiles.receive(key, some_tile(rng));
+        bench.tiles.receive(key, Chunk{some_tile(rng), {}, {}});
       }
       bench.pass();
     } else if (kind == 7 && rng.below(20) == 0) {

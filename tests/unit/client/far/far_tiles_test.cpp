@@ -25,12 +25,12 @@ View view_at(ChunkCoord centre, std::uint8_t levels) {
 TEST_CASE("tiles outside of the view and tiles of another edge are ignored", "[far]") {
   SplitMix64 rng{1};
   FarTiles tiles;
-  CHECK_FALSE(tiles.receive({1, {0, 0, 0}}, some_tile(rng)));
+  CHECK_FALSE(tiles.receive({1, {0, 0, 0}}, Chunk{some_tile(rng), {}, {}}));
   tiles.set_view(view_at({0, 0, 0}, 2), kTileEdge);
-  CHECK(tiles.receive({1, {0, 0, 0}}, some_tile(rng)));
-  CHECK_FALSE(tiles.receive({3, {0, 0, 0}}, some_tile(rng)));
-  CHECK_FALSE(tiles.receive({1, {4, 0, 0}}, some_tile(rng)));
-  CHECK_FALSE(tiles.receive({1, {1, 0, 0}}, uniform_chunk(Extent::cube(32), 1)));
+  CHECK(tiles.receive({1, {0, 0, 0}}, Chunk{some_tile(rng), {}, {}}));
+  CHECK_FALSE(tiles.receive({3, {0, 0, 0}}, Chunk{some_tile(rng), {}, {}}));
+  CHECK_FALSE(tiles.receive({1, {4, 0, 0}}, Chunk{some_tile(rng), {}, {}}));
+  CHECK_FALSE(tiles.receive({1, {1, 0, 0}}, Chunk{uniform_chunk(Extent::cube(32), 1), {}, {}}));
   CHECK_FALSE(tiles.receive_uniform({1, {1 << 29, 0, 0}}, 1));
   CHECK(tiles.count() == 1);
 }
@@ -40,8 +40,8 @@ TEST_CASE("a view that moves drops the tiles that it left, and a smaller one tho
   SplitMix64 rng{2};
   FarTiles tiles;
   tiles.set_view(view_at({0, 0, 0}, 2), kTileEdge);
-  REQUIRE(tiles.receive({1, {-3, 0, 0}}, some_tile(rng)));
-  REQUIRE(tiles.receive({2, {-1, 0, 0}}, some_tile(rng)));
+  REQUIRE(tiles.receive({1, {-3, 0, 0}}, Chunk{some_tile(rng), {}, {}}));
+  REQUIRE(tiles.receive({2, {-1, 0, 0}}, Chunk{some_tile(rng), {}, {}}));
   CHECK(tiles.drain_changes() == std::vector<ChunkKey>{{1, {-3, 0, 0}}, {2, {-1, 0, 0}}});
   tiles.set_view(view_at({4, 0, 0}, 2), kTileEdge);
   CHECK(tiles.find({1, {-3, 0, 0}}) == nullptr);
@@ -60,7 +60,7 @@ TEST_CASE("an empty tile drops what is below it", "[far]") {
   const ChunkKey middle = tile_child(top, 5), low = tile_child(middle, 2);
   const ChunkKey beside{1, {-1, 0, 0}};
   for (const ChunkKey& key : {top, middle, low, beside})
-    REQUIRE(tiles.receive(key, some_tile(rng)));
+    REQUIRE(tiles.receive(key, Chunk{some_tile(rng), {}, {}}));
   tiles.drain_changes();
   CHECK(tiles.solid_count() == 4);
   REQUIRE(tiles.receive_uniform(top, kEmpty));
@@ -76,11 +76,11 @@ TEST_CASE("a tile that is sent again with the same voxels changes nothing", "[fa
   FarTiles tiles;
   tiles.set_view(view_at({0, 0, 0}, 2), kTileEdge);
   const RunChunk tile = some_tile(rng);
-  REQUIRE(tiles.receive({1, {0, 0, 0}}, tile));
+  REQUIRE(tiles.receive({1, {0, 0, 0}}, Chunk{tile, {}, {}}));
   REQUIRE(tiles.receive_uniform({1, {1, 0, 0}}, 3));
   tiles.drain_changes();
   const std::size_t bytes = tiles.bytes();
-  CHECK(tiles.receive({1, {0, 0, 0}}, tile));
+  CHECK(tiles.receive({1, {0, 0, 0}}, Chunk{tile, {}, {}}));
   CHECK(tiles.receive_uniform({1, {1, 0, 0}}, 3));
   CHECK(tiles.drain_changes().empty());
   CHECK(tiles.bytes() == bytes);
@@ -104,7 +104,7 @@ TEST_CASE("random tiles and views keep the tiles within the view and their bytes
     const ChunkKey key{static_cast<std::uint8_t>(1 + rng.below(4)), {near(16), near(8), near(16)}};
     const bool is_in_view = has_key(view, CoordLimit::of(kTileEdge), key);
     if (rng.below(2) == 0) {
-      REQUIRE(tiles.receive(key, some_tile(rng)) == is_in_view);
+      REQUIRE(tiles.receive(key, Chunk{some_tile(rng), {}, {}}) == is_in_view);
     } else {
       REQUIRE(tiles.receive_uniform(key, static_cast<Material>(rng.below(3))) == is_in_view);
     }
@@ -134,7 +134,7 @@ TEST_CASE("tiles are missing until they or an empty one above them are held", "[
   CHECK(tiles.missing().roots == roots.size());
   for (const ChunkKey& root : roots) {
     if (root.at == ChunkCoord{}) {
-      REQUIRE(tiles.receive(root, some_tile(rng)));
+      REQUIRE(tiles.receive(root, Chunk{some_tile(rng), {}, {}}));
     } else {
       REQUIRE(tiles.receive_uniform(root, kEmpty));
     }
@@ -142,7 +142,7 @@ TEST_CASE("tiles are missing until they or an empty one above them are held", "[
   CHECK(tiles.missing().roots == 0);
   CHECK(tiles.missing().others == kTileChildren);
   REQUIRE(tiles.receive_uniform({1, {0, 0, 0}}, kEmpty));
-  REQUIRE(tiles.receive({1, {1, 0, 0}}, some_tile(rng)));
+  REQUIRE(tiles.receive({1, {1, 0, 0}}, Chunk{some_tile(rng), {}, {}}));
   CHECK(tiles.missing().others == kTileChildren - 2);
   REQUIRE(tiles.receive_uniform({2, {0, 0, 0}}, kEmpty));
   CHECK(tiles.missing().others == 0);

@@ -27,7 +27,7 @@ TEST_CASE("only chunks that are held and expected are claimed", "[replica]") {
   table.request(*table.find(key_at(2)));
   table.set_confirmed(*table.find(key_at(3)), nullptr);
   Claims claims;
-  const auto taken = claims.take(table);
+  const auto taken = claims.take(table, {});
   REQUIRE(taken.size() == 2);
   CHECK(taken[0].key == key_at(0));
   CHECK(taken[1].key == key_at(4));
@@ -42,7 +42,7 @@ TEST_CASE("the digest of a claim is that of the runs, so that drift is found", "
   drifted.voxels = uniform_chunk(Extent::cube(16), 4);  // drifted.digest is that of material 3
   table.set_confirmed(*table.track(key_at(0)).first,
                       std::make_shared<const Chunk>(std::move(drifted)));
-  const auto taken = Claims().take(table);
+  const auto taken = Claims().take(table, {});
   REQUIRE(taken.size() == 1);
   CHECK(taken[0].digest == claim_digest(digest_of(chunk_of_material(4)->voxels)));
 }
@@ -51,16 +51,16 @@ TEST_CASE("a chunk is claimed once on a connection, unless it left the view", "[
   ReplicaChunks table;
   table.set_confirmed(*table.track(key_at(0)).first, chunk_of_material(3));
   Claims claims;
-  CHECK(claims.take(table).size() == 1);
-  CHECK(claims.take(table).empty());
+  CHECK(claims.take(table, {}).size() == 1);
+  CHECK(claims.take(table, {}).empty());
   claims.answer(key_at(0));
   CHECK(claims.waiting_count() == 0);
-  CHECK(claims.take(table).empty());
+  CHECK(claims.take(table, {}).empty());
   claims.forget(key_at(0));
-  CHECK(claims.take(table).size() == 1);
+  CHECK(claims.take(table, {}).size() == 1);
   claims.clear();
   CHECK(claims.waiting_count() == 0);
-  CHECK(claims.take(table).size() == 1);
+  CHECK(claims.take(table, {}).size() == 1);
 }
 
 TEST_CASE("claims without an answer are bounded", "[replica]") {
@@ -70,9 +70,9 @@ TEST_CASE("claims without an answer are bounded", "[replica]") {
     table.set_confirmed(*table.track(key_at(static_cast<std::int32_t>(i))).first, shared);
   }
   Claims claims;
-  CHECK(claims.take(table).size() == kClaimsMax);
-  CHECK(claims.take(table).empty());
+  CHECK(claims.take(table, {}).size() == kClaimsMax);
+  CHECK(claims.take(table, {}).empty());
   claims.answer(key_at(0));
   claims.answer(key_at(1));
-  CHECK(claims.take(table).size() == 2);
+  CHECK(claims.take(table, {}).size() == 2);
 }

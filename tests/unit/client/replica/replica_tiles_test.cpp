@@ -86,3 +86,40 @@ TEST_CASE_METHOD(TileBench, "tiles stay in the past and on a new connection, and
   replica.reset();
   CHECK(replica.far_tiles().bytes() == 0);
 }
+
+TEST_CASE_METHOD(TileBench, "tiles are claimed after chunks on the next connection, and once",
+                 "[replica]") {
+  SessionParameters with_tiles = parameters();
+  with_tiles.tile_rules = 1;
+  static_cast<void>(replica.open(with_tiles));
+  load(kHere);
+  SplitMix64 rng{5};
+  Chunk tile{some_tile(rng), {}, {}};
+  tile.digest = digest_of(tile.voxels);
+  Chunk drifted = tile;
+  drifted.digest.lane[0] ^= 1;
+  const ChunkKey other{1, {1, 0, 0}};
+  replica.receive(chunks_of(ChunkSnapshot{kTile, tile}, 2), kNow);
+  replica.receive(chunks_of(ChunkSnapshot{other, drifted}, 2), kNow);
+  CHECK(replica.take_claims().empty());
+  static_cast<void>(replica.open(with_tiles));
+  const auto claims = replica.take_claims();
+  REQUIRE(claims.size() == 2);
+  CHECK(claims[0].key == kHere);
+  CHECK(claims[1] == CachedChunk{kTile, {}, claim_digest(tile.digest)});
+  CHECK(replica.take_claims().empty());
+  replica.receive(ChunksNotModified{2, {{kTile, 0}}}, 5);
+  CHECK(replica.counters().answers_outside == 0);
+  const auto kept = replica.take_for_cache(9);
+  REQUIRE(kept.size() == 1);
+  CHECK(kept[0].first == kTile);
+  // A tile that comes back into the view is claimed again.
+  View away{3, {40, 0, 0}, 2, 2};
+  away.levels = 2;
+  replica.set_view(away);
+  away.number = 4;
+  away.centre = {};
+  replica.set_view(away);
+  replica.adopt(kTile, kept[0].second, 6);
+  CHECK(replica.take_claims().size() == 1);
+}

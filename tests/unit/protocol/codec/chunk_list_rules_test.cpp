@@ -250,4 +250,47 @@ TEST_CASE("unavailable chunks may have an unknown reason, but not 0", "[protocol
   CHECK_FALSE(read(0).has_value());
 }
 
+TEST_CASE("claims of tiles have a level of at most 8, and keys of that level inside the world",
+          "[protocol]") {
+  const auto claim = [](std::uint64_t x, std::uint8_t level) {
+    const Bytes bytes = concat({varints({x, 0, 0}), {0}, u64_bytes(7)});
+    return received<CachedChunks>(
+        [&](auto& b) { return wire::CreateCachedChunks(b, b.CreateVector(bytes), level); });
+  };
+  const auto same = [](std::uint64_t x, std::uint8_t level) {
+    const Bytes bytes = concat({varints({x, 0, 0}), {0}});
+    return received<ChunksNotModified>(
+        [&](auto& b) { return wire::CreateChunksNotModified(b, 1, b.CreateVector(bytes), level); });
+  };
+  for (std::uint8_t level = 0; level <= kTileLevelMax; ++level) {
+    const std::uint64_t reach = static_cast<std::uint64_t>(kWorldLimit / kMessageEdge) >> level;
+    const std::uint64_t last = 2 * (reach - 1);  // zigzag
+    const auto claimed = claim(last, level);
+    REQUIRE(claimed.has_value());
+    CHECK(std::get<CachedChunks>(*claimed).chunks[0].key ==
+          ChunkKey{level, {static_cast<std::int32_t>(reach) - 1, 0, 0}});
+    CHECK(same(last, level).has_value());
+    CHECK_FALSE(claim(last + 2, level).has_value());
+    CHECK_FALSE(same(last + 2, level).has_value());
+  }
+  CHECK_FALSE(claim(0, kTileLevelMax + 1).has_value());
+  CHECK_FALSE(same(0, kTileLevelMax + 1).has_value());
+  CHECK_FALSE(claim(0, 255).has_value());
+}
+
+TEST_CASE("claims of several levels become messages of one level each", "[protocol]") {
+  std::vector<CachedChunk> claims;
+  for (std::uint8_t level = 0; level <= 3; ++level) {
+    for (std::int32_t x = 0; x < 300; ++x) claims.push_back({{level, {x, 0, 0}}, {}, 1});
+  }
+  std::vector<CachedChunk> read;
+  for (const Message& message : cached_chunks_messages(claims)) {
+    const auto& chunks = std::get<CachedChunks>(message).chunks;
+    CHECK(chunks.front().key.lod == chunks.back().key.lod);
+    CHECK(encode_message(message).bytes->size() <= kClientControlBytesMax);
+    read.insert(read.end(), chunks.begin(), chunks.end());
+  }
+  CHECK(read == claims);
+}
+
 }  // namespace runstone::test

@@ -1,5 +1,6 @@
 #include "server/tiles/tile_ledger.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <vector>
@@ -16,11 +17,14 @@ struct LedgerModel {
   void edited(const std::vector<ChunkCoord>& chunks, Sequence seq) {
     for (const ChunkCoord& chunk : chunks) {
       for (std::uint8_t level = 0; level <= kTileLevelMax; ++level)
-        newest[tile_of(chunk, level)] = seq;
+        newest[tile_of(chunk, level)] = std::max(newest[tile_of(chunk, level)], seq);
     }
   }
-  void stored(ChunkCoord chunk) {
-    for (std::uint8_t level = 0; level <= kTileLevelMax; ++level) newest[tile_of(chunk, level)];
+  void stored(ChunkCoord chunk, Sequence seq) {
+    for (std::uint8_t level = 0; level <= kTileLevelMax; ++level) {
+      Sequence& known = newest[tile_of(chunk, level)];
+      known = std::max(known, seq);
+    }
   }
   std::map<ChunkKey, Sequence> newest;
 };
@@ -41,12 +45,14 @@ TEST_CASE("a ledger knows the newest edit and the ground of each tile", "[tiles]
   SplitMix64 random(Catch::rngSeed());
   TileLedger ledger;
   LedgerModel model;
-  std::vector<ChunkKey> stored = {{3, {100, 100, 100}}};  // of a tile: no ground
+  std::vector<std::pair<ChunkKey, Version>> stored;
+  stored.push_back({{3, {100, 100, 100}}, {}});  // of a tile: no ground
   for (int i = 0; i < 600; ++i) {
     const ChunkCoord chunk = random_chunk_at(random);
-    stored.push_back({0, chunk});
+    const Sequence seq = random.below(400);
+    stored.push_back({{0, chunk}, seq == 0 ? Version{} : Version{1, seq}});
     if (i >= 300) continue;
-    model.stored(chunk);
+    model.stored(chunk, seq);
   }
   ledger.stored(std::span(stored).first(301));
   for (Sequence seq = 1; seq <= 500; ++seq) {
@@ -58,8 +64,8 @@ TEST_CASE("a ledger knows the newest edit and the ground of each tile", "[tiles]
     model.edited(chunks, seq);
     if (seq == 250) {  // edits may come before the stored chunks are known
       ledger.stored(stored);
-      for (const ChunkKey& key : stored) {
-        if (key.lod == 0) model.stored(key.at);
+      for (const auto& [key, version] : stored) {
+        if (key.lod == 0) model.stored(key.at, version.seq);
       }
     }
   }

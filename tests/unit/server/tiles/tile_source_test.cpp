@@ -1,5 +1,6 @@
 #include "server/tiles/tile_source.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <thread>
 
@@ -144,7 +145,7 @@ TEST_CASE("a damaged chunk is reported once, and tiles show nothing there", "[ti
   REQUIRE(raw_sql(world.file(), "UPDATE snapshot SET seq = 9 WHERE x = 0; SELECT changes()") ==
           "1");
   REQUIRE(raw_sql(world.file(), "SELECT count(*) FROM snapshot") == "2");
-  world.ledger->stored(std::vector{ChunkKey{0, {0, 0, 0}}});
+  world.ledger->stored(std::vector<std::pair<ChunkKey, Version>>{{{0, {0, 0, 0}}, {1, 1}}});
   const auto made = world.source->make(world.request({1, {0, 0, 0}}), *world.visibility);
   // The fold of the table is wrong as well, so the keys of the chunks cannot be read.
   CHECK_FALSE(made.has_value());
@@ -225,4 +226,98 @@ TEST_CASE("a folder that cannot be read fails a tile, and the next call tries ag
   REQUIRE(raw_sql(world.file(), "UPDATE meta SET checksum = checksum - 1 WHERE key = 'base_fold'")
               .empty());
   CHECK(world.source->make(world.request({1, {0, 0, 0}}), *world.visibility).has_value());
+}
+
+namespace {
+
+bool is_current(TileWorld& world, const ChunkKey& key, const Chunk& copy) {
+  return world.source->is_current(key, copy.version, copy.digest.lane[0]);
+}
+
+}  // namespace
+
+TEST_CASE("a copy of a tile is known to be current until an edit below, without making it",
+          "[tiles]") {
+  TileWorld world({"terrain", 1, 3, ""});
+  const ChunkKey near{1, {0, 0, 0}}, above{2, {0, 0, 0}}, far{1, {2, 0, 0}};
+  world.edit({{0, 0, 0}});
+  world.save_all();
+  std::map<ChunkKey, Chunk> copies;
+  for (const ChunkKey& key : {near, above, far}) copies[key] = *world.make(key).back().tile;
+  for (const auto& [key, copy] : copies) {
+    CHECK(is_current(world, key, copy));
+    Chunk other = copy;
+    other.digest.lane[0] ^= 1;
+    CHECK_FALSE(is_current(world, key, other));
+    other = copy;
+    other.version.seq += 1;
+    CHECK_FALSE(is_current(world, key, other));
+  }
+  world.start();
+  // The ground of a folder is not known before the first tile is made.
+  for (const auto& [key, copy] : copies) CHECK_FALSE(is_current(world, key, copy));
+  static_cast<void>(world.make({1, {50, 0, 50}}));
+  for (const auto& [key, copy] : copies) CHECK(is_current(world, key, copy));
+  world.edit({{1, 0, 0}});
+  CHECK_FALSE(is_current(world, near, copies[near]));
+  CHECK_FALSE(is_current(world, above, copies[above]));
+  CHECK(is_current(world, far, copies[far]));
+  CHECK(is_current(world, near, *world.make(near).back().tile));
+  world.start();  // the edit is in no snapshot
+  static_cast<void>(world.make({1, {50, 0, 50}}));
+  CHECK_FALSE(is_current(world, near, copies[near]));
+  CHECK(is_current(world, far, copies[far]));
+}
+
+TEST_CASE("an incomplete tile has the digest 0, so that it is never claimed", "[tiles]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}, {1, 0, 0}});
+  TileRequest request = world.request({1, {0, 0, 0}});
+  request.head = 0;
+  request.fresh.pop_back();
+  const auto made = world.source->make(request, *world.visibility);
+  REQUIRE(made.has_value());
+  CHECK_FALSE(made->back().is_complete());
+  CHECK(made->back().tile->digest == Digest{});
+  CHECK_FALSE(is_current(world, {1, {0, 0, 0}}, *made->back().tile));
+  const MadeTile whole = world.make({1, {0, 0, 0}}).back();
+  CHECK(whole.is_complete());
+  CHECK(whole.tile->digest == digest_of(whole.tile->voxels));
+
+  world.save_all();
+  REQUIRE(raw_sql(world.file(), "UPDATE snapshot SET checksum = 0 WHERE x = 0; SELECT changes()") ==
+          "1");
+  world.start();
+  const MadeTile damaged = world.make({2, {0, 0, 0}}).back();
+  CHECK(damaged.is_damaged);
+  CHECK(damaged.tile->digest == Digest{});
+}
+
+TEST_CASE("a call that stops goes on where it was, and ends with the same tile", "[tiles]") {
+  TileWorld world({"terrain", 1, 7, ""});
+  for (std::int32_t i = 0; i < 12; ++i) world.edit({{i * 7 % 40, i % 3, i * 11 % 40}});
+  world.save_all();
+  world.start();
+  const ChunkKey key{6, {0, 0, 0}};
+  TileRequest request = world.request(key);
+  CHECK(request.steps_max > 1'000'000);
+  const auto at_once = world.source->make(request, *world.visibility);
+  REQUIRE(at_once.has_value());
+  world.start();
+  request.steps_max = 200;
+  std::vector<MadeTile> on_the_way;
+  int calls = 0;
+  for (;; ++calls) {
+    REQUIRE(calls < 1'000);
+    const auto made = world.source->make(request, *world.visibility);
+    REQUIRE(made.has_value());
+    on_the_way.insert(on_the_way.end(), made->begin(), made->end());
+    if (!made->empty() && made->back().key == key) break;
+  }
+  CHECK(calls > 5);
+  CHECK(*on_the_way.back().tile == *at_once->back().tile);
+  std::vector<ChunkKey> keys = keys_of(on_the_way), expected = keys_of(*at_once);
+  std::sort(keys.begin(), keys.end());
+  std::sort(expected.begin(), expected.end());
+  CHECK(keys == expected);  // nothing is made twice
 }

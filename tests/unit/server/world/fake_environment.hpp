@@ -56,6 +56,8 @@ class FakeEnvironment : public WorldEnvironment {
   std::deque<TileRequest> tile_requests;
   std::map<ChunkKey, Sequence> tile_edits;  // the newest edit below each tile
   std::vector<std::pair<ChunkKey, ChunkPtr>> saved_tiles;
+  std::vector<CachedChunk> current_tiles;  // copies that are known to be current
+  mutable std::size_t tile_checks = 0;     // calls of is_tile_current()
   std::deque<std::pair<SessionId, HistoryRequest>> history_requests;
   std::deque<HistoryLoad> history_loads;
   std::deque<std::pair<SessionId, LogMarksRequest>> mark_requests;
@@ -128,6 +130,10 @@ class FakeEnvironment : public WorldEnvironment {
   Sequence newest_tile_edit(const ChunkKey& tile) const override {
     const auto found = tile_edits.find(tile);
     return found == tile_edits.end() ? 0 : found->second;
+  }
+  bool is_tile_current(const CachedChunk& copy) const override {
+    ++tile_checks;
+    return std::ranges::find(current_tiles, copy) != current_tiles.end();
   }
   void save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) override {
     saved_tiles.insert(saved_tiles.end(), tiles.begin(), tiles.end());

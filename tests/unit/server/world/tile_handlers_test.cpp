@@ -2,73 +2,9 @@
 
 #include <set>
 
-#include "tests/unit/server/world/world_bench.hpp"
+#include "tests/unit/server/world/tile_bench.hpp"
 
 namespace runstone::test {
-namespace {
-
-WorldConfig with_tiles() {
-  WorldConfig c = config();
-  c.tile_levels_max = 3;
-  return c;
-}
-
-/// A world whose ground is the layer of chunks at y = 0. Each tile that has ground is dotted.
-struct TileBench : WorldBench {
-  explicit TileBench(WorldConfig c = with_tiles()) : WorldBench(std::move(c)) {
-    has_empty_base = true;
-  }
-
-  void enter(SessionId session, std::uint8_t levels = 3, std::uint64_t features = kFeatureTiles) {
-    join(session, static_cast<std::uint8_t>(session), 1, {}, features);
-    look(session, levels, {});
-  }
-  void look(SessionId session, std::uint8_t levels, ChunkCoord at) {
-    View v;
-    v.centre = at;
-    v.radius_h = 2;
-    v.radius_v = 1;
-    v.levels = levels;
-    tick(100'000);
-    view(session, v);
-  }
-  MadeTile made(const ChunkKey& key, Sequence through) const {
-    const bool has_ground = key.at.y == 0;
-    Chunk tile = has_ground ? dotted_chunk(kEdge) : empty_chunk(kEdge);
-    tile.version = {};
-    return {key, std::make_shared<const Chunk>(std::move(tile)), through, false, false};
-  }
-  void answer(const TileRequest& request) {
-    server.tiles_made(request.key, {made(request.key, request.head)}, now());
-  }
-  /// Answers all requests, also those that follow. Returns them.
-  std::vector<TileRequest> answer_tiles() {
-    std::vector<TileRequest> requests;
-    while (!environment.tile_requests.empty()) {
-      const TileRequest request = environment.tile_requests.front();
-      environment.tile_requests.pop_front();
-      answer(request);
-      requests.push_back(request);
-    }
-    tick();
-    return requests;
-  }
-  /// Returns the tiles that the session was sent so far.
-  std::multiset<ChunkKey> tiles_of(SessionId session) const {
-    std::multiset<ChunkKey> keys;
-    for (const auto& sent : environment.snapshots) {
-      if (sent.session == session && sent.key.lod > 0) keys.insert(sent.key);
-    }
-    for (const UniformChunks& message : environment.messages<UniformChunks>(session, kEdge)) {
-      for (const UniformChunk& one : message.chunks) {
-        if (one.key.lod > 0) keys.insert(one.key);
-      }
-    }
-    return keys;
-  }
-};
-
-}  // namespace
 
 TEST_CASE("a session gets the tiles of its view, coarse ones first, and nothing below empty ones") {
   TileBench bench;
@@ -263,6 +199,42 @@ TEST_CASE("chunks with edits that are not in memory are loaded, and the tile is 
   CHECK(heads() == std::vector<Sequence>{1});
   bench.tick(60'000'000);
   CHECK(heads().empty());
+}
+
+TEST_CASE("a request of a tile that stops is made again with more steps, and others get a turn") {
+  TileBench bench;
+  bench.enter(1);
+  const TileRequest first = bench.environment.tile_requests.front();
+  bench.environment.tile_requests.pop_front();
+  CHECK(first.steps_max == kTileSteps);
+  MadeTile below = bench.made({2, {0, 0, 0}}, 0);
+  bench.server.tile_stopped(first.key, {below}, bench.now());
+  REQUIRE(bench.environment.saved_tiles.size() == 1);
+  CHECK(bench.environment.saved_tiles[0].first == below.key);
+  CHECK(bench.tiles_of(1).empty());
+  const std::vector<TileRequest> requests = bench.answer_tiles();
+  const auto again = std::ranges::find(requests, first.key, &TileRequest::key);
+  REQUIRE(again != requests.end());
+  CHECK(again != requests.begin());
+  CHECK(again->steps_max == 2 * kTileSteps);
+  CHECK(bench.tiles_of(1).size() == 13 * (5 + 2 + 2));
+}
+
+TEST_CASE("a player pays for each turn of a tile") {
+  WorldConfig c = with_tiles();
+  c.chunk_loads = {1, 200};
+  TileBench bench(c);
+  bench.enter(1);
+  const ChunkKey key = bench.environment.tile_requests.front().key;
+  std::vector<MadeTile> made(200, bench.made({1, {9, 0, 9}}, 0));
+  bench.environment.tile_requests.pop_front();
+  bench.server.tile_stopped(key, made, bench.now());
+  // What is under way and what waits goes on; nothing more is requested.
+  CHECK(bench.answer_tiles().size() <= kTilesWaitingMax);
+  bench.server.disconnected(1);
+  bench.join(2, 1, 2, {}, kFeatureTiles);  // the same player
+  bench.look(2, 3, {});
+  CHECK(bench.environment.tile_requests.empty());
 }
 
 }  // namespace runstone::test

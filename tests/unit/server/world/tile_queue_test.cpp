@@ -83,4 +83,53 @@ TEST_CASE("a tile that could not be made is due again, and its sessions go on wa
   CHECK(queue.finished(kFine) == std::vector<SessionId>{1, 2});
 }
 
+TEST_CASE("a tile that takes long has every second turn, and waits behind the others else") {
+  TileQueue queue;
+  queue.want(kCoarse, 1);
+  CHECK(queue.next(0, kAll) == kCoarse);
+  queue.stopped(kCoarse, 0);
+  CHECK(queue.stops(kCoarse) == 1);
+  CHECK(queue.in_flight() == 0);
+  CHECK(queue.is_waited_for(kCoarse));
+  for (std::int32_t x = 0; x < 4; ++x) queue.want({1, {x, 0, 0}}, 2);
+  std::vector<ChunkKey> order;
+  while (const auto key = queue.next(0, kAll)) {
+    order.push_back(*key);
+    if (*key == kCoarse && queue.stops(kCoarse) < 3) {
+      queue.stopped(kCoarse, 0);
+    } else {
+      queue.finished(*key);
+    }
+  }
+  CHECK(order == std::vector<ChunkKey>{{1, {0, 0, 0}},
+                                       kCoarse,
+                                       {1, {1, 0, 0}},
+                                       kCoarse,
+                                       {1, {2, 0, 0}},
+                                       kCoarse,
+                                       {1, {3, 0, 0}}});
+  CHECK(queue.stops(kCoarse) == 0);
+}
+
+TEST_CASE("a tile that has stopped is forgotten when nobody wants it any more") {
+  TileQueue queue;
+  queue.want(kCoarse, 1);
+  CHECK(queue.next(0, kAll) == kCoarse);
+  queue.stopped(kCoarse, 0);
+  queue.cancel(kCoarse, 1);
+  CHECK(queue.stops(kCoarse) == 0);
+  CHECK_FALSE(queue.next(0, kAll).has_value());
+  // One that was due after an edit is due again.
+  queue.make_again(kFine, 0);
+  CHECK(queue.next(0, kAll) == kFine);
+  queue.stopped(kFine, 5);
+  CHECK_FALSE(queue.next(4, kAll).has_value());
+  CHECK(queue.next(5, kAll) == kFine);
+  CHECK(queue.stops(kFine) == 1);
+  queue.stopped(kFine, 5);
+  queue.cancel_again(kFine);
+  CHECK(queue.stops(kFine) == 0);
+  CHECK(queue.count() == 0);
+}
+
 }  // namespace runstone::test
