@@ -46,8 +46,8 @@ class FarTiles {
   /// Takes the answer that the claimed tile is current. Returns false if no tile of this sequence is
   /// held.
   bool receive_not_modified(const ChunkKey& key, Sequence seq);
-  /// Takes a tile from a cache. Returns false and ignores it if the view does not have it, if a tile is held, or if an
-  /// empty tile above it is held.
+  /// Takes a tile from a cache. Returns false and ignores it if the view does not have it, if a tile
+  /// is held, or if an empty tile above it is held.
   bool adopt(const ChunkKey& key, ChunkPtr tile);
 
   /// Returns null if the tile is not held.

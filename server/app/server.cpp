@@ -47,6 +47,12 @@ Result<void, std::string> can_listen_for_gateway(const ServerConfig& config) {
     if (const auto can = can_listen_at_path(path); !can)
       return failure("gateway_socket = " + can.error());
   }
+  const auto folder = std::filesystem::absolute(config.gateway_socket).parent_path();
+  const auto world = std::filesystem::absolute(config.world).lexically_normal();
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored) && folder.lexically_normal() != world)
+    return failure("gateway_socket = " + config.gateway_socket + ": there is no folder " +
+                   folder.string());
   return {};
 }
 
@@ -105,7 +111,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
     return Unexpected<std::string>{bound.error()};
   if (!config.gateway_socket.empty()) {
     const auto bound = parts->core->listen_for_gateway(config.gateway_socket, config.gateway_group);
-    if (!bound) return failure(bound.error());
+    if (!bound) return failure("gateway_socket: " + bound.error());
   }
   if (const auto recovered = parts->core->recover(); !recovered) {
     return Unexpected<std::string>{recovered.error()};

@@ -54,8 +54,10 @@ Result<void, std::string> can_listen_at_path(const std::string& path) {
   LocalProtocol::socket probe(io);
   asio::error_code error;
   probe.connect(LocalProtocol::endpoint(path), error);
-  if (!error) return failure(path + ": another program listens there");
-  return {};
+  if (error == asio::error::connection_refused) return {};  // a crashed program has left it
+  return failure(path + ": " +
+                 (error ? "it cannot be tried: " + error.message()
+                        : std::string("another program listens there")));
 }
 
 GatewayListener::GatewayListener(asio::io_context& io, std::chrono::milliseconds header_time,
@@ -92,11 +94,13 @@ void GatewayListener::start() {
 void GatewayListener::stop() {
   asio::post(strand_, [self = shared_from_this()] {
     asio::error_code ignored;
-    self->acceptor_.close(ignored);
-    self->pause_.cancel();
     std::error_code gone;
+    // The file goes first: after the close, another server may have made its own.
     if (!self->path_.empty()) std::filesystem::remove(self->path_, gone);
     self->path_.clear();
+    self->acceptor_.close(ignored);
+    self->pause_.cancel();
+    for (const auto& greeting : self->greetings_) greeting->socket.close(ignored);
   });
 }
 
@@ -105,9 +109,9 @@ asio::awaitable<void> GatewayListener::accept_loop(std::shared_ptr<GatewayListen
     LocalProtocol::socket socket(self->io_);
     const auto [error] = co_await self->acceptor_.async_accept(socket, kTuple);
     if (!error) {
-      if (self->greetings_ >= kGreetingsMax) continue;
-      ++self->greetings_;
+      if (self->greetings_.size() >= kGreetingsMax) continue;
       auto greeting = std::make_shared<Greeting>(std::move(socket), self->strand_);
+      self->greetings_.insert(greeting);
       asio::co_spawn(self->strand_, read_header(self, std::move(greeting)), asio::detached);
     } else if (self->acceptor_.is_open()) {
       // The process is probably out of file descriptors. Sessions that end release some.
@@ -149,7 +153,7 @@ asio::awaitable<void> GatewayListener::read_header(std::shared_ptr<GatewayListen
   } else if (!error) {
     why = bytes.error().what;
   }
-  --self->greetings_;
+  self->greetings_.erase(greeting);
   greeting->deadline.cancel();
   if (!why.empty()) log_refused_gateway(why);
 }

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "common/core/result.hpp"
@@ -37,7 +38,7 @@ class GatewayListener : public std::enable_shared_from_this<GatewayListener> {
   /// file that a crashed server has left is replaced. The error names the path.
   Result<void, std::string> listen(const std::string& path, bool is_for_group);
   void start();
-  /// Accepts no more connections and removes the file.
+  /// Accepts no more connections, closes those whose header has not come, and removes the file.
   void stop();
 
  private:
@@ -54,8 +55,8 @@ class GatewayListener : public std::enable_shared_from_this<GatewayListener> {
   asio::steady_timer pause_;
   const std::chrono::milliseconds header_time_;
   const Admit admit_;
-  std::string path_;           // empty: not listening
-  std::size_t greetings_ = 0;  // that exist; on the strand
+  std::string path_;                               // empty: not listening
+  std::set<std::shared_ptr<Greeting>> greetings_;  // on the strand
 };
 
 }  // namespace runstone

@@ -187,7 +187,7 @@ bool TileSource::is_current(const ChunkKey& key, const Version& version,
     return made->is_complete() && made->tile->version == version &&
            made->tile->digest.lane[0] == claim_digest;
   }
-  return has_found_ground_.load() && newest == version.seq;
+  return has_found_ground_.load() && newest == version.seq && (newest != 0 || version == Version{});
 }
 
 StoreResult<void> TileSource::find_ground() {

@@ -59,8 +59,10 @@ class TileSource {
   StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
                                           const VisibilityTable& visibility);
   /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now. It
-  /// makes no tile and reads none from the disk: where it does not know the digest, the newest edit
-  /// below the tile decides. Returns false if it does not know that either. Cost: two look-ups.
+  /// makes no tile and reads none from the disk. If the tile is in memory, the digests are compared.
+  /// Otherwise the version must be that of the newest edit below the tile. Returns false before the
+  /// first make(), because the edits of earlier runs are not known then. Cost: two look-ups. It may
+  /// wait for other threads for a moment.
   bool is_current(const ChunkKey& key, const Version& version, std::uint64_t claim_digest);
 
  private:

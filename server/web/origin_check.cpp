@@ -25,6 +25,13 @@ bool is_origin(std::string_view text) {
   return !host.empty() && host.find_first_not_of(kAllowed) == std::string_view::npos;
 }
 
+/// Returns true for "localhost" and for addresses in digits, with or without a port.
+bool is_no_name(std::string_view host) {
+  if (host.starts_with('[')) return true;
+  const std::string_view name = host.substr(0, host.find(':'));
+  return name == "localhost" || name.find_first_not_of("0123456789.") == std::string_view::npos;
+}
+
 }  // namespace
 
 Result<std::vector<std::string>, std::string> parse_origins(const std::string& text) {
@@ -45,7 +52,10 @@ Result<std::vector<std::string>, std::string> parse_origins(const std::string& t
 bool OriginCheck::allows(std::optional<std::string_view> origin, std::string_view host) const {
   if (!origin) return true;
   const std::string asked = lower(*origin);
-  if (allowed_.empty()) return !host.empty() && asked == scheme_ + lower(host);
+  if (allowed_.empty()) {
+    const std::string own = lower(host);
+    return !own.empty() && asked == scheme_ + own && (is_encrypted_ || is_no_name(own));
+  }
   return std::find(allowed_.begin(), allowed_.end(), asked) != allowed_.end();
 }
 

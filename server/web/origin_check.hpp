@@ -17,9 +17,14 @@ Result<std::vector<std::string>, std::string> parse_origins(const std::string& t
 
 class OriginCheck {
  public:
-  /// `allowed`: as parse_origins() returns them. If there are none, pages of this gateway may.
+  /// `allowed`: as parse_origins() returns them. If there are none, pages of this gateway may. Without
+  /// encryption only those that were opened by an address in digits or as "localhost" may: a page of
+  /// somebody else could let its own name lead to this gateway (DNS rebinding). A certificate prevents
+  /// that, because it does not have that name.
   OriginCheck(std::vector<std::string> allowed, bool is_encrypted)
-      : allowed_(std::move(allowed)), scheme_(is_encrypted ? "https://" : "http://") {}
+      : allowed_(std::move(allowed)),
+        is_encrypted_(is_encrypted),
+        scheme_(is_encrypted ? "https://" : "http://") {}
 
   /// Returns true if a request with these headers may open a WebSocket. Without an origin it does
   /// not come from a page, so it may.
@@ -27,6 +32,7 @@ class OriginCheck {
 
  private:
   const std::vector<std::string> allowed_;
+  const bool is_encrypted_;
   const std::string scheme_;
 };
 

@@ -11,6 +11,7 @@ constexpr std::uint64_t kConnectsAtOnce = 10;  // times those of a second
 
 SocketLimits::SocketLimits(std::size_t per_address, std::uint64_t connections_per_second)
     : per_address_(per_address),
+      connections_per_second_(connections_per_second),
       connects_({connections_per_second, connections_per_second * kConnectsAtOnce}) {}
 
 bool SocketLimits::add(AddressBlock from, TimeUs now_us) {

@@ -74,7 +74,7 @@ boost::asio::awaitable<void> WebConnection::run(std::shared_ptr<WebConnection> s
 }
 
 boost::asio::awaitable<bool> WebConnection::serve(std::shared_ptr<WebConnection> self) {
-  for (;;) {
+  for (bool is_first = true;; is_first = false) {
     self->stream_.allow_s(self->state_.config.handshake_s);
     http::request_parser<http::empty_body> parser;
     parser.header_limit(kRequestHeaderBytesMax);
@@ -93,11 +93,16 @@ boost::asio::awaitable<bool> WebConnection::serve(std::shared_ptr<WebConnection>
       co_return co_await write(self, broken, none, false);
     }
     Request request = parser.release();
+    if (!is_first && !self->state_.limits.ask(self->from_, steady_now_us())) {
+      const HttpAnswer later = plain_answer(429, "too many requests from this address: ask later");
+      co_return co_await write(self, later, request, false);
+    }
     if (boost::beast::websocket::is_upgrade(request)) {
       const std::optional<HttpAnswer> refusal = self->refusal_of(request);
       if (refusal) co_return co_await write(self, *refusal, request, false);
       --self->state_.counters.requests;
-      self->websocket_ = std::make_shared<WebSocketSession>(self->state_, self->stream_);
+      self->websocket_ =
+          std::make_shared<WebSocketSession>(self->state_, self->stream_, self->from_);
       co_await WebSocketSession::run(self->websocket_, std::move(request));
       co_return false;
     }

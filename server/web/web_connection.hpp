@@ -26,8 +26,13 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
 
   static boost::asio::awaitable<void> run(std::shared_ptr<WebConnection> self);
   bool is_websocket() const { return websocket_ != nullptr; }
+  /// Returns true if close() was called. The object lives until its coroutine has ended.
+  bool is_closed() const { return is_closed_; }
   /// Closes the connection without a word.
-  void close() { stream_.close(); }
+  void close() {
+    is_closed_ = true;
+    stream_.close();
+  }
   void close_if_due(TimeUs now_us) { stream_.close_if_due(now_us); }
   /// Closes a WebSocket with words, and any other connection at once.
   void end_because_of_stop();
@@ -53,6 +58,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   const AddressBlock from_;
   WebStream stream_;
   boost::beast::flat_buffer read_;
+  bool is_closed_ = false;
   std::shared_ptr<WebSocketSession> websocket_;  // null: no WebSocket yet
 };
 

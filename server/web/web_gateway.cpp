@@ -126,7 +126,7 @@ boost::asio::awaitable<void> WebGateway::Parts::accept_loop() {
     co_await acceptor.async_accept(socket,
                                    boost::asio::redirect_error(boost::asio::use_awaitable, error));
     if (!error) {
-      admit(std::move(socket));
+      if (!is_stopped) admit(std::move(socket));
     } else if (acceptor.is_open()) {
       // The process is probably out of file descriptors. Connections that end release some.
       pause.expires_after(std::chrono::milliseconds(100));
@@ -170,7 +170,7 @@ void WebGateway::Parts::admit(tcp::socket socket) {
 bool WebGateway::Parts::make_room() {
   if (state.connections.size() < state.config.sockets_max) return true;
   for (const auto& [id, connection] : state.connections) {
-    if (connection->is_websocket()) continue;
+    if (connection->is_websocket() || connection->is_closed()) continue;
     connection->close();
     ++state.counters.refused;
     return true;

@@ -29,10 +29,9 @@ std::string players_list(const ServerStatus& server) {
   return out + "</ul>\n";
 }
 
-std::string down_text(const ServerStatus& server) {
-  return "<p class=\"down\">The server of this world is not running, or it is restarting: " +
-         html_text(server.why) + ". This page shows the world again when the server is back.</p>\n";
-}
+constexpr const char* kDownText =
+    "<p class=\"down\">The server of this world is not running, or it is restarting. This page shows "
+    "the world again when the server is back.</p>\n";
 
 /// A table with a caption, of names and numbers.
 std::string number_table(const char* caption,
@@ -109,8 +108,7 @@ std::string html_text(std::string_view text) {
 }
 
 std::string world_page(const WebConfig& config, const ServerStatus& server) {
-  std::string body =
-      server.is_up ? "<h2>Who is here</h2>\n" + players_list(server) : down_text(server);
+  std::string body = server.is_up ? "<h2>Who is here</h2>\n" + players_list(server) : kDownText;
   body += "<h2>Join</h2>\n";
   if (config.public_address.empty()) {
     body +=
@@ -130,7 +128,7 @@ std::string status_page(const WebConfig& config, const ServerStatus& server,
                         const WebCounters& web) {
   std::string body = server.is_up ? "<p class=\"up\">The server is running.</p>\n" +
                                         players_list(server) + server_tables(server)
-                                  : down_text(server);
+                                  : kDownText;
   body += gateway_table(web);
   body +=
       "<p><a href=\"/\">Back to the world</a>. The same numbers for Prometheus: "

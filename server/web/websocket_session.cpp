@@ -27,9 +27,10 @@ PeerEndpoint peer_endpoint(const boost::asio::ip::tcp::endpoint& end) {
 
 }  // namespace
 
-WebSocketSession::WebSocketSession(WebState& state, WebStream& stream)
+WebSocketSession::WebSocketSession(WebState& state, WebStream& stream, AddressBlock from)
     : state_(state),
       stream_(stream),
+      from_(from),
       websocket_(stream),
       link_(state.io),
       message_(kFrameBytesMax + 1),
@@ -104,6 +105,7 @@ boost::asio::awaitable<void> WebSocketSession::browser_to_server(
   WebCounters& counters = self->state_.counters;
   const auto broke_rule = [&](CloseCode code, const char* words) {
     ++counters.rules_broken;
+    self->state_.limits.broke_rule(self->from_, steady_now_us());
     self->end(code, words);
   };
   while (!self->is_ending_) {
@@ -154,13 +156,19 @@ boost::asio::awaitable<void> WebSocketSession::server_to_browser(
           boost::asio::redirect_error(boost::asio::use_awaitable, error));
       if (!self->is_ending_) self->stream_.forget_due();
       if (error) break;
+      self->has_answer_ = true;
       ++counters.frames_out;
       counters.bytes_out += frame->size();
     }
   }
-  const bool is_whole = self->cutter_.is_between_frames() && !self->cutter_.broken();
-  self->end(is_whole ? CloseCode::normal : CloseCode::internal_error,
-            is_whole ? "the server has ended the session" : "the server's stream is broken");
+  if (self->cutter_.broken() || !self->cutter_.is_between_frames()) {
+    self->end(CloseCode::internal_error, "the server's stream is broken");
+  } else if (self->has_answer_) {
+    self->end(CloseCode::normal, "the server has ended the session");
+  } else {
+    self->end(CloseCode::try_again_later,
+              "the server has not taken the connection: try again soon");
+  }
   self->task_ended();
 }
 

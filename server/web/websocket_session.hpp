@@ -26,8 +26,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
   using CloseCode = boost::beast::websocket::close_code;
 
-  /// Both must outlive the session.
-  WebSocketSession(WebState& state, WebStream& stream);
+  /// Both must outlive the session. `from` is charged if the browser breaks a rule.
+  WebSocketSession(WebState& state, WebStream& stream, AddressBlock from);
 
   /// Answers the request for a WebSocket, and serves it until it has ended.
   static boost::asio::awaitable<void> run(std::shared_ptr<WebSocketSession> self, Request request);
@@ -49,10 +49,12 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
 
   WebState& state_;
   WebStream& stream_;
+  const AddressBlock from_;
   boost::beast::websocket::stream<WebStream&> websocket_;
   boost::asio::local::stream_protocol::socket link_;
   FrameCutter cutter_;
-  Bytes message_;  // from the browser
+  Bytes message_;            // from the browser
+  bool has_answer_ = false;  // a frame of the server was passed on
   bool is_open_ = false;
   bool is_ending_ = false;
   int tasks_ = 0;                         // coroutines besides run()

@@ -129,7 +129,7 @@ bool commit_and_broadcast(WorldState& world, LargeEdits large, const Clocks& now
   std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);
   world.environment.log_append(std::move(players), std::move(batch->records));
   send_batch(world, *batch, now);
-  tiles_edited(world, batch->all_touched, world.authority.head(), now);
+  tiles_edited(world, batch->all_touched, now);
   for (const ChunkKey& key : batch->all_touched) {
     if (world.authority.chunks().stack_size(key) > world.config.stack_load_edits)
       request_load(world, key, now);

@@ -1,8 +1,10 @@
 #include "server/world/tile_handlers.hpp"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "common/core/tile_keys.hpp"
 #include "server/world/delivery.hpp"
@@ -222,7 +224,9 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
       world.tiles.queue.make_again(key, now.steady_us + kTileRetryUs);
   }
   save_tiles(world, made);
-  for (const SessionId session : waiting) request_tiles(world, session, now);
+  // One session in this task, the others in tasks of their own: each may claim many tiles.
+  if (!waiting.empty()) request_tiles(world, waiting.front(), now);
+  for (std::size_t i = 1; i < waiting.size(); ++i) world.deliveries.insert(waiting[i]);
   start_tiles(world, now);
 }
 
@@ -237,10 +241,12 @@ void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<M
   start_tiles(world, now);
 }
 
-void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, Sequence seq,
-                  const Clocks& now) {
+void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, const Clocks& now) {
   if (world.config.tile_levels_max == 0) return;
-  world.environment.tiles_edited(chunks, seq);
+  std::map<Sequence, std::vector<ChunkKey>> by_edit;
+  for (const ChunkKey& chunk : chunks)
+    by_edit[world.authority.chunks().version(chunk).seq].push_back(chunk);
+  for (const auto& [seq, edited] : by_edit) world.environment.tiles_edited(edited, seq);
   std::optional<ChunkKey> before;
   for (const ChunkKey& chunk : chunks) {
     for (std::uint8_t level = 1; level <= world.config.tile_levels_max; ++level) {

@@ -51,9 +51,9 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
 /// turn.
 void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
                      const Clocks& now);
-/// Makes the tiles above these chunks stale. The chunks are of level of detail 0, ascending.
-void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, Sequence seq,
-                  const Clocks& now);
+/// Makes the tiles above these chunks stale, which were edited. They are of level of detail 0,
+/// ascending, and have their new versions.
+void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, const Clocks& now);
 /// Forgets the tiles of a session that ends.
 void forget_tiles(WorldState& world, SessionId session, WorldSession& mine);
 

@@ -115,8 +115,8 @@ class WorldEnvironment {
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().
   virtual void load_chunk(const ChunkKey& key) = 0;
   /// Makes a tile on a worker. Called at most once for a tile until it is answered. Answer:
-  /// WorldServer::tiles_made() or tile_stopped(). Without tiles (WorldConfig::tile_levels_max is 0), neither this nor the
-  /// three calls below are made.
+  /// WorldServer::tiles_made() or tile_stopped(). Without tiles (WorldConfig::tile_levels_max is 0),
+  /// neither this nor the three calls below are made.
   virtual void make_tile(TileRequest /*request*/) {}
   /// Records that the newest edit of these chunks is `seq`, before any later make_tile(). Keys of
   /// level of detail 0, ascending.

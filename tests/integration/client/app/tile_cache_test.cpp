@@ -1,4 +1,5 @@
 // A client that starts again with its cache gets only the tiles that changed.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <memory>
 #include <set>
@@ -53,26 +54,39 @@ Received run_client(std::uint16_t port, const std::string& folder) {
   ClientSession session(config);
   session.connected(Nonce{1}, socket.binding(), steady_now_us());
   Received received;
+  std::set<ChunkKey> claimed, answered;  // tiles
   const auto is_complete = [&] {
     if (!session.is_open() || !session.loaded()) return false;
     const FarTiles::Missing missing = session.replica().far_tiles().missing();
     return missing.roots + missing.others == 0 &&
-           received.not_modified + received.tiles.size() != 0;
+           received.not_modified + received.tiles.size() != 0 &&
+           std::includes(answered.begin(), answered.end(), claimed.begin(), claimed.end());
   };
   while (!is_complete()) {
     while (auto lookup = session.take_cache_lookup())
       session.receive_cache_result((*cache)->find(*lookup), steady_now_us());
-    for (const Message& message : session.take_outgoing()) socket.send(encode_message(message));
+    for (const Message& message : session.take_outgoing()) {
+      if (const auto* claims = std::get_if<CachedChunks>(&message)) {
+        for (const CachedChunk& claim : claims->chunks) {
+          if (claim.key.lod > 0) claimed.insert(claim.key);
+        }
+      }
+      socket.send(encode_message(message));
+    }
     auto message = socket.next();
     REQUIRE(message.has_value());
     if (const auto* chunks = std::get_if<Chunks>(&*message)) {
       for (const ChunkAnswer& answer : chunks->chunks) {
+        answered.insert(key_of(answer));
         const auto* tile = std::get_if<ChunkSnapshot>(&answer);
         if (tile != nullptr && tile->key.lod > 0 && !tile->chunk.voxels.is_uniform())
           received.tiles.insert(tile->key);
       }
     } else if (const auto* same = std::get_if<ChunksNotModified>(&*message)) {
       if (same->chunks.front().key.lod > 0) received.not_modified += same->chunks.size();
+      for (const UnmodifiedChunk& one : same->chunks) answered.insert(one.key);
+    } else if (const auto* uniform = std::get_if<UniformChunks>(&*message)) {
+      for (const UniformChunk& one : uniform->chunks) answered.insert(one.key);
     }
     const TimeUs now = steady_now_us();
     session.receive(*std::move(message), {now, now, now});

@@ -54,7 +54,7 @@ TEST_CASE("the gateway reads no more of the server than a browser takes, and end
   const TempFolder folder;
   FakeServer server(folder / "web.sock");
   WebConfig config = web_config_of(folder);
-  config.idle_s = 4;
+  config.idle_s = 12;
   const auto gateway = start_gateway(config);
   WebPeer browser(gateway->port());
   REQUIRE(browser.upgrade().status == 101);

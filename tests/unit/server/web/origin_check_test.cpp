@@ -18,7 +18,12 @@ TEST_CASE("without a list only pages of the gateway itself may open a WebSocket"
   CHECK(encrypted.allows(std::nullopt, "play.example.org"));  // no page has sent it
   const OriginCheck plain({}, false);
   CHECK(plain.allows("http://127.0.0.1:8080", "127.0.0.1:8080"));
+  CHECK(plain.allows("http://localhost:8080", "LOCALHOST:8080"));
+  CHECK(plain.allows("http://[::1]:8080", "[::1]:8080"));
   CHECK_FALSE(plain.allows("https://127.0.0.1:8080", "127.0.0.1:8080"));
+  // A name that leads here may be one of somebody else's pages.
+  CHECK_FALSE(plain.allows("http://evil.example:8080", "evil.example:8080"));
+  CHECK_FALSE(plain.allows("http://localhost.evil.example", "localhost.evil.example"));
 }
 
 TEST_CASE("with a list only the pages of its origins may open a WebSocket", "[web]") {

@@ -83,7 +83,7 @@ TEST_CASE("a tile that could not be made is due again, and its sessions go on wa
   CHECK(queue.finished(kFine) == std::vector<SessionId>{1, 2});
 }
 
-TEST_CASE("a tile that takes long has every second turn, and waits behind the others else") {
+TEST_CASE("a tile that takes long has every second turn, and otherwise waits behind the others") {
   TileQueue queue;
   queue.want(kCoarse, 1);
   CHECK(queue.next(0, kAll) == kCoarse);
