@@ -121,6 +121,7 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
     ++world.counters.queue_full;
     mine.stalled_us = now.steady_us;
     mine.tiles->want_again(key);
+    leave_tiles(world, session, {&key, 1});  // it does not get the tile until it requests it again
     return;
   }
   ++world.counters.tiles_sent;

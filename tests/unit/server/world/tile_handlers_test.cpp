@@ -161,6 +161,27 @@ TEST_CASE("a full queue delays tiles and loses none") {
   CHECK(bench.tiles_of(1).size() == 13 * (5 + 2 + 2));
 }
 
+TEST_CASE("a session that leaves while a tile waits for its full queue gets no tile") {
+  TileBench bench;
+  bench.enter(1);
+  bench.enter(2);
+  bench.answer_tiles();
+  bench.environment.snapshot_room[1] = 0;
+  bench.edit(2, 1, kAtOrigin);
+  for (int n = 0; n < 4; ++n) {
+    bench.tick(10'000'000);
+    bench.answer_tiles();
+  }
+  bench.server.disconnected(1);
+  const std::size_t before = bench.tiles_of(1).size();
+  bench.edit(2, 2, kAtOrigin);
+  for (int n = 0; n < 4; ++n) {
+    bench.tick(10'000'000);
+    bench.answer_tiles();
+  }
+  CHECK(bench.tiles_of(1).size() == before);
+}
+
 TEST_CASE("a session that leaves or moves away makes no work any more") {
   TileBench bench;
   bench.enter(1);
