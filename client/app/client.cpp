@@ -251,7 +251,7 @@ void Client::handle_input(TimeUs now_us) {
 void Client::pause() {
   input_.release();
   menu_->pause();
-  // What was pressed after escape is for the menu, also if all of it came in one turn.
+  // The menu gets the events that came after escape in the same turn.
   menu_->feed(input_.take_waiting());
 }
 

@@ -119,7 +119,7 @@ bool FarTiles::is_below_empty(const ChunkKey& key) const {
   while (above.lod < kTileLevelMax) {
     above = tile_parent(above);
     const auto held = tiles_.find(above);
-    // Nothing above a tile that is held is empty.
+    // Only the nearest held tile above counts: the ones above it are not empty.
     if (held != tiles_.end()) return is_empty(*held->second.voxels);
   }
   return false;

@@ -1,7 +1,6 @@
 #include "server/world/tile_handlers.hpp"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -84,6 +83,13 @@ void make_again(WorldState& world, const ChunkKey& key, const TileReceivers& rec
   const TimeUs pause = kTileRemakeUs << (key.lod - 1);
   const TimeUs due = receivers.made_us ? *receivers.made_us + pause : now.steady_us;
   world.tiles.queue.make_again(key, std::max(now.steady_us + kTileRemakeUs, due));
+}
+
+/// Returns true if those who have the tile `sent` need not get `made`, because it is the same. A tile is
+/// often made because one more session wants it.
+bool is_as_sent(const MadeTile& made, const ChunkPtr& sent) {
+  return sent != nullptr && made.is_complete() && made.tile->version == sent->version &&
+         made.tile->digest == sent->digest;
 }
 
 /// Records that the session has a tile.
@@ -214,13 +220,17 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   charge(world, key, made, now);
   world.tiles.payers.erase(key);
   std::vector<SessionId> receivers;
-  if (const TileReceivers* found = world.tiles.receivers.find(key)) receivers = found->sessions;
+  const TileReceivers* const having = world.tiles.receivers.find(key);
+  if (having != nullptr && !is_as_sent(tile, having->sent)) receivers = having->sessions;
+  world.tiles.queue.hold_changed(now.steady_us +
+                                 kTileResendUs * static_cast<TimeUs>(receivers.size()));
   for (const SessionId session : waiting) {
     if (std::ranges::find(receivers, session) == receivers.end()) receivers.push_back(session);
   }
   for (const SessionId session : receivers) send_tile(world, session, key, tile.tile, now);
   if (TileReceivers* found = world.tiles.receivers.find(key)) {
     found->made_us = now.steady_us;
+    found->sent = tile.is_complete() ? tile.tile : nullptr;
     if (world.environment.newest_tile_edit(key) > tile.through)
       world.tiles.queue.make_again(key, now.steady_us + kTileRetryUs);
   }
@@ -244,10 +254,13 @@ void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<M
 
 void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, const Clocks& now) {
   if (world.config.tile_levels_max == 0) return;
-  std::map<Sequence, std::vector<ChunkKey>> by_edit;
-  for (const ChunkKey& chunk : chunks)
-    by_edit[world.authority.chunks().version(chunk).seq].push_back(chunk);
-  for (const auto& [seq, edited] : by_edit) world.environment.tiles_edited(edited, seq);
+  // Each chunk is recorded with its own newest edit. Neighbours in the list often share theirs.
+  const WorldChunks& versions = world.authority.chunks();
+  for (std::size_t first = 0, end = 0; first < chunks.size(); first = end) {
+    const Sequence seq = versions.version(chunks[first]).seq;
+    for (end = first + 1; end < chunks.size() && versions.version(chunks[end]).seq == seq;) ++end;
+    world.environment.tiles_edited(chunks.subspan(first, end - first), seq);
+  }
   std::optional<ChunkKey> before;
   for (const ChunkKey& chunk : chunks) {
     for (std::uint8_t level = 1; level <= world.config.tile_levels_max; ++level) {

@@ -50,6 +50,8 @@ std::optional<ChunkKey> TileQueue::next(TimeUs now_us, std::size_t in_flight_max
     key = std::get<ChunkKey>(*first);
     wanted_.erase(first);
     waiting_.find(*key)->place.reset();
+  } else if (now_us < changed_from_us_) {
+    return std::nullopt;
   } else {
     // A tile under way that is due again is made after it has finished.
     const auto due = std::ranges::find_if(

@@ -7,6 +7,7 @@
 // Bounds: the waited ones by kTilesWaitingMax for each session, the changed ones by the tiles that
 // sessions have. Thread: the world strand.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -30,6 +31,8 @@ class TileQueue {
   void want(const ChunkKey& key, SessionId session);
   /// Makes the tile due at this time, unless it is due before.
   void make_again(const ChunkKey& key, TimeUs due_us);
+  /// Returns no changed tile before this time, unless somebody waits for it.
+  void hold_changed(TimeUs until_us) { changed_from_us_ = std::max(changed_from_us_, until_us); }
   /// Removes a session that waits for a tile. If nobody waits any more, the tile is not made for it.
   void cancel(const ChunkKey& key, SessionId session);
   /// Removes a tile that is to be made again, because no session has it any more.
@@ -79,6 +82,7 @@ class TileQueue {
   std::set<ChunkKey> in_flight_;
   std::map<ChunkKey, std::size_t> stops_;  // of tiles that wait or are under way
   bool is_turn_of_stopped_ = false;
+  TimeUs changed_from_us_ = 0;
 };
 
 }  // namespace runstone

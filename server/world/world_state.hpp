@@ -55,6 +55,7 @@ struct ListedEntry {
 struct TileReceivers {
   std::vector<SessionId> sessions;  // ascending
   std::optional<TimeUs> made_us;    // when it was made last
+  ChunkPtr sent;                    // the tile that all of them have; null: none, or it lacks edits
 };
 
 /// Tiles (tile_handlers.hpp).

@@ -30,7 +30,7 @@ WorldCreation terrain_creation() {
   return creation;
 }
 
-/// What one run of a client received of tiles that are not uniform.
+/// The tiles that a client received in one run. Uniform ones are not counted.
 struct Received {
   std::set<ChunkKey> tiles;  // whole
   std::size_t not_modified = 0;

@@ -242,7 +242,7 @@ TEST_CASE("levels fade into each other, and no pixel shows the sky meanwhile", "
   CHECK(different(picture_at(21), fine) < different(fine, coarse) / 10);
   CHECK(parts == parts_fine);
 
-  // Nothing fades at low quality.
+  // At low quality, tiles do not fade.
   contents.look.quality = Quality::low;
   picture_at(30);
   take_half_away();

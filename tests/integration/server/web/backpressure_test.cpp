@@ -12,7 +12,7 @@
 namespace runstone::test {
 namespace {
 
-// What the kernel's buffers on the way may hold, with room to spare.
+// More bytes than the kernel's buffers between the two ends can hold.
 constexpr std::size_t kOnTheWayMax = 16 * 1024 * 1024;
 
 Bytes frame_of(std::size_t body_bytes, std::uint8_t fill) {

@@ -158,7 +158,7 @@ TEST_CASE_METHOD(ClaimFixture, "a tile of the cache is shown and claimable, unle
   CHECK_FALSE(tiles.adopt({1, {1, 0, 0}}, std::make_shared<const Chunk>(
                                               Chunk{uniform_chunk(Extent::cube(8), 1), {}, {}})));
   CHECK(tiles.count() == 2);
-  // Nothing is below an empty tile.
+  // An empty tile has no tiles below it.
   REQUIRE(tiles.receive_uniform({3, {-1, 0, 0}}, kEmpty));
   CHECK_FALSE(tiles.adopt({1, {-1, 0, 0}}, shared_tile(4)));
   CHECK(tiles.find({1, {-1, 0, 0}}) == nullptr);

@@ -39,8 +39,15 @@ struct TileBench : WorldBench {
     tile.version = {};
     return {key, std::make_shared<const Chunk>(std::move(tile)), through, false, false};
   }
+  /// The tile has the newest version of its fresh chunks.
   void answer(const TileRequest& request) {
-    server.tiles_made(request.key, {made(request.key, request.head)}, now());
+    MadeTile tile = made(request.key, request.head);
+    Chunk chunk = *tile.tile;
+    for (const auto& [at, fresh] : request.fresh) {
+      if (fresh) chunk.version = std::max(chunk.version, fresh->version);
+    }
+    tile.tile = std::make_shared<const Chunk>(std::move(chunk));
+    server.tiles_made(request.key, {tile}, now());
   }
   /// Answers all requests, also those that follow. Returns them.
   std::vector<TileRequest> answer_tiles() {

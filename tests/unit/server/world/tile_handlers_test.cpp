@@ -61,6 +61,17 @@ TEST_CASE(
   CHECK(bench.tiles_of(2).empty());
 }
 
+TEST_CASE("a tile that one more session wants is not sent again to those who have it") {
+  TileBench bench;
+  bench.enter(1);
+  bench.answer_tiles();
+  const std::size_t before = bench.tiles_of(1).size();
+  bench.enter(2);
+  CHECK(bench.answer_tiles().size() == before);
+  CHECK(bench.tiles_of(2).size() == before);
+  CHECK(bench.tiles_of(1).size() == before);
+}
+
 TEST_CASE("a tile that is edited while it is made is made once more and not saved") {
   TileBench bench;
   bench.enter(1);

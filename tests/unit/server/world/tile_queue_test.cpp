@@ -25,6 +25,17 @@ TEST_CASE("the coarsest tile is made first, then the earliest request") {
   CHECK(queue.in_flight() == 2);
 }
 
+TEST_CASE("changed tiles are held, those that sessions wait for are not") {
+  TileQueue queue;
+  queue.make_again(kFine, 0);
+  queue.hold_changed(500);
+  queue.hold_changed(400);  // the longer time counts
+  CHECK_FALSE(queue.next(499, kAll).has_value());
+  queue.want(kCoarse, 1);
+  CHECK(queue.next(499, kAll) == kCoarse);
+  CHECK(queue.next(500, kAll) == kFine);
+}
+
 TEST_CASE("changed tiles come after those that sessions wait for, the longest due first") {
   TileQueue queue;
   queue.make_again(kFine, 20);
