@@ -16,6 +16,7 @@
 #include "common/core/ids.hpp"
 #include "common/core/material_row.hpp"
 #include "common/core/result.hpp"
+#include "common/core/text_error.hpp"
 
 namespace runstone {
 
@@ -48,15 +49,6 @@ struct MaterialInfo {
 
 /// Returns the row without the rule of generation.
 MaterialRow row_of(const MaterialInfo& info);
-
-/// An error in a text file: file, line and key.
-struct TextError {
-  std::string file;
-  std::uint32_t line = 0;  // from 1; 0: the file as a whole
-  std::string key;         // such as "material[3].colour"; empty if none
-  std::string what;
-  std::string message() const;  // "file:line: key: what"
-};
 
 class MaterialTable {
  public:

@@ -35,7 +35,7 @@ std::string ConfigReload::text() const {
 
 ConfigReload reload_config(const ServerConfig& running, const ServerConfig& read) {
   ConfigReload out{running, {}, {}};
-  for (const ConfigField& field : config_fields()) {
+  for (const SettingField& field : config_fields()) {
     if (config_text(running, field.name) == config_text(read, field.name)) continue;
     if (is_reloaded(field.name)) {
       copy_config(out.config, read, field.name);

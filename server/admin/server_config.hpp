@@ -16,13 +16,14 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "common/materials/material_table.hpp"
+#include "common/core/text_error.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/default_port.hpp"
 #include "server/admin/log_format.hpp"
 #include "server/admin/log_level.hpp"
 #include "server/limits/address_form.hpp"
+#include "server/settings/setting_names.hpp"
 
 namespace runstone {
 
@@ -108,16 +109,10 @@ struct ServerConfig {
   friend bool operator==(const ServerConfig&, const ServerConfig&) = default;
 };
 
-struct ConfigField {
-  std::string name;        // as in the file
-  std::string help;        // unit and range
-  bool is_switch = false;  // true or false; its flag needs no value
-};
 /// Returns all settings, in the order of the struct.
-std::vector<ConfigField> config_fields();
-/// Return "RUNSTONE_SESSIONS_MAX" and "--sessions-max" for "sessions_max".
+std::vector<SettingField> config_fields();
+/// Returns "RUNSTONE_SESSIONS_MAX" for "sessions_max".
 std::string environment_name(const std::string& field);
-std::string flag_name(const std::string& field);
 
 /// Returns the value of a field as text. Two values are equal if their texts are.
 std::string config_text(const ServerConfig& config, const std::string& field);

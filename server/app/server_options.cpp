@@ -40,16 +40,7 @@ void add_flags(CLI::App& app, ServerOptions& out) {
   app.add_option("--edge", out.creation.edge,
                  "new world: edge of a chunk, 16, 32, 64 or 128 voxels");
   app.add_option("--materials", out.creation.materials_file, "new world: TOML file of materials");
-  for (const ConfigField& field : config_fields()) {
-    CLI::Option* const flag = app.add_option_function<std::string>(
-        flag_name(field.name),
-        [&out, name = field.name, is_switch = field.is_switch](const std::string& text) {
-          out.settings[name] = is_switch && text.empty() ? "true" : text;
-        },
-        field.help);
-    flag->group("Settings");
-    if (field.is_switch) flag->expected(0, 1);  // without a value it is "true"
-  }
+  add_setting_flags(app, config_fields(), out.settings);
 }
 
 CLI::App* add_import(CLI::App& app, ImportRequest& out) {

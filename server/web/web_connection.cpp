@@ -20,7 +20,7 @@ namespace http = boost::beast::http;
 
 constexpr std::uint32_t kRequestHeaderBytesMax = 8 * 1024;
 constexpr std::uint64_t kFinishSeconds = 2;
-// What is read and dropped behind the last request.
+// Bytes that are read and dropped after the last request.
 constexpr std::size_t kDroppedBytesMax = 64 * 1024;
 // Bytes that may wait in the kernel, so that little terrain is ahead of an edit.
 constexpr int kNotSentBytes = 16 * 1024;

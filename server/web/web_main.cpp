@@ -31,19 +31,19 @@ Result<WebConfig, std::string> read_config(const WebOptions& options) {
     std::ifstream in(options.config_file, std::ios::binary);
     if (!in) return failure(options.config_file + ": cannot be read");
     const std::string toml((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    const auto read = read_web_config_toml(config, toml, options.config_file);
-    if (!read) return failure(read.error());
+    const auto read = web_settings().read_toml(config, toml, options.config_file);
+    if (!read) return failure(read.error().message());
   }
   const auto look_up = [](const std::string& name) -> std::optional<std::string> {
     const char* text = std::getenv(name.c_str());
     if (text == nullptr) return std::nullopt;
     return text;
   };
-  const auto environment = read_web_config_environment(config, look_up);
+  const auto environment = web_settings().read_environment(config, look_up);
   if (!environment) return failure(environment.error());
   for (const auto& [field, text] : options.settings) {
-    const auto set = set_web_config(config, field, text);
-    if (!set) return failure(web_flag_name(field) + ": " + set.error());
+    const auto set = web_settings().set(config, field, text);
+    if (!set) return failure(flag_name(field) + ": " + set.error());
   }
   return config;
 }
@@ -63,7 +63,7 @@ int web_program(int argc, char** argv) {
   const auto config = read_config(*options);
   if (!config) return cannot_start(config.error());
   if (options->print_config) {
-    std::cout << to_toml(*config);
+    std::cout << web_settings().to_toml(*config);
     return kStopped;
   }
   allow_files_for(*config);

@@ -1,7 +1,6 @@
 #include "server/web/web_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <vector>
 
 #include "common/os/output_file.hpp"
 #include "protocol/limits.hpp"
@@ -22,25 +21,11 @@ ParsedWebOptions parse_web_options(int argc, const char* const* argv) {
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");
   app.add_option("--port-file", out.port_file, "write the port here once the gateway listens")
       ->check(output_refusal);
-  const std::vector<WebConfigField> fields = web_config_fields();
-  std::map<std::string, std::string> texts;  // of all settings, given or not
-  std::vector<const CLI::Option*> flags;
-  for (const WebConfigField& field : fields) {
-    CLI::Option* const flag =
-        app.add_option(web_flag_name(field.name), texts[field.name], field.help);
-    flag->group("Settings");
-    if (field.is_switch) flag->expected(0, 1);  // without a value it is "true"
-    flags.push_back(flag);
-  }
+  add_setting_flags(app, web_settings().fields(), out.settings);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
-  }
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (flags[i]->count() == 0) continue;
-    const std::string& text = texts[fields[i].name];
-    out.settings[fields[i].name] = fields[i].is_switch && text.empty() ? "true" : text;
   }
   return {out, 0};
 }

@@ -35,7 +35,7 @@ class WebStream {
   WebStream(const WebStream&) = delete;
   WebStream& operator=(const WebStream&) = delete;
 
-  // What Beast requires of a stream.
+  // These functions make the class a stream for Beast.
   executor_type get_executor() { return next_layer().get_executor(); }
   Socket& next_layer() { return tls_ ? tls_->next_layer() : *plain_; }
   template <class Buffers, class Token>

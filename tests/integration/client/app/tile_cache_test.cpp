@@ -22,14 +22,6 @@ namespace {
 constexpr std::int32_t kEdge = 16;
 constexpr std::uint8_t kLevels = 4;
 
-WorldCreation terrain_creation() {
-  WorldCreation creation;
-  creation.generator = "terrain";
-  creation.edge = kEdge;
-  creation.seed = 5;
-  return creation;
-}
-
 /// The tiles that a client received in one run. Uniform ones are not counted.
 struct Received {
   std::set<ChunkKey> tiles;  // whole

@@ -27,6 +27,7 @@
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/password_key.hpp"
+#include "tests/support/ipv4_socket.hpp"
 
 namespace runstone::test {
 
@@ -40,7 +41,7 @@ class RawClient {
                      const TlsContext& context = TlsContext::client(),
                      const std::string& host = "127.0.0.1")
       : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    const sockaddr_in here = endpoint(from, 0), there = endpoint(INADDR_LOOPBACK, port);
+    const sockaddr_in here = ipv4_endpoint(from, 0), there = ipv4_endpoint(INADDR_LOOPBACK, port);
     is_open_ = ::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 &&
                ::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
     const timeval deadline{kSendSeconds, 0};
@@ -197,18 +198,6 @@ class RawClient {
   static constexpr time_t kSendSeconds = 60;
   static constexpr int kHandshakeMs = 10'000;
 
-  static sockaddr_in endpoint(std::uint32_t address, std::uint16_t port) {
-    sockaddr_in out{};
-    out.sin_family = AF_INET;
-    out.sin_port = htons(port);
-    out.sin_addr.s_addr = htonl(address);
-    return out;
-  }
-
-  bool wait_input(int deadline_ms) {
-    pollfd wait{socket_, POLLIN, 0};
-    return ::poll(&wait, 1, deadline_ms) > 0;
-  }
   void send_output() { send_to_socket(std::exchange(tls_->output(), {})); }
   bool secure(const TlsContext& context, const std::string& host) {
     source_ = SocketSource(socket_);
@@ -220,7 +209,7 @@ class RawClient {
       if (status == TlsChannel::Status::done) return true;
       const bool is_over = source_.is_at_end() || source_.error();
       if (status != TlsChannel::Status::wants_input || is_over) break;
-      if (!wait_input(kHandshakeMs)) break;
+      if (!wait_input(socket_, kHandshakeMs)) break;
     }
     tls_.reset();
     return false;
@@ -233,7 +222,7 @@ class RawClient {
   /// nullopt at the deadline.
   std::optional<std::size_t> receive(Bytes& buffer, int deadline_ms) {
     if (!tls_) {
-      if (!wait_input(deadline_ms)) return std::nullopt;
+      if (!wait_input(socket_, deadline_ms)) return std::nullopt;
       const ssize_t got = ::recv(socket_, buffer.data(), buffer.size(), 0);
       return got > 0 ? static_cast<std::size_t>(got) : 0;
     }
@@ -243,7 +232,7 @@ class RawClient {
       if (status == TlsChannel::Status::done) return bytes;
       const bool is_over = source_.is_at_end() || source_.error();
       if (status != TlsChannel::Status::wants_input || is_over) return 0;
-      if (!wait_input(deadline_ms)) return std::nullopt;
+      if (!wait_input(socket_, deadline_ms)) return std::nullopt;
     }
   }
 

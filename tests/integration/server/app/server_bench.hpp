@@ -36,6 +36,13 @@ inline WorldCreation flat_creation() {
   creation.edge = 16;
   return creation;
 }
+inline WorldCreation terrain_creation() {
+  WorldCreation creation;
+  creation.generator = "terrain";
+  creation.edge = 16;
+  creation.seed = 5;
+  return creation;
+}
 
 /// Requires the start to succeed.
 inline std::unique_ptr<Server> start_server(const ServerConfig& config,

@@ -24,14 +24,6 @@ namespace {
 constexpr std::int32_t kEdge = 16;
 constexpr Material kTower = 3;
 
-WorldCreation terrain_creation() {
-  WorldCreation creation;
-  creation.generator = "terrain";
-  creation.edge = kEdge;
-  creation.seed = 5;
-  return creation;
-}
-
 View far_view(ChunkCoord centre) {
   View view;
   view.centre = centre;

@@ -126,7 +126,7 @@ TEST_CASE("a gateway does not start with settings that would be unsafe or cannot
   const auto error_of = [](const std::string& field, const std::string& text) {
     WebConfig config;
     config.listen = "127.0.0.1:0";
-    REQUIRE(set_web_config(config, field, text).has_value());
+    REQUIRE(web_settings().set(config, field, text).has_value());
     const auto gateway = WebGateway::start(config);
     return gateway ? std::string() : gateway.error();
   };

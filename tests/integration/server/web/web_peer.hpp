@@ -16,6 +16,7 @@
 #include "common/core/bytes.hpp"
 #include "common/tls/socket_source.hpp"
 #include "common/tls/tls_channel.hpp"
+#include "tests/support/ipv4_socket.hpp"
 
 namespace runstone::test {
 
@@ -46,7 +47,7 @@ class WebPeer {
   explicit WebPeer(std::uint16_t port, std::uint32_t from = INADDR_LOOPBACK,
                    bool is_encrypted = false)
       : socket_(::socket(AF_INET, SOCK_STREAM, 0)), port_(port) {
-    const sockaddr_in here = endpoint(from, 0), there = endpoint(INADDR_LOOPBACK, port);
+    const sockaddr_in here = ipv4_endpoint(from, 0), there = ipv4_endpoint(INADDR_LOOPBACK, port);
     is_open_ = ::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 &&
                ::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
     if (is_open_ && is_encrypted) is_open_ = secure();
@@ -154,17 +155,6 @@ class WebPeer {
   }
 
  private:
-  static sockaddr_in endpoint(std::uint32_t address, std::uint16_t port) {
-    sockaddr_in out{};
-    out.sin_family = AF_INET;
-    out.sin_port = htons(port);
-    out.sin_addr.s_addr = htonl(address);
-    return out;
-  }
-  bool wait_input(int deadline_ms) {
-    pollfd wait{socket_, POLLIN, 0};
-    return ::poll(&wait, 1, deadline_ms) > 0;
-  }
   bool secure() {
     source_ = SocketSource(socket_);
     TlsChannel channel = TlsChannel::connect(TlsContext::client(), source_, "127.0.0.1");
@@ -176,7 +166,7 @@ class WebPeer {
       if (status == TlsChannel::Status::done) return true;
       if (status != TlsChannel::Status::wants_input || source_.is_at_end() || source_.error())
         return false;
-      if (!wait_input(10'000)) return false;
+      if (!wait_input(socket_, 10'000)) return false;
     }
   }
   bool read_more(int deadline_ms = 10'000) {
@@ -190,7 +180,7 @@ class WebPeer {
         if (status != TlsChannel::Status::wants_input || source_.is_at_end() || source_.error())
           return is_open_ = false;
       }
-      if (!wait_input(deadline_ms)) return false;
+      if (!wait_input(socket_, deadline_ms)) return false;
       if (tls_) continue;
       const ssize_t got = ::recv(socket_, buffer.data(), buffer.size(), 0);
       if (got <= 0) return is_open_ = false;

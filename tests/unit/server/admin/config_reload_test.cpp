@@ -36,7 +36,7 @@ TEST_CASE("the reference lists the settings that are reloaded, and no other", "[
   const std::size_t begin = page.find("**Reloaded are**");
   REQUIRE(begin != std::string::npos);
   const std::string list = page.substr(begin, page.find(".\n", begin) - begin);
-  for (const ConfigField& field : config_fields()) {
+  for (const SettingField& field : config_fields()) {
     CAPTURE(field.name);
     CHECK((list.find("`" + field.name + "`") != std::string::npos) == is_reloaded(field.name));
   }

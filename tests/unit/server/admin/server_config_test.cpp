@@ -64,7 +64,7 @@ TEST_CASE("every setting is printed on one line and has a help text", "[admin]")
   std::size_t lines = 0;
   for (const char c : to_toml(ServerConfig{})) lines += c == '\n' ? 1 : 0;
   CHECK(lines == config_fields().size());
-  for (const ConfigField& field : config_fields()) CHECK_FALSE(field.help.empty());
+  for (const SettingField& field : config_fields()) CHECK_FALSE(field.help.empty());
 }
 
 TEST_CASE("names in file, environment and flags follow one rule", "[admin]") {

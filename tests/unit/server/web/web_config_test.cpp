@@ -11,8 +11,8 @@ TEST_CASE("the settings of the gateway survive being printed and read", "[web]")
   config.i_know = true;
   config.origins = "https://play.example.org";
   WebConfig read;
-  const auto done = read_web_config_toml(read, to_toml(config), "web.toml");
-  INFO((done ? std::string() : done.error()));
+  const auto done = web_settings().read_toml(read, web_settings().to_toml(config), "web.toml");
+  INFO((done ? std::string() : done.error().message()));
   REQUIRE(done.has_value());
   CHECK(read == config);
 }
@@ -20,33 +20,33 @@ TEST_CASE("the settings of the gateway survive being printed and read", "[web]")
 TEST_CASE("a wrong setting of the gateway names its line and changes nothing", "[web]") {
   const auto error_of = [](const std::string& toml) {
     WebConfig config;
-    const auto read = read_web_config_toml(config, toml, "web.toml");
+    const auto read = web_settings().read_toml(config, toml, "web.toml");
     REQUIRE_FALSE(read.has_value());
     CHECK(config == WebConfig());
-    return read.error();
+    return read.error().message();
   };
   CHECK(error_of("title = \"a\"\nsocket_max = 4").find("web.toml:2: socket_max: no such") == 0);
   CHECK(error_of("idle_s = 1").find("out of range") != std::string::npos);
   CHECK(error_of("idle_s = -5").find("must be a whole number") != std::string::npos);
-  CHECK(error_of("idle_s = \"60\"").find("wrong type") != std::string::npos);
+  CHECK(error_of("idle_s = \"60\"").find("must be a whole number") != std::string::npos);
   CHECK(error_of("title = \"\"").find("must not be empty") != std::string::npos);
   CHECK(error_of("title = \"a\\nb\"").find("one line") != std::string::npos);
   CHECK(error_of("title = ").find("web.toml:1: ") == 0);
 }
 
 TEST_CASE("settings of the gateway come from variables and flags", "[web]") {
-  CHECK(web_flag_name("sockets_per_address") == "--sockets-per-address");
-  CHECK(web_environment_name("idle_s") == "RUNSTONE_WEB_IDLE_S");
+  CHECK(flag_name("sockets_per_address") == "--sockets-per-address");
+  CHECK(web_settings().variable("idle_s") == "RUNSTONE_WEB_IDLE_S");
   WebConfig config;
   const auto look_up = [](const std::string& name) -> std::optional<std::string> {
     if (name == "RUNSTONE_WEB_IDLE_S") return "90";
     return std::nullopt;
   };
-  REQUIRE(read_web_config_environment(config, look_up).has_value());
+  REQUIRE(web_settings().read_environment(config, look_up).has_value());
   CHECK(config.idle_s == 90);
-  CHECK_FALSE(set_web_config(config, "idle_s", "9 0").has_value());
-  CHECK_FALSE(set_web_config(config, "world", "x").has_value());
-  REQUIRE(set_web_config(config, "i_know", "true").has_value());
+  CHECK_FALSE(web_settings().set(config, "idle_s", "9 0").has_value());
+  CHECK_FALSE(web_settings().set(config, "world", "x").has_value());
+  REQUIRE(web_settings().set(config, "i_know", "true").has_value());
   CHECK(config.i_know);
-  for (const WebConfigField& field : web_config_fields()) CHECK_FALSE(field.help.empty());
+  for (const SettingField& field : web_settings().fields()) CHECK_FALSE(field.help.empty());
 }

@@ -1,0 +1,107 @@
+// SettingsTable: all settings of a program. They follow one naming rule:
+//   file         sessions_max = 64
+//   environment  RUNSTONE_SESSIONS_MAX=64    (with the program's prefix)
+//   flag         --sessions-max 64
+// The order of precedence is flag, environment, file, default. Thread: any.
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/core/assert.hpp"
+#include "common/core/result.hpp"
+#include "server/settings/setting.hpp"
+#include "server/settings/setting_names.hpp"
+
+namespace runstone {
+
+template <class Config>
+class SettingsTable {
+ public:
+  using LookUp = std::function<std::optional<std::string>(const std::string& variable)>;
+
+  /// `prefix`: of variables of the environment, such as "RUNSTONE_".
+  SettingsTable(std::string prefix, std::vector<Setting<Config>> settings)
+      : prefix_(std::move(prefix)), settings_(std::move(settings)) {}
+
+  /// Returns all settings, in the order of the table.
+  std::vector<SettingField> fields() const {
+    std::vector<SettingField> out;
+    for (const Setting<Config>& setting : settings_)
+      out.push_back({setting.name, setting.help, setting.type == SettingType::flag});
+    return out;
+  }
+  /// Returns the name of the variable of a setting, such as "RUNSTONE_SESSIONS_MAX".
+  std::string variable(const std::string& name) const { return prefix_ + upper_case(name); }
+  /// Returns the value of a setting that exists. Two values are equal if their texts are.
+  std::string text(const Config& config, const std::string& name) const {
+    const Setting<Config>* setting = find(name);
+    RUNSTONE_ASSERT(setting != nullptr);
+    return setting->print(config);
+  }
+
+  /// Sets one value from the text of a flag or variable. The error names the setting and says what
+  /// is wrong.
+  Result<void, std::string> set(Config& config, const std::string& name,
+                                const std::string& text) const {
+    const Setting<Config>* setting = find(name);
+    if (setting == nullptr) return failure(name + ": no such setting");
+    if (const auto wrong = setting->set(config, text))
+      return failure(name + " = \"" + text + "\": " + *wrong);
+    return {};
+  }
+  /// Sets the values that a TOML file names; `file` is only for messages. Fails on unknown names and
+  /// wrong values, with their line; `config` is then unchanged.
+  Result<void, TextError> read_toml(Config& config, std::string_view toml,
+                                    std::string_view file) const {
+    const auto values = read_toml_settings(toml, file);
+    if (!values) return Unexpected<TextError>{values.error()};
+    Config read = config;
+    for (const TomlSetting& value : *values) {
+      const Setting<Config>* setting = find(value.key);
+      std::optional<std::string> wrong = "no such setting";
+      if (setting != nullptr) {
+        wrong = can_be(value, setting->type) ? setting->set(read, value.text)
+                                             : type_rule(setting->type) + ": " + setting->help;
+      }
+      if (wrong) return Unexpected<TextError>{{std::string(file), value.line, value.key, *wrong}};
+    }
+    config = std::move(read);
+    return {};
+  }
+  /// Sets the values that the environment names. The error names the variable.
+  Result<void, std::string> read_environment(Config& config, const LookUp& look_up) const {
+    for (const Setting<Config>& setting : settings_) {
+      const std::string name = variable(setting.name);
+      const auto value = look_up(name);
+      if (!value) continue;
+      const auto done = set(config, setting.name, *value);
+      if (!done) return failure(name + ": " + done.error());
+    }
+    return {};
+  }
+  /// Returns all values as TOML, which read_toml() reads back to an equal configuration.
+  std::string to_toml(const Config& config) const {
+    std::string out;
+    for (const Setting<Config>& setting : settings_)
+      out += toml_line(setting.name, setting.type, setting.print(config), setting.help);
+    return out;
+  }
+
+ private:
+  const Setting<Config>* find(std::string_view name) const {
+    const auto found =
+        std::find_if(settings_.begin(), settings_.end(),
+                     [&](const Setting<Config>& setting) { return setting.name == name; });
+    return found == settings_.end() ? nullptr : &*found;
+  }
+
+  const std::string prefix_;
+  const std::vector<Setting<Config>> settings_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,35 @@
+// TOML files of settings: one line a setting, without tables. Reads their values as text, and writes
+// such lines. Which settings there are is known to SettingsTable. Thread: any.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/core/result.hpp"
+#include "common/core/text_error.hpp"
+
+namespace runstone {
+
+/// How TOML writes a value. A flag is true or false.
+enum class SettingType : std::uint8_t { number, text, flag };
+
+struct TomlSetting {
+  std::uint32_t line = 0;
+  std::string key;
+  std::optional<SettingType> type;  // nullopt: no setting has a value of this type
+  std::string text;                 // as a flag of the command line has it
+};
+/// Returns all keys of a file with their values. `file` is only for messages. Fails if it is no TOML.
+Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view toml,
+                                                               std::string_view file);
+/// Returns true if a setting of this type takes the value. A flag may also be quoted.
+bool can_be(const TomlSetting& value, SettingType wanted);
+/// Returns what a value of this type must be, such as "must be a whole number".
+std::string type_rule(SettingType type);
+/// Returns the line "name = value  # help".
+std::string toml_line(const std::string& name, SettingType type, const std::string& text,
+                      const std::string& help);
+
+}  // namespace runstone
