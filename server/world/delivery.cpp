@@ -203,11 +203,12 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
   mine->stalled_us.reset();
   world.deliveries.erase(session);
   if (!send_view_states(world, session, now)) return;
+  request_tiles(world, session, now);  // tiles show the live world, also to a session in the past
   if (mine->history) {
     deliver_history(world, session, now);
+    send_not_modified(world, session, false);
     return end_delivery(world, session, now);
   }
-  request_tiles(world, session, now);
   WorldChunks& chunks = world.authority.chunks();
   const SessionInterest& interest = *world.interest.find(session);
   std::size_t sent = 0;

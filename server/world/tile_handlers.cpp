@@ -85,11 +85,10 @@ void make_again(WorldState& world, const ChunkKey& key, const TileReceivers& rec
   world.tiles.queue.make_again(key, std::max(now.steady_us + kTileRemakeUs, due));
 }
 
-/// Returns true if those who have the tile `sent` need not get `made`, because it is the same. A tile is
-/// often made because one more session wants it.
-bool is_as_sent(const MadeTile& made, const ChunkPtr& sent) {
-  return sent != nullptr && made.is_complete() && made.tile->version == sent->version &&
-         made.tile->digest == sent->digest;
+TileState state_of(const MadeTile& made) {
+  const Chunk& tile = *made.tile;
+  const bool is_complete = made.is_complete();
+  return {tile.version, is_complete ? tile.digest : digest_of(tile.voxels), is_complete};
 }
 
 /// Records that the session has a tile.
@@ -113,6 +112,8 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
                const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (mine.tiles->status(key) == TileStatus::wanted) return;
+  // An older state that still waits to be sent must not arrive after this one.
+  std::erase_if(mine.uniform, [&key](const UniformChunk& one) { return one.key == key; });
   if (const CachedChunk* claim = mine.claims.find(key)) {
     const bool is_same = claim->version == tile->version &&
                          claim->digest == claim_digest(tile->digest) && !tile->voxels.is_uniform();
@@ -219,18 +220,20 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   const MadeTile& tile = made.back();
   charge(world, key, made, now);
   world.tiles.payers.erase(key);
+  const TileState state = state_of(tile);
   std::vector<SessionId> receivers;
+  // A tile is often made because one more session wants it: the others have it already.
   const TileReceivers* const having = world.tiles.receivers.find(key);
-  if (having != nullptr && !is_as_sent(tile, having->sent)) receivers = having->sessions;
-  world.tiles.queue.hold_changed(now.steady_us +
-                                 kTileResendUs * static_cast<TimeUs>(receivers.size()));
+  if (having != nullptr && having->state != state) receivers = having->sessions;
+  world.tiles.queue.charge_changed(now.steady_us,
+                                   kTileResendUs * static_cast<TimeUs>(receivers.size()));
   for (const SessionId session : waiting) {
     if (std::ranges::find(receivers, session) == receivers.end()) receivers.push_back(session);
   }
   for (const SessionId session : receivers) send_tile(world, session, key, tile.tile, now);
   if (TileReceivers* found = world.tiles.receivers.find(key)) {
     found->made_us = now.steady_us;
-    found->sent = tile.is_complete() ? tile.tile : nullptr;
+    found->state = state;
     if (world.environment.newest_tile_edit(key) > tile.through)
       world.tiles.queue.make_again(key, now.steady_us + kTileRetryUs);
   }

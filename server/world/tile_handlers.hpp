@@ -14,8 +14,8 @@ namespace runstone {
 
 /// The tiles of level L are made again at most once in 2^(L - 1) of these times.
 inline constexpr TimeUs kTileRemakeUs = 1'000'000;
-/// After a changed tile was sent to n sessions, no other changed one is made for n of these times. So
-/// the edits of a crowd make the server send at most 5,000 tiles a second again.
+/// What a changed tile costs for each session that gets it (TileQueue::charge_changed()). So the edits
+/// of a crowd make the server send about 5,000 tiles a second again.
 inline constexpr TimeUs kTileResendUs = 200;
 /// After this time a tile is tried again that could not be made, or that lacks edits of chunks that
 /// are not in memory.

@@ -24,6 +24,8 @@ namespace runstone {
 
 /// Tiles that a session may wait for at a time.
 inline constexpr std::size_t kTilesWaitingMax = 32;
+/// What charge_changed() may save: the time of a tick, so that no time is lost between two of them.
+inline constexpr TimeUs kChangedBurstUs = 50'000;
 
 class TileQueue {
  public:
@@ -31,8 +33,11 @@ class TileQueue {
   void want(const ChunkKey& key, SessionId session);
   /// Makes the tile due at this time, unless it is due before.
   void make_again(const ChunkKey& key, TimeUs due_us);
-  /// Returns no changed tile before this time, unless somebody waits for it.
-  void hold_changed(TimeUs until_us) { changed_from_us_ = std::max(changed_from_us_, until_us); }
+  /// Charges changed tiles for this time. While they owe more time than has passed, next() returns
+  /// none of them. At most kChangedBurstUs of passed time are saved.
+  void charge_changed(TimeUs now_us, TimeUs cost_us) {
+    changed_from_us_ = std::max(changed_from_us_, now_us - kChangedBurstUs) + cost_us;
+  }
   /// Removes a session that waits for a tile. If nobody waits any more, the tile is not made for it.
   void cancel(const ChunkKey& key, SessionId session);
   /// Removes a tile that is to be made again, because no session has it any more.
@@ -44,8 +49,8 @@ class TileQueue {
   /// Ends a tile that next() returned. Returns the sessions that wait for it, in the order of their
   /// requests. They wait no longer.
   std::vector<SessionId> finished(const ChunkKey& key);
-  /// Ends a tile that next() returned and that could not be made. It is due again at this time; the
-  /// sessions go on waiting.
+  /// Ends a tile that next() returned and that could not be made. It is due again at this time, like a
+  /// changed one; the sessions go on waiting.
   void failed(const ChunkKey& key, TimeUs due_us);
 
   /// Ends the turn of a tile that next() returned. The sessions go on waiting; if there are none, it is

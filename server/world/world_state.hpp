@@ -51,15 +51,24 @@ struct ListedEntry {
   friend bool operator==(const ListedEntry&, const ListedEntry&) = default;
 };
 
+/// What tells two states of a tile apart.
+struct TileState {
+  Version version;
+  Digest digest;             // of the voxels
+  bool is_complete = false;  // MadeTile::is_complete()
+  friend bool operator==(const TileState&, const TileState&) = default;
+};
+
 /// The sessions that have a tile.
 struct TileReceivers {
   std::vector<SessionId> sessions;  // ascending
   std::optional<TimeUs> made_us;    // when it was made last
-  ChunkPtr sent;                    // the tile that all of them have; null: none, or it lacks edits
+  /// The state in which it was made last. All of them have it, or one that they claimed.
+  std::optional<TileState> state;
 };
 
 /// Tiles (tile_handlers.hpp).
-struct TileState {
+struct WorldTiles {
   TileQueue queue;
   std::map<ChunkKey, Payer> payers;       // of the tiles that workers make because a session waits
   ChunkHashMap<TileReceivers> receivers;  // no entry is without sessions for long
@@ -93,7 +102,7 @@ struct WorldState {
   RecentRefusals refusals;
   ChatState chat;
   LargeEditPace large_edits;
-  TileState tiles;
+  WorldTiles tiles;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
   std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
   WorldCounters counters;

@@ -123,8 +123,10 @@ class FakeEnvironment : public WorldEnvironment {
   void make_tile(TileRequest request) override { tile_requests.push_back(std::move(request)); }
   void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override {
     for (const ChunkKey& chunk : chunks) {
-      for (std::uint8_t level = 1; level <= kTileLevelMax; ++level)
-        tile_edits[tile_of(chunk.at, level)] = seq;
+      for (std::uint8_t level = 1; level <= kTileLevelMax; ++level) {
+        Sequence& newest = tile_edits[tile_of(chunk.at, level)];
+        newest = std::max(newest, seq);
+      }
     }
   }
   Sequence newest_tile_edit(const ChunkKey& tile) const override {

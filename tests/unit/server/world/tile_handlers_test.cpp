@@ -2,9 +2,42 @@
 
 #include <set>
 
+#include "common/runs/run_chunk.hpp"
 #include "tests/unit/server/world/tile_bench.hpp"
 
 namespace runstone::test {
+namespace {
+
+const ChunkKey kAbove{3, {0, 1, 0}};  // a tile of TileBench without ground
+
+/// Returns a tile with this version, a voxel of which is of `material`.
+MadeTile with_voxel(const ChunkKey& key, Version version, Material material, Sequence through) {
+  Chunk tile = dotted_chunk(kEdge);
+  fill(tile.voxels, 0, 1, material);
+  tile.version = version;
+  tile.digest = digest_of(tile.voxels);
+  return {key, std::make_shared<const Chunk>(std::move(tile)), through};
+}
+
+/// Answers all requests without letting time pass, and returns them. The request for the tile of
+/// `special` is answered by that tile.
+std::vector<TileRequest> answer_at_once(TileBench& bench,
+                                        const std::optional<MadeTile>& special = std::nullopt) {
+  std::vector<TileRequest> out;
+  std::deque<TileRequest>& requests = bench.environment.tile_requests;
+  while (!requests.empty()) {
+    out.push_back(requests.front());
+    requests.pop_front();
+    if (special && out.back().key == special->key) {
+      bench.server.tiles_made(special->key, {*special}, bench.now());
+    } else {
+      bench.answer(out.back());
+    }
+  }
+  return out;
+}
+
+}  // namespace
 
 TEST_CASE("a session gets the tiles of its view, coarse ones first, and nothing below empty ones") {
   TileBench bench;
@@ -70,6 +103,64 @@ TEST_CASE("a tile that one more session wants is not sent again to those who hav
   CHECK(bench.answer_tiles().size() == before);
   CHECK(bench.tiles_of(2).size() == before);
   CHECK(bench.tiles_of(1).size() == before);
+}
+
+TEST_CASE("those who have a tile get it again if anything of it has changed") {
+  TileBench bench;
+  const ChunkKey key{1, {}};
+  SessionId newcomer = 1;
+  bench.enter(newcomer);
+  bench.answer_tiles();
+  // Each newcomer makes the tile be made once more. Returns how often session 1 got it then.
+  const auto sent_for = [&](const MadeTile& tile) {
+    const std::size_t before = bench.tiles_of(1).count(key);
+    bench.enter(++newcomer);
+    answer_at_once(bench, tile);
+    bench.tick();
+    return bench.tiles_of(1).count(key) - before;
+  };
+  CHECK(sent_for(with_voxel(key, {}, 2, 0)) == 1);
+  CHECK(sent_for(with_voxel(key, {}, 2, 0)) == 0);
+  CHECK(sent_for(with_voxel(key, {}, 3, 0)) == 1);      // other voxels
+  CHECK(sent_for(with_voxel(key, {1, 5}, 3, 5)) == 1);  // a newer version
+  CHECK(sent_for(with_voxel(key, {1, 5}, 3, 4)) == 1);  // it may lack edits
+  CHECK(sent_for(with_voxel(key, {1, 5}, 3, 4)) == 0);
+  CHECK(sent_for(with_voxel(key, {1, 5}, 3, 5)) == 1);  // it is complete
+}
+
+TEST_CASE("an older state of a tile that waits to be sent is not sent after a newer one") {
+  TileBench bench;
+  bench.enter(1);
+  bench.join(2, 2, 1, {}, kFeatureTiles);
+  const MadeTile newer = with_voxel(kAbove, {1, 1}, 2, 1);
+  answer_at_once(bench);  // the tile is uniform, so it waits for others
+  REQUIRE(bench.tiles_of(1).count(kAbove) == 0);
+  View v;
+  v.radius_h = 2;
+  v.radius_v = 1;
+  v.levels = 3;
+  bench.send_view(2, v);
+  answer_at_once(bench, newer);
+  bench.tick();
+  CHECK(bench.tiles_of(1).count(kAbove) == 1);
+  const auto& snapshots = bench.environment.snapshots;
+  CHECK(std::ranges::any_of(snapshots, [&](const auto& sent) {
+    return sent.session == 1 && sent.key == kAbove && sent.chunk == newer.tile;
+  }));
+}
+
+TEST_CASE("a lone player's changed tiles are all made as soon as they are due") {
+  TileBench bench;
+  bench.enter(1);
+  bench.answer_tiles();
+  // More tiles than are made at a time.
+  ClientSequence seq = 0;
+  for (const auto& [x, z] : {std::pair{-1, -1}, {0, 0}, {-1, 0}, {0, -1}, {2, 0}, {0, 2}})
+    bench.edit(1, ++seq, SetVoxel{{x * kEdge, 1, z * kEdge}});
+  bench.tick();
+  bench.tick(kTileRemakeUs);
+  const std::vector<TileRequest> made = answer_at_once(bench);
+  CHECK(std::ranges::count_if(made, [](const auto& one) { return one.key.lod == 1; }) == 6);
 }
 
 TEST_CASE("a tile that is edited while it is made is made once more and not saved") {
@@ -191,6 +282,46 @@ TEST_CASE("a session that leaves while a tile waits for its full queue gets no t
     bench.answer_tiles();
   }
   CHECK(bench.tiles_of(1).size() == before);
+}
+
+TEST_CASE("a session whose queue was full gets the newest tile when it has room again") {
+  TileBench bench;
+  bench.enter(1);
+  bench.enter(2);
+  bench.answer_tiles();
+  const ChunkKey key{3, {}};
+  const std::size_t before = bench.tiles_of(1).count(key);
+  bench.environment.snapshot_room[1] = 0;
+  for (ClientSequence seq = 1; seq <= 2; ++seq) {
+    bench.edit(2, seq, SetVoxel{{1, static_cast<std::int32_t>(seq), 1}});
+    for (int n = 0; n < 5; ++n) {
+      bench.tick(kTileRemakeUs);
+      bench.answer_tiles();
+    }
+  }
+  CHECK(bench.tiles_of(1).count(key) == before);
+  bench.environment.snapshot_room.clear();
+  bench.server.drained(1, bench.now());
+  bench.answer_tiles();
+  REQUIRE(bench.tiles_of(1).count(key) == before + 1);
+  Sequence newest = 0;
+  for (const auto& sent : bench.environment.snapshots) {
+    if (sent.session == 1 && sent.key == key) newest = sent.chunk->version.seq;
+  }
+  CHECK(newest == 2);
+}
+
+TEST_CASE("a session that sees the past gets the tiles of its view as they are") {
+  TileBench bench;
+  bench.enter(1);
+  bench.answer_tiles();
+  bench.server.received(1, HistoryRequest{1, HistoryTarget::sequence, 0, 0}, bench.now());
+  bench.tick(1'000'000);
+  REQUIRE(bench.environment.history_requests.size() == 1);
+  bench.server.history_opened(1, 1, OpenedHistory{0, 0}, bench.now());
+  bench.look(1, 3, {100, 0, 0});
+  bench.answer_tiles();
+  CHECK(bench.tiles_of(1).count({3, {12, 0, 0}}) == 1);
 }
 
 TEST_CASE("a session that leaves or moves away makes no work any more") {

@@ -25,15 +25,27 @@ TEST_CASE("the coarsest tile is made first, then the earliest request") {
   CHECK(queue.in_flight() == 2);
 }
 
-TEST_CASE("changed tiles are held, those that sessions wait for are not") {
+TEST_CASE("changed tiles are held while they owe time, those that sessions wait for are not") {
   TileQueue queue;
   queue.make_again(kFine, 0);
-  queue.hold_changed(500);
-  queue.hold_changed(400);  // the longer time counts
+  queue.charge_changed(0, 300);
+  queue.charge_changed(0, 200);  // the costs add up
   CHECK_FALSE(queue.next(499, kAll).has_value());
   queue.want(kCoarse, 1);
   CHECK(queue.next(499, kAll) == kCoarse);
   CHECK(queue.next(500, kAll) == kFine);
+}
+
+TEST_CASE("changed tiles save the time of a tick and not more") {
+  TileQueue queue;
+  const TimeUs now = 10 * kChangedBurstUs;
+  queue.make_again(kFine, 0);
+  queue.make_again(kFine2, 0);
+  queue.charge_changed(now, kChangedBurstUs);
+  CHECK(queue.next(now, kAll) == kFine);
+  queue.charge_changed(now, 1);
+  CHECK_FALSE(queue.next(now, kAll).has_value());
+  CHECK(queue.next(now + 1, kAll) == kFine2);
 }
 
 TEST_CASE("changed tiles come after those that sessions wait for, the longest due first") {
