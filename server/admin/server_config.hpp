@@ -1,10 +1,6 @@
-// ServerConfig: every setting of the server with its default, unit and range. All settings follow
-// one naming rule:
-//   file         sessions_max = 64
-//   environment  RUNSTONE_SESSIONS_MAX=64
-//   flag         --sessions-max 64
-// The order of precedence is flag, environment, file, default. Values are checked when they are
-// set, so a ServerConfig is always valid. It is read once and passed on by const reference.
+// ServerConfig: every setting of the server with its default, unit and range. Their names and their
+// precedence follow the rule of SettingsTable, with the prefix RUNSTONE_. Values are checked when they
+// are set, so a ServerConfig is always valid. It is read once and passed on by const reference.
 // docs/server-reference.md describes the settings.
 #pragma once
 #include <cstdint>

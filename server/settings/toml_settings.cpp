@@ -49,7 +49,8 @@ std::string toml_line(const std::string& name, SettingType type, const std::stri
   if (type == SettingType::text) {
     std::ostringstream quoted;
     const toml::value<std::string> node(text);
-    quoted << toml::toml_formatter(node, toml::format_flags::none);  // in double quotes
+    // In double quotes. Texts of other scripts are printed as they are.
+    quoted << toml::toml_formatter(node, toml::format_flags::allow_unicode_strings);
     value = quoted.str();
   }
   return name + " = " + value + "  # " + help + "\n";
