@@ -48,7 +48,7 @@ WebConnection::WebConnection(WebState& state, std::uint64_t id, WebStream::Socke
   ++state_.counters.connections_open;
   boost::system::error_code ignored;
   stream_.next_layer().set_option(boost::asio::ip::tcp::no_delay(true), ignored);
-  // Without this option edits wait longer behind terrain, which is no fault.
+  // If the call fails, edits wait longer behind terrain. Nothing else changes.
   (void)::setsockopt(stream_.next_layer().native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT,
                      &kNotSentBytes, sizeof kNotSentBytes);
 }

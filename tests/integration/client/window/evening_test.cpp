@@ -108,8 +108,8 @@ TEST_CASE("an evening: a local world, every tool, copy and paste, undo, a guest 
     return std::abs(now[0] - before[0]) + std::abs(now[2] - before[2]) > 1;
   }));
 
-  // It flies so high that no tool here builds up to its eye: in stone it could not aim. It looks
-  // down at the ground ahead.
+  // It flies so high that no tool here builds up to its eye: if the eye is inside stone, a click has
+  // no target. It looks down at the ground ahead.
   evening.press({"f"});
   REQUIRE(wait_for(kWait, [&] {
     evening.hold("space", std::chrono::milliseconds(200));
