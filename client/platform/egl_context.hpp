@@ -1,4 +1,4 @@
-// OpenGL without a display server, through EGL's surfaceless platform (Mesa).
+// OpenGL and OpenGL ES without a display server, through EGL's surfaceless platform (Mesa).
 #pragma once
 #include <memory>
 #include <string>
@@ -7,7 +7,9 @@
 
 namespace runstone {
 
-/// Returns null on failure and appends the reason to `tried`.
+/// Return a context of OpenGL 4.5 or 3.3 core, and one of OpenGL ES 3.0 or newer. On failure they
+/// return null and append the reason to `tried`.
 std::unique_ptr<GlContext> make_egl_surfaceless_context(std::string& tried);
+std::unique_ptr<GlContext> make_egl_surfaceless_es_context(std::string& tried);
 
 }  // namespace runstone

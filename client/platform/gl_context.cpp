@@ -11,6 +11,7 @@ std::unique_ptr<GlContext> make_headless_context() {
   std::string tried;
   if (auto context = make_egl_surfaceless_context(tried)) return context;
   if (auto context = make_osmesa_context(tried)) return context;
+  if (auto context = make_egl_surfaceless_es_context(tried)) return context;
   throw std::runtime_error("no headless OpenGL context: " + tried);
 }
 

@@ -141,7 +141,10 @@ class WindowContext final : public GlContext {
   ~WindowContext() override { glfwMakeContextCurrent(nullptr); }
 
   Loader loader() const override { return &glfwGetProcAddress; }
-  const char* name() const override { return "GLFW"; }
+  const char* name() const override {
+    const bool is_es = glfwGetWindowAttrib(window_, GLFW_CLIENT_API) == GLFW_OPENGL_ES_API;
+    return is_es ? "GLFW, OpenGL ES" : "GLFW";
+  }
   bool is_window() const override { return true; }
   void swap() override { glfwSwapBuffers(window_); }
 
@@ -156,19 +159,28 @@ Window::Window(int width, int height, const std::string& title)
   if (glfwInit() != GLFW_TRUE)
     throw std::runtime_error("no window: no display is reached (" + glfw_error_text() +
                              "); --headless needs none");
-  constexpr std::array<std::array<int, 2>, 2> kVersions = {{{4, 5}, {3, 3}}};
-  for (const auto& [major, minor] : kVersions) {
+  struct Version {
+    int api, profile, major, minor;
+  };
+  constexpr std::array<Version, 3> kVersions = {{
+      {GLFW_OPENGL_API, GLFW_OPENGL_CORE_PROFILE, 4, 5},
+      {GLFW_OPENGL_API, GLFW_OPENGL_CORE_PROFILE, 3, 3},
+      {GLFW_OPENGL_ES_API, GLFW_OPENGL_ANY_PROFILE, 3, 0},
+  }};
+  for (const auto& [client_api, profile, major, minor] : kVersions) {
+    glfwWindowHint(GLFW_CLIENT_API, client_api);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, profile);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, major);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, minor);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     state_->window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
     if (state_->window != nullptr) break;
   }
   if (state_->window == nullptr) {
     const std::string text = glfw_error_text();
     glfwTerminate();
-    throw std::runtime_error("no window: OpenGL 3.3 is needed, and this display has none (" + text +
-                             ")");
+    throw std::runtime_error(
+        "no window: OpenGL 3.3 or OpenGL ES 3.0 is needed, and this display has neither (" + text +
+        ")");
   }
   glfwSetWindowUserPointer(state_->window, state_.get());
   glfwSetMouseButtonCallback(state_->window, [](GLFWwindow* w, int button, int action, int) {

@@ -19,8 +19,8 @@ struct WindowEvents {
 
 class Window {
  public:
-  /// Throws std::runtime_error with GLFW's error text if there is no display or no 4.5 or 3.3 core
-  /// context.
+  /// Throws std::runtime_error with GLFW's error text if there is no display, or no context of
+  /// OpenGL 4.5 or 3.3 core or OpenGL ES 3.0.
   Window(int width, int height, const std::string& title);
   /// Requires that the window's context has been destroyed.
   ~Window();

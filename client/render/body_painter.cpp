@@ -12,7 +12,6 @@ namespace {
 
 /// The vertex number gives the corner: six faces of two triangles.
 constexpr const char* kBodyVertexShader =
-    "#version 330 core\n"
     "uniform mat4 clip;\n"
     "uniform mat4 model;\n"  // eye-relative space from the unit cube
     "out vec3 relative;\n"
@@ -37,7 +36,6 @@ constexpr const char* kBodyVertexShader =
     "}\n";
 
 constexpr const char* kBodyFragmentShader =
-    "#version 330 core\n"
     "in vec3 relative;\n"
     "flat in vec3 normal;\n"
     "uniform vec3 colour;\n"  // linear

@@ -3,6 +3,13 @@
 #include <glm/ext/matrix_clip_space.hpp>
 
 namespace runstone {
+namespace {
+
+void clear_depth_to(float depth) {
+  is_gl_es() ? glClearDepthf(depth) : glClearDepth(static_cast<double>(depth));
+}
+
+}  // namespace
 
 glm::mat4 DepthRange::projection(double fov_y, double aspect) const {
   return is_reversed_ ? glm::mat4(glm::perspectiveRH_ZO(fov_y, aspect, far_, near_))
@@ -10,15 +17,15 @@ glm::mat4 DepthRange::projection(double fov_y, double aspect) const {
 }
 
 void DepthRange::use() const {
-  if (is_reversed_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  if (is_reversed_) clip_control()(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthFunc(nearer());
-  glClearDepth(is_reversed_ ? 0 : 1);
+  clear_depth_to(is_reversed_ ? 0 : 1);
 }
 
 void DepthRange::reset() {
-  if (glad_glClipControl != nullptr) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  if (const auto set = clip_control()) set(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   glDepthFunc(GL_LESS);
-  glClearDepth(1);
+  clear_depth_to(1);
 }
 
 void DepthRange::pull_polygons() const {

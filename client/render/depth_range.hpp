@@ -1,11 +1,11 @@
 // DepthRange: how the distances of a frame become depths. A floating-point number is finest near 0,
 // so depth is reversed: 1 at the near plane and 0 at the far plane. Two faces a voxel apart then
 // differ in depth up to 32,768 voxels away. Source: Reed, "Depth Precision Visualized", 2015.
-// OpenGL before 4.5 cannot map depth that way; there depth is 0 at the near plane, as usual.
+// Where OpenGL cannot map depth that way (clip_control()), depth is 0 at the near plane, as usual.
 #pragma once
-#include <glad/gl.h>
-
 #include <glm/glm.hpp>
+
+#include "client/render/gl_functions.hpp"
 
 namespace runstone {
 
@@ -13,7 +13,7 @@ class DepthRange {
  public:
   /// The distances of the planes are in voxels, 0 < near < far. Requires a current context.
   DepthRange(double near, double far)
-      : near_(near), far_(far), is_reversed_(glad_glClipControl != nullptr) {}
+      : near_(near), far_(far), is_reversed_(clip_control() != nullptr) {}
 
   bool is_reversed() const { return is_reversed_; }
 

@@ -1,5 +1,6 @@
 #include "client/render/gl_handle.hpp"
 
+#include <array>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -7,9 +8,20 @@
 namespace runstone {
 namespace {
 
+constexpr const char* kHeader = "#version 330 core\n";
+constexpr const char* kHeaderOfEs =
+    "#version 300 es\n"
+    "precision highp float;\n"
+    "precision highp int;\n"
+    "precision highp sampler2D;\n"
+    "precision highp sampler3D;\n"
+    "precision highp usampler2D;\n"
+    "precision highp sampler2DArrayShadow;\n";
+
 GLuint compile(const char* name, GLenum type, const char* source) {
   const GLuint shader = glCreateShader(type);
-  glShaderSource(shader, 1, &source, nullptr);
+  const std::array<const char*, 2> parts = {is_gl_es() ? kHeaderOfEs : kHeader, source};
+  glShaderSource(shader, 2, parts.data(), nullptr);
   glCompileShader(shader);
   GLint ok = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);

@@ -1,9 +1,9 @@
 // GlHandle: a move-only owner of a GL name. Thread: the GL thread, with the context current, also
 // for destruction.
 #pragma once
-#include <glad/gl.h>
-
 #include <utility>
+
+#include "client/render/gl_functions.hpp"
 
 namespace runstone {
 
@@ -82,8 +82,9 @@ using GlFramebuffer = GlHandle<GlFramebufferTraits>;
 using GlRenderbuffer = GlHandle<GlRenderbufferTraits>;
 using GlProgram = GlHandle<GlProgramTraits>;
 
-/// Compiles and links a program. Throws std::runtime_error with `name` and the driver's log on
-/// failure.
+/// Compiles and links a program. The sources have no #version: they are GLSL 3.30, or GLSL ES 3.00
+/// with high precision if the context is one of OpenGL ES, where GL_ES is defined. Throws
+/// std::runtime_error with `name` and the driver's log on failure.
 GlProgram link_program(const char* name, const char* vertex_source, const char* fragment_source);
 
 }  // namespace runstone

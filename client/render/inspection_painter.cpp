@@ -5,6 +5,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "client/render/quad_glsl.hpp"
+#include "client/render/texel_store.hpp"
 
 namespace runstone {
 namespace {
@@ -12,8 +13,7 @@ namespace {
 constexpr GLint kInspectedQuadUnit = 0, kRunStartUnit = 1;
 constexpr std::uint32_t kRunWordsAtFirst = 1U << 16;
 
-constexpr const char* kInspectionVertexShader =
-    "#version 330 core\n" RUNSTONE_QUAD_GLSL
+constexpr const char* kInspectionVertexShader = RUNSTONE_QUAD_GLSL
     "uniform mat4 clip;\n"
     "uniform vec3 origin;\n"  // of the chunk, minus eye
     "out vec3 local;\n"       // the middle of the face's voxel, in the chunk
@@ -29,18 +29,17 @@ constexpr const char* kInspectionVertexShader =
     "}\n";
 
 constexpr const char* kInspectionFragmentShader =
-    "#version 330 core\n"
     "in vec3 local;\n"
     "in vec2 side;\n"
     "flat in vec3 normal;\n"
     "uniform float wireframe, flash;\n"  // 0: not shown
     "uniform vec4 tint;\n"               // of the axis order, and its share
     "uniform uvec4 layers[3];\n"         // bit i of axis a: layer i flashes
-    "uniform usamplerBuffer run_starts;\n"
+    "uniform usampler2D run_starts;\n"
     "uniform int first_word;\n"  // of the chunk in run_starts; negative: not shown
     "uniform int edge;\n"
     "uniform ivec3 fast, middle, slow;\n"  // unit vectors of the axis order
-    "out vec4 fragment;\n"
+    "out vec4 fragment;\n" RUNSTONE_TEXEL_GLSL
     "void lay(vec3 colour, float alpha) {\n"
     "  fragment = vec4(colour * alpha, alpha) + fragment * (1.0 - alpha);\n"
     "}\n"
@@ -54,7 +53,8 @@ constexpr const char* kInspectionFragmentShader =
     // The end of the chunk ends a run.
     "bool run_starts_at(int i) {\n"
     "  if (i >= edge * edge * edge) return true;\n"
-    "  return ((texelFetch(run_starts, first_word + (i >> 5)).x >> (i & 31)) & 1u) != 0u;\n"
+    "  return ((texelFetch(run_starts, texel_place(first_word + (i >> 5)), 0).x >> (i & 31)) &\n"
+    "          1u) != 0u;\n"
     "}\n"
     "void main() {\n"
     "  fragment = vec4(0.0);\n"
@@ -106,7 +106,7 @@ auto row_of(const Rows& rows, const ChunkKey& key) {
 
 InspectionPainter::InspectionPainter()
     : program_(link_program("inspection", kInspectionVertexShader, kInspectionFragmentShader)),
-      bits_(GL_R32UI, sizeof(std::uint32_t), kRunWordsAtFirst) {}
+      bits_(TexelFormat::r32, kRunWordsAtFirst) {}
 
 void InspectionPainter::upload(const InspectedChunk& chunk, Bits& bits) {
   if (bits.words != 0) bits_.remove(bits.first, bits.words);
@@ -150,9 +150,9 @@ void InspectionPainter::begin(const Inspection& inspection, const glm::mat4& cli
   glUniformMatrix4fv(at("clip"), 1, GL_FALSE, glm::value_ptr(clip));
   glUniform1f(at("wireframe"), inspection.modes[InspectionMode::wireframe] ? 1.0F : 0.0F);
   glActiveTexture(GL_TEXTURE0 + kRunStartUnit);
-  glBindTexture(GL_TEXTURE_BUFFER, bits_.texture());
+  glBindTexture(GL_TEXTURE_2D, bits_.texture());
   glUniform1i(at("run_starts"), kRunStartUnit);
-  quads.bind(program_, kInspectedQuadUnit);
+  first_vertex_ = quads.bind(program_, kInspectedQuadUnit);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
   glDepthFunc(depth.not_farther());

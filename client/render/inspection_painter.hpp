@@ -27,6 +27,8 @@ class InspectionPainter {
   /// Sets the chunk whose quads are drawn next. `origin` is relative to the eye, `edge` in voxels.
   /// Returns false if nothing is shown of it.
   bool place(const ChunkKey& key, const glm::vec3& origin, std::int32_t edge);
+  /// Returns what QuadBuffer::draw() takes. Valid after begin().
+  GLint first_vertex() const { return first_vertex_; }
   static void end(const DepthRange& depth);
 
   static constexpr int kUploadsMax = 16;
@@ -44,6 +46,7 @@ class InspectionPainter {
   GLint at(const char* uniform) const { return glGetUniformLocation(program_.get(), uniform); }
 
   GlProgram program_;
+  GLint first_vertex_ = -1;
   TexelStore bits_;
   std::map<ChunkKey, Bits> chunks_;
   const Inspection* shown_ = nullptr;  // during a pass

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <glm/gtc/type_ptr.hpp>
 
 namespace runstone {
 namespace {
 
-/// Red lies in the lowest bits, as in LightLevels.
-constexpr GLenum kTexelType = GL_UNSIGNED_INT_8_8_8_8_REV;
+/// Red lies in the lowest bits of LightLevels, so it is the first byte.
+constexpr GLenum kTexelType = GL_UNSIGNED_BYTE;
+static_assert(std::endian::native == std::endian::little);
 
 /// A stretch of a box that does not pass the end of the ring: its first coordinate in the ring and
 /// its length.

@@ -20,7 +20,6 @@ constexpr std::array<std::uint8_t, kCubeVertices> kFaces = {0, 4, 6, 0, 6, 2, 1,
                                                             0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
 
 constexpr const char* kMarkerVertexShader =
-    "#version 330 core\n"
     "layout(location = 0) in vec3 corner;\n"
     "uniform mat4 clip;\n"
     "uniform vec3 origin;\n"
@@ -28,7 +27,6 @@ constexpr const char* kMarkerVertexShader =
     "void main() { gl_Position = clip * vec4(origin + corner * size, 1.0); }\n";
 
 constexpr const char* kMarkerFragmentShader =
-    "#version 330 core\n"
     "uniform vec4 colour;\n"
     "out vec4 fragment;\n"
     "void main() { fragment = colour; }\n";

@@ -4,13 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace runstone {
 namespace {
 
 constexpr const char* kVertexShader =
-    "#version 330 core\n"
     "layout(location = 0) in vec2 position;\n"
     "layout(location = 1) in vec2 place;\n"
     "layout(location = 2) in vec4 colour;\n"
@@ -25,7 +26,6 @@ constexpr const char* kVertexShader =
     "}\n";
 
 constexpr const char* kFragmentShader =
-    "#version 330 core\n"
     "in vec2 texel;\n"
     "in vec4 tint;\n"
     "uniform sampler2D picture;\n"
@@ -33,6 +33,18 @@ constexpr const char* kFragmentShader =
     "void main() { fragment = tint * texture(picture, texel); }\n";
 
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+
+/// Makes `first` the vertex of index 0. OpenGL ES 3.0 has no draw call that does so.
+void begin_vertices_at(std::uint32_t first) {
+  constexpr GLsizei kStride = sizeof(OverlayVertex);
+  const auto at = [first](std::size_t member) {
+    return offset(first * sizeof(OverlayVertex) + member);
+  };
+  glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kStride, at(offsetof(OverlayVertex, x)));
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, kStride, at(offsetof(OverlayVertex, u)));
+  glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride,
+                        at(offsetof(OverlayVertex, colour)));
+}
 
 /// Sets the scissor rectangle of a command. Returns false if it has no pixels.
 bool clip_to(const OverlayCommand& command, double scale_x, double scale_y, int width, int height) {
@@ -59,14 +71,7 @@ OverlayPainter::OverlayPainter()
   glBindVertexArray(array_.get());
   glBindBuffer(GL_ARRAY_BUFFER, vertices_.get());
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.get());
-  constexpr GLsizei kStride = sizeof(OverlayVertex);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(OverlayVertex, x)));
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(OverlayVertex, u)));
-  glEnableVertexAttribArray(2);
-  glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride,
-                        offset(offsetof(OverlayVertex, colour)));
+  for (const GLuint attribute : {0U, 1U, 2U}) glEnableVertexAttribArray(attribute);
   glBindVertexArray(0);
 }
 
@@ -74,15 +79,15 @@ void OverlayPainter::upload_atlas(const std::shared_ptr<const OverlayAtlas>& atl
   glBindTexture(GL_TEXTURE_2D, glyphs_.get());
   if (atlas == atlas_) return;
   atlas_ = atlas;
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, atlas->width, atlas->height, 0, GL_RED, GL_UNSIGNED_BYTE,
-               atlas->coverage.data());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  // The coverage of a glyph is its alpha, and its colour is white.
+  std::vector<std::uint8_t> texels;
+  texels.reserve(4 * atlas->coverage.size());
+  for (const std::uint8_t coverage : atlas->coverage)
+    texels.insert(texels.end(), {255, 255, 255, coverage});
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, atlas->width, atlas->height, 0, GL_RGBA,
+               GL_UNSIGNED_BYTE, texels.data());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  // The coverage of a glyph is its alpha, and its colour is white.
-  constexpr std::array<GLint, 4> kSwizzle = {GL_ONE, GL_ONE, GL_ONE, GL_RED};
-  glTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, kSwizzle.data());
 }
 
 void OverlayPainter::upload_images(const OverlayFrame& frame) {
@@ -130,14 +135,16 @@ void OverlayPainter::draw(const OverlayFrame& frame, int width, int height) {
   glEnable(GL_SCISSOR_TEST);
   const double scale_x = static_cast<double>(width) / frame.width;
   const double scale_y = static_cast<double>(height) / frame.height;
+  std::optional<std::uint32_t> first_vertex;
   for (const OverlayCommand& command : frame.commands) {
     if (!clip_to(command, scale_x, scale_y, width, height)) continue;
     glBindTexture(GL_TEXTURE_2D, command.image == 0
                                      ? glyphs_.get()
                                      : images_.at(frame.images[command.image - 1]).get());
-    glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.index_count),
-                             GL_UNSIGNED_SHORT, offset(command.first_index * sizeof(std::uint16_t)),
-                             static_cast<GLint>(command.first_vertex));
+    if (first_vertex != command.first_vertex) begin_vertices_at(command.first_vertex);
+    first_vertex = command.first_vertex;
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(command.index_count), GL_UNSIGNED_SHORT,
+                   offset(command.first_index * sizeof(std::uint16_t)));
   }
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);

@@ -12,7 +12,7 @@ constexpr std::uint32_t kQuadsAtFirst = 1U << 17;
 }  // namespace
 
 QuadBuffer::QuadBuffer()
-    : store_(GL_RG32UI, sizeof(Quad), kQuadsAtFirst),
+    : store_(TexelFormat::rg32, kQuadsAtFirst),
       array_(GlVertexArray::make()),
       indices_(GlBuffer::make()) {
   std::vector<std::uint16_t> indices;
@@ -33,14 +33,15 @@ std::uint32_t QuadBuffer::add(std::span<const Quad> quads) {
   return store_.add(quads.data(), static_cast<std::uint32_t>(quads.size()));
 }
 
-void QuadBuffer::bind(const GlProgram& program, GLint unit) const {
+GLint QuadBuffer::bind(const GlProgram& program, GLint unit) const {
   glBindVertexArray(array_.get());
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_BUFFER, store_.texture());
+  glBindTexture(GL_TEXTURE_2D, store_.texture());
   glUniform1i(glGetUniformLocation(program.get(), "quads"), unit);
+  return glGetUniformLocation(program.get(), "first_vertex");
 }
 
-void QuadBuffer::draw(std::span<const QuadSpan> spans) {
+void QuadBuffer::draw(std::span<const QuadSpan> spans, GLint first_vertex) {
   counts_.clear();
   bases_.clear();
   for (const QuadSpan& span : spans) {
@@ -50,6 +51,13 @@ void QuadBuffer::draw(std::span<const QuadSpan> spans) {
     }
   }
   if (counts_.empty()) return;
+  if (is_gl_es()) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+      glUniform1i(first_vertex, bases_[i]);
+      glDrawElements(GL_TRIANGLES, counts_[i], GL_UNSIGNED_SHORT, nullptr);
+    }
+    return;
+  }
   offsets_.assign(counts_.size(), nullptr);
   glMultiDrawElementsBaseVertex(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_SHORT, offsets_.data(),
                                 static_cast<GLsizei>(counts_.size()), bases_.data());

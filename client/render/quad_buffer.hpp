@@ -1,7 +1,7 @@
 // QuadBuffer: the quads of all chunks in one buffer on the GPU, and the calls that draw spans of
-// it. A vertex shader reads the quads as a buffer texture (quad_glsl.hpp). So spans of any chunks
-// are drawn by one call, and OpenGL 3.3, which has no base instance, suffices. Thread: the GL
-// thread.
+// it. A vertex shader reads the quads from a texture (quad_glsl.hpp). So spans of any chunks are
+// drawn by one call, and OpenGL 3.3, which has no base instance, suffices. OpenGL ES takes a call
+// for each span. Thread: the GL thread.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -23,9 +23,10 @@ class QuadBuffer {
     if (span.count != 0) store_.remove(span.first, span.count);
   }
   /// Binds quads and indices, and sets the uniform `quads`. Requires that the program is in use.
-  void bind(const GlProgram& program, GLint unit) const;
-  /// Draws the spans in their order with one call. Requires bind() before.
-  void draw(std::span<const QuadSpan> spans);
+  /// Returns the location of its uniform `first_vertex`, -1 in OpenGL, which draw() takes.
+  GLint bind(const GlProgram& program, GLint unit) const;
+  /// Draws the spans in their order. Requires bind() before, and that its program is in use.
+  void draw(std::span<const QuadSpan> spans, GLint first_vertex);
   std::uint64_t used_bytes() const { return store_.used_bytes(); }
 
  private:

@@ -37,9 +37,7 @@ glm::mat4 clip_of(const Camera& camera, const DepthRange& depth, int width, int 
 
 /// Loads the functions of OpenGL before the members of Renderer::State use them.
 struct LoadedGl {
-  explicit LoadedGl(GlContextLoader loader) {
-    if (gladLoadGL(loader) == 0) throw std::runtime_error("the OpenGL loader found no functions");
-  }
+  explicit LoadedGl(GlContextLoader loader) { load_gl(loader); }
 };
 
 }  // namespace
@@ -157,16 +155,16 @@ Image Renderer::read_image() {
   const FrameTarget& target = state_->frame();
   if (target.width() == 0) throw std::runtime_error("read_image before the first draw");
   Image image{target.width(), target.height(), {}};
-  const std::size_t row = static_cast<std::size_t>(image.width) * 3;
+  // OpenGL ES reads pixels with alpha only.
+  const std::size_t row = static_cast<std::size_t>(image.width) * 4;
   std::vector<std::uint8_t> bottom_up(row * static_cast<std::size_t>(image.height));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer());
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, bottom_up.data());
-  image.rgb.reserve(bottom_up.size());
-  for (int y = image.height - 1; y >= 0; --y) {
-    const auto begin =
-        bottom_up.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y));
-    image.rgb.insert(image.rgb.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
+  glReadPixels(0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE, bottom_up.data());
+  image.rgb.reserve(bottom_up.size() / 4 * 3);
+  for (std::size_t y = static_cast<std::size_t>(image.height); y-- > 0;) {
+    for (std::size_t at = y * row; at < (y + 1) * row; at += 4)
+      image.rgb.insert(image.rgb.end(), {bottom_up[at], bottom_up[at + 1], bottom_up[at + 2]});
   }
   return image;
 }

@@ -1,6 +1,6 @@
 // Renderer: draws chunk meshes with sun, sky and fog, and transparent materials in a blended pass.
 // A quad takes 8 bytes; the vertex shader reads and unpacks it (quad_glsl.hpp). Requires OpenGL 3.3
-// core or newer. The position of the eye is subtracted from chunk positions in double precision
+// core, OpenGL ES 3.0, or newer. The position of the eye is subtracted from chunk positions in double precision
 // before they become floats, so that places far from the origin do not jitter. Thread:
 // all calls on the one thread whose context is current.
 #pragma once
@@ -9,6 +9,7 @@
 
 #include "client/far/tile_mesh.hpp"
 #include "client/render/frame_contents.hpp"
+#include "client/render/gl_functions.hpp"
 #include "client/render/image.hpp"
 #include "client/render/overlay_frame.hpp"
 #include "common/core/coords.hpp"
@@ -40,10 +41,6 @@ struct RenderStats {
   bool is_animated = false;
   std::uint32_t tile_parts_drawn = 0;  // tiles that are drawn whole, and octants of the others
 };
-
-/// A function that returns a GL function by name. eglGetProcAddress, OSMesaGetProcAddress and
-/// glfwGetProcAddress have this type.
-using GlContextLoader = void (*(*)(const char*))();
 
 class Renderer {
  public:

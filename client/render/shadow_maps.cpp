@@ -54,7 +54,8 @@ void ShadowMaps::resize(int side) {
     for (const GlFramebuffer& framebuffer : cascade.framebuffers) {
       glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
       glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, maps_.get(), 0, layer++);
-      glDrawBuffer(GL_NONE);
+      constexpr GLenum kNone = GL_NONE;
+      glDrawBuffers(1, &kNone);
       glReadBuffer(GL_NONE);
       if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         throw std::runtime_error("the OpenGL driver cannot draw shadow maps");

@@ -10,7 +10,6 @@ namespace {
 // One triangle covers the screen. The inverse of view and projection gives the direction of each
 // pixel.
 constexpr const char* kSkyVertexShader =
-    "#version 330 core\n"
     "uniform mat4 relative_from_clip;\n"
     "out vec3 direction;\n"
     "void main() {\n"
@@ -21,7 +20,6 @@ constexpr const char* kSkyVertexShader =
     "}\n";
 
 constexpr const char* kSkyFragmentShader =
-    "#version 330 core\n"
     "in vec3 direction;\n"
     "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL
     "void main() {\n"

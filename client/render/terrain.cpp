@@ -32,8 +32,7 @@ constexpr float kSeam = 0.00006F;
 // Texture units.
 constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kFieldUnit = 3, kShadowUnit = 5, kDepthUnit = 6;
 
-constexpr const char* kDepthVertexShader =
-    "#version 330 core\n" RUNSTONE_QUAD_GLSL
+constexpr const char* kDepthVertexShader = RUNSTONE_QUAD_GLSL
     "uniform mat4 clip;\n"
     "uniform vec3 origin;\n"
     "uniform float seam;\n"  // growth of a quad, which closes pinholes, in voxels
@@ -41,10 +40,9 @@ constexpr const char* kDepthVertexShader =
     "  QuadCorner c = quad_corner();\n"
     "  gl_Position = clip * vec4(origin + c.at + c.outward * seam, 1.0);\n"
     "}\n";
-constexpr const char* kDepthFragmentShader = "#version 330 core\nvoid main() {}\n";
+constexpr const char* kDepthFragmentShader = "void main() {}\n";
 
 constexpr const char* kGhostFragmentShader =
-    "#version 330 core\n"
     "in vec3 voxel;\n"
     "flat in vec3 normal;\n"
     "flat in vec4 colour;\n"
@@ -62,7 +60,7 @@ constexpr const char* kGhostFragmentShader =
 
 std::string variant_of(const char* shader, Quality quality, bool is_tile, bool has_field,
                        bool is_fine, bool has_fog, bool is_fading) {
-  std::string out = "#version 330 core\n";
+  std::string out;
   if (quality != Quality::low) out += "#define RUNSTONE_DEPTH\n";
   if (quality != Quality::low && !is_tile) out += "#define RUNSTONE_SHADOWS\n";
   if (is_tile) out += "#define RUNSTONE_TILE\n";
@@ -106,9 +104,7 @@ glm::vec3 pattern_of(const ChunkKey& key, std::int32_t edge) {
 
 Terrain::Terrain()
     : depth_program_(link_program("depth", kDepthVertexShader, kDepthFragmentShader)),
-      ghost_program_(
-          link_program("ghost", (std::string("#version 330 core\n") + kTerrainVertexShader).c_str(),
-                       kGhostFragmentShader)),
+      ghost_program_(link_program("ghost", kTerrainVertexShader, kGhostFragmentShader)),
       field_(kFieldWidth, kFieldHeight) {
   set_materials(MaterialTable{});
 }
@@ -290,7 +286,7 @@ glm::vec4 Terrain::light_at(const FrameView& view, const glm::dvec3& at) const {
 
 bool Terrain::draw_depth(ShadowPass& pass, std::size_t quads_max) {
   glUseProgram(depth_program_.get());
-  quads_.bind(depth_program_, kQuadUnit);
+  const GLint first_vertex = quads_.bind(depth_program_, kQuadUnit);
   glUniformMatrix4fv(glGetUniformLocation(depth_program_.get(), "clip"), 1, GL_FALSE,
                      glm::value_ptr(pass.clip));
   // Light must not leak through the T-junctions of merged quads.
@@ -318,7 +314,7 @@ bool Terrain::draw_depth(ShadowPass& pass, std::size_t quads_max) {
     chunk.opaque.append_facing(sun, spans_);
     if (spans_.empty()) continue;
     glUniform3fv(origin, 1, glm::value_ptr(at));
-    quads_.draw(spans_);
+    quads_.draw(spans_, first_vertex);
     for (const QuadSpan& span : spans_) quads += span.count;
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
@@ -465,7 +461,7 @@ void Terrain::begin_pass(const FrameView& view, bool is_transparent,
     glUniformMatrix4fv(glGetUniformLocation(of_pass.gl.get(), "clip"), 1, GL_FALSE,
                        glm::value_ptr(view.clip));
     materials_.bind(of_pass.gl, kMaterialUnit);
-    quads_.bind(of_pass.gl, kQuadUnit);
+    of_pass.first_vertex = quads_.bind(of_pass.gl, kQuadUnit);
     if (!is_low && (variant & kTile) == 0) shadows_.bind(of_pass.gl, kShadowUnit);
     if ((variant & kInField) != 0) field_texture_.bind(of_pass.gl, kFieldUnit, field_, view.eye);
     set(of_pass.gl);
@@ -505,7 +501,7 @@ TerrainStats Terrain::draw_opaque(const FrameView& view) {
     chunk.chunk->opaque.append_facing(chunk.eye, spans_);
     if (spans_.empty()) continue;
     use_for(chunk, view, false);
-    quads_.draw(spans_);
+    quads_.draw(spans_, in_use_->first_vertex);
     for (const QuadSpan& span : spans_) stats.quads_drawn += span.count;
   }
   glDisable(GL_CULL_FACE);
@@ -540,7 +536,7 @@ void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
     }
     if (spans_.empty()) continue;
     use_for(*chunk, view, true);
-    quads_.draw(spans_);
+    quads_.draw(spans_, in_use_->first_vertex);
   }
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
@@ -556,7 +552,7 @@ void Terrain::draw_inspection(const FrameView& view, const Inspection& inspectio
     chunk.chunk->opaque.append_facing(chunk.eye, spans_);
     if (chunk.chunk->transparent.count != 0) spans_.push_back(chunk.chunk->transparent);
     if (!spans_.empty() && inspection_->place(chunk.key, chunk.origin, chunk.chunk->edge))
-      quads_.draw(spans_);
+      quads_.draw(spans_, inspection_->first_vertex());
   }
   InspectionPainter::end(view.depth);
 }
@@ -592,7 +588,7 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
   glUniform1f(glGetUniformLocation(ghost_program_.get(), "seam"), 0);
   glUniform1f(glGetUniformLocation(ghost_program_.get(), "scale"), 1);
   materials_.bind(ghost_program_, kMaterialUnit);
-  quads_.bind(ghost_program_, kQuadUnit);
+  const GLint first_vertex = quads_.bind(ghost_program_, kQuadUnit);
   const auto pulse = static_cast<float>(0.08 * std::sin(view.look.seconds * 4));
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -611,7 +607,7 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
     glUniform4fv(glGetUniformLocation(ghost_program_.get(), "tint"), 1, glm::value_ptr(tint));
     glUniform1f(glGetUniformLocation(ghost_program_.get(), "opaque"), opaque);
     const std::array<QuadSpan, 1> span = {ghosts_.at(mesh.get()).quads};
-    quads_.draw(span);
+    quads_.draw(span, first_vertex);
   };
   for (const GhostChunk& ghost : ghosts) {
     if (ghost.tint) {

@@ -145,6 +145,7 @@ class Terrain {
   struct Program {
     GlProgram gl;
     GLint origin = -1, pattern = -1, scale = -1, gone = -1;  // the uniforms of a chunk
+    GLint first_vertex = -1;                                 // as QuadBuffer::draw() takes it
     int cascade = -1;  // of the last chunk in this pass; -1: none
   };
   /// Sets the uniforms of a pass in its programs. `set` sets those that only this pass has.

@@ -30,7 +30,7 @@ std::uint64_t samples_of(Draw&& draw) {
 
 PlainRenderer::PlainRenderer(GlContextLoader loader, int width, int height)
     : width_(width), height_(height) {
-  if (gladLoadGL(loader) == 0) throw std::runtime_error("the OpenGL loader found no functions");
+  load_gl(loader);
   colour_.indexed = link_program("plain", kPlainVertexShader, kPlainFragmentShader);
   colour_.packed = link_program("plain packed", kPackedVertexShader, kPlainFragmentShader);
   target_.bind(width, height);

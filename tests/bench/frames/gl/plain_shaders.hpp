@@ -16,7 +16,6 @@ namespace runstone::bench {
   "}\n"
 
 inline constexpr const char* kPlainVertexShader =
-    "#version 330 core\n"
     // x, y, z, direction (tests/bench/frames/indexed_mesh.hpp)
     "layout(location = 0) in uvec4 place;\n"
     "layout(location = 1) in uint material;\n"
@@ -32,7 +31,6 @@ inline constexpr const char* kPlainVertexShader =
 // The same for packed quads, an instance each, as the client draws them
 // (client/render/shaders.hpp).
 inline constexpr const char* kPackedVertexShader =
-    "#version 330 core\n"
     "layout(location = 0) in uvec2 quad;\n"  // common/mesh/quad.hpp, low word first
     "uniform mat4 clip;\n"
     "uniform vec3 origin;\n"
@@ -58,7 +56,6 @@ inline constexpr const char* kPackedVertexShader =
 #undef RUNSTONE_PLAIN_COLOUR_GLSL
 
 inline constexpr const char* kPlainFragmentShader =
-    "#version 330 core\n"
     "flat in vec3 colour;\n"
     "out vec4 fragment;\n"
     "void main() { fragment = vec4(colour, 1.0); }\n";
@@ -67,7 +64,8 @@ inline constexpr const char* kPlainFragmentShader =
 // compute derivatives and are discarded. Each remaining fragment adds 4 / (remaining fragments in
 // its block), so that a block adds 4, however many of its lanes are discarded.
 inline constexpr const char* kLanesFragmentShader =
-    "#version 450 core\n"
+    "#extension GL_ARB_ES3_1_compatibility : require\n"  // gl_HelperInvocation
+    "#extension GL_ARB_derivative_control : require\n"   // dFdxFine()
     "flat in vec3 colour;\n"
     "out float lanes;\n"
     "void main() {\n"

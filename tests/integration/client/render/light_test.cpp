@@ -129,7 +129,8 @@ void build_room(LitScene& scene) {
 
 TEST_CASE("a roofed room is darker than outdoors, and light comes in at its door, on every path",
           "[render]") {
-  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_osmesa_context);
+  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_egl_surfaceless_es_context,
+                                    &make_osmesa_context);
   const auto context = scene_context(make);
   if (!context) return;
   LitScene scene(*context);

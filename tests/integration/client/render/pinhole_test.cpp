@@ -128,7 +128,8 @@ std::size_t pinholes(const Image& picture, const Image& from) {
 
 TEST_CASE("merged quads have no pinholes where they meet, on every headless path", "[render]") {
   using Make = std::unique_ptr<GlContext> (*)(std::string&);
-  const Make make = GENERATE(Make{&make_egl_surfaceless_context}, Make{&make_osmesa_context});
+  const Make make = GENERATE(Make{&make_egl_surfaceless_context},
+                             Make{&make_egl_surfaceless_es_context}, Make{&make_osmesa_context});
   std::string tried;
   const auto context = make(tried);
   if (!context) {

@@ -138,7 +138,8 @@ std::unique_ptr<GlContext> context_or_warn(MakeContext make) {
 
 TEST_CASE("a quad is drawn where its voxels are and nowhere else, on every headless path",
           "[render]") {
-  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_osmesa_context);
+  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_egl_surfaceless_es_context,
+                                    &make_osmesa_context);
   const auto context = context_or_warn(make);
   if (!context) return;
   RenderStats stats;
@@ -208,7 +209,8 @@ TEST_CASE("every direction faces outward: a cube looks closed from all six sides
 TEST_CASE(
     "faces a voxel apart are told apart from 10 to 32,768 voxels away, on every headless path",
     "[render]") {
-  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_osmesa_context);
+  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_egl_surfaceless_es_context,
+                                    &make_osmesa_context);
   const auto context = context_or_warn(make);
   if (!context) return;
   const ChunkMesh mesh = faces_before_walls();
@@ -275,7 +277,8 @@ TEST_CASE("the sky fills a frame without chunks", "[render]") {
 
 TEST_CASE("an overlay is drawn over the frame, in its place, clipped and blended, on every path",
           "[render]") {
-  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_osmesa_context);
+  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_egl_surfaceless_es_context,
+                                    &make_osmesa_context);
   const auto context = context_or_warn(make);
   if (!context) return;
   Renderer renderer(context->loader());
@@ -317,7 +320,8 @@ TEST_CASE("an overlay is drawn over the frame, in its place, clipped and blended
 
 TEST_CASE("an overlay shows images in their colours, and another image in the next frame",
           "[render]") {
-  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_osmesa_context);
+  const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_egl_surfaceless_es_context,
+                                    &make_osmesa_context);
   const auto context = context_or_warn(make);
   if (!context) return;
   Renderer renderer(context->loader());

@@ -121,7 +121,7 @@ TEST_CASE("a full server, and a program that is no server, are named in words", 
   CHECK(bench.logs("The server at " + other.address() + " does not encrypt"));
 }
 
-TEST_CASE("without a display, or with one that has no OpenGL 3.3, the client ends with plain words",
+TEST_CASE("without a display, or with one that has too old an OpenGL, the client says so and ends",
           "[integration]") {
   if (!has_display_programs()) return;
   TempFolder folder;
@@ -136,7 +136,21 @@ TEST_CASE("without a display, or with one that has no OpenGL 3.3, the client end
   const VirtualDisplay display(folder / ".", 320, 240);
   std::vector<std::string> old = display.environment();
   old.emplace_back("MESA_GL_VERSION_OVERRIDE=2.1");
-  CHECK_THAT(words_of(std::move(old)), Catch::Contains("no window: OpenGL 3.3 is needed"));
+  old.emplace_back("MESA_GLES_VERSION_OVERRIDE=2.0");
+  CHECK_THAT(words_of(std::move(old)),
+             Catch::Contains("no window: OpenGL 3.3 or OpenGL ES 3.0 is needed"));
+}
+
+TEST_CASE("where OpenGL is too old, the window is drawn with OpenGL ES", "[integration]") {
+  if (!has_display_programs()) return;
+  TempFolder folder;
+  const VirtualDisplay display(folder / ".", 320, 240);
+  std::vector<std::string> environment = display.environment();
+  environment.emplace_back("MESA_GL_VERSION_OVERRIDE=2.1");
+  const std::string log = folder / "client.log";
+  ChildProcess client({RUNSTONE_CLIENT_PROGRAM}, log, std::move(environment));
+  CHECK(wait_for(
+      kWait, [&] { return text_in(log).find("renderer=GLFW, OpenGL ES") != std::string::npos; }));
 }
 
 }  // namespace runstone::test
