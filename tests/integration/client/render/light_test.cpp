@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "client/platform/egl_context.hpp"
@@ -154,6 +155,39 @@ TEST_CASE("a roofed room is darker than outdoors, and light comes in at its door
   // At low quality no place is dark.
   scene.contents.look.quality = Quality::low;
   CHECK(scene.brightness_at(24.5, 4, 16.5) > 2 * indoors);
+}
+
+TEST_CASE("OpenGL ES draws lamps, shadows, water and glass as OpenGL does", "[render]") {
+  const auto quality = GENERATE(Quality::low, Quality::medium, Quality::high);
+  const auto picture = [&](MakeContext make) -> std::optional<Image> {
+    const auto context = scene_context(make);
+    if (!context) return std::nullopt;
+    LitScene scene(*context);
+    scene.contents.look.quality = quality;
+    scene.contents.look.time_of_day = 0.4;
+    build_room(scene);
+    scene.set_box({{29, 4, 12}, {30, 10, 20}}, kAir);
+    scene.set_box({{24, 4, 14}, {25, 5, 15}}, kLamp);
+    scene.set_box({{34, 2, 6}, {50, 4, 26}}, kWater);
+    scene.set_box({{33, 4, 18}, {34, 9, 22}}, kRedGlass);
+    scene.set_box({{36, 4, 20}, {37, 9, 24}}, kBlueGlass);
+    scene.upload_all();
+    scene.camera = {52, 12, 16.5};
+    scene.look_at(29, 5, 16.5);
+    return scene.draw();
+  };
+  const auto a = picture(&make_egl_surfaceless_context);
+  const auto b = picture(&make_egl_surfaceless_es_context);
+  if (!a || !b) return;
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a->rgb.size(); i += 3) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (std::abs(int{a->rgb[i + c]} - int{b->rgb[i + c]}) <= 3) continue;
+      ++different;
+      break;
+    }
+  }
+  CHECK(different < a->rgb.size() / 3 / 200);
 }
 
 TEST_CASE("a lamp lights a room in its colour, and not the room behind a wall", "[render]") {

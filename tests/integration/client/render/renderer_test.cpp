@@ -408,7 +408,9 @@ TEST_CASE("corners are dark next to opaque voxels, however the faces are cut int
 
 TEST_CASE("an inspection is drawn over the faces that it is about, and leaves no trace",
           "[render]") {
-  const auto context = context_or_warn(&make_egl_surfaceless_context);
+  const MakeContext make =
+      GENERATE(&make_egl_surfaceless_context, &make_egl_surfaceless_es_context);
+  const auto context = context_or_warn(make);
   if (!context) return;
   // A floor of one material. A second material is a run of its own within it.
   RunChunk chunk = uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::xzy);
@@ -478,15 +480,17 @@ TEST_CASE("an inspection is drawn over the faces that it is about, and leaves no
   CHECK(picture({}).rgb == plain.rgb);
 }
 
-TEST_CASE("both headless paths draw the same picture", "[render]") {
+TEST_CASE("all headless paths draw the same picture", "[render]") {
   const auto egl = context_or_warn(&make_egl_surfaceless_context);
   if (!egl) return;
   ChunkMesh mesh = slab();
   add(mesh.transparent, {4, 8, 4, 8, 8, Direction::pos_y, kGlass});
   const Image by_egl = draw_with(*egl, above(), mesh);
-  const auto osmesa = context_or_warn(&make_osmesa_context);
-  if (!osmesa) return;
-  CHECK(different_pixels(by_egl, draw_with(*osmesa, above(), mesh)) <= 5);
+  const MakeContext make = GENERATE(&make_egl_surfaceless_es_context, &make_osmesa_context);
+  const auto other = context_or_warn(make);
+  if (!other) return;
+  CAPTURE(other->name());
+  CHECK(different_pixels(by_egl, draw_with(*other, above(), mesh)) <= 5);
 }
 
 TEST_CASE("a wall throws a shadow away from the sun, and an edit takes it away", "[render]") {
