@@ -17,7 +17,7 @@ std::unique_ptr<Generator> scenario_generator(unsigned number, unsigned edge);
 /// The step from one scenario to the next in tests of edges 64 and 128. With a sanitizer all of them
 /// would take minutes.
 #ifdef RUNSTONE_SANITIZED
-inline constexpr unsigned kLargeScenarioStep = 4;
+inline constexpr unsigned kLargeScenarioStep = 12;
 #else
 inline constexpr unsigned kLargeScenarioStep = 1;
 #endif

@@ -316,7 +316,11 @@ std::string joined(const std::vector<std::string>& lines) {
 
 TEST_CASE("three replicas and a server that loses power agree after thousands of steps",
           "[simulation]") {
+#ifdef RUNSTONE_SANITIZED
+  const auto seed = static_cast<std::uint64_t>(GENERATE(1, 2));  // a minute each
+#else
   const auto seed = static_cast<std::uint64_t>(GENERATE(1, 2, 3, 4));
+#endif
   CAPTURE(seed);
   Simulation simulation(seed);
   simulation.run(2500, 4);
