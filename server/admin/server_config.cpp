@@ -250,7 +250,7 @@ const SettingsTable<ServerConfig>& settings() {
 
 }  // namespace
 
-std::vector<SettingField> config_fields() { return settings().fields(); }
+const std::vector<SettingField>& config_fields() { return settings().fields(); }
 std::string environment_name(const std::string& field) { return settings().variable(field); }
 
 std::string config_text(const ServerConfig& config, const std::string& name) {

@@ -106,7 +106,7 @@ struct ServerConfig {
 };
 
 /// Returns all settings, in the order of the struct.
-std::vector<SettingField> config_fields();
+const std::vector<SettingField>& config_fields();
 /// Returns "RUNSTONE_SESSIONS_MAX" for "sessions_max".
 std::string environment_name(const std::string& field);
 

@@ -22,8 +22,8 @@ void add_setting_flags(CLI::App& app, const std::vector<SettingField>& settings,
   for (const SettingField& setting : settings) {
     CLI::Option* const flag = app.add_option_function<std::string>(
         flag_name(setting.name),
-        [&texts, name = setting.name, is_flag = setting.is_flag](const std::string& text) {
-          texts[name] = is_flag && text.empty() ? "true" : text;
+        [&texts, &setting](const std::string& text) {
+          texts[setting.name] = setting.is_flag && text.empty() ? "true" : text;
         },
         setting.help);
     flag->group("Settings");

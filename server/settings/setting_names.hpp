@@ -20,7 +20,7 @@ std::string flag_name(const std::string& setting);
 std::string upper_case(std::string text);
 
 /// Adds a flag for each setting. Parsing writes the texts of the given ones to `texts`, by setting;
-/// a flag without a value is "true". `texts` must outlive the parsing.
+/// a flag without a value is "true". `settings` and `texts` must outlive the parsing.
 void add_setting_flags(CLI::App& app, const std::vector<SettingField>& settings,
                        std::map<std::string, std::string>& texts);
 

@@ -26,15 +26,14 @@ class SettingsTable {
 
   /// `prefix`: of variables of the environment, such as "RUNSTONE_".
   SettingsTable(std::string prefix, std::vector<Setting<Config>> settings)
-      : prefix_(std::move(prefix)), settings_(std::move(settings)) {}
-
-  /// Returns all settings, in the order of the table.
-  std::vector<SettingField> fields() const {
-    std::vector<SettingField> out;
+      : prefix_(std::move(prefix)), settings_(std::move(settings)) {
+    fields_.reserve(settings_.size());
     for (const Setting<Config>& setting : settings_)
-      out.push_back({setting.name, setting.help, setting.type == SettingType::flag});
-    return out;
+      fields_.push_back({setting.name, setting.help, setting.type == SettingType::flag});
   }
+
+  /// Returns all settings, in the order of the table. They live as long as the table.
+  const std::vector<SettingField>& fields() const { return fields_; }
   /// Returns the name of the variable of a setting, such as "RUNSTONE_SESSIONS_MAX".
   std::string variable(const std::string& name) const { return prefix_ + upper_case(name); }
   /// Returns the value of a setting that exists. Two values are equal if their texts are.
@@ -102,6 +101,7 @@ class SettingsTable {
 
   const std::string prefix_;
   const std::vector<Setting<Config>> settings_;
+  std::vector<SettingField> fields_;
 };
 
 }  // namespace runstone
