@@ -1,6 +1,6 @@
 // GlContext: a current OpenGL context. Off screen it is made by EGL without a surface or, if that
-// fails, by OSMesa, or by EGL for OpenGL ES 3.0. None of them needs an X server. client/platform/window.hpp makes the context of a
-// window. Thread: the context is current on the thread that makes it, and is used and destroyed
+// fails, by OSMesa, or by EGL for OpenGL ES 3.0. None of them needs an X server.
+// client/platform/window.hpp makes the context of a window. Thread: the context is current on the thread that makes it, and is used and destroyed
 // there.
 #pragma once
 #include <memory>

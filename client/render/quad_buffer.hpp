@@ -1,4 +1,4 @@
-// QuadBuffer: the quads of all chunks in one buffer on the GPU, and the calls that draw spans of
+// QuadBuffer: the quads of all chunks in one texture on the GPU, and the calls that draw spans of
 // it. A vertex shader reads the quads from a texture (quad_glsl.hpp). So spans of any chunks are
 // drawn by one call, and OpenGL 3.3, which has no base instance, suffices. OpenGL ES takes a call
 // for each span. Thread: the GL thread.

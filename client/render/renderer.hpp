@@ -1,8 +1,8 @@
 // Renderer: draws chunk meshes with sun, sky and fog, and transparent materials in a blended pass.
 // A quad takes 8 bytes; the vertex shader reads and unpacks it (quad_glsl.hpp). Requires OpenGL 3.3
-// core, OpenGL ES 3.0, or newer. The position of the eye is subtracted from chunk positions in double precision
-// before they become floats, so that places far from the origin do not jitter. Thread:
-// all calls on the one thread whose context is current.
+// core, OpenGL ES 3.0, or newer. The position of the eye is subtracted from chunk positions in
+// double precision before they become floats, so that places far from the origin do not jitter.
+// Thread: all calls on the one thread whose context is current.
 #pragma once
 #include <cstdint>
 #include <memory>

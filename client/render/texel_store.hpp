@@ -20,6 +20,8 @@ namespace runstone {
 /// The texels of a row, a width that every driver allows.
 inline constexpr std::uint32_t kTexelRow = 2048;
 
+static_assert(kTexelRow == 1U << 11);  // RUNSTONE_TEXEL_GLSL has these numbers
+
 /// In GLSL: the place of a texel in the texture of a store, by its number.
 #define RUNSTONE_TEXEL_GLSL "ivec2 texel_place(int i) { return ivec2(i & 2047, i >> 11); }\n"
 

@@ -41,8 +41,11 @@ class Comparison:
         return [name for name, ratio in self.volumes.items() if ratio.low <= 1 <= ratio.high]
 
 
-def _names(volumes):
-    """Returns a name for each volume: its part, and the other fields in which these volumes differ."""
+def names_of(volumes):
+    """Returns a name for each volume: its part or, if parts repeat, every field in which these volumes differ."""
+    parts = [str(volume[VOLUME_FIELDS.index("part")]) for volume in volumes]
+    if len(set(parts)) == len(parts):
+        return parts
     shown = [i for i, f in enumerate(VOLUME_FIELDS) if f == "part" or len({v[i] for v in volumes}) > 1]
     return [" ".join(str(volume[i]) for i in shown) for volume in volumes]
 
@@ -56,7 +59,7 @@ def compare(rows, other, ours=OURS):
     cells = {at: (cell[ours], cell[other]) for at, cell in cells.items() if ours in cell and other in cell}
     if not cells:
         return None
-    both = dict(zip(_names(list(cells)), cells.values()))
+    both = dict(zip(names_of(list(cells)), cells.values()))
     volumes = {name: ratio_of(repetitions_of(b), repetitions_of(a)) for name, (a, b) in both.items()}
     ours_ns = [a["median_ns"] for a, _ in both.values()]
     other_ns = [b["median_ns"] for _, b in both.values()]

@@ -84,6 +84,7 @@ class TileSource::Making {
     }
     if (!row->has_value() || newest > (*row)->version.seq) return out;
     out = MadeTile{key, std::make_shared<const Chunk>(**std::move(row)), 0, false, true};
+    out->digest = out->tile->digest;
     out->through = std::max(out->tile->version.seq, request_.head);
     return out;
   }
@@ -139,11 +140,14 @@ class TileSource::Making {
   MadeTile tile_of_voxels(const ChunkKey& key, RunChunk voxels, Version version,
                           bool is_approximate, bool is_damaged) const {
     Chunk tile{std::move(voxels), version, {}};
+    const Digest digest = digest_of(tile.voxels);
     const bool is_complete = !is_damaged && version.seq <= request_.head;
-    if (is_complete) tile.digest = digest_of(tile.voxels);
-    return {key,           std::make_shared<const Chunk>(std::move(tile)),
-            request_.head, is_approximate,
-            false,         is_damaged};
+    if (is_complete) tile.digest = digest;
+    MadeTile made{key, std::make_shared<const Chunk>(std::move(tile)), request_.head,
+                  is_approximate};
+    made.is_damaged = is_damaged;
+    made.digest = digest;
+    return made;
   }
 
   TileSource& source_;

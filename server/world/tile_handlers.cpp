@@ -86,9 +86,7 @@ void make_again(WorldState& world, const ChunkKey& key, const TileReceivers& rec
 }
 
 TileState state_of(const MadeTile& made) {
-  const Chunk& tile = *made.tile;
-  const bool is_complete = made.is_complete();
-  return {tile.version, is_complete ? tile.digest : digest_of(tile.voxels), is_complete};
+  return {made.tile->version, made.digest, made.is_complete()};
 }
 
 /// Records that the session has a tile.

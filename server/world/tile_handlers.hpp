@@ -14,8 +14,8 @@ namespace runstone {
 
 /// The tiles of level L are made again at most once in 2^(L - 1) of these times.
 inline constexpr TimeUs kTileRemakeUs = 1'000'000;
-/// What a changed tile costs for each session that gets it (TileQueue::charge_changed()). So the edits
-/// of a crowd make the server send about 5,000 tiles a second again.
+/// The time that a changed tile owes for each session to which it is sent
+/// (TileQueue::charge_changed()). So all sessions together get about 5,000 changed tiles a second.
 inline constexpr TimeUs kTileResendUs = 200;
 /// After this time a tile is tried again that could not be made, or that lacks edits of chunks that
 /// are not in memory.

@@ -24,7 +24,8 @@ namespace runstone {
 
 /// Tiles that a session may wait for at a time.
 inline constexpr std::size_t kTilesWaitingMax = 32;
-/// What charge_changed() may save: the time of a tick, so that no time is lost between two of them.
+/// Changed tiles may use up to this much time that passed without one. It is the time of a tick,
+/// because tiles are started once a tick.
 inline constexpr TimeUs kChangedBurstUs = 50'000;
 
 class TileQueue {
@@ -33,8 +34,7 @@ class TileQueue {
   void want(const ChunkKey& key, SessionId session);
   /// Makes the tile due at this time, unless it is due before.
   void make_again(const ChunkKey& key, TimeUs due_us);
-  /// Charges changed tiles for this time. While they owe more time than has passed, next() returns
-  /// none of them. At most kChangedBurstUs of passed time are saved.
+  /// Makes changed tiles owe this time. next() returns none of them until it has passed.
   void charge_changed(TimeUs now_us, TimeUs cost_us) {
     changed_from_us_ = std::max(changed_from_us_, now_us - kChangedBurstUs) + cost_us;
   }

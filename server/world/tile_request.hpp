@@ -38,6 +38,8 @@ struct MadeTile {
   bool is_known = false;
   /// A chunk below it is damaged and left out.
   bool is_damaged = false;
+  /// Of the voxels. That of `tile` is zero unless the tile is complete, so that nobody claims it.
+  Digest digest{};
 
   /// Returns true if its version determines its voxels. A tile that contains some edits behind
   /// `through` may lack others, and its version would not tell.

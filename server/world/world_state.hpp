@@ -51,7 +51,7 @@ struct ListedEntry {
   friend bool operator==(const ListedEntry&, const ListedEntry&) = default;
 };
 
-/// What tells two states of a tile apart.
+/// A state of a tile. Two tiles with equal states have the same voxels and the same version.
 struct TileState {
   Version version;
   Digest digest;             // of the voxels

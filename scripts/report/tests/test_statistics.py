@@ -1,7 +1,7 @@
 import math
 import unittest
 
-from report.comparison import compare
+from report.comparison import compare, names_of
 from report.rows import Rows
 from report.statistics import (
     Interval,
@@ -17,6 +17,14 @@ from report.statistics import (
 from report.verdict import best_of
 
 from .sample_data import mesh_row, mesh_rows
+
+
+class Names(unittest.TestCase):
+    def test_a_volume_has_the_name_of_its_part_unless_parts_repeat(self):
+        self.assertEqual(names_of([("w", "6", 32, "xyz"), ("w", "20", 32, "yxz")]), ["6", "20"])
+        self.assertEqual(
+            names_of([("a", "6", 32, "xyz"), ("b", "6", 32, "yxz")]), ["a 6 xyz", "b 6 yxz"]
+        )
 
 
 class Means(unittest.TestCase):

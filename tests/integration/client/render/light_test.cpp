@@ -15,6 +15,7 @@
 #include "client/render/renderer.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/visibility.hpp"
+#include "tests/integration/client/render/different_pixels.hpp"
 
 namespace runstone {
 namespace {
@@ -179,15 +180,7 @@ TEST_CASE("OpenGL ES draws lamps, shadows, water and glass as OpenGL does", "[re
   const auto a = picture(&make_egl_surfaceless_context);
   const auto b = picture(&make_egl_surfaceless_es_context);
   if (!a || !b) return;
-  std::size_t different = 0;
-  for (std::size_t i = 0; i < a->rgb.size(); i += 3) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (std::abs(int{a->rgb[i + c]} - int{b->rgb[i + c]}) <= 3) continue;
-      ++different;
-      break;
-    }
-  }
-  CHECK(different < a->rgb.size() / 3 / 200);
+  CHECK(different_pixels(*a, *b) < a->rgb.size() / 3 / 200);
 }
 
 TEST_CASE("a lamp lights a room in its colour, and not the room behind a wall", "[render]") {

@@ -15,6 +15,7 @@
 #include "common/mesh/quad.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/visibility.hpp"
+#include "tests/integration/client/render/different_pixels.hpp"
 
 namespace runstone {
 namespace {
@@ -57,19 +58,6 @@ ChunkMesh cut_into_faces(const ChunkMesh& mesh) {
       v = static_cast<std::uint8_t>(v0 + i / width);
       add(out.opaque, face);
     }
-  }
-  return out;
-}
-
-/// Returns the number of pixels that differ by more than rounding.
-std::size_t different_pixels(const Image& a, const Image& b) {
-  REQUIRE(a.rgb.size() == b.rgb.size());
-  std::size_t out = 0;
-  for (std::size_t i = 0; i < a.rgb.size(); i += 3) {
-    int most = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      most = std::max(most, std::abs(int{a.rgb[i + c]} - int{b.rgb[i + c]}));
-    out += most > 3 ? 1 : 0;
   }
   return out;
 }

@@ -16,7 +16,10 @@ MadeTile with_voxel(const ChunkKey& key, Version version, Material material, Seq
   fill(tile.voxels, 0, 1, material);
   tile.version = version;
   tile.digest = digest_of(tile.voxels);
-  return {key, std::make_shared<const Chunk>(std::move(tile)), through};
+  MadeTile out{key, nullptr, through};
+  out.digest = tile.digest;
+  out.tile = std::make_shared<const Chunk>(std::move(tile));
+  return out;
 }
 
 /// Answers all requests without letting time pass, and returns them. The request for the tile of
