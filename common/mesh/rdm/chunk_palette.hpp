@@ -42,14 +42,14 @@ class ChunkPalette {
     seen_.clear();
     for (auto& numbered : of_class_) numbered.clear();
   }
-  /// Writes the index of the material of each run to `out`. The first run of a material assigns it.
-  /// `runs` is a view of a RunList. Cost: O(runs).
+  /// Writes the index of the material of each run i in [first, last) to out[i]. The first run of a
+  /// material assigns it. `runs` is a view of a RunList. Cost: O(runs).
   template <class Runs, class Index>
-  void list(Runs runs, const VisibilityTable& visibility, Index* out) {
+  void list(Runs runs, std::size_t first, std::size_t last, const VisibilityTable& visibility,
+            Index* out) {
     // In a register: for the compiler, a write of bytes may change the members.
     const PaletteIndex* const of = of_.data();
-    const std::size_t size = runs.size();
-    for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t i = first; i < last; ++i) {
       const Material material = runs.material(i);
       PaletteIndex index = of[material];
       if (index == kUnseen) index = enter(material, visibility[material]);
@@ -61,6 +61,11 @@ class ChunkPalette {
     const PaletteIndex index = of_[material];
     return index != kUnseen && (index & kTransparentBit) != 0 ? index : 0;
   }
+
+  /// Returns the materials that have an index, in the order in which they got it.
+  std::span<const Material> seen() const { return seen_; }
+  /// Returns the index of a material. Requires that it has one.
+  PaletteIndex index(Material material) const { return of_[material]; }
 
   std::size_t transparent_count() const { return of_class_[1].size(); }
   bool has_transparent() const { return transparent_count() != 0; }

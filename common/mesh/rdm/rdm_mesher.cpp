@@ -11,6 +11,7 @@
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/border_rows.hpp"
 #include "common/mesh/rdm/chunk_palette.hpp"
+#include "common/mesh/rdm/index_runs.hpp"
 #include "common/mesh/rdm/layer_sweep.hpp"
 #include "common/mesh/rdm/quad_shape.hpp"
 #include "common/mesh/rdm/scratch_state.hpp"
@@ -37,17 +38,24 @@ using rdm::SideAxes;
 using Scratch = RdmScratch::State;
 
 /// Assigns palette indices to the materials of the chunk and lists those of its runs.
-rdm::IndexedRuns index_runs(const RunChunk& chunk, const VisibilityTable& visibility,
-                            Scratch& scratch) {
+rdm::IndexedRuns index_chunk(const RunChunk& chunk, const VisibilityTable& visibility,
+                             Scratch& scratch) {
   rdm::ChunkPalette& palette = scratch.palette;
   palette.clear();
-  const auto list = [&](auto& indices) {
-    indices.resize(chunk.runs.size());
-    chunk.runs.visit([&](const auto& runs) { palette.list(runs, visibility, indices.data()); });
+  const std::size_t size = chunk.runs.size();
+  const auto list_plainly = [&](auto& indices) {
+    indices.resize(size);
+    chunk.runs.visit(
+        [&](const auto& runs) { palette.list(runs, 0, size, visibility, indices.data()); });
   };
-  list(scratch.byte_indices);
+  if (scratch.plain) {
+    list_plainly(scratch.byte_indices);
+  } else {
+    scratch.byte_indices.resize(size);
+    rdm::index_runs(chunk.runs, visibility, palette, scratch.byte_indices.data());
+  }
   if (!palette.fit_bytes()) {
-    list(scratch.full_indices);
+    list_plainly(scratch.full_indices);
     return {chunk.runs, nullptr, scratch.full_indices.data()};
   }
   // A single transparent material is meshed as a single opaque one.
@@ -334,7 +342,7 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
     if (visibility[chunk.runs.material(0)] == Visibility::empty) return out.clear();
     if (mesh_uniform(chunk, neighbours, visibility, out)) return;
   }
-  const rdm::IndexedRuns runs = index_runs(chunk, visibility, state);
+  const rdm::IndexedRuns runs = index_chunk(chunk, visibility, state);
   if (state.palette.solid_count() == 0) {
     if (chunk_borders != nullptr) chunk_borders->read(chunk, visibility);
     return out.clear();

@@ -14,7 +14,7 @@ rdm::PaletteIndex index_of(rdm::ChunkPalette& palette, Material material,
                            const VisibilityTable& visibility) {
   const PackedRun run{1, material};
   rdm::PaletteIndex index = 0;
-  palette.list(NarrowRuns(std::span(&run, 1)), visibility, &index);
+  palette.list(NarrowRuns(std::span(&run, 1)), 0, 1, visibility, &index);
   return index;
 }
 
