@@ -12,6 +12,9 @@
 namespace runstone {
 namespace {
 
+/// As many edited chunks wait at most until the tiles above them become stale.
+constexpr std::size_t kEditedMax = 4'096;
+
 /// Returns what a tile costs the player for whom it was made, besides its request: a load for each
 /// tile that was made, and another one for the eight chunks of a tile of level 1. A chunk that is
 /// neither kept nor sent takes a fraction of the time of a load. Uniform tiles are free, as most of
@@ -85,13 +88,44 @@ void make_again(WorldState& world, const ChunkKey& key, const TileReceivers& rec
   world.tiles.queue.make_again(key, std::max(now.steady_us + kTileRemakeUs, due));
 }
 
+/// Makes the tiles stale above the chunks that were edited since the last call. Every function of this
+/// file that looks at tiles calls it first.
+void make_stale(WorldState& world, const Clocks& now) {
+  std::vector<ChunkKey>& chunks = world.tiles.edited;
+  if (chunks.empty()) return;
+  std::ranges::sort(chunks);
+  chunks.erase(std::ranges::unique(chunks).begin(), chunks.end());
+  // Each chunk is recorded with its own newest edit. Neighbours in the list often share theirs.
+  const WorldChunks& versions = world.authority.chunks();
+  const std::span<const ChunkKey> all = chunks;
+  for (std::size_t first = 0, end = 0; first < all.size(); first = end) {
+    const Sequence seq = versions.version(all[first]).seq;
+    for (end = first + 1; end < all.size() && versions.version(all[end]).seq == seq;) ++end;
+    world.environment.tiles_edited(all.subspan(first, end - first), seq);
+  }
+  std::optional<ChunkKey> before;
+  for (const ChunkKey& chunk : chunks) {
+    for (std::uint8_t level = 1; level <= world.config.tile_levels_max; ++level) {
+      const ChunkKey key = tile_of(chunk.at, level);
+      // The chunk before has marked this tile and those above it.
+      if (before && tile_of(before->at, level) == key) break;
+      if (const TileReceivers* receivers = world.tiles.receivers.find(key))
+        make_again(world, key, *receivers, now);
+    }
+    before = chunk;
+  }
+  chunks.clear();
+}
+
 TileState state_of(const MadeTile& made) {
   return {made.tile->version, made.digest, made.is_complete()};
 }
 
 /// Records that the session has a tile.
 void tile_sent(WorldState& world, SessionId session, const ChunkKey& key, bool is_empty) {
-  leave_tiles(world, session, world.find(session)->tiles->set_sent(key, is_empty));
+  TileInterest& tiles = *world.find(session)->tiles;
+  if (tiles.status(key) == (is_empty ? TileStatus::sent_empty : TileStatus::sent)) return;
+  leave_tiles(world, session, tiles.set_sent(key, is_empty));
   add_receiver(world, key, session);
 }
 
@@ -173,6 +207,7 @@ std::size_t set_tile_view(WorldState& world, SessionId session, const View& view
 void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (!mine.tiles || world.is_stopping || is_stalled(world, mine, now)) return;
+  make_stale(world, now);
   std::size_t claims_left = kTileClaimsPerCall;
   while (mine.tiles->waiting_count() < kTilesWaitingMax) {
     const auto key = mine.tiles->next_wanted();
@@ -197,6 +232,7 @@ void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
 
 void start_tiles(WorldState& world, const Clocks& now) {
   if (world.is_stopping) return;
+  make_stale(world, now);
   while (const auto key = world.tiles.queue.next(now.steady_us, kTilesInFlightMax)) {
     // A session may leave before its tile is made. Its player pays all the same.
     if (const auto waits = world.tiles.queue.first_waiting(*key))
@@ -207,6 +243,7 @@ void start_tiles(WorldState& world, const Clocks& now) {
 
 void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
                    const Clocks& now) {
+  make_stale(world, now);
   if (made.empty()) {
     world.tiles.payers.erase(key);
     world.tiles.queue.failed(key, now.steady_us + kTileRetryUs);
@@ -244,6 +281,7 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
 
 void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
                      const Clocks& now) {
+  make_stale(world, now);
   charge(world, key, made, now);
   world.tiles.payers.erase(key);
   world.tiles.queue.stopped(key, now.steady_us);
@@ -255,24 +293,10 @@ void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<M
 
 void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, const Clocks& now) {
   if (world.config.tile_levels_max == 0) return;
-  // Each chunk is recorded with its own newest edit. Neighbours in the list often share theirs.
-  const WorldChunks& versions = world.authority.chunks();
-  for (std::size_t first = 0, end = 0; first < chunks.size(); first = end) {
-    const Sequence seq = versions.version(chunks[first]).seq;
-    for (end = first + 1; end < chunks.size() && versions.version(chunks[end]).seq == seq;) ++end;
-    world.environment.tiles_edited(chunks.subspan(first, end - first), seq);
-  }
-  std::optional<ChunkKey> before;
-  for (const ChunkKey& chunk : chunks) {
-    for (std::uint8_t level = 1; level <= world.config.tile_levels_max; ++level) {
-      const ChunkKey key = tile_of(chunk.at, level);
-      // The chunk before has marked this tile and those above it.
-      if (before && tile_of(before->at, level) == key) break;
-      if (const TileReceivers* receivers = world.tiles.receivers.find(key))
-        make_again(world, key, *receivers, now);
-    }
-    before = chunk;
-  }
+  std::vector<ChunkKey>& edited = world.tiles.edited;
+  if (chunks.size() == 1 && !edited.empty() && edited.back() == chunks.front()) return;
+  edited.insert(edited.end(), chunks.begin(), chunks.end());
+  if (edited.size() >= kEditedMax) make_stale(world, now);
 }
 
 void forget_tiles(WorldState& world, SessionId session, WorldSession& mine) {

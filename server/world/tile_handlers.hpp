@@ -1,5 +1,5 @@
 // Tile handlers: sessions get the tiles of their views, and get them again after edits. Workers make
-// the tiles. An edit makes the tiles above the touched chunks stale, in O(levels) for each chunk; a
+// the tiles. Edits make the tiles above the touched chunks stale, in O(levels) for each chunk; a
 // stale tile that sessions have is made again after a pause that grows with its level, and sent to
 // them.
 #pragma once
@@ -54,8 +54,9 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
 /// turn.
 void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
                      const Clocks& now);
-/// Makes the tiles above these chunks stale, which were edited. They are of level of detail 0,
-/// ascending, and have their new versions.
+/// Reports that a commit touched these chunks of level of detail 0, ascending, which have their new
+/// versions. The tiles above them become stale before a function of this file looks at tiles the next
+/// time, on a tick at the latest. So edits of one chunk between two ticks cost as much as one.
 void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, const Clocks& now);
 /// Forgets the tiles of a session that ends.
 void forget_tiles(WorldState& world, SessionId session, WorldSession& mine);

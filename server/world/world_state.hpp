@@ -72,6 +72,8 @@ struct WorldTiles {
   TileQueue queue;
   std::map<ChunkKey, Payer> payers;       // of the tiles that workers make because a session waits
   ChunkHashMap<TileReceivers> receivers;  // no entry is without sessions for long
+  // Chunks that commits touched since the tiles above them were last made stale. They may repeat.
+  std::vector<ChunkKey> edited;
 };
 
 struct WorldState {

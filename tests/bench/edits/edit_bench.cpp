@@ -8,6 +8,7 @@
 #include "tests/bench/edits/replay_case.hpp"
 #include "tests/bench/edits/rights_case.hpp"
 #include "tests/bench/edits/stack_case.hpp"
+#include "tests/bench/edits/strand_case.hpp"
 #include "tests/bench/harness/statistics.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -84,6 +85,25 @@ void measure_rights(EditBenchResult& result, unsigned repetitions) {
   }
 }
 
+void measure_strand(EditBenchResult& result, unsigned repetitions) {
+  constexpr double kShareMax = 1.05;
+  StrandTiming timing = time_strand(repetitions);
+  for (std::vector<double>* samples : {&timing.near_us, &timing.far_us}) {
+    for (double& us : *samples) us *= kStrandEdits;
+  }
+  result.rows.push_back(
+      row_of("edits on the world strand, 20 players", 1, kStrandEdits, timing.near_us));
+  result.rows.push_back(
+      row_of(fmt::format("edits on the world strand, 20 players who see {} levels of tiles",
+                         kStrandLevels),
+             1, kStrandEdits, timing.far_us));
+  const double share = median(timing.far_us) / median(timing.near_us);
+  result.targets.push_back({"an edit on the world strand with tiles, against without",
+                            fmt::format("at most {:.2f}x", kShareMax),
+                            fmt::format("{:.2f}x", share),
+                            share <= kShareMax ? Verdict::met : Verdict::missed});
+}
+
 Result<void, std::string> measure_replay(EditBenchResult& result, std::size_t edits,
                                          unsigned repetitions) {
   const test::TempFolder folder;
@@ -119,6 +139,8 @@ Result<EditBenchResult, std::string> run_edit_bench(const BenchOptions& options,
   fmt::print(progress, "spheres and strokes\n");
   measure_rights(result, options.repetitions);
   fmt::print(progress, "rights\n");
+  measure_strand(result, std::max(3U, options.repetitions / 3));
+  fmt::print(progress, "world strand\n");
   progress.flush();
   const unsigned replays = std::max(1U, options.repetitions / 10);
   const auto replayed = measure_replay(result, options.edits, replays);

@@ -1,0 +1,218 @@
+#include "tests/bench/edits/strand_case.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "common/core/assert.hpp"
+#include "common/core/hash.hpp"
+#include "protocol/codec/handshake.hpp"
+#include "protocol/codec/message_table.hpp"
+#include "protocol/limits.hpp"
+#include "server/tiles/tile_ledger.hpp"
+#include "server/world/world_server.hpp"
+#include "tests/bench/edits/stack_case.hpp"
+#include "tests/bench/harness/clocks.hpp"
+
+namespace runstone::bench {
+namespace {
+
+constexpr std::uint16_t kEdge = 32;
+constexpr std::size_t kPlayers = 20;
+constexpr std::size_t kTicks = 200;
+constexpr TimeUs kTickUs = 50'000;
+constexpr std::size_t kEditsPerTick = kStrandEdits / kTicks;
+constexpr std::int32_t kSite = 24;  // edits lie within so many voxels of the origin
+
+/// The world outside of the strand: a wire that loses everything but the handshake, a log without a
+/// disk, and workers whose answers wait until the strand's time is stopped.
+class Outside final : public WorldEnvironment {
+ public:
+  std::map<SessionId, EncodedMessage> welcomes;
+  std::deque<ChunkKey> loads;
+  std::deque<TileRequest> tiles;
+
+  bool send(SessionId session, const EncodedMessage& message) override {
+    if (message.kind == kKindOf<Welcome>) welcomes.insert_or_assign(session, message);
+    return true;
+  }
+  bool send_snapshot(SessionId /*session*/, std::uint32_t /*view*/, const ChunkKey& /*key*/,
+                     const ChunkPtr& /*chunk*/) override {
+    return true;
+  }
+  void close(SessionId /*session*/, GoodbyeReason /*reason*/, const std::string& text) override {
+    fmt::print(stderr, "closed: {}\n", text);
+    RUNSTONE_ASSERT(false);
+  }
+  bool log_has_room(std::size_t /*records*/) const override { return true; }
+  std::size_t log_queued_bytes() const override { return 0; }
+  void log_append(std::vector<PlayerRow> /*players*/,
+                  std::vector<EditRecord> /*records*/) override {}
+  void log_names(std::vector<NameChange> /*changes*/) override {}
+  void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
+  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> /*chunks*/,
+                      Sequence /*checkpoint*/) override {}
+  void make_tile(TileRequest request) override { tiles.push_back(std::move(request)); }
+  void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override {
+    ledger_.edited(chunks, seq);
+  }
+  Sequence newest_tile_edit(const ChunkKey& tile) const override {
+    return ledger_.newest_edit(tile);
+  }
+
+ private:
+  TileLedger ledger_;
+};
+
+class Strand {
+ public:
+  explicit Strand(std::uint8_t levels)
+      : levels_(levels), server_(config(levels), {}, outside_, [](std::span<std::uint8_t> out) {
+          std::ranges::fill(out, std::uint8_t{7});
+        }) {
+    for (SessionId player = 1; player <= kPlayers; ++player) join(player);
+    settle();
+  }
+
+  /// Does one repetition.
+  double run() {
+    SplitMix64 rng(1);
+    std::uint64_t ns = 0;
+    for (std::size_t tick = 0; tick < kTicks; ++tick) {
+      const std::uint64_t start = core_ns();
+      for (std::size_t i = 0; i < kEditsPerTick; ++i) {
+        edit(1 + static_cast<SessionId>(i % kPlayers), rng);
+        now_.steady_us += kTickUs / kEditsPerTick;
+        now_.utc_us += kTickUs / kEditsPerTick;
+        server_.commit(now_);
+      }
+      server_.tick(now_);
+      deliver();
+      ns += core_ns() - start;
+      ns += answer();
+    }
+    return static_cast<double>(ns) / 1000 / kStrandEdits;
+  }
+
+ private:
+  static WorldConfig config(std::uint8_t levels) {
+    WorldConfig c;
+    c.chunk_edge = kEdge;
+    c.server_keys = key_pair_of({1});
+    c.tile_levels_max = levels;
+    c.idle_us_max = 3'600'000'000;
+    for (int i = 1; i < 8; ++i) {
+      MaterialInfo info;
+      info.name = "m" + std::to_string(i);
+      RUNSTONE_ASSERT(c.materials.add(info).has_value());
+    }
+    return c;
+  }
+
+  void join(SessionId player) {
+    server_.connected(player, now_);
+    const KeyPair keys = key_pair_of({2, static_cast<std::uint8_t>(player)});
+    Hello hello;
+    hello.key = keys.public_key;
+    hello.instance = 1;
+    hello.name = "player" + std::to_string(player);
+    hello.features = kFeatureTiles;
+    server_.received(player, hello, now_);
+    const EncodedMessage& sent = outside_.welcomes.at(player);
+    const auto welcome = decode_message(Sender::server, sent.kind, *sent.bytes, kEdge);
+    RUNSTONE_ASSERT(welcome.has_value());
+    const Bytes transcript = client_transcript(hello, std::get<Welcome>(*welcome), std::nullopt);
+    server_.received(player, ClientAuth{sign(keys, transcript), {}}, now_);
+    View view;
+    view.radius_h = 6;
+    view.radius_v = 3;
+    view.levels = levels_;
+    server_.received(player, view, now_);
+  }
+
+  /// Ticks until all chunks and tiles are there.
+  void settle() {
+    do {
+      now_.steady_us += kTickUs;
+      now_.utc_us += kTickUs;
+      server_.tick(now_);
+      deliver();
+    } while (answer() != 0);
+  }
+
+  void deliver() {
+    while (server_.has_deliveries()) server_.deliver_next(now_);
+  }
+
+  /// Answers what the workers were asked for. Returns the time that the strand takes for the answers.
+  std::uint64_t answer() {
+    std::uint64_t ns = 0;
+    while (!outside_.loads.empty() || !outside_.tiles.empty()) {
+      if (!outside_.loads.empty()) {
+        const ChunkKey key = outside_.loads.front();
+        outside_.loads.pop_front();
+        Chunk chunk = terrain_chunk(key.at);
+        const std::uint64_t start = core_ns();
+        server_.chunk_loaded(key, std::move(chunk), now_);
+        ns += core_ns() - start;
+      } else {
+        const TileRequest request = std::move(outside_.tiles.front());
+        outside_.tiles.pop_front();
+        const MadeTile made = tile_of(request);
+        const std::uint64_t start = core_ns();
+        server_.tiles_made(request.key, {made}, now_);
+        ns += core_ns() - start;
+      }
+      const std::uint64_t start = core_ns();
+      deliver();
+      ns += core_ns() - start;
+    }
+    return ns;
+  }
+
+  /// Makes a tile with the voxels of a chunk of terrain. What it shows does not matter to the strand.
+  MadeTile tile_of(const TileRequest& request) {
+    Chunk tile = ground_;
+    tile.version.seq = outside_.newest_tile_edit(request.key);
+    MadeTile made{request.key, nullptr, request.head};
+    made.digest = tile.digest;
+    made.tile = std::make_shared<const Chunk>(std::move(tile));
+    return made;
+  }
+
+  void edit(SessionId player, SplitMix64& rng) {
+    const auto place = [&rng] { return rng.between(-kSite, kSite); };
+    const EditDescriptor edit{
+        SetVoxel{{place(), place(), place()}}, {}, static_cast<Material>(rng.below(8))};
+    server_.received(player, EditRequest{++sequence_[player], 0, edit}, now_);
+  }
+
+  const std::uint8_t levels_;
+  const Chunk ground_ = terrain_chunk({0, 0, 0});
+  Outside outside_;
+  Clocks now_{1'000'000, 1'000'000'000'000};
+  std::map<SessionId, ClientSequence> sequence_;
+  WorldServer server_;
+};
+
+}  // namespace
+
+StrandTiming time_strand(unsigned repetitions) {
+  Strand near(0), far(kStrandLevels);
+  near.run();  // the first repetition grows the buffers
+  far.run();
+  StrandTiming timing;
+  for (unsigned i = 0; i < repetitions; ++i) {
+    timing.near_us.push_back(near.run());
+    timing.far_us.push_back(far.run());
+  }
+  return timing;
+}
+
+}  // namespace runstone::bench
