@@ -256,12 +256,7 @@ void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now) {
 }
 
 void deliver_next(WorldState& world, const Clocks& now) {
-  auto next = world.deliveries.upper_bound(world.delivered_last);
-  if (next == world.deliveries.end()) next = world.deliveries.begin();
-  if (next == world.deliveries.end()) return;
-  world.delivered_last = *next;
-  world.deliveries.erase(next);
-  deliver(world, world.delivered_last, now);
+  if (const auto next = world.deliveries.take_next()) deliver(world, *next, now);
 }
 
 void mark_stale(WorldState& world, SessionId session, std::span<const ChunkKey> keys,

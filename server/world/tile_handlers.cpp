@@ -167,6 +167,39 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
   tile_sent(world, session, key, is_empty(tile->voxels));
 }
 
+/// Requests tiles of the session whose turn it is. Answers at most `claims_left` claims, and takes them
+/// off.
+void request_some(WorldState& world, SessionId session, std::size_t& claims_left,
+                  const Clocks& now) {
+  if (world.find(session) == nullptr) return;
+  WorldSession& mine = *world.find(session);
+  if (!mine.tiles || is_stalled(world, mine, now)) return;
+  while (mine.tiles->waiting_count() < kTilesWaitingMax) {
+    const auto key = mine.tiles->next_wanted();
+    if (!key) break;
+    if (const CachedChunk* claim = mine.claims.find(*key)) {
+      if (claims_left == 0) {
+        world.deliveries.insert(session);  // the others have a task of their own
+        break;
+      }
+      --claims_left;
+      if (world.environment.is_tile_current(*claim)) {
+        mine.tiles->set_waiting(*key);
+        send_same_tile(world, session, *key, claim->version.seq);
+        continue;
+      }
+    }
+    if (world.tiles.request_tokens.wait_us(1, now.steady_us) != 0) {
+      world.tiles.requests.insert(session);
+      break;
+    }
+    if (!pay_load(world, mine, now)) break;
+    world.tiles.request_tokens.take(1, now.steady_us);
+    mine.tiles->set_waiting(*key);
+    world.tiles.queue.want(*key, session);
+  }
+}
+
 void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
   std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
   for (const MadeTile& one : made) {
@@ -205,27 +238,14 @@ std::size_t set_tile_view(WorldState& world, SessionId session, const View& view
 }
 
 void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
-  WorldSession& mine = *world.find(session);
-  if (!mine.tiles || world.is_stopping || is_stalled(world, mine, now)) return;
+  if (world.is_stopping) return;
+  if (world.find(session)->tiles) world.tiles.requests.insert(session);
   make_stale(world, now);
   std::size_t claims_left = kTileClaimsPerCall;
-  while (mine.tiles->waiting_count() < kTilesWaitingMax) {
-    const auto key = mine.tiles->next_wanted();
-    if (!key) break;
-    if (const CachedChunk* claim = mine.claims.find(*key)) {
-      if (claims_left-- == 0) {
-        world.deliveries.insert(session);  // the others have a task of their own
-        break;
-      }
-      if (world.environment.is_tile_current(*claim)) {
-        mine.tiles->set_waiting(*key);
-        send_same_tile(world, session, *key, claim->version.seq);
-        continue;
-      }
-    }
-    if (!pay_load(world, mine, now)) break;
-    mine.tiles->set_waiting(*key);
-    world.tiles.queue.want(*key, session);
+  while (claims_left != 0 && world.tiles.request_tokens.wait_us(1, now.steady_us) == 0) {
+    const auto next = world.tiles.requests.take_next();
+    if (!next) break;
+    request_some(world, *next, claims_left, now);
   }
   start_tiles(world, now);
 }
@@ -300,6 +320,7 @@ void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, const Clo
 }
 
 void forget_tiles(WorldState& world, SessionId session, WorldSession& mine) {
+  world.tiles.requests.erase(session);
   if (mine.tiles) leave_tiles(world, session, mine.tiles->clear());
 }
 

@@ -22,7 +22,7 @@ inline constexpr TimeUs kTileResendUs = 200;
 inline constexpr TimeUs kTileRetryUs = 1'000'000;
 /// Chunks that are loaded for one request of a tile because they have edits.
 inline constexpr std::size_t kTileLoadsMax = 64;
-/// Claims of tiles that one call answers. Each takes about a microsecond or two.
+/// Claims of tiles that one call of request_tiles() answers. Each takes about a microsecond or two.
 inline constexpr std::size_t kTileClaimsPerCall = 512;
 /// Bytes that count as read for each claim of a tile, since it is answered without a load.
 inline constexpr std::size_t kTileClaimBytes = 64;
@@ -41,8 +41,10 @@ bool accepts_claim(const WorldState& world, const WorldSession& session, const C
 /// Moves a session's tiles to its view. `skipped`: as in TileInterest::set_view(). Returns the cost.
 std::size_t set_tile_view(WorldState& world, SessionId session, const View& view,
                           std::span<const View> skipped);
-/// Requests wanted tiles of the session, up to kTilesWaitingMax. A tile of which the session claims a
-/// current copy is answered by "not modified", at most kTileClaimsPerCall of them.
+/// Requests wanted tiles of the session, up to kTilesWaitingMax, when its turn comes. Sessions take
+/// turns if all together want more than kTileRequestsPerSecond; a session is asked again on each tick.
+/// A tile of which the session claims a current copy is answered by "not modified", at most
+/// kTileClaimsPerCall of them in a call.
 void request_tiles(WorldState& world, SessionId session, const Clocks& now);
 /// Gives tiles to the workers. Call it on each tick and after requests.
 void start_tiles(WorldState& world, const Clocks& now);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/token_bucket.hpp"
 #include "common/rights/rights_state.hpp"
 #include "server/interest/interest.hpp"
 #include "server/limits/address_ledger.hpp"
@@ -20,6 +21,7 @@
 #include "server/world/load_retries.hpp"
 #include "server/world/name_claims.hpp"
 #include "server/world/players.hpp"
+#include "server/world/session_turns.hpp"
 #include "server/world/tile_queue.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
@@ -67,9 +69,16 @@ struct TileReceivers {
   std::optional<TileState> state;
 };
 
+/// All sessions together request so many tiles a second, after so many at once. Each takes the world
+/// strand some microseconds, so newcomers who see far take about a tenth of its time at most, and the
+/// first view of a single one has to wait for nothing.
+inline constexpr std::uint64_t kTileRequestsPerSecond = 20'000, kTileRequestsAtOnce = 1'000;
+
 /// Tiles (tile_handlers.hpp).
 struct WorldTiles {
   TileQueue queue;
+  SessionTurns requests;  // sessions that may want more tiles
+  TokenBucket request_tokens{kTileRequestsPerSecond, kTileRequestsAtOnce};
   std::map<ChunkKey, Payer> payers;       // of the tiles that workers make because a session waits
   ChunkHashMap<TileReceivers> receivers;  // no entry is without sessions for long
   // Chunks that commits touched since the tiles above them were last made stale. They may repeat.
@@ -130,8 +139,7 @@ struct WorldState {
   SessionId digest_check_last = 0;  // the session served last
   bool are_runs_short = false;      // not all chunks of the last checks were hashed
   // Delivery.
-  std::set<SessionId> deliveries;  // sessions whose delivery goes on in a task of its own
-  SessionId delivered_last = 0;    // of those, the session served last
+  SessionTurns deliveries;  // sessions whose delivery goes on in a task of its own
   // Views.
   std::size_t view_chunks_left;     // that views may still visit on this tick
   bool views_wait = false;          // some views had to wait for the next tick
