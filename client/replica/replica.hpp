@@ -183,8 +183,8 @@ class Replica {
   /// Returns true if the server sends this chunk sooner or later: the view and the world have it,
   /// and it is not unavailable.
   bool is_expected(const ChunkKey& key) const;
-  /// Returns the tiles of the view that arrived. Tiles show the live world, also while the past is
-  /// shown.
+  /// Returns the tiles of the view that arrived. While the past is shown, they show it too, once the
+  /// server has sent those that differ.
   const FarTiles& far_tiles() const { return far_tiles_; }
   const LocalEdits& local_edits() const { return local_edits_; }
   const KnownGround& ground() const { return ground_; }

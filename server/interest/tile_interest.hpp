@@ -51,6 +51,8 @@ class TileInterest {
   /// Makes all tiles unknown. Returns those that were waiting or sent.
   std::vector<ChunkKey> clear();
 
+  /// Returns the tiles that are wanted, waiting or sent, level by level.
+  std::vector<ChunkKey> known() const;
   std::size_t waiting_count() const { return waiting_; }
   /// Returns the number of tiles that are wanted, waiting or sent.
   std::size_t known_count() const { return known_; }
@@ -58,8 +60,6 @@ class TileInterest {
  private:
   using Place = std::tuple<int, std::int64_t, ChunkKey>;
   Place place_of(const ChunkKey& key) const;
-  /// Returns the known tiles, level by level.
-  std::vector<ChunkKey> known() const;
   /// Returns true if the session is to get this tile of the view.
   bool is_due(const ChunkKey& key) const;
   void set(const ChunkKey& key, TileStatus status);

@@ -96,6 +96,18 @@ void ServerEnvironment::make_tile(TileRequest request) {
               });
 }
 
+void ServerEnvironment::make_past_tile(SessionId session, HistoryNumber history,
+                                       TileRequest request) {
+  const auto then = [this, session, history, request](const ChunkKey& /*key*/,
+                                                      const std::vector<MadeTile>& made,
+                                                      TileMaking::End end) {
+    if (end == TileMaking::End::stopped)
+      return world_->past_tile_stopped(session, history, request, made, read_clocks());
+    world_->past_tile_made(session, history, request, made, read_clocks());
+  };
+  tiles_.make(std::move(request), world_->materials(), then);
+}
+
 void ServerEnvironment::tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) {
   tiles_.edited(chunks, seq);
 }

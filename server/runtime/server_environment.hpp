@@ -66,6 +66,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void log_chat(const ChatEntry& entry) override;
   void load_chunk(const ChunkKey& key) override;
   void make_tile(TileRequest request) override;
+  void make_past_tile(SessionId session, HistoryNumber history, TileRequest request) override;
   void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override;
   Sequence newest_tile_edit(const ChunkKey& tile) const override;
   bool is_tile_current(const CachedChunk& copy) const override;

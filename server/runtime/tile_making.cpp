@@ -8,10 +8,11 @@
 namespace runstone {
 
 TileMaking::TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator& generator,
-                       std::int32_t edge)
-    : strand_(strand), source_(chunks, generator, edge, ledger_, [](const std::string& text) {
-        logger("store").warn("{}", text);
-      }) {}
+                       std::int32_t edge, PastChunks past_chunks)
+    : strand_(strand),
+      source_(chunks, generator, edge, ledger_,
+              [](const std::string& text) { logger("store").warn("{}", text); }),
+      past_chunks_(std::move(past_chunks)) {}
 
 void TileMaking::edited(std::span<const ChunkKey> chunks, Sequence seq) {
   if (waiting_edits_.empty() && ledger_.try_edited(chunks, seq)) return;
@@ -49,7 +50,11 @@ void TileMaking::make(TileRequest request, const MaterialTable& materials, Then 
   flush_edits();
   asio::post(*threads_, [this, request = std::move(request), visibility = visibility_,
                          then = std::move(then)] {
-    auto made = source_.make(request, *visibility);
+    const auto past_chunk = [this, &request](const ChunkKey& key) {
+      return past_chunks_(*request.at, key);
+    };
+    auto made = source_.make(request, *visibility, past_chunk);
+    if (!made && made.error().kind == StoreError::Kind::cancelled) return;  // the server stops
     if (!made) logger("store").error("{}", made.error().message());
     const bool has_tile = made && !made->empty() && made->back().key == request.key;
     const End end = has_tile ? End::made : made ? End::stopped : End::failed;

@@ -33,9 +33,12 @@ class TileMaking {
   /// reached TileRequest::steps_max.
   using Then = std::function<void(const ChunkKey&, const std::vector<MadeTile>&, End)>;
 
-  /// All must outlive the object.
+  /// Makes a chunk as it was after an edit. Kind::cancelled: the server stops.
+  using PastChunks = std::function<StoreResult<Chunk>(Sequence, const ChunkKey&)>;
+
+  /// All must outlive the object. `past_chunks` is called on the threads of this object.
   TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator& generator,
-             std::int32_t edge);
+             std::int32_t edge, PastChunks past_chunks);
 
   /// Makes a tile. `materials` are those in force.
   void make(TileRequest request, const MaterialTable& materials, Then then);
@@ -67,6 +70,7 @@ class TileMaking {
   // Edits that found the ledger in use.
   std::vector<std::pair<std::vector<ChunkKey>, Sequence>> waiting_edits_;
   TileSource source_;
+  const PastChunks past_chunks_;
   std::shared_ptr<const VisibilityTable> visibility_;
   std::size_t materials_ = 0;  // rows that visibility_ has
   Tiles unsaved_;

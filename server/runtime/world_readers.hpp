@@ -34,6 +34,10 @@ class WorldReaders {
   /// Opens the moment that the request names. The error is for the client, so it names no file of
   /// this machine.
   void open_history(const HistoryRequest& request, std::function<void(OpenedHistoryResult)> then);
+  /// Makes a chunk as it was after edit `at`, at once. The error is Kind::cancelled after stop().
+  StoreResult<Chunk> past_chunk(Sequence at, const ChunkKey& key) {
+    return moments_.chunk(at, key);
+  }
   /// Makes a chunk as it was after edit `at`. The error names file, table and row.
   void load_history_chunk(Sequence at, const ChunkKey& key,
                           std::function<void(Result<ChunkPtr, std::string>)> then);

@@ -14,19 +14,24 @@ namespace runstone {
 
 class TileSource::Making {
  public:
-  Making(TileSource& source, const TileRequest& request, const VisibilityTable& visibility)
+  Making(TileSource& source, const TileRequest& request, const VisibilityTable& visibility,
+         const PastChunk& past_chunk)
       : source_(source),
         request_(request),
         visibility_(visibility),
+        past_chunk_(past_chunk),
         fresh_(request.fresh.begin(), request.fresh.end()) {}
 
   StoreResult<MadeTile> tile(const ChunkKey& key) {
     // It is read first: a tile that is read or made later contains at least these edits.
     const Sequence newest = source_.ledger_.newest_edit(key);
+    if (is_later(newest)) return build(key);
     if (auto cached = source_.cache_.find(key); cached && newest <= cached->through) {
       cached->is_known = true;
       // The ledger knows all edits up to the head, and none of them is newer.
       cached->through = std::max(cached->through, request_.head);
+      // An edit may have come since the ledger was asked.
+      if (is_later(cached->tile->version.seq)) return build(key);
       return *std::move(cached);
     }
     auto found = coarse(key);
@@ -42,6 +47,7 @@ class TileSource::Making {
       found = *std::move(built);
     }
     source_.cache_.put(*found);
+    if (is_later(found->tile->version.seq)) return build(key);
     return *std::move(found);
   }
 
@@ -120,7 +126,25 @@ class TileSource::Making {
     return Child{made->tile, made->is_approximate, made->is_damaged};
   }
 
+  /// Returns true if an edit came after the moment that the request wants.
+  bool is_later(Sequence seq) const { return request_.at && seq > *request_.at; }
+
   StoreResult<Child> chunk_at(const ChunkKey& key) {
+    if (is_later(source_.ledger_.newest_edit(key))) return past_chunk_at(key);
+    auto found = present_chunk_at(key);
+    // An edit may have come since the ledger was asked.
+    if (found && found->chunk && is_later(found->chunk->version.seq)) return past_chunk_at(key);
+    return found;
+  }
+
+  StoreResult<Child> past_chunk_at(const ChunkKey& key) {
+    ++steps_;
+    auto chunk = past_chunk_(key);
+    if (chunk) return Child{std::make_shared<const Chunk>(*std::move(chunk)), false, false};
+    return damaged_chunk(key, chunk.error());
+  }
+
+  StoreResult<Child> present_chunk_at(const ChunkKey& key) {
     if (const auto fresh = fresh_.find(key.at); fresh != fresh_.end())
       return Child{fresh->second, fresh->second == nullptr, fresh->second == nullptr};
     ++steps_;
@@ -131,9 +155,12 @@ class TileSource::Making {
     }
     auto loaded = source_.chunks_.load(key);
     if (loaded) return Child{std::make_shared<const Chunk>(*std::move(loaded)), false, false};
-    if (loaded.error().kind != StoreError::Kind::corrupt)
-      return Unexpected<StoreError>{loaded.error()};
-    source_.warn_once(key, loaded.error());
+    return damaged_chunk(key, loaded.error());
+  }
+
+  StoreResult<Child> damaged_chunk(const ChunkKey& key, const StoreError& error) {
+    if (error.kind != StoreError::Kind::corrupt) return Unexpected<StoreError>{error};
+    source_.warn_once(key, error);
     return Child{nullptr, true, true};
   }
 
@@ -153,6 +180,7 @@ class TileSource::Making {
   TileSource& source_;
   const TileRequest& request_;
   const VisibilityTable& visibility_;
+  const PastChunk& past_chunk_;
   const std::map<ChunkCoord, ChunkPtr> fresh_;
   VeiledTileScratch scratch_;
   std::vector<MadeTile> on_the_way_;
@@ -171,10 +199,12 @@ TileSource::TileSource(ChunkSource& chunks, const Generator& generator, std::int
       cache_(options.cache_bytes) {}
 
 StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
-                                                    const VisibilityTable& visibility) {
+                                                    const VisibilityTable& visibility,
+                                                    const PastChunk& past_chunk) {
+  RUNSTONE_ASSERT(!request.at || past_chunk);
   RUNSTONE_ASSERT(request.key.lod >= 1 && request.key.lod <= kTileLevelMax);
   if (auto found = find_ground(); !found) return Unexpected<StoreError>{found.error()};
-  Making making(*this, request, visibility);
+  Making making(*this, request, visibility, past_chunk);
   auto tile = making.tile(request.key);
   if (making.has_stopped()) return making.take_on_the_way();
   if (!tile) return Unexpected<StoreError>{tile.error()};

@@ -50,14 +50,20 @@ class TileSource {
              Warn warn)
       : TileSource(chunks, generator, edge, ledger, std::move(warn), Options()) {}
 
+  /// Makes a chunk as it was after edit TileRequest::at.
+  using PastChunk = std::function<StoreResult<Chunk>(const ChunkKey&)>;
+
   /// Returns the tile as the last of the list. Before it come the tiles below it that were made on
   /// the way and are worth storing. If request.steps_max is reached, the call stops between two tiles,
   /// and the list lacks the requested one. The next call finds the tiles that this one made in memory.
   /// The first call reads the keys of all stored chunks. Requires a
   /// tile inside the world, and that every edit up to request.head was reported to the ledger. Fails if
   /// the folder cannot be read.
+  /// A request with `at` also requires `past_chunk`. Its tile is made of chunks of that moment where an
+  /// edit is newer, and is the present one elsewhere. A tile of the past is not kept in memory.
   StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
-                                          const VisibilityTable& visibility);
+                                          const VisibilityTable& visibility,
+                                          const PastChunk& past_chunk = {});
   /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now. It
   /// makes no tile and reads none from the disk. If the tile is in memory, the digests are compared.
   /// Otherwise the version must be that of the newest edit below the tile. Returns false before the

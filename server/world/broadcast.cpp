@@ -11,7 +11,7 @@
 #include "server/world/delivery.hpp"
 #include "server/world/material_handlers.hpp"
 #include "server/world/rights_handlers.hpp"
-#include "server/world/tile_handlers.hpp"
+#include "server/world/stale_tiles.hpp"
 
 namespace runstone {
 namespace {

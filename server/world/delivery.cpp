@@ -203,7 +203,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
   mine->stalled_us.reset();
   world.deliveries.erase(session);
   if (!send_view_states(world, session, now)) return;
-  request_tiles(world, session, now);  // tiles show the live world, also to a session in the past
+  request_tiles(world, session, now);
   if (mine->history) {
     deliver_history(world, session, now);
     send_not_modified(world, session, false);

@@ -12,8 +12,6 @@
 
 namespace runstone {
 
-/// The tiles of level L are made again at most once in 2^(L - 1) of these times.
-inline constexpr TimeUs kTileRemakeUs = 1'000'000;
 /// The time that a changed tile owes for each session to which it is sent
 /// (TileQueue::charge_changed()). So all sessions together get about 5,000 changed tiles a second.
 inline constexpr TimeUs kTileResendUs = 200;
@@ -46,6 +44,10 @@ std::size_t set_tile_view(WorldState& world, SessionId session, const View& view
 /// A tile of which the session claims a current copy is answered by "not modified", at most
 /// kTileClaimsPerCall of them in a call.
 void request_tiles(WorldState& world, SessionId session, const Clocks& now);
+/// Returns a request for a tile. Collects the chunks below it that are newer in memory than on disk. An
+/// absent one has edits that nobody has applied yet; then `head` is 0. Some of the absent ones are
+/// loaded, so that the tile is complete when it is made again. Requires make_tiles_stale().
+TileRequest request_of(WorldState& world, const ChunkKey& tile, const Clocks& now);
 /// Gives tiles to the workers. Call it on each tick and after requests.
 void start_tiles(WorldState& world, const Clocks& now);
 /// Sends a tile that workers made, the last one of `made`, to the sessions that wait for it or have it
@@ -56,10 +58,6 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
 /// turn.
 void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
                      const Clocks& now);
-/// Reports that a commit touched these chunks of level of detail 0, ascending, which have their new
-/// versions. The tiles above them become stale before a function of this file looks at tiles the next
-/// time, on a tick at the latest. So edits of one chunk between two ticks cost as much as one.
-void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, const Clocks& now);
 /// Forgets the tiles of a session that ends.
 void forget_tiles(WorldState& world, SessionId session, WorldSession& mine);
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct TileRequest {
   /// The call stops when it has read or generated so many chunks and tiles, so that others get their
   /// turn.
   std::size_t steps_max = std::numeric_limits<std::size_t>::max();
+  /// The tile is made as it was after this edit. Then what is newer in `fresh` is not used.
+  std::optional<Sequence> at = std::nullopt;
 };
 
 /// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty. The digest of an

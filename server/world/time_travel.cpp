@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/world/delivery.hpp"
+#include "server/world/past_tiles.hpp"
 #include "server/world/quotas.hpp"
 #include "server/world/rights_handlers.hpp"
 
@@ -28,6 +29,7 @@ void begin_state(WorldState& world, SessionId session, std::uint32_t request, co
   mine.complete_due.reset();
   mine.is_view_complete = mine.begins_due->view == 0;
   want_all(world, session);
+  move_tiles_in_time(world, session, now);
   deliver(world, session, now);
 }
 

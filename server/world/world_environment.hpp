@@ -116,8 +116,12 @@ class WorldEnvironment {
   virtual void load_chunk(const ChunkKey& key) = 0;
   /// Makes a tile on a worker. Called at most once for a tile until it is answered. Answer:
   /// WorldServer::tiles_made() or tile_stopped(). Without tiles (WorldConfig::tile_levels_max is 0),
-  /// neither this nor the three calls below are made.
+  /// neither this nor the calls below are made.
   virtual void make_tile(TileRequest /*request*/) {}
+  /// Makes the tile of a request that has `at`, for a session that sees the past. Answer:
+  /// WorldServer::past_tile_made() or past_tile_stopped().
+  virtual void make_past_tile(SessionId /*session*/, HistoryNumber /*history*/,
+                              TileRequest /*request*/) {}
   /// Records that the newest edit of these chunks is `seq`, before any later make_tile(). Keys of
   /// level of detail 0, ascending.
   virtual void tiles_edited(std::span<const ChunkKey> /*chunks*/, Sequence /*seq*/) {}

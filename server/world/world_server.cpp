@@ -1,4 +1,5 @@
 #include "server/world/world_server.hpp"
+#include "server/world/past_tiles.hpp"
 
 #include <algorithm>
 #include <array>
@@ -359,6 +360,18 @@ void WorldServer::tiles_made(const ChunkKey& key, const std::vector<MadeTile>& m
 void WorldServer::tile_stopped(const ChunkKey& key, const std::vector<MadeTile>& made,
                                const Clocks& now) {
   on_tile_stopped(*state_, key, made, now);
+}
+
+void WorldServer::past_tile_made(SessionId session, HistoryNumber history,
+                                 const TileRequest& request, const std::vector<MadeTile>& made,
+                                 const Clocks& now) {
+  on_past_tile_made(*state_, session, history, request, made, now);
+}
+
+void WorldServer::past_tile_stopped(SessionId session, HistoryNumber history,
+                                    const TileRequest& request, const std::vector<MadeTile>& made,
+                                    const Clocks& now) {
+  on_past_tile_stopped(*state_, session, history, request, made, now);
 }
 
 void WorldServer::history_opened(SessionId session, std::uint32_t request,

@@ -103,6 +103,9 @@ struct WorldSession {
   SentGround ground;
   // Tiles (tile_handlers.hpp).
   std::optional<TileInterest> tiles;  // nullopt: no view had tiles yet
+  // Past tiles (past_tiles.hpp).
+  std::optional<Sequence> tiles_at;       // the moment that they show; nullopt: the live world
+  std::set<ChunkKey> past_tiles_loading;  // tiles of `history` that workers make
   // Cached chunks (cached_chunk_handlers.hpp).
   CacheClaims claims;
   std::vector<UnmodifiedChunk> not_modified_due;  // subscribed, and not answered yet

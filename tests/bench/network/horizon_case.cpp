@@ -17,13 +17,13 @@ constexpr unsigned kFarViewRadiusV = 3;  // chunks
 /// The view radius in chunks, and the levels of tiles that are measured.
 struct FarViews {
   unsigned radius = 8;
-  std::array<unsigned, 3> levels = {0, 4, 6};
+  std::array<unsigned, 4> levels = {0, 4, 6, 7};
   /// Returns how far a view with these levels sees, in voxels, at chunks of 32 voxels.
   unsigned reach(unsigned levels_of_view) const { return radius * 32U << levels_of_view; }
 };
 
 FarViews views_of(const NetOptions& options) {
-  return options.quick ? FarViews{3, {0, 1, 2}} : FarViews{};
+  return options.quick ? FarViews{3, {0, 1, 2, 3}} : FarViews{};
 }
 
 constexpr double kHorizonSeconds = 120;

@@ -1,14 +1,17 @@
 // A server makes tiles of far ground, keeps them current while players build, and stores them.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "common/core/tile_keys.hpp"
 #include "common/edits/apply/edit_stack.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/generate/generator.hpp"
 #include "common/mesh/visibility.hpp"
 #include "common/tiles/veiled_tile.hpp"
@@ -65,6 +68,13 @@ class Watcher {
     if (snapshot->key.lod == 0) return;
     CHECK(contains_key(view_, snapshot->key));
     CHECK(digest_matches(*snapshot));
+    if (is_empty(snapshot->chunk.voxels)) {
+      std::erase_if(tiles_, [above = snapshot->key](const auto& tile) {
+        ChunkKey key = tile.first;
+        while (key.lod < above.lod) key = tile_parent(key);
+        return key == above;
+      });
+    }
     tiles_.insert_or_assign(snapshot->key, std::move(snapshot->chunk));
   }
   bool has_below(const ChunkKey& key) const {
@@ -201,6 +211,54 @@ TEST_CASE("a tower appears in the tiles of another client, and in those of the n
   check_exact(watcher, expected);
   server->stop();
   CHECK(raw_sql(folder / "world.sqlite", "SELECT count(*) FROM tile WHERE seq > 0") != "0");
+}
+
+TEST_CASE("far ground shows the moment to which a client moves in time", "[integration]") {
+  TempFolder folder;
+  const auto server = start_server(quiet_config(folder.path()), terrain_creation());
+  Watcher watcher(server->port(), 1, far_view({0, 2, 0}));
+  watcher.read_all();
+  RawClient builder(server->port());
+  REQUIRE(builder.join(2).has_value());
+  ClientSequence seq = 0;
+  for (const EditDescriptor& tower : kTowers) builder.send(EditRequest{++seq, 0, tower});
+  REQUIRE(builder.sees_durable(2));
+  std::array<std::unique_ptr<Expected>, kTowers.size() + 1> expected;  // by the number of towers
+  for (std::size_t towers = 0; towers < expected.size(); ++towers) {
+    expected[towers] = std::make_unique<Expected>(folder.path());
+    for (std::size_t i = 0; i < towers; ++i) expected[towers]->edit(kTowers.at(i));
+  }
+  std::set<ChunkKey> touched;
+  for (const EditDescriptor& tower : kTowers) {
+    for (const ChunkCoord at : touched_chunks(tower, kEdge)) {
+      for (std::uint8_t level = 1; level <= 2; ++level) {
+        const ChunkKey key = tile_of(at, level);
+        if (contains_key(far_view({0, 2, 0}), key)) touched.insert(key);
+      }
+    }
+  }
+  const auto shows = [&](std::size_t towers) {
+    watcher.read_until([&] {
+      return std::ranges::all_of(touched, [&](const ChunkKey& key) {
+        const Chunk* tile = watcher.find(key);
+        const RunChunk wanted = expected.at(towers)->tile(key);
+        // Nothing is sent below an empty tile.
+        return tile == nullptr ? is_empty(wanted) : digest_of(tile->voxels) == digest_of(wanted);
+      });
+    });
+    watcher.read_all();
+  };
+  shows(2);
+  std::uint32_t request = 0;
+  for (const std::size_t towers : {0U, 1U, 0U}) {
+    watcher.send(HistoryRequest{++request, HistoryTarget::sequence, towers, 0});
+    shows(towers);
+    check_exact(watcher, *expected.at(towers));
+  }
+  watcher.send(HistoryRequest{++request, HistoryTarget::live, 0, 0});
+  shows(2);
+  check_exact(watcher, *expected.back());
+  server->stop();
 }
 
 TEST_CASE("a view that flips its levels and place with each message delays nobody else",

@@ -321,3 +321,66 @@ TEST_CASE("a call that stops goes on where it was, and ends with the same tile",
   std::sort(expected.begin(), expected.end());
   CHECK(keys == expected);  // nothing is made twice
 }
+
+TEST_CASE("a tile of the past is the tile that was made then", "[tiles][travel]") {
+  TileWorld world({"terrain", 1, 7, ""}, 5);
+  const std::vector<ChunkKey> keys = {{1, {0, 0, 0}}, {2, {0, 0, 0}}, {3, {0, 0, 0}},
+                                      {1, {1, 0, 0}}, {2, {1, 0, 0}}, {1, {0, 1, 1}}};
+  std::vector<std::map<ChunkCoord, ChunkPtr>> chunks;           // by the number of edits
+  std::vector<std::map<ChunkKey, std::vector<MadeTile>>> made;  // likewise
+  world.edit({{1, 1, 1}});                                      // from here on, level 3 is exact
+  for (std::size_t moment = 0; moment < 6; ++moment) {
+    if (moment == 3) world.save_all();
+    chunks.push_back(world.chunks);
+    auto& tiles = made.emplace_back();
+    for (const ChunkKey& key : keys) tiles[key] = world.make(key);
+    const auto draw = [&world] { return static_cast<std::int32_t>(world.random.below(4)); };
+    world.edit({{draw(), draw(), draw()}, {draw(), 0, 0}});
+  }
+  std::size_t past_chunks = 0;
+  for (std::size_t moment = 0; moment < made.size(); ++moment) {
+    const auto past_chunk = [&](const ChunkKey& key) -> StoreResult<Chunk> {
+      ++past_chunks;
+      const auto edited = chunks[moment].find(key.at);
+      if (edited != chunks[moment].end()) return *edited->second;
+      return generated_chunk(*world.generator, key, kSampleEdge);
+    };
+    for (const ChunkKey& key : keys) {
+      INFO("moment " << moment << ", level " << int{key.lod} << " at " << key.at.x);
+      TileRequest request = world.request(key);
+      request.at = moment + 1;
+      const auto past = world.source->make(request, *world.visibility, past_chunk);
+      REQUIRE(past.has_value());
+      CHECK(past->back().key == key);
+      CHECK(*past->back().tile == *made[moment][key].back().tile);
+    }
+  }
+  CHECK(past_chunks > 0);
+  // The present is not disturbed.
+  for (const ChunkKey& key : keys) {
+    TileSource fresh(*world.chunk_source, *world.generator, kSampleEdge, *world.ledger, {});
+    const auto now = fresh.make(world.request(key), *world.visibility);
+    REQUIRE(now.has_value());
+    CHECK(*world.make(key).back().tile == *now->back().tile);
+  }
+}
+
+TEST_CASE("a chunk of the past that cannot be read fails its tile, and a damaged one is left out",
+          "[tiles][travel][damage]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}});
+  world.edit({{0, 0, 0}, {1, 0, 0}});
+  TileRequest request = world.request({1, {0, 0, 0}});
+  request.at = 1;
+  const auto make = [&](StoreError::Kind kind) {
+    return world.source->make(request, *world.visibility, [kind](const ChunkKey& /*key*/) {
+      return StoreResult<Chunk>(Unexpected<StoreError>{{kind, "file", "table", "row"}});
+    });
+  };
+  CHECK_FALSE(make(StoreError::Kind::io).has_value());
+  const auto damaged = make(StoreError::Kind::corrupt);
+  REQUIRE(damaged.has_value());
+  CHECK(damaged->back().is_damaged);
+  CHECK(is_empty(damaged->back().tile->voxels));
+  CHECK(world.warnings.size() == 2);
+}

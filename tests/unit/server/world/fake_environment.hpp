@@ -54,6 +54,12 @@ class FakeEnvironment : public WorldEnvironment {
   };
   std::vector<Save> saves;
   std::deque<TileRequest> tile_requests;
+  struct PastTileRequest {
+    SessionId session = 0;
+    HistoryNumber history{};
+    TileRequest request;
+  };
+  std::deque<PastTileRequest> past_tile_requests;
   std::map<ChunkKey, Sequence> tile_edits;  // the newest edit below each tile
   std::vector<std::pair<ChunkKey, ChunkPtr>> saved_tiles;
   std::vector<CachedChunk> current_tiles;  // copies that are known to be current
@@ -121,6 +127,9 @@ class FakeEnvironment : public WorldEnvironment {
   void log_chat(const ChatEntry& entry) override { chat.push_back(entry); }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
   void make_tile(TileRequest request) override { tile_requests.push_back(std::move(request)); }
+  void make_past_tile(SessionId session, HistoryNumber history, TileRequest request) override {
+    past_tile_requests.push_back({session, history, std::move(request)});
+  }
   void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override {
     for (const ChunkKey& chunk : chunks) {
       for (std::uint8_t level = 1; level <= kTileLevelMax; ++level) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/runs/run_chunk.hpp"
+#include "server/world/stale_tiles.hpp"
 #include "tests/unit/server/world/tile_bench.hpp"
 
 namespace runstone::test {

@@ -1,0 +1,81 @@
+#include "server/world/tile_sending.hpp"
+
+#include <algorithm>
+
+#include "server/world/delivery.hpp"
+
+namespace runstone {
+namespace {
+
+void add_receiver(WorldState& world, const ChunkKey& key, SessionId session) {
+  std::vector<SessionId>& sessions = world.tiles.receivers[key].sessions;
+  const auto at = std::ranges::lower_bound(sessions, session);
+  if (at == sessions.end() || *at != session) sessions.insert(at, session);
+}
+
+/// Records that the session has a tile.
+void tile_sent(WorldState& world, SessionId session, const ChunkKey& key, bool is_empty) {
+  TileInterest& tiles = *world.find(session)->tiles;
+  if (tiles.status(key) == (is_empty ? TileStatus::sent_empty : TileStatus::sent)) return;
+  leave_tiles(world, session, tiles.set_sent(key, is_empty));
+  add_receiver(world, key, session);
+}
+
+}  // namespace
+
+std::size_t tile_price(const std::vector<MadeTile>& made) {
+  std::size_t price = 0;
+  for (const MadeTile& one : made) {
+    if (!one.is_known && !one.tile->voxels.is_uniform()) price += one.key.lod == 1 ? 2 : 1;
+  }
+  return price;
+}
+
+void leave_tiles(WorldState& world, SessionId session, std::span<const ChunkKey> keys) {
+  for (const ChunkKey& key : keys) {
+    world.tiles.queue.cancel(key, session);
+    if (TileReceivers* receivers = world.tiles.receivers.find(key)) {
+      std::erase(receivers->sessions, session);
+      if (!receivers->sessions.empty()) continue;
+      world.tiles.receivers.erase(key);
+    }
+    if (!world.tiles.queue.is_waited_for(key)) world.tiles.queue.cancel_again(key);
+  }
+}
+
+void send_same_tile(WorldState& world, SessionId session, const ChunkKey& key, Sequence seq) {
+  WorldSession& mine = *world.find(session);
+  mine.claims.drop(key);
+  mine.not_modified_due.push_back({key, seq});
+  ++world.counters.tiles_not_modified;
+  tile_sent(world, session, key, false);
+}
+
+void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
+               const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  if (mine.tiles->status(key) == TileStatus::wanted) return;
+  // An older state that still waits to be sent must not arrive after this one.
+  std::erase_if(mine.uniform, [&key](const UniformChunk& one) { return one.key == key; });
+  if (const CachedChunk* claim = mine.claims.find(key)) {
+    const bool is_same = claim->version == tile->version &&
+                         claim->digest == claim_digest(tile->digest) && !tile->voxels.is_uniform();
+    if (is_same) return send_same_tile(world, session, key, tile->version.seq);
+    mine.claims.drop(key);
+  }
+  const bool is_sent =
+      tile->voxels.is_uniform()
+          ? queue_uniform(world, session, key, *tile, now)
+          : world.environment.send_snapshot(session, view_in_force(world, session), key, tile);
+  if (!is_sent) {
+    ++world.counters.queue_full;
+    mine.stalled_us = now.steady_us;
+    mine.tiles->want_again(key);
+    leave_tiles(world, session, {&key, 1});  // it does not get the tile until it requests it again
+    return;
+  }
+  ++world.counters.tiles_sent;
+  tile_sent(world, session, key, is_empty(tile->voxels));
+}
+
+}  // namespace runstone
