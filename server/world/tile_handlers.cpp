@@ -106,7 +106,8 @@ std::size_t set_tile_view(WorldState& world, SessionId session, const View& view
 
 void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
   if (world.is_stopping) return;
-  if (world.find(session)->tiles) world.tiles.requests.insert(session);
+  const WorldSession& mine = *world.find(session);
+  if (mine.tiles && mine.tiles->next_wanted()) world.tiles.requests.insert(session);
   make_tiles_stale(world, now);
   std::size_t claims_left = kTileClaimsPerCall;
   while (claims_left != 0 && world.tiles.request_tokens.wait_us(1, now.steady_us) == 0) {
