@@ -87,6 +87,8 @@ StoreResult<Chunk> Moments::chunk(Sequence at, const ChunkKey& key) {
   const auto moment = find(at);
   if (!moment) return Unexpected<StoreError>{moment.error()};
   const std::lock_guard lock((*moment)->mutex);
+  if (is_cancelled_.load())
+    return Unexpected<StoreError>{{StoreError::Kind::cancelled, {}, {}, "the server stops"}};
   return (*moment)->world->chunk(key);
 }
 

@@ -45,6 +45,15 @@ TileStatus TileInterest::status(const ChunkKey& key) const {
   return view_ && has_key(*view_, limit_, key) ? tiles_.at(key) : TileStatus::unknown;
 }
 
+std::vector<ChunkKey> TileInterest::roots() const {
+  std::vector<ChunkKey> out;
+  if (view_ && tile_levels(*view_) != 0) {
+    for_each_tile(*view_, limit_, tile_levels(*view_),
+                  [&out](const ChunkKey& key) { out.push_back(key); });
+  }
+  return out;
+}
+
 std::vector<ChunkKey> TileInterest::known() const {
   std::vector<ChunkKey> out;
   if (!view_) return out;

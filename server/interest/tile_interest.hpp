@@ -39,6 +39,15 @@ class TileInterest {
 
   /// Returns the first wanted tile, or nullopt. It stays wanted.
   std::optional<ChunkKey> next_wanted() const;
+  /// Returns the first of the next `count_max` wanted tiles that `accepts` accepts, or nullopt.
+  template <class Accepts>
+  std::optional<ChunkKey> next_wanted(std::size_t count_max, const Accepts& accepts) const {
+    for (const Place& place : queue_) {
+      if (count_max-- == 0) break;
+      if (accepts(std::get<ChunkKey>(place))) return std::get<ChunkKey>(place);
+    }
+    return std::nullopt;
+  }
   TileStatus status(const ChunkKey& key) const;
   /// Makes a wanted tile waiting.
   void set_waiting(const ChunkKey& key);
@@ -51,13 +60,15 @@ class TileInterest {
   /// Makes all tiles unknown. Returns those that were waiting or sent.
   std::vector<ChunkKey> clear();
 
-  /// Returns the tiles that are wanted, waiting or sent, level by level.
-  std::vector<ChunkKey> known() const;
+  /// Returns the tiles of the view's highest level.
+  std::vector<ChunkKey> roots() const;
   std::size_t waiting_count() const { return waiting_; }
   /// Returns the number of tiles that are wanted, waiting or sent.
   std::size_t known_count() const { return known_; }
 
  private:
+  /// Returns the known tiles, level by level.
+  std::vector<ChunkKey> known() const;
   using Place = std::tuple<int, std::int64_t, ChunkKey>;
   Place place_of(const ChunkKey& key) const;
   /// Returns true if the session is to get this tile of the view.

@@ -21,8 +21,9 @@ std::vector<SessionId> ServerEnvironment::send_to_all(std::span<const SessionId>
   return full;
 }
 
-void ServerEnvironment::set_encoding(SessionId session, ChunkEncoding encoding) {
-  if (const auto& net = sessions_.find(session)) net->set_encoding(encoding);
+void ServerEnvironment::set_encodings(SessionId session, ChunkEncoding chunks,
+                                      ChunkEncoding tiles) {
+  if (const auto& net = sessions_.find(session)) net->set_encodings(chunks, tiles);
 }
 
 void ServerEnvironment::set_features(SessionId session, std::uint64_t features) {
@@ -96,14 +97,13 @@ void ServerEnvironment::make_tile(TileRequest request) {
               });
 }
 
-void ServerEnvironment::make_past_tile(SessionId session, HistoryNumber history,
-                                       TileRequest request) {
-  const auto then = [this, session, history, request](const ChunkKey& /*key*/,
-                                                      const std::vector<MadeTile>& made,
-                                                      TileMaking::End end) {
+void ServerEnvironment::make_past_tile(SessionId session, TileRequest request) {
+  const auto then = [this, session, request](const ChunkKey& /*key*/,
+                                             const std::vector<MadeTile>& made,
+                                             TileMaking::End end) {
     if (end == TileMaking::End::stopped)
-      return world_->past_tile_stopped(session, history, request, made, read_clocks());
-    world_->past_tile_made(session, history, request, made, read_clocks());
+      return world_->past_tile_stopped(session, request, made, read_clocks());
+    world_->past_tile_made(session, request, made, read_clocks());
   };
   tiles_.make(std::move(request), world_->materials(), then);
 }

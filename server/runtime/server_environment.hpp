@@ -49,7 +49,7 @@ class ServerEnvironment final : public WorldEnvironment {
   bool send(SessionId session, const EncodedMessage& message) override;
   std::vector<SessionId> send_to_all(std::span<const SessionId> sessions,
                                      const EncodedMessage& message) override;
-  void set_encoding(SessionId session, ChunkEncoding encoding) override;
+  void set_encodings(SessionId session, ChunkEncoding chunks, ChunkEncoding tiles) override;
   void set_features(SessionId session, std::uint64_t features) override;
   void opened(SessionId session) override;
   bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
@@ -66,7 +66,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void log_chat(const ChatEntry& entry) override;
   void load_chunk(const ChunkKey& key) override;
   void make_tile(TileRequest request) override;
-  void make_past_tile(SessionId session, HistoryNumber history, TileRequest request) override;
+  void make_past_tile(SessionId session, TileRequest request) override;
   void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override;
   Sequence newest_tile_edit(const ChunkKey& tile) const override;
   bool is_tile_current(const CachedChunk& copy) const override;

@@ -48,8 +48,9 @@ void TileMaking::make(TileRequest request, const MaterialTable& materials, Then 
     materials_ = materials.size();
   }
   flush_edits();
-  asio::post(*threads_, [this, request = std::move(request), visibility = visibility_,
-                         then = std::move(then)] {
+  asio::thread_pool& threads = request.at ? *past_thread_ : *threads_;
+  asio::post(threads, [this, request = std::move(request), visibility = visibility_,
+                       then = std::move(then)] {
     const auto past_chunk = [this, &request](const ChunkKey& key) {
       return past_chunks_(*request.at, key);
     };
@@ -92,8 +93,10 @@ void TileMaking::save_next(LogWriter& writer) {
 }
 
 void TileMaking::stop() {
-  threads_->stop();
-  threads_->join();
+  for (const auto& threads : {threads_.get(), past_thread_.get()}) {
+    threads->stop();
+    threads->join();
+  }
 }
 
 }  // namespace runstone

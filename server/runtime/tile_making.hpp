@@ -76,6 +76,8 @@ class TileMaking {
   Tiles unsaved_;
   bool is_saving_ = false;
   const std::unique_ptr<asio::thread_pool> threads_ = low_priority_threads(kThreads);
+  // Past tiles have a thread of their own, because they take long.
+  const std::unique_ptr<asio::thread_pool> past_thread_ = low_priority_threads(1);
 };
 
 }  // namespace runstone

@@ -25,13 +25,13 @@ class TileSource::Making {
   StoreResult<MadeTile> tile(const ChunkKey& key) {
     // It is read first: a tile that is read or made later contains at least these edits.
     const Sequence newest = source_.ledger_.newest_edit(key);
-    if (is_later(newest)) return build(key);
+    if (is_later(newest)) return past_tile(key);
     if (auto cached = source_.cache_.find(key); cached && newest <= cached->through) {
       cached->is_known = true;
       // The ledger knows all edits up to the head, and none of them is newer.
       cached->through = std::max(cached->through, request_.head);
       // An edit may have come since the ledger was asked.
-      if (is_later(cached->tile->version.seq)) return build(key);
+      if (is_later(cached->tile->version.seq)) return past_tile(key);
       return *std::move(cached);
     }
     auto found = coarse(key);
@@ -47,7 +47,7 @@ class TileSource::Making {
       found = *std::move(built);
     }
     source_.cache_.put(*found);
-    if (is_later(found->tile->version.seq)) return build(key);
+    if (is_later(found->tile->version.seq)) return past_tile(key);
     return *std::move(found);
   }
 
@@ -129,11 +129,34 @@ class TileSource::Making {
   /// Returns true if an edit came after the moment that the request wants.
   bool is_later(Sequence seq) const { return request_.at && seq > *request_.at; }
 
+  /// Makes a tile below which edits are later than the moment, unless an earlier turn made it.
+  StoreResult<MadeTile> past_tile(const ChunkKey& key) {
+    std::map<ChunkKey, MadeTile>& known = *request_.past_made;
+    if (const auto found = known.find(key); found != known.end()) return found->second;
+    auto built = build(key);
+    if (!built) return built;
+    built->is_past = true;
+    if (built->tile->digest != Digest{}) {
+      Chunk unclaimed = *built->tile;
+      unclaimed.digest = {};
+      built->tile = std::make_shared<const Chunk>(std::move(unclaimed));
+    }
+    if (key == request_.key) return built;
+    for (unsigned i = 0; key.lod > 1 && i < kTileChildren; ++i) known.erase(tile_child(key, i));
+    known.emplace(key, *built);
+    on_the_way_.push_back(*built);
+    return built;
+  }
+
   StoreResult<Child> chunk_at(const ChunkKey& key) {
-    if (is_later(source_.ledger_.newest_edit(key))) return past_chunk_at(key);
+    if (!request_.at) return present_chunk_at(key);
+    const Sequence newest = source_.ledger_.newest_edit(key);
+    if (is_later(newest)) return past_chunk_at(key);
     auto found = present_chunk_at(key);
-    // An edit may have come since the ledger was asked.
-    if (found && found->chunk && is_later(found->chunk->version.seq)) return past_chunk_at(key);
+    // An edit may have come since the ledger was asked. Or edits are neither in a snapshot nor in
+    // `fresh`, because the chunk is not in memory; then the log has them.
+    const Sequence shown = found && found->chunk ? found->chunk->version.seq : newest;
+    if (is_later(shown) || shown < newest) return past_chunk_at(key);
     return found;
   }
 
@@ -201,7 +224,7 @@ TileSource::TileSource(ChunkSource& chunks, const Generator& generator, std::int
 StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
                                                     const VisibilityTable& visibility,
                                                     const PastChunk& past_chunk) {
-  RUNSTONE_ASSERT(!request.at || past_chunk);
+  RUNSTONE_ASSERT(!request.at || (past_chunk && request.past_made));
   RUNSTONE_ASSERT(request.key.lod >= 1 && request.key.lod <= kTileLevelMax);
   if (auto found = find_ground(); !found) return Unexpected<StoreError>{found.error()};
   Making making(*this, request, visibility, past_chunk);

@@ -59,8 +59,9 @@ class TileSource {
   /// The first call reads the keys of all stored chunks. Requires a
   /// tile inside the world, and that every edit up to request.head was reported to the ledger. Fails if
   /// the folder cannot be read.
-  /// A request with `at` also requires `past_chunk`. Its tile is made of chunks of that moment where an
-  /// edit is newer, and is the present one elsewhere. A tile of the past is not kept in memory.
+  /// A request with `at` also requires `past_chunk` and request.past_made. A tile below which an edit is
+  /// later than `at` is made of its children at that moment. It is a past tile (MadeTile::is_past), which
+  /// is kept in request.past_made alone. Other tiles are the present ones.
   StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
                                           const VisibilityTable& visibility,
                                           const PastChunk& past_chunk = {});

@@ -11,10 +11,10 @@ inline constexpr TimeUs kTileRemakeUs = 1'000'000;
 
 /// Reports that a commit touched these chunks of level of detail 0, ascending, which have their new
 /// versions. The tiles above them become stale with make_tiles_stale(), on a tick at the
-/// latest. So edits of one chunk between two ticks cost as much as one.
+/// latest. So edits of one chunk between two calls of it cost as much as one.
 void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, const Clocks& now);
-/// Makes the tiles stale above the chunks that were edited since the last call. Whatever looks at tiles
-/// calls it first. Cost: O(edited chunks * levels).
+/// Makes the tiles stale above the chunks that were edited since the last call. Every function that
+/// reads the state of tiles, or the newest edit below one, must call it first. Cost: O(edited chunks * levels).
 void make_tiles_stale(WorldState& world, const Clocks& now);
 
 }  // namespace runstone

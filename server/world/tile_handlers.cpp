@@ -15,6 +15,9 @@
 namespace runstone {
 namespace {
 
+/// So many wanted tiles of a session are looked at if past ones have to wait.
+constexpr std::size_t kWantedLookedAtMax = 64;
+
 /// Charges the player for whom a tile is made.
 void charge(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>& made,
             const Clocks& now) {
@@ -34,13 +37,14 @@ void request_some(WorldState& world, SessionId session, std::size_t& claims_left
   if (world.find(session) == nullptr) return;
   WorldSession& mine = *world.find(session);
   if (!mine.tiles || is_stalled(world, mine, now)) return;
+  if (mine.begins_due) return;  // the tiles of a moment follow the message that begins it
   while (mine.tiles->waiting_count() < kTilesWaitingMax) {
-    const auto key = mine.tiles->next_wanted();
+    const bool waits = mine.history && waits_for_past_tiles(world, mine, now);
+    const auto key = mine.tiles->next_wanted(kWantedLookedAtMax, [&](const ChunkKey& wanted) {
+      return !waits || !is_past_tile(world, mine, wanted);
+    });
     if (!key) break;
-    const bool is_past = is_past_tile(world, mine, *key);
-    if (is_past && waits_for_past_tiles(mine)) break;
-    const CachedChunk* const claim = mine.claims.find(*key);
-    if (claim != nullptr && !is_past) {
+    if (const CachedChunk* claim = mine.claims.find(*key)) {
       if (claims_left == 0) {
         world.deliveries.insert(session);  // the others have a task of their own
         break;
@@ -58,24 +62,13 @@ void request_some(WorldState& world, SessionId session, std::size_t& claims_left
     }
     if (!pay_load(world, mine, now)) break;
     world.tiles.request_tokens.take(1, now.steady_us);
-    if (is_past) {
+    if (is_past_tile(world, mine, *key)) {
       request_past_tile(world, session, *key, now);
       continue;
     }
     mine.tiles->set_waiting(*key);
     world.tiles.queue.want(*key, session);
   }
-}
-
-void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
-  std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
-  for (const MadeTile& one : made) {
-    if (!one.is_worth_storing() || one.tile->voxels.is_uniform()) continue;
-    if (world.environment.newest_tile_edit(one.key) > one.through) continue;
-    tiles.emplace_back(one.key, one.tile);
-  }
-  if (!tiles.empty() && !world.is_stopping && !world.disk_is_full)
-    world.environment.save_tiles(std::move(tiles));
 }
 
 }  // namespace
@@ -170,7 +163,8 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   const TileState state = state_of(tile);
   std::vector<SessionId> receivers;
   // A tile is often made because one more session wants it: the others have it already.
-  const TileReceivers* const having = world.tiles.receivers.find(key);
+  TileReceivers* const having = world.tiles.receivers.find(key);
+  const Sequence through = having != nullptr ? having->through : 0;  // of what the others have
   if (having != nullptr && having->state != state) receivers = having->sessions;
   world.tiles.queue.charge_changed(now.steady_us,
                                    kTileResendUs * static_cast<TimeUs>(receivers.size()));
@@ -179,15 +173,19 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   }
   for (const SessionId session : receivers) {
     WorldSession& mine = *world.find(session);
-    if (!mine.history || tile.tile->version.seq <= mine.history->seq) {
+    if (!is_past_tile(world, mine, key)) {
       send_tile(world, session, key, tile.tile, now);
-    } else if (mine.tiles->status(key) == TileStatus::waiting) {
-      mine.tiles->want_again(key);  // an edit came after its request: it needs the tile as it was
+    } else if (mine.tiles->status(key) == TileStatus::waiting || through < mine.history->seq) {
+      // An edit came after the session's request, or what it has lacks edits before its moment. It needs
+      // the tile as it was.
+      mine.tiles->want_again(key);
+      leave_tiles(world, session, {&key, 1});
     }
   }
   if (TileReceivers* found = world.tiles.receivers.find(key)) {
     found->made_us = now.steady_us;
     found->state = state;
+    found->through = tile.through;
     if (world.environment.newest_tile_edit(key) > tile.through)
       world.tiles.queue.make_again(key, now.steady_us + kTileRetryUs);
   }

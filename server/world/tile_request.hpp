@@ -3,6 +3,8 @@
 #pragma once
 #include <cstddef>
 #include <limits>
+#include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -12,6 +14,31 @@
 #include "common/runs/chunk.hpp"
 
 namespace runstone {
+
+/// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty. The digest of an
+/// incomplete tile is 0, so that no client claims it later.
+struct MadeTile {
+  ChunkKey key;
+  ChunkPtr tile;         // its version is the greatest version of the chunks below it
+  Sequence through = 0;  // it contains every edit below it up to this one, unless it is a past tile
+  /// A part of it is not made of chunks: the generator approximated it, or a chunk below it is
+  /// damaged and left out.
+  bool is_approximate = false;
+  /// It was read from the folder, or an earlier request made it.
+  bool is_known = false;
+  /// A chunk below it is damaged and left out.
+  bool is_damaged = false;
+  /// It shows an earlier moment (TileRequest::at), and differs from the present one.
+  bool is_past = false;
+  /// Of the voxels. That of `tile` is zero unless the tile is complete, so that nobody claims it.
+  Digest digest{};
+
+  /// Returns true if clients may keep it and claim it by its version. A tile that contains some edits
+  /// behind `through` may lack others, and its version would not tell.
+  bool is_complete() const { return !is_past && !is_damaged && tile->version.seq <= through; }
+  /// Returns true if the tile should be stored.
+  bool is_worth_storing() const { return !is_approximate && !is_known && is_complete(); }
+};
 
 /// A tile to be made.
 struct TileRequest {
@@ -26,29 +53,9 @@ struct TileRequest {
   std::size_t steps_max = std::numeric_limits<std::size_t>::max();
   /// The tile is made as it was after this edit. Then what is newer in `fresh` is not used.
   std::optional<Sequence> at = std::nullopt;
-};
-
-/// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty. The digest of an
-/// incomplete tile is 0, so that no client claims it later.
-struct MadeTile {
-  ChunkKey key;
-  ChunkPtr tile;         // its version is the greatest version of the chunks below it
-  Sequence through = 0;  // it contains every edit below it up to this one
-  /// A part of it is not made of chunks: the generator approximated it, or a chunk below it is
-  /// damaged and left out.
-  bool is_approximate = false;
-  /// It was read from the folder, or an earlier request made it.
-  bool is_known = false;
-  /// A chunk below it is damaged and left out.
-  bool is_damaged = false;
-  /// Of the voxels. That of `tile` is zero unless the tile is complete, so that nobody claims it.
-  Digest digest{};
-
-  /// Returns true if its version determines its voxels. A tile that contains some edits behind
-  /// `through` may lack others, and its version would not tell.
-  bool is_complete() const { return !is_damaged && tile->version.seq <= through; }
-  /// Returns true if the tile should be stored.
-  bool is_worth_storing() const { return !is_approximate && !is_known && is_complete(); }
+  /// For a request with `at`: the past tiles that earlier turns made, without those below another one of
+  /// them. Used by the worker alone.
+  std::shared_ptr<std::map<ChunkKey, MadeTile>> past_made = {};
 };
 
 }  // namespace runstone

@@ -1,7 +1,9 @@
 #include "server/world/tile_sending.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "common/core/tile_keys.hpp"
 #include "server/world/delivery.hpp"
 
 namespace runstone {
@@ -26,9 +28,24 @@ void tile_sent(WorldState& world, SessionId session, const ChunkKey& key, bool i
 std::size_t tile_price(const std::vector<MadeTile>& made) {
   std::size_t price = 0;
   for (const MadeTile& one : made) {
-    if (!one.is_known && !one.tile->voxels.is_uniform()) price += one.key.lod == 1 ? 2 : 1;
+    if (one.is_past) {
+      price += one.key.lod == 1 ? kTileChildren : 1;
+    } else if (!one.is_known && !one.tile->voxels.is_uniform()) {
+      price += one.key.lod == 1 ? 2 : 1;
+    }
   }
   return price;
+}
+
+void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
+  std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
+  for (const MadeTile& one : made) {
+    if (!one.is_worth_storing() || one.tile->voxels.is_uniform()) continue;
+    if (world.environment.newest_tile_edit(one.key) > one.through) continue;
+    tiles.emplace_back(one.key, one.tile);
+  }
+  if (!tiles.empty() && !world.is_stopping && !world.disk_is_full)
+    world.environment.save_tiles(std::move(tiles));
 }
 
 void leave_tiles(WorldState& world, SessionId session, std::span<const ChunkKey> keys) {
@@ -51,31 +68,53 @@ void send_same_tile(WorldState& world, SessionId session, const ChunkKey& key, S
   tile_sent(world, session, key, false);
 }
 
+namespace {
+
+/// Queues a tile. Returns false if the session's queue is full. Then the session wants the tile again.
+bool queue_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
+                const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  // An older state that still waits to be sent must not arrive after this one.
+  std::erase_if(mine.uniform, [&key](const UniformChunk& one) { return one.key == key; });
+  const bool is_queued =
+      tile->voxels.is_uniform()
+          ? queue_uniform(world, session, key, *tile, now)
+          : world.environment.send_snapshot(session, view_in_force(world, session), key, tile);
+  if (is_queued) {
+    ++world.counters.tiles_sent;
+    return true;
+  }
+  ++world.counters.queue_full;
+  mine.stalled_us = now.steady_us;
+  mine.tiles->want_again(key);
+  leave_tiles(world, session, {&key, 1});  // it does not get the tile until it requests it again
+  return false;
+}
+
+}  // namespace
+
 void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
                const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (mine.tiles->status(key) == TileStatus::wanted) return;
-  // An older state that still waits to be sent must not arrive after this one.
-  std::erase_if(mine.uniform, [&key](const UniformChunk& one) { return one.key == key; });
   if (const CachedChunk* claim = mine.claims.find(key)) {
     const bool is_same = claim->version == tile->version &&
                          claim->digest == claim_digest(tile->digest) && !tile->voxels.is_uniform();
-    if (is_same) return send_same_tile(world, session, key, tile->version.seq);
+    if (is_same) {
+      std::erase_if(mine.uniform, [&key](const UniformChunk& one) { return one.key == key; });
+      return send_same_tile(world, session, key, tile->version.seq);
+    }
     mine.claims.drop(key);
   }
-  const bool is_sent =
-      tile->voxels.is_uniform()
-          ? queue_uniform(world, session, key, *tile, now)
-          : world.environment.send_snapshot(session, view_in_force(world, session), key, tile);
-  if (!is_sent) {
-    ++world.counters.queue_full;
-    mine.stalled_us = now.steady_us;
-    mine.tiles->want_again(key);
-    leave_tiles(world, session, {&key, 1});  // it does not get the tile until it requests it again
-    return;
-  }
-  ++world.counters.tiles_sent;
-  tile_sent(world, session, key, is_empty(tile->voxels));
+  if (queue_tile(world, session, key, tile, now))
+    tile_sent(world, session, key, is_empty(tile->voxels));
+}
+
+void send_past_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
+                    const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  if (!queue_tile(world, session, key, tile, now)) return;
+  leave_tiles(world, session, mine.tiles->set_sent(key, is_empty(tile->voxels)));
 }
 
 }  // namespace runstone

@@ -69,8 +69,10 @@ class WorldEnvironment {
     }
     return full;
   }
-  /// Sets the encoding agreed with a session. Called once, before its first send_snapshot().
-  virtual void set_encoding(SessionId /*session*/, ChunkEncoding /*encoding*/) {}
+  /// Sets the encodings of the session's chunks and of its tiles. Called once, before its first
+  /// send_snapshot().
+  virtual void set_encodings(SessionId /*session*/, ChunkEncoding /*chunks*/,
+                             ChunkEncoding /*tiles*/) {}
   /// Sets the optional parts of the protocol in force with a session. Called once, before session
   /// accepted.
   virtual void set_features(SessionId /*session*/, std::uint64_t /*features*/) {}
@@ -120,8 +122,7 @@ class WorldEnvironment {
   virtual void make_tile(TileRequest /*request*/) {}
   /// Makes the tile of a request that has `at`, for a session that sees the past. Answer:
   /// WorldServer::past_tile_made() or past_tile_stopped().
-  virtual void make_past_tile(SessionId /*session*/, HistoryNumber /*history*/,
-                              TileRequest /*request*/) {}
+  virtual void make_past_tile(SessionId /*session*/, TileRequest /*request*/) {}
   /// Records that the newest edit of these chunks is `seq`, before any later make_tile(). Keys of
   /// level of detail 0, ascending.
   virtual void tiles_edited(std::span<const ChunkKey> /*chunks*/, Sequence /*seq*/) {}

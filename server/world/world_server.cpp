@@ -1,5 +1,4 @@
 #include "server/world/world_server.hpp"
-#include "server/world/past_tiles.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,6 +20,7 @@
 #include "server/world/log_mark_handlers.hpp"
 #include "server/world/material_handlers.hpp"
 #include "server/world/name_rules.hpp"
+#include "server/world/past_tiles.hpp"
 #include "server/world/presence.hpp"
 #include "server/world/preview_handlers.hpp"
 #include "server/world/protected_ground.hpp"
@@ -362,16 +362,14 @@ void WorldServer::tile_stopped(const ChunkKey& key, const std::vector<MadeTile>&
   on_tile_stopped(*state_, key, made, now);
 }
 
-void WorldServer::past_tile_made(SessionId session, HistoryNumber history,
-                                 const TileRequest& request, const std::vector<MadeTile>& made,
-                                 const Clocks& now) {
-  on_past_tile_made(*state_, session, history, request, made, now);
+void WorldServer::past_tile_made(SessionId session, const TileRequest& request,
+                                 const std::vector<MadeTile>& made, const Clocks& now) {
+  on_past_tile_made(*state_, session, request, made, now);
 }
 
-void WorldServer::past_tile_stopped(SessionId session, HistoryNumber history,
-                                    const TileRequest& request, const std::vector<MadeTile>& made,
-                                    const Clocks& now) {
-  on_past_tile_stopped(*state_, session, history, request, made, now);
+void WorldServer::past_tile_stopped(SessionId session, const TileRequest& request,
+                                    const std::vector<MadeTile>& made, const Clocks& now) {
+  on_past_tile_stopped(*state_, session, request, made, now);
 }
 
 void WorldServer::history_opened(SessionId session, std::uint32_t request,

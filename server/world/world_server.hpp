@@ -151,10 +151,10 @@ class WorldServer {
   /// Brings tiles that were made on the way to a requested one, before the request reached
   /// TileRequest::steps_max. The tile is requested again.
   void tile_stopped(const ChunkKey& key, const std::vector<MadeTile>& made, const Clocks& now);
-  /// The same for a tile of the past of this history view.
-  void past_tile_made(SessionId session, HistoryNumber history, const TileRequest& request,
+  /// The same for a request of WorldEnvironment::make_past_tile().
+  void past_tile_made(SessionId session, const TileRequest& request,
                       const std::vector<MadeTile>& made, const Clocks& now);
-  void past_tile_stopped(SessionId session, HistoryNumber history, const TileRequest& request,
+  void past_tile_stopped(SessionId session, const TileRequest& request,
                          const std::vector<MadeTile>& made, const Clocks& now);
   /// Answers a session's history request, with the reason if it failed.
   void history_opened(SessionId session, std::uint32_t request,

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -104,8 +105,9 @@ struct WorldSession {
   // Tiles (tile_handlers.hpp).
   std::optional<TileInterest> tiles;  // nullopt: no view had tiles yet
   // Past tiles (past_tiles.hpp).
-  std::optional<Sequence> tiles_at;       // the moment that they show; nullopt: the live world
-  std::set<ChunkKey> past_tiles_loading;  // tiles of `history` that workers make
+  std::optional<Sequence> tiles_at;      // the moment that they show; nullopt: the live world
+  std::size_t past_tiles_in_flight = 0;  // with workers, those of earlier moments included
+  TimeUs past_tiles_retry_us = 0;        // none is requested before
   // Cached chunks (cached_chunk_handlers.hpp).
   CacheClaims claims;
   std::vector<UnmodifiedChunk> not_modified_due;  // subscribed, and not answered yet

@@ -65,8 +65,10 @@ struct TileState {
 struct TileReceivers {
   std::vector<SessionId> sessions;  // ascending
   std::optional<TimeUs> made_us;    // when it was made last
-  /// The state in which it was made last. All of them have it, or one that they claimed.
+  /// The state in which it was made last, and MadeTile::through of that. All of them have it, or one
+  /// that they claimed. A session that sees the past may have an earlier one.
   std::optional<TileState> state;
+  Sequence through = 0;
 };
 
 /// All sessions together request so many tiles a second, after so many at once. Each takes the world
@@ -77,7 +79,8 @@ inline constexpr std::uint64_t kTileRequestsPerSecond = 20'000, kTileRequestsAtO
 /// Tiles (tile_handlers.hpp).
 struct WorldTiles {
   TileQueue queue;
-  SessionTurns requests;  // sessions that may want more tiles
+  SessionTurns requests;           // sessions that may want more tiles
+  std::size_t past_in_flight = 0;  // past tiles with workers (past_tiles.hpp)
   TokenBucket request_tokens{kTileRequestsPerSecond, kTileRequestsAtOnce};
   std::map<ChunkKey, Payer> payers;       // of the tiles that workers make because a session waits
   ChunkHashMap<TileReceivers> receivers;  // no entry is without sessions for long

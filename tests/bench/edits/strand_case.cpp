@@ -84,6 +84,7 @@ class Strand {
   double run() {
     SplitMix64 rng(1);
     std::uint64_t ns = 0;
+    const std::uint64_t ordered_before = server_.counters().edits_ordered;
     for (std::size_t tick = 0; tick < kTicks; ++tick) {
       const std::uint64_t start = core_ns();
       for (std::size_t i = 0; i < kEditsPerTick; ++i) {
@@ -97,6 +98,7 @@ class Strand {
       ns += core_ns() - start;
       ns += answer();
     }
+    RUNSTONE_ASSERT(server_.counters().edits_ordered == ordered_before + kStrandEdits);
     return static_cast<double>(ns) / 1000 / kStrandEdits;
   }
 

@@ -24,7 +24,7 @@
 namespace runstone::bench {
 namespace {
 
-constexpr unsigned kLevels = 4;
+constexpr unsigned kLevels = 4, kRepeatedLevels = 6;
 constexpr double kTargetShare = 2;
 /// The part of an endless world that is measured.
 constexpr VoxelBox kPart{{0, -64, 0}, {512, 64, 512}};
@@ -32,10 +32,10 @@ constexpr VoxelBox kPart{{0, -64, 0}, {512, 64, 512}};
 /// A chunk, or a tile with its veil, and its bytes on the wire.
 struct Tile {
   RunChunk voxels;
-  Bytes packed;
+  Bytes packed, coded;
   std::size_t built_runs = 0, built_bytes = 0;  // before the veil
   std::size_t quads = 0;
-  std::vector<double> make_us, make_one_order_us, decode_us, mesh_us;
+  std::vector<double> make_us, make_one_order_us, decode_us, decode_coded_us, mesh_us;
 };
 using Level = std::map<ChunkCoord, Tile>;
 
@@ -105,6 +105,7 @@ class Passes {
   void pack(const Level* below, Level& level) {
     for (auto& [at, tile] : level) {
       tile.packed = encode_chunk(tile.voxels, ChunkEncoding::packed);
+      tile.coded = encode_chunk(tile.voxels, ChunkEncoding::coded);
       const RunChunk built = below == nullptr
                                  ? tile.voxels
                                  : build_tile(children_of(*below, at), edge_, tile.voxels.order,
@@ -115,12 +116,16 @@ class Passes {
   }
   /// Decodes and meshes all tiles of a level in turn.
   void receive(Level& level) {
-    for (auto& [at, tile] : level) {
-      const std::uint64_t start = now_ns();
-      const auto decoded = decode_chunk(tile.packed);
-      tile.decode_us.push_back(us_since(start));
-      RUNSTONE_ASSERT(decoded.has_value() && *decoded == tile.voxels);
-    }
+    const auto decode = [&level](Bytes Tile::* bytes, std::vector<double> Tile::* us) {
+      for (auto& [at, tile] : level) {
+        const std::uint64_t start = now_ns();
+        const auto decoded = decode_chunk(tile.*bytes);
+        (tile.*us).push_back(us_since(start));
+        RUNSTONE_ASSERT(decoded.has_value() && *decoded == tile.voxels);
+      }
+    };
+    decode(&Tile::packed, &Tile::decode_us);
+    decode(&Tile::coded, &Tile::decode_coded_us);
     for (auto& [at, tile] : level) {
       const std::uint64_t start = now_ns();
       mesh_rdm(tile.voxels, {}, visibility_, meshes_, mesh_);
@@ -147,6 +152,7 @@ TilesRow row_of(const Level& level, unsigned number) {
     row.veiled_runs += tile.voxels.runs.size();
     row.bytes += tile.built_bytes;
     row.veiled_bytes += tile.packed.size();
+    row.coded_bytes += tile.coded.size();
     row.quads += tile.quads;
     if (!tile.make_us.empty()) {
       row.make_us += median(tile.make_us);
@@ -154,6 +160,7 @@ TilesRow row_of(const Level& level, unsigned number) {
     }
     if (!tile.decode_us.empty()) {
       row.decode_us += median(tile.decode_us);
+      row.decode_coded_us += median(tile.decode_coded_us);
       row.mesh_us += median(tile.mesh_us);
     }
   }
@@ -192,29 +199,30 @@ void measure(const VoxelWorld& world, unsigned edge, unsigned repetitions,
 }
 
 /// Measures the bytes of a bounded world that is repeated sideways without end, so that no tile lies
-/// at its border. A part is measured in which the world and the tiles of the highest level repeat.
+/// at its border. Each level repeats after some tiles, and only these are made.
 void measure_repeated(const VoxelWorld& world, unsigned edge, std::vector<TilesRow>& rows) {
   const auto side = static_cast<std::int32_t>(edge);
   const ChunkCoord first = chunk_of(world.bounds->min, side);
   const ChunkCoord last =
       chunk_of({world.bounds->max.x - 1, world.bounds->max.y - 1, world.bounds->max.z - 1}, side);
   const std::int32_t width = last.x - first.x + 1, depth = last.z - first.z + 1;
-  const std::int32_t across = std::lcm(width, 1 << kLevels), along = std::lcm(depth, 1 << kLevels);
-  Level level = chunks_of(world, edge);
   Passes passes(*world.visibility, edge);
-  for (unsigned number = 1; number <= kLevels; ++number) {
+  Level level;
+  for (auto& [at, chunk] : chunks_of(world, edge))
+    level[{at.x - first.x, at.y, at.z - first.z}].voxels = std::move(chunk.voxels);
+  for (unsigned number = 1; number <= kRepeatedLevels; ++number) {
+    // The tiles of the level below after which it repeats, and those of this one.
+    const auto period = [](std::int32_t chunks, unsigned of) {
+      return std::lcm(chunks, 1 << of) >> of;
+    };
+    const std::int32_t x_below = period(width, number - 1), z_below = period(depth, number - 1);
+    const std::int32_t across = period(width, number), along = period(depth, number);
     Level below;
-    if (number == 1) {
-      for (std::int32_t x = 0; x < across; ++x) {
-        for (std::int32_t z = 0; z < along; ++z) {
-          for (std::int32_t y = first.y; y <= last.y; ++y) {
-            const auto found = level.find({first.x + x % width, y, first.z + z % depth});
-            if (found != level.end()) below[{x, y, z}].voxels = found->second.voxels;
-          }
-        }
+    for (const auto& [at, tile] : level) {
+      for (std::int32_t x = at.x; x < 2 * across; x += x_below) {
+        for (std::int32_t z = at.z; z < 2 * along; z += z_below)
+          below[{x, at.y, z}].voxels = tile.voxels;
       }
-    } else {
-      below = std::move(level);
     }
     level = empty_level_above(below);
     passes.make(below, level);
@@ -222,10 +230,32 @@ void measure_repeated(const VoxelWorld& world, unsigned edge, std::vector<TilesR
     TilesRow row = row_of(level, number);
     row.world = world.name + ", repeated";
     row.edge = edge;
-    row.columns = static_cast<std::size_t>(across) * static_cast<std::size_t>(along) * edge * edge;
+    row.columns = (static_cast<std::size_t>(across) * edge << number) *
+                  (static_cast<std::size_t>(along) * edge << number);
     rows.push_back(row);
   }
 }
+
+/// A view of this radius in chunks sees as many tiles of each level around its centre.
+constexpr std::int32_t kViewRadius = 8;
+
+/// Returns the columns of voxels that the tiles of one level in a view cover.
+double columns_in_view(unsigned edge, unsigned level) {
+  std::size_t tiles = 0;
+  for (std::int32_t x = -kViewRadius; x <= kViewRadius; ++x) {
+    for (std::int32_t z = -kViewRadius; z <= kViewRadius; ++z)
+      tiles += x * x + z * z <= kViewRadius * kViewRadius ? 1 : 0;
+  }
+  const auto width = static_cast<double>(std::size_t{edge} << level);
+  return static_cast<double>(tiles) * width * width;
+}
+
+/// The bytes of the tiles of a view that sees this far in a repeated world.
+struct ViewTarget {
+  unsigned levels;
+  double mb_max;
+};
+constexpr std::array<ViewTarget, 2> kViewTargets = {ViewTarget{4, 1.0}, ViewTarget{6, 1.3}};
 
 double per(double sum, std::size_t count) {
   return count == 0 ? 0 : sum / static_cast<double>(count);
@@ -250,6 +280,24 @@ std::vector<Target> TilesResult::targets() const {
                    fmt::format("{:.2f}x; {:.2f}x if the chunks have one axis order", share,
                                one_order_us / rows[i].decode_us),
                    share <= kTargetShare ? Verdict::met : Verdict::missed});
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].level != 1 || (i != 0 && rows[i - 1].level == 0)) continue;  // of a repeated world
+    for (const ViewTarget& view : kViewTargets) {
+      double coded_mb = 0, packed_mb = 0;
+      for (std::size_t k = i; k < rows.size() && rows[k].level == k - i + 1; ++k) {
+        if (rows[k].level > view.levels) break;
+        const double columns = columns_in_view(rows[k].edge, rows[k].level) / 1e6;
+        coded_mb += per(static_cast<double>(rows[k].coded_bytes), rows[k].columns) * columns;
+        packed_mb += per(static_cast<double>(rows[k].veiled_bytes), rows[k].columns) * columns;
+      }
+      out.push_back(
+          {fmt::format("{}: tiles of a view of {} voxels", rows[i].world,
+                       kViewRadius * static_cast<std::int32_t>(rows[i].edge) << view.levels),
+           fmt::format("at most {:.1f} MB", view.mb_max),
+           fmt::format("{:.2f} MB coded, {:.2f} MB packed", coded_mb, packed_mb),
+           coded_mb <= view.mb_max ? Verdict::met : Verdict::missed});
+    }
   }
   return out;
 }
@@ -278,16 +326,22 @@ void write_table(const TilesResult& result, std::ostream& out) {
       out,
       "{} passes over the tiles of a level; times are means of a tile\n\n"
       "| world | edge | level | tiles | uniform | runs | veiled | bytes / column | veiled | "
-      "make µs | of one order | decode of the children µs | make / decode | quads | mesh µs |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "coded | decode µs | coded | make µs | of one order | decode of the children µs | make / decode | quads | mesh µs |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       result.repetitions);
   for (const TilesRow& row : result.rows) {
     const std::size_t n = row.tiles;
-    fmt::print(out, "| {} | {} | {} | {} | {} | {:.0f} | {:.0f} | {:.4f} | {:.4f} |", row.world,
-               row.edge, row.level, n, row.uniform, per(static_cast<double>(row.runs), n),
-               per(static_cast<double>(row.veiled_runs), n),
+    fmt::print(out, "| {} | {} | {} | {} | {} | {:.0f} | {:.0f} | {:.4f} | {:.4f} | {:.4f} |",
+               row.world, row.edge, row.level, n, row.uniform,
+               per(static_cast<double>(row.runs), n), per(static_cast<double>(row.veiled_runs), n),
                per(static_cast<double>(row.bytes), row.columns),
-               per(static_cast<double>(row.veiled_bytes), row.columns));
+               per(static_cast<double>(row.veiled_bytes), row.columns),
+               per(static_cast<double>(row.coded_bytes), row.columns));
+    if (row.decode_us == 0) {
+      fmt::print(out, " – | – |");
+    } else {
+      fmt::print(out, " {:.1f} | {:.1f} |", per(row.decode_us, n), per(row.decode_coded_us, n));
+    }
     if (row.decode_children_us == 0) {
       fmt::print(out, " – | – | – | – |");
     } else {
@@ -322,10 +376,12 @@ void write_json(const TilesResult& result, std::ostream& out) {
                             {"veiled_runs", row.veiled_runs},
                             {"bytes", row.bytes},
                             {"veiled_bytes", row.veiled_bytes},
+                            {"coded_bytes", row.coded_bytes},
                             {"quads", row.quads},
                             {"make_us", row.make_us},
                             {"make_one_order_us", row.make_one_order_us},
                             {"decode_us", row.decode_us},
+                            {"decode_coded_us", row.decode_coded_us},
                             {"decode_children_us", row.decode_children_us},
                             {"mesh_us", row.mesh_us}});
   }

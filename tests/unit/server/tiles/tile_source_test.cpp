@@ -337,7 +337,7 @@ TEST_CASE("a tile of the past is the tile that was made then", "[tiles][travel]"
     const auto draw = [&world] { return static_cast<std::int32_t>(world.random.below(4)); };
     world.edit({{draw(), draw(), draw()}, {draw(), 0, 0}});
   }
-  std::size_t past_chunks = 0;
+  std::size_t past_chunks = 0, past_tiles = 0, turns = 0;
   for (std::size_t moment = 0; moment < made.size(); ++moment) {
     const auto past_chunk = [&](const ChunkKey& key) -> StoreResult<Chunk> {
       ++past_chunks;
@@ -347,15 +347,27 @@ TEST_CASE("a tile of the past is the tile that was made then", "[tiles][travel]"
     };
     for (const ChunkKey& key : keys) {
       INFO("moment " << moment << ", level " << int{key.lod} << " at " << key.at.x);
-      TileRequest request = world.request(key);
-      request.at = moment + 1;
-      const auto past = world.source->make(request, *world.visibility, past_chunk);
+      TileRequest request = world.past_request(key, moment + 1);
+      request.steps_max = 10;
+      auto past = world.source->make(request, *world.visibility, past_chunk);
+      for (; past && (past->empty() || past->back().key != key); ++turns) {
+        past = world.source->make(request, *world.visibility, past_chunk);
+        CHECK(request.past_made->size() <= 8 * key.lod);
+      }
       REQUIRE(past.has_value());
-      CHECK(past->back().key == key);
-      CHECK(*past->back().tile == *made[moment][key].back().tile);
+      const MadeTile& tile = past->back();
+      const MadeTile& then = made[moment][key].back();
+      CHECK(tile.tile->voxels == then.tile->voxels);
+      CHECK(tile.tile->version == then.tile->version);
+      past_tiles += tile.is_past ? 1 : 0;
+      if (!tile.is_past) continue;
+      CHECK(tile.tile->digest == Digest{});  // no client keeps it
+      CHECK_FALSE(tile.is_worth_storing());
     }
   }
   CHECK(past_chunks > 0);
+  CHECK(past_tiles > 10);
+  CHECK(turns > 0);
   // The present is not disturbed.
   for (const ChunkKey& key : keys) {
     TileSource fresh(*world.chunk_source, *world.generator, kSampleEdge, *world.ledger, {});
@@ -365,17 +377,37 @@ TEST_CASE("a tile of the past is the tile that was made then", "[tiles][travel]"
   }
 }
 
+TEST_CASE("a tile of the past has the edits that are neither in memory nor in a snapshot",
+          "[tiles][travel]") {
+  TileWorld world({"empty", 1, 0, ""}, 5);
+  world.edit({{0, 0, 0}});
+  world.save_all();
+  world.edit({{0, 0, 0}});  // only the log has it
+  const Chunk then = *world.chunk({0, 0, 0});
+  const MadeTile made = world.make({1, {0, 0, 0}}).back();
+  world.edit({{1, 0, 0}});
+  TileRequest request = world.past_request({1, {0, 0, 0}}, 2);
+  std::erase_if(request.fresh, [](const auto& one) { return one.first == ChunkCoord{0, 0, 0}; });
+  request.head = 0;
+  const auto past = world.source->make(request, *world.visibility,
+                                       [&](const ChunkKey& key) -> StoreResult<Chunk> {
+                                         if (key.at == ChunkCoord{0, 0, 0}) return then;
+                                         return generated_chunk(*world.generator, key, kSampleEdge);
+                                       });
+  REQUIRE(past.has_value());
+  CHECK(past->back().tile->voxels == made.tile->voxels);
+}
+
 TEST_CASE("a chunk of the past that cannot be read fails its tile, and a damaged one is left out",
           "[tiles][travel][damage]") {
   TileWorld world({"empty", 1, 0, ""});
   world.edit({{0, 0, 0}});
   world.edit({{0, 0, 0}, {1, 0, 0}});
-  TileRequest request = world.request({1, {0, 0, 0}});
-  request.at = 1;
   const auto make = [&](StoreError::Kind kind) {
-    return world.source->make(request, *world.visibility, [kind](const ChunkKey& /*key*/) {
-      return StoreResult<Chunk>(Unexpected<StoreError>{{kind, "file", "table", "row"}});
-    });
+    return world.source->make(
+        world.past_request({1, {0, 0, 0}}, 1), *world.visibility, [kind](const ChunkKey& /*key*/) {
+          return StoreResult<Chunk>(Unexpected<StoreError>{{kind, "file", "table", "row"}});
+        });
   };
   CHECK_FALSE(make(StoreError::Kind::io).has_value());
   const auto damaged = make(StoreError::Kind::corrupt);

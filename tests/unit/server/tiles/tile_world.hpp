@@ -91,6 +91,13 @@ class TileWorld {
     }
     return out;
   }
+  /// Returns the same for the tile as it was after edit `at`.
+  TileRequest past_request(const ChunkKey& key, Sequence at) const {
+    TileRequest out = request(key);
+    out.at = at;
+    out.past_made = std::make_shared<std::map<ChunkKey, MadeTile>>();
+    return out;
+  }
   std::vector<MadeTile> make(const ChunkKey& key) {
     auto made = source->make(request(key), *visibility);
     if (!made) FAIL(made.error().message());

@@ -54,12 +54,7 @@ class FakeEnvironment : public WorldEnvironment {
   };
   std::vector<Save> saves;
   std::deque<TileRequest> tile_requests;
-  struct PastTileRequest {
-    SessionId session = 0;
-    HistoryNumber history{};
-    TileRequest request;
-  };
-  std::deque<PastTileRequest> past_tile_requests;
+  std::deque<std::pair<SessionId, TileRequest>> past_tile_requests;
   std::map<ChunkKey, Sequence> tile_edits;  // the newest edit below each tile
   std::vector<std::pair<ChunkKey, ChunkPtr>> saved_tiles;
   std::vector<CachedChunk> current_tiles;  // copies that are known to be current
@@ -70,7 +65,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::vector<std::string> lines;
   std::vector<PlayerVisit> came, left;
   std::vector<std::string> commands;
-  std::map<SessionId, ChunkEncoding> encodings;
+  std::map<SessionId, ChunkEncoding> encodings, tile_encodings;
   std::set<SessionId> full;          // sessions whose queue is full
   std::set<SessionId> refuse_edits;  // sessions whose queue of the edits class is full
   std::map<SessionId, std::size_t> snapshot_room;  // snapshots that still fit; absent: no bound
@@ -104,8 +99,9 @@ class FakeEnvironment : public WorldEnvironment {
     updates.emplace_back(key, held);
     return true;
   }
-  void set_encoding(SessionId session, ChunkEncoding encoding) override {
-    encodings[session] = encoding;
+  void set_encodings(SessionId session, ChunkEncoding chunks, ChunkEncoding tiles) override {
+    encodings[session] = chunks;
+    tile_encodings[session] = tiles;
   }
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override {
     closed.push_back({session, reason, text});
@@ -127,8 +123,8 @@ class FakeEnvironment : public WorldEnvironment {
   void log_chat(const ChatEntry& entry) override { chat.push_back(entry); }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
   void make_tile(TileRequest request) override { tile_requests.push_back(std::move(request)); }
-  void make_past_tile(SessionId session, HistoryNumber history, TileRequest request) override {
-    past_tile_requests.push_back({session, history, std::move(request)});
+  void make_past_tile(SessionId session, TileRequest request) override {
+    past_tile_requests.emplace_back(session, std::move(request));
   }
   void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override {
     for (const ChunkKey& chunk : chunks) {

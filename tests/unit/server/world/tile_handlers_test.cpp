@@ -317,7 +317,7 @@ TEST_CASE("a session whose queue was full gets the newest tile when it has room 
   CHECK(newest == 2);
 }
 
-TEST_CASE("a session that sees the past gets the tiles of its view as they are") {
+TEST_CASE("a session that sees the past gets the tiles of a view to which it moves") {
   TileBench bench;
   bench.enter(1);
   bench.answer_tiles();
