@@ -114,27 +114,29 @@ Keyframe WorldAt::untouched() const {
   return keyframe;
 }
 
-StoreResult<Chunk> WorldAt::start_of(const ChunkKey& key, const Edited* edited) {
+StoreResult<Chunk> WorldAt::start_of(const ChunkKey& key, const Edited* edited,
+                                     WorldReader& reader) const {
   if (edited == nullptr || !edited->stored) {
-    auto chunk = base_chunk(*reader_, *generator_, key);
+    auto chunk = base_chunk(reader, *generator_, key);
     if (chunk && chunk->version != Version{}) return refuse(kCompacted);
     return chunk;
   }
-  auto stored = reader_->load_stored(*edited->stored);
+  auto stored = reader.load_stored(*edited->stored);
   if (!stored) return Unexpected<StoreError>{stored.error()};
   if (!stored->has_value()) return refuse(kCompacted);
   return **std::move(stored);
 }
 
-StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key) {
+StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key, WorldReader& reader,
+                                  ReplayScratch& scratch) const {
   const auto found = chunks_.find(key);
   const Edited* edited = found == chunks_.end() ? nullptr : &found->second;
-  auto chunk = start_of(key, edited);
+  auto chunk = start_of(key, edited, reader);
   if (!chunk || edited == nullptr || edited->edits.empty()) return chunk;
   ReplayedChunk replayed(*std::move(chunk), origin_of(key.at, edge_));
   for (const std::uint32_t edit : edited->edits)
-    replayed.add(edits_[edit], versions_[edit], scratch_);
-  replayed.flush(scratch_);
+    replayed.add(edits_[edit], versions_[edit], scratch);
+  replayed.flush(scratch);
   replayed.chunk().voxels = in_cheapest_order(std::move(replayed.chunk().voxels));
   return std::move(replayed.chunk());
 }

@@ -174,7 +174,11 @@ void ServerCore::answer_gateway(const std::string& question, CommandReply reply)
   if (question != "status") return refuse(reply, "the only question is `status`");
   strand_.post([this, reply = std::move(reply)] {
     std::string text = all_counters();
-    for (const auto& player : world_->online_players()) text += "\nplayer " + player.name;
+    for (const auto& player : world_->online_players()) {
+      text += "\nplayer " + player.name;
+      text += fmt::format("\nplace {:.1f} {:.1f} {:.1f} {}", player.at.x, player.at.y, player.at.z,
+                          player.name);
+    }
     reply({std::move(text), true, true});
   });
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "server/web/map_page.hpp"
 #include "server/web/metrics_text.hpp"
 #include "server/web/web_pages.hpp"
 
@@ -16,7 +17,7 @@ struct Route {
 
 constexpr const char* kHtml = "text/html; charset=utf-8";
 
-constexpr std::array<Route, 5> kRoutes = {{
+constexpr std::array<Route, 9> kRoutes = {{
     {"/", true,
      [](const WebConfig& config, const ServerStatus& server, const WebCounters& /*web*/) {
        return HttpAnswer{200, kHtml, world_page(config, server), "", false};
@@ -33,6 +34,23 @@ constexpr std::array<Route, 5> kRoutes = {{
     {"/style.css", false,
      [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
        return HttpAnswer{200, "text/css; charset=utf-8", std::string(style_sheet()), "", true};
+     }},
+    {"/map", false,
+     [](const WebConfig& config, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
+       return HttpAnswer{config.world.empty() ? 404U : 200U, kHtml, map_page(config), "", false};
+     }},
+    {"/map.css", false,
+     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
+       return HttpAnswer{200, "text/css; charset=utf-8", std::string(map_style()), "", true};
+     }},
+    {"/map.js", false,
+     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
+       return HttpAnswer{200, "text/javascript; charset=utf-8", std::string(map_script()), "",
+                         true};
+     }},
+    {kMapPlayersPath, true,
+     [](const WebConfig& /*config*/, const ServerStatus& server, const WebCounters& /*web*/) {
+       return HttpAnswer{200, "application/json", map_players_json(server), "", false};
      }},
     {kPlayPath, false,
      [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
@@ -75,7 +93,7 @@ HttpAnswer plain_answer(unsigned status, std::string sentence) {
 const std::vector<std::pair<std::string, std::string>>& safety_headers() {
   static const std::vector<std::pair<std::string, std::string>> all = {
       {"Content-Security-Policy",
-       "default-src 'none'; style-src 'self'; base-uri 'none'; form-action 'none'; "
+       "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; "
        "frame-ancestors 'none'"},
       {"Cross-Origin-Opener-Policy", "same-origin"},
       {"Cross-Origin-Embedder-Policy", "require-corp"},

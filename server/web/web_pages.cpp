@@ -9,16 +9,6 @@ namespace {
 
 constexpr std::size_t kPlayersShownMax = 200;
 
-/// Returns a page with this title, of which `body` is HTML.
-std::string page(const std::string& title, const std::string& body) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-         html_text(title) +
-         "</title>\n<link rel=\"stylesheet\" href=\"/style.css\">\n"
-         "</head>\n<body>\n<h1>" +
-         html_text(title) + "</h1>\n" + body + "</body>\n</html>\n";
-}
-
 std::string players_list(const ServerStatus& server) {
   if (server.players.empty()) return "<p>Nobody is in this world now.</p>\n";
   std::string out = "<ul>\n";
@@ -107,6 +97,15 @@ std::string html_text(std::string_view text) {
   return out;
 }
 
+std::string html_page(const std::string& title, const std::string& body) {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+         html_text(title) +
+         "</title>\n<link rel=\"stylesheet\" href=\"/style.css\">\n"
+         "</head>\n<body>\n<h1>" +
+         html_text(title) + "</h1>\n" + body + "</body>\n</html>\n";
+}
+
 std::string world_page(const WebConfig& config, const ServerStatus& server) {
   std::string body = server.is_up ? "<h2>Who is here</h2>\n" + players_list(server) : kDownText;
   body += "<h2>Join</h2>\n";
@@ -120,8 +119,10 @@ std::string world_page(const WebConfig& config, const ServerStatus& server) {
   }
   body +=
       "<p>This page has no client for the browser.</p>\n"
-      "<p><a href=\"/status\">State of the server</a></p>\n";
-  return page(config.title, body);
+      "<p>";
+  if (!config.world.empty()) body += "<a href=\"/map\">Map of the world</a>. ";
+  body += "<a href=\"/status\">State of the server</a></p>\n";
+  return html_page(config.title, body);
 }
 
 std::string status_page(const WebConfig& config, const ServerStatus& server,
@@ -133,7 +134,7 @@ std::string status_page(const WebConfig& config, const ServerStatus& server,
   body +=
       "<p><a href=\"/\">Back to the world</a>. The same numbers for Prometheus: "
       "<a href=\"/metrics\">/metrics</a></p>\n";
-  return page(config.title + ": state", body);
+  return html_page(config.title + ": state", body);
 }
 
 std::string_view style_sheet() {

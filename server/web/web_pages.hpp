@@ -1,5 +1,5 @@
-// The pages of the gateway. They are plain HTML without scripts and load nothing but the style sheet
-// of the gateway.
+// The pages of world and state. They are plain HTML without scripts and load nothing but the style
+// sheet of the gateway.
 #pragma once
 #include <string>
 #include <string_view>
@@ -12,6 +12,9 @@ namespace runstone {
 
 /// Returns the text with <, >, &, " and ' written as entities, for HTML between and within tags.
 std::string html_text(std::string_view text);
+
+/// Returns a page with this title, of which `body` is HTML.
+std::string html_page(const std::string& title, const std::string& body);
 
 /// Returns the page of the world: its name, who is there, and how to join.
 std::string world_page(const WebConfig& config, const ServerStatus& server);
