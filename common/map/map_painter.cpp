@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "common/core/assert.hpp"
-#include "common/core/hash.hpp"
 
 namespace runstone {
 namespace {
@@ -27,12 +26,10 @@ struct PixelKey {
   std::uint8_t depth = 0;  // from the surface to the ground, at most kDepthMax
   std::int8_t slope = 0;   // to the west and to the north together
   bool has_ground = false;
-  friend bool operator==(const PixelKey&, const PixelKey&) = default;
 
-  std::size_t hash() const {
-    return static_cast<std::size_t>(mix64(
-        std::uint64_t{top} | std::uint64_t{ground} << 16 | std::uint64_t{depth} << 32 |
-        std::uint64_t{static_cast<std::uint8_t>(slope)} << 40 | std::uint64_t{has_ground} << 48));
+  std::uint64_t bits() const {
+    return std::uint64_t{top} | std::uint64_t{ground} << 16 | std::uint64_t{depth} << 32 |
+           std::uint64_t{static_cast<std::uint8_t>(slope)} << 40 | std::uint64_t{has_ground} << 48;
   }
 };
 
@@ -70,30 +67,6 @@ std::int32_t rise(const ColumnTop& here, const ColumnTop& beside) {
       std::clamp<std::int64_t>(std::int64_t{here.y} - beside.y, -kSlopeMax, kSlopeMax));
 }
 
-/// Remembers colours: the pixels of a map have few different ones.
-class PixelColours {
- public:
-  explicit PixelColours(const MapMaterials& materials) : materials_(materials), kept_(kSlots) {}
-
-  std::uint32_t of(const PixelKey& key) {
-    Kept& kept = kept_[key.hash() % kSlots];
-    if (!kept.is_known || kept.key != key) {
-      kept = {key, packed(column_colour(key, materials_), 1 + kRelief * key.slope), true};
-    }
-    return kept.pixel;
-  }
-
- private:
-  static constexpr std::size_t kSlots = 1024;
-  struct Kept {
-    PixelKey key;
-    std::uint32_t pixel = 0;
-    bool is_known = false;
-  };
-  const MapMaterials& materials_;
-  std::vector<Kept> kept_;
-};
-
 PixelKey key_of(const ColumnTop& here, const ColumnTop& ground, std::int32_t slope,
                 std::int32_t unit) {
   PixelKey key;
@@ -106,39 +79,63 @@ PixelKey key_of(const ColumnTop& here, const ColumnTop& ground, std::int32_t slo
   return key;
 }
 
+/// Returns the upper ten bits of a product with an odd number: multiplicative hashing.
+std::size_t slot_of(std::uint64_t bits) {
+  return static_cast<std::size_t>(bits * 0x9e3779b97f4a7c15ULL >> 54);
+}
+
 }  // namespace
 
-std::vector<std::uint32_t> paint_map(const MapTops& tops, std::span<const ColumnTop> west,
-                                     std::span<const ColumnTop> north,
-                                     const MapMaterials& materials, std::int32_t unit) {
-  const std::int32_t edge = tops.edge;
-  RUNSTONE_ASSERT(west.empty() || west.size() == static_cast<std::size_t>(edge));
-  RUNSTONE_ASSERT(north.empty() || north.size() == static_cast<std::size_t>(edge));
-  PixelColours colours(materials);
-  std::vector<std::uint32_t> pixels;
-  pixels.reserve(tops.surface.size());
-  std::size_t i = 0;
-  for (std::int32_t z = 0; z < edge; ++z) {
-    for (std::int32_t x = 0; x < edge; ++x, ++i) {
-      const ColumnTop& here = tops.surface[i];
+MapPainter::MapPainter(const MapMaterials& materials, std::int32_t unit)
+    : materials_(materials), unit_(unit), kept_(kSlots) {}
+
+void MapPainter::paint(const MapTops& tops, std::span<const ColumnTop> west,
+                       std::span<const ColumnTop> north, std::span<std::uint32_t> out,
+                       std::size_t stride) {
+  const auto edge = static_cast<std::size_t>(tops.edge);
+  RUNSTONE_ASSERT(west.empty() || west.size() == edge);
+  RUNSTONE_ASSERT(north.empty() || north.size() == edge);
+  RUNSTONE_ASSERT(edge == 0 || (stride >= edge && out.size() >= (edge - 1) * stride + edge));
+  const std::span<const ColumnTop> all_ground = tops.ground_or_surface();
+  std::uint64_t last_bits = kNoBits;
+  std::uint32_t last_pixel = 0;
+  for (std::size_t z = 0; z < edge; ++z) {
+    const ColumnTop* row = tops.surface.data() + z * edge;
+    const ColumnTop* ground = all_ground.data() + z * edge;
+    const ColumnTop* above = z > 0 ? row - edge : north.empty() ? nullptr : north.data();
+    std::uint32_t* pixels = out.data() + z * stride;
+    for (std::size_t x = 0; x < edge; ++x) {
+      const ColumnTop& here = row[x];
       if (!here.is_found()) {
-        pixels.push_back(0);  // nothing is known, or nothing is there
+        pixels[x] = 0;  // nothing is known, or nothing is there
         continue;
       }
       std::int32_t slope = 0;
       if (x > 0) {
-        slope += rise(here, tops.at(x - 1, z));
+        slope = rise(here, row[x - 1]);
       } else if (!west.empty()) {
-        slope += rise(here, west[static_cast<std::size_t>(z)]);
+        slope = rise(here, west[z]);
       }
-      if (z > 0) {
-        slope += rise(here, tops.at(x, z - 1));
-      } else if (!north.empty()) {
-        slope += rise(here, north[static_cast<std::size_t>(x)]);
+      if (above != nullptr) slope += rise(here, above[x]);
+      const PixelKey key = key_of(here, ground[x], slope, unit_);
+      const std::uint64_t bits = key.bits();
+      if (bits != last_bits) {
+        Kept& kept = kept_[slot_of(bits)];
+        if (kept.bits != bits)
+          kept = {bits, packed(column_colour(key, materials_), 1 + kRelief * slope)};
+        last_bits = bits;
+        last_pixel = kept.pixel;
       }
-      pixels.push_back(colours.of(key_of(here, tops.ground[i], slope, unit)));
+      pixels[x] = last_pixel;
     }
   }
+}
+
+std::vector<std::uint32_t> paint_map(const MapTops& tops, std::span<const ColumnTop> west,
+                                     std::span<const ColumnTop> north,
+                                     const MapMaterials& materials, std::int32_t unit) {
+  std::vector<std::uint32_t> pixels(tops.surface.size());
+  MapPainter(materials, unit).paint(tops, west, north, pixels, static_cast<std::size_t>(tops.edge));
   return pixels;
 }
 

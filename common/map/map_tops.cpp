@@ -11,21 +11,41 @@ bool is_invisible(const RunChunk& chunk, const MapMaterials& materials) {
          material < materials.ground.size() && !materials.ground[material];
 }
 
+/// Returns true if a voxel of the chunk shows and is no ground.
+bool has_transparent(const RunChunk& chunk, const MapMaterials& materials) {
+  const auto is_in = [](const ShowingMaterials& set, Material id) {
+    return id >= set.size() || set[id];
+  };
+  return chunk.runs.visit([&](const auto& runs) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const Material id = runs.material(i);
+      if (is_in(materials.showing, id) && !is_in(materials.ground, id)) return true;
+    }
+    return false;
+  });
+}
+
 }  // namespace
 
 MapTopsFinder::MapTopsFinder(std::int32_t edge, const MapMaterials& materials)
     : materials_(materials),
       tops_(edge),
       surface_open_(tops_.surface.size()),
-      ground_open_(tops_.ground.size()) {}
+      ground_open_(surface_open_) {}
 
 std::size_t MapTopsFinder::visit(const StackedChunk& chunk) {
   if (is_invisible(*chunk.voxels, materials_)) return 1;
+  if (tops_.ground.empty() && has_transparent(*chunk.voxels, materials_))
+    tops_.ground = tops_.surface;
   if (surface_open_ != 0) {
     surface_open_ -=
         find_column_tops(*chunk.voxels, chunk.base_y, materials_.showing, tops_.surface);
   }
-  ground_open_ -= find_column_tops(*chunk.voxels, chunk.base_y, materials_.ground, tops_.ground);
+  if (tops_.ground.empty()) {
+    ground_open_ = surface_open_;
+  } else {
+    ground_open_ -= find_column_tops(*chunk.voxels, chunk.base_y, materials_.ground, tops_.ground);
+  }
   return chunk.voxels->runs.size() + tops_.surface.size();
 }
 

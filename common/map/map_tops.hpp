@@ -19,18 +19,20 @@ struct StackedChunk {
 };
 
 struct MapTops {
-  explicit MapTops(std::int32_t edge_ = 0)
-      : edge(edge_),
-        surface(static_cast<std::size_t>(edge_) * static_cast<std::size_t>(edge_)),
-        ground(surface.size()) {}
+  MapTops() = default;
+  explicit MapTops(std::int32_t edge_)
+      : edge(edge_), surface(static_cast<std::size_t>(edge_) * static_cast<std::size_t>(edge_)) {}
 
   std::int32_t edge = 0;           // columns along a side
   std::vector<ColumnTop> surface;  // what shows; column (x, z) is x + edge * z
-  std::vector<ColumnTop> ground;   // the highest opaque voxel, at or below the surface
+  /// The highest opaque voxel, at or below the surface. Empty: the surface is the ground everywhere,
+  /// because nothing transparent is above it.
+  std::vector<ColumnTop> ground;
 
   const ColumnTop& at(std::int32_t x, std::int32_t z) const {
     return surface[static_cast<std::size_t>(x + edge * z)];
   }
+  std::span<const ColumnTop> ground_or_surface() const { return ground.empty() ? surface : ground; }
   std::size_t bytes() const { return (surface.size() + ground.size()) * sizeof(ColumnTop); }
 };
 
@@ -44,13 +46,15 @@ class MapTopsFinder {
   /// Returns true if each column has ground, so that no chunk below can change the tops.
   bool is_complete() const { return ground_open_ == 0; }
   /// Visits the next chunk. Requires a cube of the edge, below all chunks before it. Returns the
-  /// runs and columns that were visited. Cost: as find_column_tops(), twice.
+  /// runs and columns that were visited. Cost: as find_column_tops(), and
+  /// twice that once a chunk had a transparent material.
   std::size_t visit(const StackedChunk& chunk);
   MapTops take() { return std::move(tops_); }
 
  private:
   const MapMaterials& materials_;
   MapTops tops_;
+  // While no chunk had a transparent material, the surface is the ground, and tops_.ground is empty.
   std::size_t surface_open_, ground_open_;
 };
 

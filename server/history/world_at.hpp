@@ -40,11 +40,12 @@ class WorldAt {
   /// Returns the chunk as it was, in its cheapest axis order, with its digest. Its version is that
   /// of the last edit at or before at() that touched it, or (0, 0) if none did. Requires lod 0 and
   /// a chunk inside the world. Cost: O(edits of the chunk * its runs / 64).
-  StoreResult<Chunk> chunk(const ChunkKey& key) { return chunk(key, *reader_, scratch_); }
-  /// Does the same with another reader of the same world, and with a scratch of the caller. Thread:
-  /// any, each with a reader and a scratch of its own, while no other function that is not const
-  /// runs.
-  StoreResult<Chunk> chunk(const ChunkKey& key, WorldReader& reader, ReplayScratch& scratch) const;
+  StoreResult<Chunk> chunk(const ChunkKey& key);
+  /// Returns the same voxels in any axis order, which is cheaper, without digest and version. Reads
+  /// with another reader of the same world. Thread: any, each with a reader and a scratch of its own,
+  /// while no function that is not const runs.
+  StoreResult<RunChunk> voxels(const ChunkKey& key, WorldReader& reader,
+                               ReplayScratch& scratch) const;
   /// Returns the version that chunk() would have, without making the chunk.
   Version version(const ChunkKey& key) const;
   /// Returns all chunks that edits touched up to at(), ascending.
@@ -71,7 +72,11 @@ class WorldAt {
 
   WorldAt(WorldReader& reader, const Generator& generator)
       : reader_(&reader), generator_(&generator), edge_(reader.meta().chunk_edge) {}
+  /// Returns the chunk at the stored moment, in any axis order.
   StoreResult<Chunk> start_of(const ChunkKey& key, const Edited* edited, WorldReader& reader) const;
+  /// Returns the chunk as chunk(), in any axis order.
+  StoreResult<Chunk> replayed(const ChunkKey& key, WorldReader& reader,
+                              ReplayScratch& scratch) const;
   Unexpected<StoreError> refuse(std::string what) const;
 
   WorldReader* reader_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <span>
 #include <utility>
 
 #include "common/map/map_painter.hpp"
@@ -21,14 +22,16 @@ Columns columns_of(const MapPlace& place, std::int32_t edge) {
   return {per_side, place.x * per_side, place.z * per_side};
 }
 
-/// Copies the tops of one column of chunks into those of the whole tile.
-void copy_tops(const MapTops& from, MapTops& to, std::int32_t x, std::int32_t z) {
-  for (std::int32_t row = 0; row < from.edge; ++row) {
-    const auto source = static_cast<std::ptrdiff_t>(row) * from.edge;
-    const std::ptrdiff_t target = x + static_cast<std::ptrdiff_t>(z + row) * to.edge;
-    std::copy_n(from.surface.begin() + source, from.edge, to.surface.begin() + target);
-    std::copy_n(from.ground.begin() + source, from.edge, to.ground.begin() + target);
-  }
+/// Returns the tops of the last x of a column of chunks, by z.
+std::vector<ColumnTop> east_of(const MapTops& tops) {
+  std::vector<ColumnTop> out;
+  for (std::int32_t z = 0; z < tops.edge; ++z) out.push_back(tops.at(tops.edge - 1, z));
+  return out;
+}
+
+/// Returns the tops of the last z of a column of chunks, by x.
+std::span<const ColumnTop> south_of(const MapTops& tops) {
+  return std::span(tops.surface).last(static_cast<std::size_t>(tops.edge));
 }
 
 }  // namespace
@@ -83,27 +86,37 @@ StoreResult<std::shared_ptr<const std::string>> MapDrawer::draw(const MapMoment&
   const std::int32_t edge = moment.meta().chunk_edge;
   const Columns all = columns_of(place, edge);
   const std::int32_t limit = kWorldLimit / (edge << place.zoom);
-  MapTops tops(kMapTileSide);
-  std::vector<ColumnTop> west(kMapTileSide), north(kMapTileSide);
+  MapPainter painter(materials_, 1 << place.zoom);
+  constexpr auto kSide = static_cast<std::size_t>(kMapTileSide);
+  std::vector<std::uint32_t> pixels(kSide * kSide);
+  // The columns of the row to the north, and the one to the west. Null: beyond the world.
+  using Tops = std::shared_ptr<const MapTops>;
+  std::vector<Tops> north(static_cast<std::size_t>(all.per_side));
+  Tops west;
   for (std::int32_t z = -1; z < all.per_side; ++z) {
-    for (std::int32_t x = -1; x < all.per_side; ++x) {
+    for (std::int32_t x = z < 0 ? 0 : -1; x < all.per_side; ++x) {
       const ColumnKey key{place.zoom, all.first_x + x, all.first_z + z};
-      if ((x < 0 && z < 0) || key.x < -limit || key.z < -limit) continue;
-      const auto column = this->tops(moment, key);
-      if (!column) return Unexpected<StoreError>{column.error()};
-      if (x < 0) {
-        for (std::int32_t i = 0; i < edge; ++i)
-          west[static_cast<std::size_t>(z * edge + i)] = (*column)->at(edge - 1, i);
-      } else if (z < 0) {
-        for (std::int32_t i = 0; i < edge; ++i)
-          north[static_cast<std::size_t>(x * edge + i)] = (*column)->at(i, edge - 1);
-      } else {
-        copy_tops(**column, tops, x * edge, z * edge);
+      Tops here;
+      if (key.x >= -limit && key.z >= -limit) {
+        auto found = tops(moment, key);
+        if (!found) return Unexpected<StoreError>{found.error()};
+        here = *std::move(found);
       }
+      if (x >= 0) {
+        Tops& before = north[static_cast<std::size_t>(x)];
+        if (z >= 0) {
+          const std::size_t first =
+              static_cast<std::size_t>(z * edge) * kSide + static_cast<std::size_t>(x * edge);
+          painter.paint(*here, west == nullptr ? std::vector<ColumnTop>() : east_of(*west),
+                        before == nullptr ? std::span<const ColumnTop>() : south_of(*before),
+                        std::span(pixels).subspan(first), kSide);
+        }
+        before = here;
+      }
+      west = std::move(here);
     }
   }
-  return std::make_shared<const std::string>(
-      png_of(paint_map(tops, west, north, materials_, 1 << place.zoom), kMapTileSide));
+  return std::make_shared<const std::string>(png_of(pixels, kMapTileSide));
 }
 
 }  // namespace runstone

@@ -37,8 +37,9 @@ class MapMoment {
   WorldReader& reader() { return *reader_; }
 
   /// Returns a chunk that has an entry in ground(). Fails as WorldAt::chunk().
-  StoreResult<Chunk> chunk(const ChunkKey& key, WorldReader& reader, ReplayScratch& scratch) const {
-    return world_->chunk(key, reader, scratch);
+  StoreResult<RunChunk> voxels(const ChunkKey& key, WorldReader& reader,
+                               ReplayScratch& scratch) const {
+    return world_->voxels(key, reader, scratch);
   }
 
  private:

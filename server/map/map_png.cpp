@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "common/core/hash.hpp"
 
 namespace runstone {
 namespace {
@@ -38,7 +37,7 @@ std::optional<Indexed> indexed(std::span<const std::uint32_t> pixels) {
   bool has_last = false;
   for (const std::uint32_t pixel : pixels) {
     if (!has_last || pixel != last) {
-      std::size_t slot = mix64(pixel) % kSlots;
+      std::size_t slot = pixel * 0x9e3779b1U >> 22;  // multiplicative hashing
       while (index_in[slot] >= 0 && out.colours[static_cast<std::size_t>(index_in[slot])] != pixel)
         slot = (slot + 1) % kSlots;
       if (index_in[slot] < 0) {

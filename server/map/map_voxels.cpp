@@ -50,9 +50,10 @@ StoreResult<MapVoxels::Voxels> MapVoxels::chunk(const MapMoment& moment, const C
   const std::uint16_t edge = moment.meta().chunk_edge;
   if (!moment.ground().version(key))
     return shared(generator_.generate(origin_of(key.at, edge), Extent::cube(edge)));
-  auto chunk = moment.chunk(key, reader_, replay_);
-  if (chunk) return shared(std::move(chunk->voxels));
-  if (chunk.error().kind != StoreError::Kind::corrupt) return Unexpected<StoreError>{chunk.error()};
+  auto voxels = moment.voxels(key, reader_, replay_);
+  if (voxels) return shared(*std::move(voxels));
+  if (voxels.error().kind != StoreError::Kind::corrupt)
+    return Unexpected<StoreError>{voxels.error()};
   ++damaged_count_;
   return shared(uniform_chunk(Extent::cube(edge), kEmpty));
 }

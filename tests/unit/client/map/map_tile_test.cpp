@@ -18,8 +18,7 @@ MapMaterials some_materials() {
 /// A flat tile at this height.
 MapTile tile_at(std::int32_t y) {
   MapTile tile{MapTops(kEdge), nullptr};
-  for (std::vector<ColumnTop>* tops : {&tile.tops.surface, &tile.tops.ground})
-    tops->assign(tops->size(), ColumnTop{y, kStone});
+  tile.tops.surface.assign(tile.tops.surface.size(), ColumnTop{y, kStone});
   return tile;
 }
 

@@ -38,7 +38,7 @@ std::uint32_t plain_pixel(const MapTops& tops, std::span<const ColumnTop> west,
                           std::int32_t x, std::int32_t z, std::int32_t unit) {
   const ColumnTop here = tops.at(x, z);
   if (!here.is_found()) return 0;
-  const ColumnTop ground = tops.ground[static_cast<std::size_t>(x + tops.edge * z)];
+  const ColumnTop ground = tops.ground_or_surface()[static_cast<std::size_t>(x + tops.edge * z)];
   double slope = 0;
   const auto add = [&](const ColumnTop& beside) {
     if (beside.is_found()) slope += std::clamp(double(here.y) - beside.y, -3.0, 3.0);
@@ -72,6 +72,7 @@ TEST_CASE("the pixels of random tops are those of the plain formula", "[map]") {
       return ColumnTop{rng.between(-6, 6), static_cast<Material>(1 + rng.below(3))};
     };
     MapTops tops(edge);
+    tops.ground.resize(tops.surface.size());
     for (std::size_t i = 0; i < tops.surface.size(); ++i) {
       if (rng.below(10) == 0) continue;
       tops.surface[i] = column();
@@ -120,6 +121,7 @@ TEST_CASE("deep water is bluer and darker than shallow water", "[map]") {
 
 TEST_CASE("a column without a voxel is transparent, and an unknown material is no harm", "[map]") {
   MapTops tops(2);
+  tops.ground.resize(tops.surface.size());
   tops.surface[1] = tops.ground[1] = {1, 60'000};
   const auto pixels = paint_map(tops, {}, {}, some_materials());
   CHECK(pixels[0] == 0);
