@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "server/map/map_request.hpp"
 #include "server/web/map_page.hpp"
 #include "server/web/metrics_text.hpp"
 #include "server/web/web_pages.hpp"
@@ -77,12 +78,14 @@ bool shows_status(std::string_view target) {
 HttpAnswer answer_request(std::string_view method, std::string_view target, const WebConfig& config,
                           const ServerStatus& server, const WebCounters& web) {
   const Route* route = find_route(target);
-  if (route == nullptr) return plain_answer(404, "there is no such page");
+  const bool is_map_data = route == nullptr && target.starts_with(kMapDataPath);
+  if (route == nullptr && !is_map_data) return plain_answer(404, "there is no such page");
   if (method != "GET" && method != "HEAD") {
     HttpAnswer answer = plain_answer(405, "this page can only be read");
     answer.allow = "GET, HEAD";
     return answer;
   }
+  if (is_map_data) return plain_answer(404, "this gateway shows no map");
   return route->answer(config, server, web);
 }
 

@@ -36,6 +36,10 @@ std::string metrics_text(const ServerStatus& server, const WebCounters& web) {
   add("frames_out", "frames to browsers", web.frames_out);
   add("bytes_in", "bytes of frames from browsers", web.bytes_in);
   add("bytes_out", "bytes of frames to browsers", web.bytes_out);
+  add("map_requests", "requests that the map answered", web.map_requests);
+  add("map_refused", "requests for the map refused because of a limit", web.map_refused);
+  add("map_not_modified", "pictures that the browser had", web.map_not_modified);
+  add("map_work_us", "microseconds of drawing", web.map_work_us);
   return prometheus::TextSerializer().Serialize(families);
 }
 

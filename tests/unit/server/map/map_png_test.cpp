@@ -1,28 +1,12 @@
 #include "server/map/map_png.hpp"
 
-#include <png.h>
-
 #include <catch2/catch.hpp>
 #include <vector>
 
 #include "common/core/hash.hpp"
+#include "tests/unit/server/map/png_pixels.hpp"
 
 using namespace runstone;
-
-namespace {
-
-/// Reads a PNG file with libpng, as browsers do.
-std::vector<std::uint32_t> pixels_of(const std::string& png) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  REQUIRE(png_image_begin_read_from_memory(&image, png.data(), png.size()) != 0);
-  image.format = PNG_FORMAT_RGBA;
-  std::vector<std::uint32_t> out(std::size_t{image.width} * image.height);
-  REQUIRE(png_image_finish_read(&image, nullptr, out.data(), 0, nullptr) != 0);
-  return out;
-}
-
-}  // namespace
 
 TEST_CASE("pictures of few and of many colours come back as they were", "[map]") {
   SplitMix64 rng{Catch::rngSeed()};
@@ -37,7 +21,7 @@ TEST_CASE("pictures of few and of many colours come back as they were", "[map]")
       pixels.push_back(palette[static_cast<std::size_t>(i) % colours]);
     CAPTURE(Catch::rngSeed(), colours);
     const std::string png = png_of(pixels, kSide);
-    REQUIRE(pixels_of(png) == pixels);
+    REQUIRE(test::pixels_of(png) == pixels);
     CHECK((png.find("PLTE") != std::string::npos) == (colours <= 256));
   }
 }
