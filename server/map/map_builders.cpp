@@ -70,6 +70,16 @@ StoreResult<std::vector<EditRecord>> newest_edits_of_column(LogReader& reader, s
   return out;
 }
 
+StoreResult<std::vector<EditRecord>> newest_edits_of_world(LogReader& reader) {
+  auto found = newest_edits(reader, {}, kLooksMax);
+  if (!found) return found;
+  std::vector<EditRecord> out;
+  for (auto at = found->rbegin(); at != found->rend() && out.size() < kBuildersMax; ++at) {
+    if (changes_voxels(at->cause)) out.push_back(*at);
+  }
+  return out;
+}
+
 std::string edit_words(const EditRecord& record, const MaterialTable& materials) {
   const VoxelBox box = bounding_box(record.edit);
   std::string out = verb_of(record) + " " + text_of(box.min);

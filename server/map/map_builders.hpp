@@ -17,6 +17,9 @@ inline constexpr std::size_t kBuildersMax = 8;
 StoreResult<std::vector<EditRecord>> newest_edits_of_column(LogReader& reader, std::int32_t x,
                                                             std::int32_t z, Sequence last);
 
+/// Returns the newest edits of the world that changed voxels, newest first. Blocks on the disk.
+StoreResult<std::vector<EditRecord>> newest_edits_of_world(LogReader& reader);
+
 /// Returns what an edit did, such as "box 1 2 3 to 4 5 6 := stone". The material is left out if the
 /// edit restores voxels or pastes a clipboard, and if the table does not have it.
 std::string edit_words(const EditRecord& record, const MaterialTable& materials);

@@ -22,6 +22,18 @@ Json moment(const Sequence seq, const TimeUs time_us) {
   return {{"seq", seq}, {"time_ms", time_us / kUsPerMs}};
 }
 
+Json list_of(const MapWorld& world, std::span<const EditRecord> edits) {
+  Json list = Json::array();
+  for (const EditRecord& edit : edits) {
+    list.push_back({{"seq", edit.version.seq},
+                    {"time", utc_text(edit.time_us)},
+                    {"author", world.name_of(edit.op.author)},
+                    {"what", edit_words(edit, world.materials())},
+                    {"undo", undo_command(edit)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string map_state_json(MapWorld& world, const LogRange& range, const LogEnd& head,
@@ -61,16 +73,12 @@ std::string map_builders_json(const MapWorld& world, std::int32_t x, std::int32_
     out["material"] = world.materials().knows(top.material) ? world.materials()[top.material].name
                                                             : std::to_string(top.material);
   }
-  Json list = Json::array();
-  for (const EditRecord& edit : edits) {
-    list.push_back({{"seq", edit.version.seq},
-                    {"time", utc_text(edit.time_us)},
-                    {"author", world.name_of(edit.op.author)},
-                    {"what", edit_words(edit, world.materials())},
-                    {"undo", undo_command(edit)}});
-  }
-  out["edits"] = std::move(list);
+  out["edits"] = list_of(world, edits);
   return text_of_json(out);
+}
+
+std::string map_edits_json(const MapWorld& world, std::span<const EditRecord> edits) {
+  return text_of_json(list_of(world, edits));
 }
 
 std::string map_moment_json(const LogEnd& end) {

@@ -18,6 +18,9 @@ std::string map_state_json(MapWorld& world, const LogRange& range, const LogEnd&
 std::string map_builders_json(const MapWorld& world, std::int32_t x, std::int32_t z,
                               const ColumnTop& top, std::span<const EditRecord> edits);
 
+/// Returns a list of edits as in map_builders_json().
+std::string map_edits_json(const MapWorld& world, std::span<const EditRecord> edits);
+
 /// Returns the sequence and the time of a moment.
 std::string map_moment_json(const LogEnd& moment);
 

@@ -142,6 +142,10 @@ Result<MapRequest, MapRequestError> parse_map_request(std::string_view path,
                                                       std::string_view query) {
   constexpr std::string_view kTile = "tile/";
   if (!path.starts_with(kMapDataPath)) return unknown_path();
+  if (path == kRecentEditsPath) {
+    if (!query.empty()) return refused(kBadQuery);
+    return MapRequest(RecentEditsRequest{});
+  }
   path.remove_prefix(kMapDataPath.size());
   if (path.starts_with(kTile)) return tile_request(path.substr(kTile.size()), query);
   if (path == "state.json") return state_request(query);

@@ -34,11 +34,15 @@ struct MapMomentRequest {
   std::variant<Sequence, TimeUs> of;
 };
 
-using MapRequest =
-    std::variant<TilePictureRequest, MapStateRequest, BuildersRequest, MapMomentRequest>;
+/// The newest edits of the whole world.
+struct RecentEditsRequest {};
+
+using MapRequest = std::variant<TilePictureRequest, MapStateRequest, BuildersRequest,
+                                MapMomentRequest, RecentEditsRequest>;
 
 /// The beginning of the paths of all requests.
 inline constexpr std::string_view kMapDataPath = "/map/";
+inline constexpr std::string_view kRecentEditsPath = "/map/recent.json";
 
 /// The reason why a request is refused, as one sentence for the browser.
 struct MapRequestError {
@@ -51,6 +55,7 @@ struct MapRequestError {
 ///   /map/state.json[?since=SEQ]
 ///   /map/builders.json?x=X&z=Z[&at=SEQ]
 ///   /map/moment.json?seq=SEQ or ?time_ms=UTC
+///   /map/recent.json
 /// Numbers are decimal, without a plus, blanks or leading zeros. Fails for any other text.
 Result<MapRequest, MapRequestError> parse_map_request(std::string_view path,
                                                       std::string_view query);

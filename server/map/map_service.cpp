@@ -121,6 +121,7 @@ std::optional<MapAnswer> MapService::serve(const Job& job) {
     return serve(*tile, job.if_none_match);
   if (const auto* state = std::get_if<MapStateRequest>(&job.request)) return serve(*state);
   if (const auto* builders = std::get_if<BuildersRequest>(&job.request)) return serve(*builders);
+  if (std::holds_alternative<RecentEditsRequest>(job.request)) return serve_recent_edits();
   return serve(std::get<MapMomentRequest>(job.request));
 }
 
@@ -204,6 +205,13 @@ std::optional<MapAnswer> MapService::serve(const MapMomentRequest& request) {
     if (end->version.seq != seq) return map_words(404, "there is no such edit in the log");
   }
   return json_answer(map_moment_json(*end));
+}
+
+std::optional<MapAnswer> MapService::serve_recent_edits() {
+  if (!world_.rights().may_look_back) return map_words(403, kNoPast);
+  const auto edits = newest_edits_of_world(world_.present().reader());
+  if (!edits) return answer_to(edits.error());
+  return json_answer(map_edits_json(world_, *edits));
 }
 
 std::optional<MapAnswer> MapService::answer_to(const StoreError& error) {

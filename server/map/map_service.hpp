@@ -67,6 +67,7 @@ class MapService {
   std::optional<MapAnswer> serve(const MapStateRequest& request);
   std::optional<MapAnswer> serve(const BuildersRequest& request);
   std::optional<MapAnswer> serve(const MapMomentRequest& request);
+  std::optional<MapAnswer> serve_recent_edits();
   /// Returns the moment after edit `at`, or the present. The error is nullopt if the job needs another
   /// turn.
   Result<MapMoment*, std::optional<MapAnswer>> moment_of(const std::optional<Sequence>& at);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <span>
 
+#include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
 #include "server/admin/config_reload.hpp"
 #include "server/runtime/counters_line.hpp"
@@ -166,7 +167,8 @@ void ServerCore::log_counters() {
 void ServerCore::write_counters() { logger("app").info("{}", all_counters()); }
 
 std::string ServerCore::all_counters() const {
-  const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000};
+  const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000,
+                                process_memory_bytes()};
   return counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime);
 }
 

@@ -13,7 +13,8 @@ namespace {
 struct Route {
   std::string_view path;
   bool shows_status;
-  HttpAnswer (*answer)(const WebConfig&, const ServerStatus&, const WebCounters&);
+  HttpAnswer (*answer)(const WebConfig&, const ServerStatus&,
+                       const WebCounters&);  // null: kStatusPath
 };
 
 constexpr const char* kHtml = "text/html; charset=utf-8";
@@ -23,10 +24,7 @@ constexpr std::array<Route, 9> kRoutes = {{
      [](const WebConfig& config, const ServerStatus& server, const WebCounters& /*web*/) {
        return HttpAnswer{200, kHtml, world_page(config, server), "", false};
      }},
-    {"/status", true,
-     [](const WebConfig& config, const ServerStatus& server, const WebCounters& web) {
-       return HttpAnswer{200, kHtml, status_page(config, server, web), "", false};
-     }},
+    {kStatusPath, true, nullptr},
     {"/metrics", true,
      [](const WebConfig& /*config*/, const ServerStatus& server, const WebCounters& web) {
        return HttpAnswer{200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(server, web),
@@ -76,7 +74,8 @@ bool shows_status(std::string_view target) {
 }
 
 HttpAnswer answer_request(std::string_view method, std::string_view target, const WebConfig& config,
-                          const ServerStatus& server, const WebCounters& web) {
+                          const ServerStatus& server, const WebCounters& web,
+                          std::string_view recent_edits) {
   const Route* route = find_route(target);
   const bool is_map_data = route == nullptr && target.starts_with(kMapDataPath);
   if (route == nullptr && !is_map_data) return plain_answer(404, "there is no such page");
@@ -86,6 +85,8 @@ HttpAnswer answer_request(std::string_view method, std::string_view target, cons
     return answer;
   }
   if (is_map_data) return plain_answer(404, "this gateway shows no map");
+  if (route->answer == nullptr)
+    return {200, kHtml, status_page(config, server, web, recent_edits), "", false};
   return route->answer(config, server, web);
 }
 

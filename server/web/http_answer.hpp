@@ -34,9 +34,13 @@ struct HttpAnswer {
 std::string_view path_of(std::string_view target);
 /// Returns true if the page at this path shows the status of the server.
 bool shows_status(std::string_view target);
-/// Returns the answer to a request. `server` is used only if shows_status().
+/// The path of the page that shows the state of the server.
+inline constexpr std::string_view kStatusPath = "/status";
+/// Returns the answer to a request. `server` is used only if shows_status(). `recent_edits`: JSON of
+/// the newest edits for the page of the state; empty: they are not shown.
 HttpAnswer answer_request(std::string_view method, std::string_view target, const WebConfig& config,
-                          const ServerStatus& server, const WebCounters& web);
+                          const ServerStatus& server, const WebCounters& web,
+                          std::string_view recent_edits = {});
 /// Returns an answer that is one sentence.
 HttpAnswer plain_answer(unsigned status, std::string sentence);
 

@@ -1,5 +1,6 @@
 #include "server/web/server_status.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -45,6 +46,20 @@ std::optional<PlayerPlace> read_place(std::string_view text) {
 std::int64_t ServerStatus::counter(const std::string& name) const {
   const auto found = counters.find(name);
   return found == counters.end() ? 0 : found->second;
+}
+
+std::vector<EditWaits> edit_waits(const ServerStatus& status) {
+  constexpr std::string_view kPrefix = "edit_wait_ms_le_";
+  std::vector<EditWaits> out;
+  for (const auto& [name, value] : status.counters) {
+    if (!name.starts_with(kPrefix) || value < 0) continue;
+    EditWaits waits{0, static_cast<std::uint64_t>(value)};
+    const char* end = name.data() + name.size();
+    const auto [rest, error] = std::from_chars(name.data() + kPrefix.size(), end, waits.ms_max);
+    if (error == std::errc{} && rest == end) out.push_back(waits);
+  }
+  std::ranges::sort(out, {}, &EditWaits::ms_max);
+  return out;
 }
 
 Result<ServerStatus> parse_server_status(std::string_view answer) {

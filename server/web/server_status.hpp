@@ -27,6 +27,13 @@ struct ServerStatus {
   std::int64_t counter(const std::string& name) const;
 };
 
+/// How many edits waited at most so long on the server.
+struct EditWaits {
+  std::uint64_t ms_max = 0, count = 0;
+};
+/// Returns the counters edit_wait_ms_le_N of a status, by N.
+std::vector<EditWaits> edit_waits(const ServerStatus& status);
+
 /// Reads an answer of the status socket: lines that begin with "|", and "=ok" at the end. The lines
 /// are "counters NAME=VALUE NAME=VALUE ...", "player NAME" and "place X Y Z NAME". Values that are no whole numbers and
 /// lines of other kinds are skipped, because a later server may have more of them.

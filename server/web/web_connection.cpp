@@ -13,6 +13,8 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <string_view>
 
+#include "common/os/process_memory.hpp"
+
 namespace runstone {
 namespace {
 
@@ -146,9 +148,19 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
     co_return out;
   }
   std::shared_ptr<const ServerStatus> status = kNoStatus;
-  if (shows_status(view_of(request.target()))) status = co_await self->state_.status.newest();
+  std::string recent_edits;
+  if (path == kStatusPath && self->state_.map.is_on()) {
+    const MapAnswer recent =
+        co_await self->state_.map.answer(self->from_, kRecentEditsPath, std::string());
+    if (recent.status == 200 && recent.body != nullptr) recent_edits = *recent.body;
+  }
+  if (shows_status(view_of(request.target()))) {
+    status = co_await self->state_.status.newest();
+    self->state_.counters.memory_bytes = process_memory_bytes();
+    self->state_.counters.map_cache_bytes = self->state_.map.cache_bytes();
+  }
   co_return answer_request(view_of(request.method_string()), view_of(request.target()),
-                           self->state_.config, *status, self->state_.counters);
+                           self->state_.config, *status, self->state_.counters, recent_edits);
 }
 
 boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection> self,

@@ -133,6 +133,11 @@ TEST_CASE("a click says who built what, when, and how to take it back", "[integr
   CHECK(preview.is_ok);
   CHECK(preview.text.find("1 edit") != std::string::npos);
 
+  const Json recent = json_of(peer.get("/map/recent.json"));
+  CHECK(recent.size() == 2);
+  CHECK(recent[0] == newest);
+  CHECK(peer.get("/status").body.find("voxel 3 41 5 := ") != std::string::npos);
+
   const HttpReply players = peer.get("/map/players.json");
   const Json list = json_of(players);
   REQUIRE(list.size() == 1);
@@ -159,8 +164,8 @@ TEST_CASE("the rights of strangers hold on the map", "[integration]") {
   const Json state = json_of(peer.get("/map/state.json"));
   CHECK(state.at("look_back") == false);
   CHECK_FALSE(state.contains("first"));
-  for (const char* target :
-       {"/map/builders.json?x=0&z=0", "/map/moment.json?seq=0", "/map/tile/0/0/0.png?at=1"}) {
+  for (const char* target : {"/map/builders.json?x=0&z=0", "/map/moment.json?seq=0",
+                             "/map/tile/0/0/0.png?at=1", "/map/recent.json"}) {
     CAPTURE(target);
     const HttpReply refused = peer.get(target);
     CHECK(refused.status == 403);
