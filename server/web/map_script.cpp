@@ -252,6 +252,9 @@ function begin() {
     [view.x, view.z, view.scale] = hash;
     if (hash.length > 3 && state.look_back) show(hash[3]);
   } else if (box) {
+    // A small world fills the window.
+    const fit = Math.min(canvas.clientWidth / (box[2] - box[0]), canvas.clientHeight / (box[3] - box[1]));
+    view.scale = Math.min(2, Math.max(0.25, 0.8 * fit));
     const inBox = state.spawn[0] >= box[0] && state.spawn[0] < box[2] && state.spawn[1] >= box[1] &&
                   state.spawn[1] < box[3];
     view.x = inBox ? state.spawn[0] : (box[0] + box[2]) / 2;

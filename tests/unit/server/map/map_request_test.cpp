@@ -23,7 +23,8 @@ TEST_CASE("requests of the map are parsed from path and query", "[map]") {
   CHECK(picture.place == MapPlace{3, -12, 7});
   CHECK(picture.at == Sequence{9120});
   CHECK_FALSE(std::get<TilePictureRequest>(*parse_map_request("/map/tile/0/0/0.png", "")).at);
-  CHECK(std::get<MapStateRequest>(*parse_map_request("/map/state.json", "since=7")).since == Sequence{7});
+  CHECK(std::get<MapStateRequest>(*parse_map_request("/map/state.json", "since=7")).since ==
+        Sequence{7});
   const auto builders = parse_map_request("/map/builders.json", "z=-4&x=3&at=0");
   REQUIRE(builders.has_value());
   CHECK(std::get<BuildersRequest>(*builders).x == 3);
@@ -40,11 +41,14 @@ TEST_CASE("absurd tiles, times and places are refused with words", "[map]") {
   CHECK(error_of("/map/tile/0/1048575/-1048576.png").empty());
   CHECK(error_of("/map/tile/8/4096/0.png") == "this tile lies outside of the world");
   CHECK(error_of("/map/tile/8/4095/-4096.png").empty());
-  CHECK(error_of("/map/tile/0/2147483647/-2147483648.png") == "this tile lies outside of the world");
+  CHECK(error_of("/map/tile/0/2147483647/-2147483648.png") ==
+        "this tile lies outside of the world");
   CHECK(error_of("/map/tile/0/0/0.png", "at=-1") == "at must be the number of an edit");
   CHECK(error_of("/map/tile/0/0/0.png", "at=9223372036854775807").empty());
-  CHECK(error_of("/map/tile/0/0/0.png", "at=9223372036854775808") == "at must be the number of an edit");
-  CHECK(error_of("/map/builders.json", "x=536870912&z=0") == "x and z must be a place in the world");
+  CHECK(error_of("/map/tile/0/0/0.png", "at=9223372036854775808") ==
+        "at must be the number of an edit");
+  CHECK(error_of("/map/builders.json", "x=536870912&z=0") ==
+        "x and z must be a place in the world");
   CHECK(error_of("/map/builders.json", "x=536870911&z=-536870912").empty());
   CHECK(error_of("/map/moment.json", "time_ms=9223372036854775807") ==
         "time_ms must be milliseconds since 1970");
@@ -52,14 +56,32 @@ TEST_CASE("absurd tiles, times and places are refused with words", "[map]") {
 }
 
 TEST_CASE("only one spelling of a request is understood", "[map]") {
-  for (const char* path :
-       {"/map/tile/0/0/0", "/map/tile/0/0/0.png/", "/map/tile/0/0/0.PNG", "/map/tile/0/0.png",
-        "/map/tile/0/0/0/0.png", "/map/tile//0/0.png", "/map/tile/+0/0/0.png", "/map/tile/00/0/0.png",
-        "/map/tile/0/-0/0.png", "/map/tile/0/ 1/0.png", "/map/tile/0/0x1/0.png", "/map/tile/0/1e3/0.png",
-        "/map/tile/256/0/0.png", "/map/tile/-1/0/0.png", "/map/tile/0/99999999999/0.png",
-        "/map/tile/../../etc/passwd", "/map/tile/0/0/../0.png", "/map/tile/0/%30/0.png", "/map/",
-        "/map/../world.sqlite", "/map/world.sqlite", "/map", "", "/map/tile/0/0/0.png.png",
-        "/map/state.json/", "/map/tile/0/0/\n.png"}) {
+  for (const char* path : {"/map/tile/0/0/0",
+                           "/map/tile/0/0/0.png/",
+                           "/map/tile/0/0/0.PNG",
+                           "/map/tile/0/0.png",
+                           "/map/tile/0/0/0/0.png",
+                           "/map/tile//0/0.png",
+                           "/map/tile/+0/0/0.png",
+                           "/map/tile/00/0/0.png",
+                           "/map/tile/0/-0/0.png",
+                           "/map/tile/0/ 1/0.png",
+                           "/map/tile/0/0x1/0.png",
+                           "/map/tile/0/1e3/0.png",
+                           "/map/tile/256/0/0.png",
+                           "/map/tile/-1/0/0.png",
+                           "/map/tile/0/99999999999/0.png",
+                           "/map/tile/../../etc/passwd",
+                           "/map/tile/0/0/../0.png",
+                           "/map/tile/0/%30/0.png",
+                           "/map/",
+                           "/map/../world.sqlite",
+                           "/map/world.sqlite",
+                           "/map",
+                           "",
+                           "/map/tile/0/0/0.png.png",
+                           "/map/state.json/",
+                           "/map/tile/0/0/\n.png"}) {
     CAPTURE(path);
     CHECK(error_of(path) == "unknown path");
   }
