@@ -42,6 +42,7 @@ target_link_libraries(runstone_asio PUBLIC Threads::Threads)
 # standalone Asio.
 find_package(Boost 1.74 REQUIRED)
 find_package(prometheus-cpp REQUIRED CONFIG)
+find_package(PNG REQUIRED)
 add_library(runstone_beast INTERFACE)
 target_compile_definitions(runstone_beast INTERFACE BOOST_ASIO_NO_DEPRECATED BOOST_ASIO_HAS_STD_ALIGNED_ALLOC=1)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")

@@ -88,7 +88,7 @@ void WorldMap::make(const Replica& replica, MapTileKey key, std::size_t& work) {
     shown.push_back(std::move(chunk));
   }
   if (chunks.empty()) return erase(key);
-  MapTile tile = make_map_tile(chunks, edge_, materials_, work);
+  MapTile tile{find_map_tops(chunks, edge_, materials_, work), nullptr};
   const MapTile* const before = find(key);
   const bool has_border = has_other_border(before, &tile);
   if (before == nullptr && !make_room(key, tile.bytes())) {
@@ -107,9 +107,10 @@ void WorldMap::paint(MapTileKey key, std::size_t& work) {
   if (found == tiles_.end()) return;
   MapTile& tile = found->second;
   bytes_ -= tile.bytes();
-  tile.image = paint_map_tile(tile, find({key.x - 1, key.z}), find({key.x, key.z - 1}), materials_);
+  tile.image =
+      paint_map_tile(tile.tops, find({key.x - 1, key.z}), find({key.x, key.z - 1}), materials_);
   bytes_ += tile.bytes();
-  work += tile.surface.size();
+  work += tile.tops.surface.size();
 }
 
 void WorldMap::erase(MapTileKey key) {
@@ -164,7 +165,7 @@ std::optional<ColumnTop> WorldMap::top(std::int32_t x, std::int32_t z) const {
   const ChunkCoord at = chunk_of(VoxelPos{x, 0, z}, edge_);
   const MapTile* const tile = find({at.x, at.z});
   if (tile == nullptr) return std::nullopt;
-  const ColumnTop& top = tile->at(x - at.x * edge_, z - at.z * edge_);
+  const ColumnTop& top = tile->tops.at(x - at.x * edge_, z - at.z * edge_);
   return top.is_found() ? std::optional(top) : std::nullopt;
 }
 

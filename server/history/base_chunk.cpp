@@ -17,13 +17,18 @@ Chunk generated_chunk(const Generator& generator, const ChunkKey& key, std::uint
 
 StoreResult<Chunk> base_chunk(ChunkReader& reader, const Generator& generator,
                               const ChunkKey& key) {
+  auto chunk = base_chunk_in_any_order(reader, generator, key);
+  if (chunk) chunk->voxels = in_cheapest_order(std::move(chunk->voxels));
+  return chunk;
+}
+
+StoreResult<Chunk> base_chunk_in_any_order(ChunkReader& reader, const Generator& generator,
+                                           const ChunkKey& key) {
   RUNSTONE_ASSERT(key.lod == 0);
   auto stored = reader.load_base(key);
   if (!stored) return Unexpected<StoreError>{stored.error()};
   if (!stored->has_value()) return generated_chunk(generator, key, reader.meta().chunk_edge);
-  Chunk chunk = **std::move(stored);
-  chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
-  return chunk;
+  return **std::move(stored);
 }
 
 }  // namespace runstone

@@ -114,29 +114,47 @@ Keyframe WorldAt::untouched() const {
   return keyframe;
 }
 
-StoreResult<Chunk> WorldAt::start_of(const ChunkKey& key, const Edited* edited) {
+StoreResult<Chunk> WorldAt::start_of(const ChunkKey& key, const Edited* edited,
+                                     WorldReader& reader) const {
   if (edited == nullptr || !edited->stored) {
-    auto chunk = base_chunk(*reader_, *generator_, key);
+    auto chunk = base_chunk_in_any_order(reader, *generator_, key);
     if (chunk && chunk->version != Version{}) return refuse(kCompacted);
     return chunk;
   }
-  auto stored = reader_->load_stored(*edited->stored);
+  auto stored = reader.load_stored(*edited->stored);
   if (!stored) return Unexpected<StoreError>{stored.error()};
   if (!stored->has_value()) return refuse(kCompacted);
   return **std::move(stored);
 }
 
-StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key) {
+StoreResult<Chunk> WorldAt::replayed(const ChunkKey& key, WorldReader& reader,
+                                     ReplayScratch& scratch) const {
   const auto found = chunks_.find(key);
   const Edited* edited = found == chunks_.end() ? nullptr : &found->second;
-  auto chunk = start_of(key, edited);
+  auto chunk = start_of(key, edited, reader);
   if (!chunk || edited == nullptr || edited->edits.empty()) return chunk;
   ReplayedChunk replayed(*std::move(chunk), origin_of(key.at, edge_));
   for (const std::uint32_t edit : edited->edits)
-    replayed.add(edits_[edit], versions_[edit], scratch_);
-  replayed.flush(scratch_);
-  replayed.chunk().voxels = in_cheapest_order(std::move(replayed.chunk().voxels));
+    replayed.add(edits_[edit], versions_[edit], scratch);
+  replayed.flush(scratch);
   return std::move(replayed.chunk());
+}
+
+StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key) {
+  auto chunk = replayed(key, *reader_, scratch_);
+  const auto found = chunks_.find(key);
+  // A keyframe has its chunks in their cheapest order.
+  const bool is_as_stored = found != chunks_.end() && found->second.stored &&
+                            !found->second.stored->is_base && found->second.edits.empty();
+  if (chunk && !is_as_stored) chunk->voxels = in_cheapest_order(std::move(chunk->voxels));
+  return chunk;
+}
+
+StoreResult<RunChunk> WorldAt::voxels(const ChunkKey& key, WorldReader& reader,
+                                      ReplayScratch& scratch) const {
+  auto chunk = replayed(key, reader, scratch);
+  if (!chunk) return Unexpected<StoreError>{chunk.error()};
+  return std::move(chunk->voxels);
 }
 
 }  // namespace runstone

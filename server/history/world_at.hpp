@@ -3,7 +3,7 @@
 // the edits that touched it since, with the same apply_stack() as the server's.
 // Memory: every edit read, once; for each chunk ever edited its stored form without voxels, and the
 // list of its edits. No chunk is kept.
-// Threads: one, which alone uses the reader. A server may write the world meanwhile. A compaction
+// Threads: one, which alone uses the reader; chunk() names the exception. A server may write the world meanwhile. A compaction
 // beyond the moment is detected and reported.
 #pragma once
 #include <cstdint>
@@ -41,6 +41,11 @@ class WorldAt {
   /// of the last edit at or before at() that touched it, or (0, 0) if none did. Requires lod 0 and
   /// a chunk inside the world. Cost: O(edits of the chunk * its runs / 64).
   StoreResult<Chunk> chunk(const ChunkKey& key);
+  /// Returns the same voxels in any axis order, which is cheaper, without digest and version. Reads
+  /// with another reader of the same world. Thread: any, each with a reader and a scratch of its own,
+  /// while no function that is not const runs.
+  StoreResult<RunChunk> voxels(const ChunkKey& key, WorldReader& reader,
+                               ReplayScratch& scratch) const;
   /// Returns the version that chunk() would have, without making the chunk.
   Version version(const ChunkKey& key) const;
   /// Returns all chunks that edits touched up to at(), ascending.
@@ -67,7 +72,11 @@ class WorldAt {
 
   WorldAt(WorldReader& reader, const Generator& generator)
       : reader_(&reader), generator_(&generator), edge_(reader.meta().chunk_edge) {}
-  StoreResult<Chunk> start_of(const ChunkKey& key, const Edited* edited);
+  /// Returns the chunk at the stored moment, in any axis order.
+  StoreResult<Chunk> start_of(const ChunkKey& key, const Edited* edited, WorldReader& reader) const;
+  /// Returns the chunk as chunk(), in any axis order.
+  StoreResult<Chunk> replayed(const ChunkKey& key, WorldReader& reader,
+                              ReplayScratch& scratch) const;
   Unexpected<StoreError> refuse(std::string what) const;
 
   WorldReader* reader_;

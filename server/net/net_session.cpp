@@ -432,6 +432,8 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     self->write_began_us_.store(0);
     if (wrote.error) break;
     self->counters_.bytes_out.fetch_add(wrote.bytes, std::memory_order_relaxed);
+    self->counters_.chunk_bytes_out.fetch_add(batch.chunk_bytes, std::memory_order_relaxed);
+    self->counters_.edit_bytes_out.fetch_add(batch.edit_bytes, std::memory_order_relaxed);
     if (batch.has_commits) {
       self->counters_.commit_send_ns.fetch_add(wrote.call_ns, std::memory_order_relaxed);
       self->counters_.commit_sends.fetch_add(1, std::memory_order_relaxed);

@@ -56,6 +56,8 @@ struct NetLimits {
 struct NetCounters {
   std::atomic<std::uint64_t> connections{0}, refused{0}, bytes_in{0}, bytes_out{0}, messages_in{0},
       malformed{0};
+  // The parts of bytes_out that are frames of the classes chunks and edits, before encryption.
+  std::atomic<std::uint64_t> chunk_bytes_out{0}, edit_bytes_out{0};
   // Processor time of writes that sent bytes of commits, and the number of these writes.
   std::atomic<std::int64_t> commit_send_ns{0};
   std::atomic<std::uint64_t> commit_sends{0};

@@ -96,6 +96,7 @@ bool SendQueue::cut(FrameClass frame_class, std::size_t body_max, Batch& batch) 
   batch.bytes += kFrameHeaderBytes + count;
   batch.has_commits = batch.has_commits || message.kind == kKindOf<Commit>;
   if (frame_class == FrameClass::chunks) batch.chunk_bytes += kFrameHeaderBytes + count;
+  if (frame_class == FrameClass::edits) batch.edit_bytes += kFrameHeaderBytes + count;
   mine.bytes -= count;
   mine.sent += count;
   if (!more) {
@@ -113,7 +114,7 @@ bool SendQueue::take(Batch& batch, std::size_t chunk_body_max) {
   batch.pieces.clear();
   batch.bytes = 0;
   batch.has_commits = false;
-  batch.chunk_bytes = 0;
+  batch.chunk_bytes = batch.edit_bytes = 0;
   while (batch.bytes < limits_.write_bytes) {
     const bool is_chunks_turn =
         chunk_body_max > 0 && lane(FrameClass::chunks).passed >= kPassedFragments * chunk_body_max;

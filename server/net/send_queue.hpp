@@ -57,9 +57,10 @@ class SendQueue {
       ByteView body;
     };
     std::vector<Piece> pieces;
-    bool has_commits = false;     // or parts of them
-    std::size_t bytes = 0;        // headers included
-    std::size_t chunk_bytes = 0;  // the part of `bytes` that is of the class chunks
+    bool has_commits = false;  // or parts of them
+    std::size_t bytes = 0;     // headers included
+    // The parts of `bytes` that are of the classes chunks and edits.
+    std::size_t chunk_bytes = 0, edit_bytes = 0;
   };
   /// Takes the next fragments: about `write_bytes`, with at most one fragment of the chunk class,
   /// whose body has at most `chunk_body_max` bytes (0: none). Returns false if there are none. The

@@ -42,20 +42,30 @@ std::string sending_part(const WorldServer& world, const NetCounters& net,
   const WorldCounters& w = world.counters();
   return fmt::format(
       "queue_full={} digest_checks_sent={} digest_mismatches={} commits_sent={} "
-      "commit_enqueue_us={} commit_sends={} commit_send_ms={} bytes_in={} bytes_out={}",
+      "commit_enqueue_us={} commit_sends={} commit_send_ms={} bytes_in={} bytes_out={} "
+      "chunk_bytes_out={} edit_bytes_out={} memory_bytes={}",
       w.queue_full, w.digest_checks_sent, w.digest_mismatches, w.commits_sent,
       runtime.commit_enqueue_us, net.commit_sends.load(), net.commit_send_ns.load() / 1'000'000,
-      net.bytes_in.load(), net.bytes_out.load());
+      net.bytes_in.load(), net.bytes_out.load(), net.chunk_bytes_out.load(),
+      net.edit_bytes_out.load(), runtime.memory_bytes);
+}
+
+std::string waits_part(const WaitHistogram& waits) {
+  std::string out =
+      fmt::format("edit_wait_count={} edit_wait_us={}", waits.count(), waits.sum_us());
+  for (std::size_t i = 0; i < WaitHistogram::kBoundsMs.size(); ++i)
+    out += fmt::format(" edit_wait_ms_le_{}={}", WaitHistogram::kBoundsMs[i], waits.at_most(i));
+  return out;
 }
 
 }  // namespace
 
 std::string counters_line(const WorldServer& world, const NetCounters& net,
                           const LogWriter::Counters& log, const RuntimeCounters& runtime) {
-  return fmt::format("counters {} {} {} {} stack_depths=\"{}\" dense_expansions={}",
+  return fmt::format("counters {} {} {} {} {} stack_depths=\"{}\" dense_expansions={}",
                      sessions_part(world, net), log_part(world, log), chunks_part(world, runtime),
-                     sending_part(world, net, runtime), world.stack_depths().text(),
-                     dense_expansions());
+                     sending_part(world, net, runtime), waits_part(world.counters().edit_waits),
+                     world.stack_depths().text(), dense_expansions());
 }
 
 }  // namespace runstone

@@ -13,6 +13,7 @@ namespace runstone {
 struct RuntimeCounters {
   std::uint64_t snapshots_encoded = 0;
   std::int64_t commit_enqueue_us = 0;  // processor time that queueing commits took
+  std::uint64_t memory_bytes = 0;      // of the process
 };
 
 /// Returns one line of fields. Thread: the world strand.

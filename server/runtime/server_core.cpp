@@ -6,6 +6,7 @@
 #include <chrono>
 #include <span>
 
+#include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
 #include "server/admin/config_reload.hpp"
 #include "server/runtime/counters_line.hpp"
@@ -167,7 +168,8 @@ void ServerCore::log_counters() {
 void ServerCore::write_counters() { logger("app").info("{}", all_counters()); }
 
 std::string ServerCore::all_counters() const {
-  const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000};
+  const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000,
+                                process_memory_bytes()};
   return counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime);
 }
 
@@ -175,7 +177,11 @@ void ServerCore::answer_gateway(const std::string& question, CommandReply reply)
   if (question != "status") return refuse(reply, "the only question is `status`");
   strand_.post([this, reply = std::move(reply)] {
     std::string text = all_counters();
-    for (const auto& player : world_->online_players()) text += "\nplayer " + player.name;
+    for (const auto& player : world_->online_players()) {
+      text += "\nplayer " + player.name;
+      text += fmt::format("\nplace {:.1f} {:.1f} {:.1f} {}", player.at.x, player.at.y, player.at.z,
+                          player.name);
+    }
     reply({std::move(text), true, true});
   });
 }

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "server/map/map_request.hpp"
+#include "server/web/map_page.hpp"
 #include "server/web/metrics_text.hpp"
 #include "server/web/web_pages.hpp"
 
@@ -11,20 +13,18 @@ namespace {
 struct Route {
   std::string_view path;
   bool shows_status;
-  HttpAnswer (*answer)(const WebConfig&, const ServerStatus&, const WebCounters&);
+  HttpAnswer (*answer)(const WebConfig&, const ServerStatus&,
+                       const WebCounters&);  // null: kStatusPath
 };
 
 constexpr const char* kHtml = "text/html; charset=utf-8";
 
-constexpr std::array<Route, 5> kRoutes = {{
+constexpr std::array<Route, 9> kRoutes = {{
     {"/", true,
      [](const WebConfig& config, const ServerStatus& server, const WebCounters& /*web*/) {
        return HttpAnswer{200, kHtml, world_page(config, server), "", false};
      }},
-    {"/status", true,
-     [](const WebConfig& config, const ServerStatus& server, const WebCounters& web) {
-       return HttpAnswer{200, kHtml, status_page(config, server, web), "", false};
-     }},
+    {kStatusPath, true, nullptr},
     {"/metrics", true,
      [](const WebConfig& /*config*/, const ServerStatus& server, const WebCounters& web) {
        return HttpAnswer{200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(server, web),
@@ -33,6 +33,23 @@ constexpr std::array<Route, 5> kRoutes = {{
     {"/style.css", false,
      [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
        return HttpAnswer{200, "text/css; charset=utf-8", std::string(style_sheet()), "", true};
+     }},
+    {"/map", false,
+     [](const WebConfig& config, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
+       return HttpAnswer{config.world.empty() ? 404U : 200U, kHtml, map_page(config), "", false};
+     }},
+    {"/map.css", false,
+     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
+       return HttpAnswer{200, "text/css; charset=utf-8", std::string(map_style()), "", true};
+     }},
+    {"/map.js", false,
+     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
+       return HttpAnswer{200, "text/javascript; charset=utf-8", std::string(map_script()), "",
+                         true};
+     }},
+    {kMapPlayersPath, true,
+     [](const WebConfig& /*config*/, const ServerStatus& server, const WebCounters& /*web*/) {
+       return HttpAnswer{200, "application/json", map_players_json(server), "", false};
      }},
     {kPlayPath, false,
      [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
@@ -57,14 +74,19 @@ bool shows_status(std::string_view target) {
 }
 
 HttpAnswer answer_request(std::string_view method, std::string_view target, const WebConfig& config,
-                          const ServerStatus& server, const WebCounters& web) {
+                          const ServerStatus& server, const WebCounters& web,
+                          std::string_view recent_edits) {
   const Route* route = find_route(target);
-  if (route == nullptr) return plain_answer(404, "there is no such page");
+  const bool is_map_data = route == nullptr && target.starts_with(kMapDataPath);
+  if (route == nullptr && !is_map_data) return plain_answer(404, "there is no such page");
   if (method != "GET" && method != "HEAD") {
     HttpAnswer answer = plain_answer(405, "this page can only be read");
     answer.allow = "GET, HEAD";
     return answer;
   }
+  if (is_map_data) return plain_answer(404, "this gateway shows no map");
+  if (route->answer == nullptr)
+    return {200, kHtml, status_page(config, server, web, recent_edits), "", false};
   return route->answer(config, server, web);
 }
 
@@ -75,7 +97,7 @@ HttpAnswer plain_answer(unsigned status, std::string sentence) {
 const std::vector<std::pair<std::string, std::string>>& safety_headers() {
   static const std::vector<std::pair<std::string, std::string>> all = {
       {"Content-Security-Policy",
-       "default-src 'none'; style-src 'self'; base-uri 'none'; form-action 'none'; "
+       "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; "
        "frame-ancestors 'none'"},
       {"Cross-Origin-Opener-Policy", "same-origin"},
       {"Cross-Origin-Embedder-Policy", "require-corp"},

@@ -1,6 +1,9 @@
 #include "server/web/server_status.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <optional>
 
 namespace runstone {
 namespace {
@@ -25,6 +28,19 @@ void read_counters(std::string_view fields, std::map<std::string, std::int64_t>&
   }
 }
 
+/// Reads "X Y Z NAME". Returns nullopt on any other text.
+std::optional<PlayerPlace> read_place(std::string_view text) {
+  PlayerPlace out;
+  for (double* number : {&out.x, &out.y, &out.z}) {
+    const std::string_view word = take_until(text, ' ');
+    const char* end = word.data() + word.size();
+    const auto [rest, error] = std::from_chars(word.data(), end, *number);
+    if (error != std::errc{} || rest != end || !std::isfinite(*number)) return std::nullopt;
+  }
+  out.name = text;
+  return out;
+}
+
 }  // namespace
 
 std::int64_t ServerStatus::counter(const std::string& name) const {
@@ -32,8 +48,22 @@ std::int64_t ServerStatus::counter(const std::string& name) const {
   return found == counters.end() ? 0 : found->second;
 }
 
+std::vector<EditWaits> edit_waits(const ServerStatus& status) {
+  constexpr std::string_view kPrefix = "edit_wait_ms_le_";
+  std::vector<EditWaits> out;
+  for (const auto& [name, value] : status.counters) {
+    if (!name.starts_with(kPrefix) || value < 0) continue;
+    EditWaits waits{0, static_cast<std::uint64_t>(value)};
+    const char* end = name.data() + name.size();
+    const auto [rest, error] = std::from_chars(name.data() + kPrefix.size(), end, waits.ms_max);
+    if (error == std::errc{} && rest == end) out.push_back(waits);
+  }
+  std::ranges::sort(out, {}, &EditWaits::ms_max);
+  return out;
+}
+
 Result<ServerStatus> parse_server_status(std::string_view answer) {
-  constexpr std::string_view kCounters = "|counters ", kPlayer = "|player ";
+  constexpr std::string_view kCounters = "|counters ", kPlayer = "|player ", kPlace = "|place ";
   ServerStatus out;
   while (!answer.empty()) {
     std::string_view line = take_until(answer, '\n');
@@ -45,6 +75,9 @@ Result<ServerStatus> parse_server_status(std::string_view answer) {
       read_counters(line.substr(kCounters.size()), out.counters);
     } else if (line.starts_with(kPlayer)) {
       out.players.emplace_back(line.substr(kPlayer.size()));
+    } else if (line.starts_with(kPlace)) {
+      const auto place = read_place(line.substr(kPlace.size()));
+      if (place) out.places.push_back(*place);
     } else if (!line.starts_with('|')) {
       return fail(ErrorCode::bad_value, "the server refused the question for its status");
     }

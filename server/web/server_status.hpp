@@ -10,18 +10,32 @@
 
 namespace runstone {
 
+/// Where a player is.
+struct PlayerPlace {
+  std::string name;
+  double x = 0, y = 0, z = 0;
+};
+
 struct ServerStatus {
   bool is_up = false;  // the server has answered
   std::string why;     // it has not
   std::map<std::string, std::int64_t> counters;
   std::vector<std::string> players;  // names, one for each session
+  std::vector<PlayerPlace> places;   // of the same players, from a server that tells them
 
   /// Returns a counter, or 0 if the server has none of this name.
   std::int64_t counter(const std::string& name) const;
 };
 
+/// How many edits waited at most so long on the server.
+struct EditWaits {
+  std::uint64_t ms_max = 0, count = 0;
+};
+/// Returns the counters edit_wait_ms_le_N of a status, by N.
+std::vector<EditWaits> edit_waits(const ServerStatus& status);
+
 /// Reads an answer of the status socket: lines that begin with "|", and "=ok" at the end. The lines
-/// are "counters NAME=VALUE NAME=VALUE ..." and "player NAME". Values that are no whole numbers and
+/// are "counters NAME=VALUE NAME=VALUE ...", "player NAME" and "place X Y Z NAME". Values that are no whole numbers and
 /// lines of other kinds are skipped, because a later server may have more of them.
 Result<ServerStatus> parse_server_status(std::string_view answer);
 

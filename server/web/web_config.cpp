@@ -46,6 +46,17 @@ const SettingsTable<WebConfig>& web_settings() {
                "origins of pages that may open a WebSocket, such as https://play.example.org, "
                "separated by blanks or commas; empty: only pages of this gateway",
                &C::origins, true),
+          text("world", "folder of the world, to show its map at /map; empty: no map", &C::world,
+               true),
+          number("map_memory_mib", &C::map_memory_mib, 8, 65'536,
+                 "MiB of memory for what the map has drawn"),
+          number(
+              "map_ms_per_second", &C::map_ms_per_second, 0, 1'000,
+              "milliseconds a second in which the map draws for one address, forty times as many "
+              "at once, 0: no limit"),
+          number("map_requests_per_second", &C::map_requests_per_second, 0, 1'000'000,
+                 "requests a second of one address for the map, ten times as many at once, 0: no "
+                 "limit"),
           number("sockets_max", &C::sockets_max, 1, 65'536, "connections in any state"),
           number("sockets_per_address", &C::sockets_per_address, 1, 65'536,
                  "connections of one address"),

@@ -22,9 +22,14 @@ struct WebConfig {
   /// Origins of pages that may open a WebSocket, such as "https://play.example.org", separated by
   /// blanks or commas. Empty: only pages of this gateway.
   std::string origins;
-  std::uint64_t sockets_max = 1'024;          // connections in any state, 1..65536
-  std::uint64_t sockets_per_address = 64;     // 1..65536
-  std::uint64_t connections_per_second = 20;  // of one address, ten times at once, 0: no limit
+  std::string world;                   // folder of the world, for its map; empty: no map
+  std::uint64_t map_memory_mib = 128;  // of what was drawn, 8..65536
+  std::uint64_t map_ms_per_second =
+      250;  // of drawing, of one address, forty times at once, 0: no limit
+  std::uint64_t map_requests_per_second = 60;  // of one address, ten times at once, 0: no limit
+  std::uint64_t sockets_max = 1'024;           // connections in any state, 1..65536
+  std::uint64_t sockets_per_address = 64;      // 1..65536
+  std::uint64_t connections_per_second = 20;   // of one address, ten times at once, 0: no limit
   std::uint64_t handshake_s = 10;  // seconds for TLS, for a request and for its answer, 1..3600
   std::uint64_t idle_s = 60;       // seconds without a sign of life from a browser, 2..86400
   friend bool operator==(const WebConfig&, const WebConfig&) = default;

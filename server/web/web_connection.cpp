@@ -8,10 +8,12 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
-#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/span_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <string_view>
+
+#include "common/os/process_memory.hpp"
 
 namespace runstone {
 namespace {
@@ -93,7 +95,11 @@ boost::asio::awaitable<bool> WebConnection::serve(std::shared_ptr<WebConnection>
       co_return co_await write(self, broken, none, false);
     }
     Request request = parser.release();
-    if (!is_first && !self->state_.limits.ask(self->from_, steady_now_us())) {
+    const bool is_for_map = view_of(request.target()).starts_with(kMapDataPath);
+    const bool may_ask = is_for_map
+                             ? self->state_.map.ask(self->from_, steady_now_us())
+                             : is_first || self->state_.limits.ask(self->from_, steady_now_us());
+    if (!may_ask) {
       const HttpAnswer later = plain_answer(429, "too many requests from this address: ask later");
       co_return co_await write(self, later, request, false);
     }
@@ -128,26 +134,55 @@ std::optional<HttpAnswer> WebConnection::refusal_of(const Request& request) cons
 boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebConnection> self,
                                                             const Request& request) {
   static const auto kNoStatus = std::make_shared<const ServerStatus>();
+  const std::string_view path = path_of(view_of(request.target()));
+  const bool is_read = request.method() == http::verb::get || request.method() == http::verb::head;
+  if (path == kMapPlayersPath && !self->state_.map.is_public())
+    co_return plain_answer(403, "strangers may not see this world now");
+  if (is_read && path.starts_with(kMapDataPath) && path != kMapPlayersPath) {
+    MapAnswer answer =
+        co_await self->state_.map.answer(self->from_, view_of(request.target()),
+                                         std::string(view_of(request[http::field::if_none_match])));
+    HttpAnswer out{answer.status, std::move(answer.type), "", "", false};
+    out.etag = std::move(answer.etag);
+    out.shared = std::move(answer.body);
+    co_return out;
+  }
   std::shared_ptr<const ServerStatus> status = kNoStatus;
-  if (shows_status(view_of(request.target()))) status = co_await self->state_.status.newest();
+  std::string recent_edits;
+  if (path == kStatusPath && self->state_.map.is_on()) {
+    const MapAnswer recent =
+        co_await self->state_.map.answer(self->from_, kRecentEditsPath, std::string());
+    if (recent.status == 200 && recent.body != nullptr) recent_edits = *recent.body;
+  }
+  if (shows_status(view_of(request.target()))) {
+    status = co_await self->state_.status.newest();
+    self->state_.counters.memory_bytes = process_memory_bytes();
+    self->state_.counters.map_cache_bytes = self->state_.map.cache_bytes();
+  }
   co_return answer_request(view_of(request.method_string()), view_of(request.target()),
-                           self->state_.config, *status, self->state_.counters);
+                           self->state_.config, *status, self->state_.counters, recent_edits);
 }
 
 boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection> self,
                                                   const HttpAnswer& answer, const Request& request,
                                                   bool keeps_alive) {
-  http::response<http::string_body> response;
+  http::response<http::span_body<const char>> response;
   response.result(answer.status);
   response.version(request.version());
   response.set(http::field::content_type, answer.type);
-  response.set(http::field::cache_control, answer.is_fixed ? "max-age=3600" : "no-store");
+  // A picture of the map is kept and asked for again with its ETag.
+  const char* not_fixed = answer.etag.empty() ? "no-store" : "no-cache";
+  response.set(http::field::cache_control, answer.is_fixed ? "max-age=3600" : not_fixed);
+  if (!answer.etag.empty()) response.set(http::field::etag, answer.etag);
+  if (answer.status == 429 || answer.status == 503) response.set(http::field::retry_after, "1");
   if (!answer.allow.empty()) response.set(http::field::allow, answer.allow);
   if (answer.status == 426) response.set(http::field::upgrade, "websocket");
   for (const auto& [name, value] : safety_headers()) response.set(name, value);
-  response.content_length(answer.body.size());
+  const std::string& text = answer.text();
+  if (answer.status != 304) response.content_length(text.size());
   response.keep_alive(keeps_alive);
-  if (request.method() != http::verb::head) response.body() = answer.body;
+  if (request.method() != http::verb::head)
+    response.body() = boost::beast::span<const char>(text.data(), text.size());
   boost::system::error_code error;
   co_await http::async_write(self->stream_, response,
                              boost::asio::redirect_error(boost::asio::use_awaitable, error));

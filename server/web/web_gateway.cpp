@@ -185,6 +185,7 @@ void WebGateway::Parts::stop() {
   pause.cancel();
   sweep.cancel();
   for (const auto& [id, connection] : state.connections) connection->end_because_of_stop();
+  state.map.stop();
 }
 
 WebGateway::WebGateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}

@@ -1,6 +1,7 @@
 #include "server/web/web_pages.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
@@ -8,16 +9,6 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kPlayersShownMax = 200;
-
-/// Returns a page with this title, of which `body` is HTML.
-std::string page(const std::string& title, const std::string& body) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-         html_text(title) +
-         "</title>\n<link rel=\"stylesheet\" href=\"/style.css\">\n"
-         "</head>\n<body>\n<h1>" +
-         html_text(title) + "</h1>\n" + body + "</body>\n</html>\n";
-}
 
 std::string players_list(const ServerStatus& server) {
   if (server.players.empty()) return "<p>Nobody is in this world now.</p>\n";
@@ -44,6 +35,27 @@ std::string number_table(const char* caption,
   return out + "</table>\n";
 }
 
+/// A table of how long edits waited, with a bar for each row: numbers work without JavaScript.
+std::string waits_table(const ServerStatus& server) {
+  const std::int64_t all = server.counter("edit_wait_count");
+  std::string out = "<table>\n<caption>From an edit to its commit, on the server</caption>\n";
+  std::uint64_t before = 0;
+  const auto row = [&](const std::string& name, std::uint64_t count) {
+    const std::uint64_t share = all > 0 ? 100 * count / static_cast<std::uint64_t>(all) : 0;
+    out += "<tr><th scope=\"row\">" + name + "</th><td><meter min=\"0\" max=\"100\" value=\"" +
+           std::to_string(share) + "\">" + std::to_string(share) + " %</meter></td><td>" +
+           std::to_string(count) + "</td></tr>\n";
+  };
+  for (const EditWaits& waits : edit_waits(server)) {
+    row("up to " + std::to_string(waits.ms_max) + " ms",
+        waits.count - std::min(before, waits.count));
+    before = std::max(before, waits.count);
+  }
+  const auto total = static_cast<std::uint64_t>(std::max<std::int64_t>(all, 0));
+  row("longer", total - std::min(before, total));
+  return out + "</table>\n";
+}
+
 std::string server_tables(const ServerStatus& server) {
   const auto of = [&](const char* name) { return server.counter(name); };
   constexpr std::int64_t kMib = 1 << 20;
@@ -57,14 +69,36 @@ std::string server_tables(const ServerStatus& server) {
                                 {"edits since the start", of("edits_ordered")},
                                 {"edits refused since the start", of("edits_rejected")},
                                 {"commits since the start", of("commits")}}) +
+         waits_table(server) +
          number_table("Chunks", {{"chunks in memory", of("chunks_resident")},
                                  {"MiB of chunks in memory", of("resident_bytes") / kMib},
                                  {"chunks sent", of("snapshots_sent")},
                                  {"chunks that cannot be read", of("chunks_failed")},
                                  {"digests that differed", of("digest_mismatches")}}) +
+         number_table("Memory", {{"MiB of the server", of("memory_bytes") / kMib},
+                                 {"MiB of edits on chunks", of("stacked_bytes") / kMib},
+                                 {"MiB of messages to send", of("queued_bytes") / kMib}}) +
          number_table("Traffic", {{"MiB received", of("bytes_in") / kMib},
                                   {"MiB sent", of("bytes_out") / kMib},
+                                  {"of them MiB of terrain", of("chunk_bytes_out") / kMib},
+                                  {"of them MiB of edits", of("edit_bytes_out") / kMib},
                                   {"messages beyond a full queue", of("queue_full")}});
+}
+
+/// A table of the newest edits, or nothing.
+std::string edits_table(std::string_view recent_edits) {
+  const auto list = nlohmann::json::parse(recent_edits, nullptr, false);
+  if (!list.is_array() || list.empty()) return "";
+  std::string out = "<table>\n<caption>Newest edits</caption>\n";
+  for (const auto& edit : list) {
+    const auto text = [&](const char* name) {
+      const auto found = edit.find(name);
+      return found != edit.end() && found->is_string() ? html_text(found->get<std::string>()) : "";
+    };
+    out += "<tr><th scope=\"row\">" + text("time") + " <b>" + text("author") + "</b></th><td>" +
+           text("what") + "</td></tr>\n";
+  }
+  return out + "</table>\n";
 }
 
 std::string gateway_table(const WebCounters& web) {
@@ -76,7 +110,13 @@ std::string gateway_table(const WebCounters& web) {
                                        {"connections refused", number(web.refused)},
                                        {"pages sent", number(web.requests)},
                                        {"frames from browsers", number(web.frames_in)},
-                                       {"frames to browsers", number(web.frames_out)}});
+                                       {"frames to browsers", number(web.frames_out)},
+                                       {"requests for the map", number(web.map_requests)},
+                                       {"of them unchanged", number(web.map_not_modified)},
+                                       {"refused because of a limit", number(web.map_refused)},
+                                       {"seconds of drawing", number(web.map_work_us / 1'000'000)},
+                                       {"MiB of drawn tiles", number(web.map_cache_bytes >> 20)},
+                                       {"MiB of the gateway", number(web.memory_bytes >> 20)}});
 }
 
 }  // namespace
@@ -107,6 +147,15 @@ std::string html_text(std::string_view text) {
   return out;
 }
 
+std::string html_page(const std::string& title, const std::string& body) {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+         html_text(title) +
+         "</title>\n<link rel=\"stylesheet\" href=\"/style.css\">\n"
+         "</head>\n<body>\n<h1>" +
+         html_text(title) + "</h1>\n" + body + "</body>\n</html>\n";
+}
+
 std::string world_page(const WebConfig& config, const ServerStatus& server) {
   std::string body = server.is_up ? "<h2>Who is here</h2>\n" + players_list(server) : kDownText;
   body += "<h2>Join</h2>\n";
@@ -120,20 +169,22 @@ std::string world_page(const WebConfig& config, const ServerStatus& server) {
   }
   body +=
       "<p>This page has no client for the browser.</p>\n"
-      "<p><a href=\"/status\">State of the server</a></p>\n";
-  return page(config.title, body);
+      "<p>";
+  if (!config.world.empty()) body += "<a href=\"/map\">Map of the world</a>. ";
+  body += "<a href=\"/status\">State of the server</a></p>\n";
+  return html_page(config.title, body);
 }
 
-std::string status_page(const WebConfig& config, const ServerStatus& server,
-                        const WebCounters& web) {
+std::string status_page(const WebConfig& config, const ServerStatus& server, const WebCounters& web,
+                        std::string_view recent_edits) {
   std::string body = server.is_up ? "<p class=\"up\">The server is running.</p>\n" +
                                         players_list(server) + server_tables(server)
                                   : kDownText;
-  body += gateway_table(web);
+  body += edits_table(recent_edits) + gateway_table(web);
   body +=
       "<p><a href=\"/\">Back to the world</a>. The same numbers for Prometheus: "
       "<a href=\"/metrics\">/metrics</a></p>\n";
-  return page(config.title + ": state", body);
+  return html_page(config.title + ": state", body);
 }
 
 std::string_view style_sheet() {

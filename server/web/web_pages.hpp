@@ -1,5 +1,5 @@
-// The pages of the gateway. They are plain HTML without scripts and load nothing but the style sheet
-// of the gateway.
+// The pages of world and state. They are plain HTML without scripts and load nothing but the style
+// sheet of the gateway.
 #pragma once
 #include <string>
 #include <string_view>
@@ -13,11 +13,15 @@ namespace runstone {
 /// Returns the text with <, >, &, " and ' written as entities, for HTML between and within tags.
 std::string html_text(std::string_view text);
 
+/// Returns a page with this title, of which `body` is HTML.
+std::string html_page(const std::string& title, const std::string& body);
+
 /// Returns the page of the world: its name, who is there, and how to join.
 std::string world_page(const WebConfig& config, const ServerStatus& server);
-/// Returns the page of the state of server and gateway.
-std::string status_page(const WebConfig& config, const ServerStatus& server,
-                        const WebCounters& web);
+/// Returns the page of the state of server and gateway. `recent_edits`: JSON of the map's service, a
+/// list of edits with time, author and what; empty or anything else: none are shown.
+std::string status_page(const WebConfig& config, const ServerStatus& server, const WebCounters& web,
+                        std::string_view recent_edits = {});
 /// Returns the style sheet of both pages.
 std::string_view style_sheet();
 

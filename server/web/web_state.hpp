@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "server/web/map_gate.hpp"
 #include "server/web/origin_check.hpp"
 #include "server/web/socket_limits.hpp"
 #include "server/web/status_source.hpp"
@@ -25,15 +26,17 @@ struct WebState {
         origin(std::move(origin_)),
         tls(std::move(tls_)),
         status(io, config_.gateway_socket + ".status"),
+        map(io, config_, counters),
         limits(config_.sockets_per_address, config_.connections_per_second) {}
 
   const WebConfig config;
   const OriginCheck origin;
   boost::asio::io_context io{1};
   std::optional<boost::asio::ssl::context> tls;
-  StatusSource status;
-  SocketLimits limits;
   WebCounters counters;
+  StatusSource status;
+  MapGate map;
+  SocketLimits limits;
   /// All connections, oldest first. A connection removes itself when it is destroyed.
   std::map<std::uint64_t, WebConnection*> connections;
 };

@@ -37,6 +37,7 @@ struct OrderedBatch {
   std::vector<EditRecord> records;
   std::vector<std::vector<ChunkKey>> touched;  // of each edit, ascending
   std::vector<ChunkKey> all_touched;           // of all edits, ascending, each once
+  std::vector<TimeUs> waits_us;                // of the edits of players: since they were accepted
 };
 
 class Authority {

@@ -27,6 +27,7 @@ struct EditOffer {
   Sequence subject = 0;  // the edit that this rollback, undo or redo is about; 0: none
   /// For an edit of a player: the first edit of its action, as EditRequest::action.
   ClientSequence action = 0;
+  TimeUs arrived_us = 0;  // an edit of a player: when it was accepted, by the server's steady clock
 };
 
 /// Returns the work of an edit: an upper bound of its bytes in a commit message, in which its chunks

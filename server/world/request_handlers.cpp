@@ -108,7 +108,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     world.authority.reject(op, *refusal);
   } else {
     refusal = world.authority.submit(
-        {op, Cause::player, request.submitted_us, request.edit, 0, request.action});
+        {op, Cause::player, request.submitted_us, request.edit, 0, request.action, now.steady_us});
   }
   if (!refusal) return;
   if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);

@@ -12,6 +12,7 @@
 #include "tests/bench/edits/log_bench.hpp"
 #include "tests/bench/frames/frames_bench.hpp"
 #include "tests/bench/harness/machine_json.hpp"
+#include "tests/bench/map/map_bench.hpp"
 #include "tests/bench/meshing/chunk_edge.hpp"
 #include "tests/bench/meshing/mesh_bench.hpp"
 #include "tests/bench/meshing/mesh_once.hpp"
@@ -119,6 +120,13 @@ int tiles(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   });
 }
 
+int map(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_map_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
+}
+
 int frames(const FramesOptions& options, std::ostream& out, std::ostream& err) {
   return finish(run_frames_bench(options, err), options, err, [&](const auto& result) {
     write_machine(result.machine, out);
@@ -196,6 +204,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return bytes_to_quads(options.bench, out, err);
     case Command::tiles:
       return tiles(options.bench, out, err);
+    case Command::map:
+      return map(options.bench, out, err);
     case Command::log:
       return log(options.bench, out, err);
     case Command::edits:

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "tests/bench/edits/edit_options.hpp"
+#include "tests/bench/map/map_options.hpp"
 #include "tests/bench/meshing/mesh_options.hpp"
 #include "tests/bench/storage/storage_options.hpp"
 #include "tests/bench/thesis/scenario_bench.hpp"
@@ -28,7 +29,7 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 12> kSubcommands = {
+constexpr std::array<Subcommand, 13> kSubcommands = {
     {{Command::mesh, add_mesh_command},
      {Command::chunk_edge, add_chunk_edge_command},
      {Command::edits, add_edits_command},
@@ -37,6 +38,7 @@ constexpr std::array<Subcommand, 12> kSubcommands = {
      {Command::bytes_to_quads, add_bytes_to_quads_command},
      {Command::storage, add_storage_command},
      {Command::tiles, add_tiles_command},
+     {Command::map, add_map_command},
      {Command::mesh_once, add_mesh_once_command},
      {Command::scenario_facts, add_scenario_facts_command},
      {Command::scenario_times, add_scenario_times_command},

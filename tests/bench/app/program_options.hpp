@@ -21,6 +21,7 @@ enum class Command {
   bytes_to_quads,
   storage,
   tiles,
+  map,
   net,
   frames,
   view,

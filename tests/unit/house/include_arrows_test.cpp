@@ -100,7 +100,8 @@ struct Ban {
 const std::vector<Ban>& bans() {
   static const std::vector<Ban> kBans = {
       {{"common/core", "common/runs", "common/materials", "common/edits", "common/mesh",
-        "common/tiles", "common/generate", "common/rlog", "common/formats", "protocol"},
+        "common/tiles", "common/map", "common/generate", "common/rlog", "common/formats",
+        "protocol"},
        {"common/os/", "common/sqlite/", "asio.hpp",  "asio/",   "boost/",   "spdlog/", "sqlite3.h",
         "GL/",        "GLES2/",         "GLES3/",    "GLFW/",   "EGL/",     "epoxy/",  "chrono",
         "ctime",      "time.h",         "thread",    "fstream", "iostream", "random",  "unistd.h",

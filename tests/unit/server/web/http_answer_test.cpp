@@ -79,6 +79,37 @@ TEST_CASE("a page says in words that the server is not running", "[web]") {
   CHECK_FALSE(has(get("/metrics", down), "runstone_sessions"));
 }
 
+TEST_CASE("the state shows how long edits wait, and the metrics have the same as a histogram",
+          "[web]") {
+  ServerStatus server = running_server();
+  server.counters["edit_wait_count"] = 10;
+  server.counters["edit_wait_us"] = 250'000;
+  server.counters["edit_wait_ms_le_20"] = 9;
+  server.counters["edit_wait_ms_le_5"] = 6;
+  server.counters["edit_wait_ms_le_x"] = 6;
+  const HttpAnswer page = get("/status", server);
+  CHECK(has(page, "up to 5 ms</th><td><meter min=\"0\" max=\"100\" value=\"60\">"));
+  CHECK(has(page, "30 %</meter></td><td>3</td>"));  // more than 5 ms, up to 20
+  CHECK(has(page, "longer</th><td><meter min=\"0\" max=\"100\" value=\"10\">"));
+  const HttpAnswer metrics = get("/metrics", server);
+  CHECK(has(metrics, "runstone_edit_wait_seconds_bucket{le=\"0.005\"} 6\n"));
+  CHECK(has(metrics, "runstone_edit_wait_seconds_bucket{le=\"+Inf\"} 10\n"));
+  CHECK(has(metrics, "runstone_edit_wait_seconds_sum 0.25\n"));
+}
+
+TEST_CASE("the state lists the newest edits as text", "[web]") {
+  const auto page_of = [](const char* json) {
+    return answer_request("GET", "/status", {}, running_server(), {}, json).body;
+  };
+  const std::string page =
+      page_of(R"([{"time":"now","author":"<b>ana","what":"voxel 1 2 3 := stone","seq":7}])");
+  CHECK(page.find("&lt;b&gt;ana") != std::string::npos);
+  CHECK(page.find("voxel 1 2 3 := stone") != std::string::npos);
+  for (const char* other : {"", "[]", "{}", "[1]", "nonsense", "[{\"time\":3}]"})
+    CHECK(page_of(other).find("<h1>") != std::string::npos);
+  CHECK(page_of("nonsense").find("Newest edits") == std::string::npos);
+}
+
 TEST_CASE("a long list of players is cut and counted", "[web]") {
   ServerStatus crowd = running_server();
   crowd.players.assign(1'000, "p");

@@ -19,6 +19,16 @@ TEST_CASE("the answer of the status socket gives counters and players", "[web]")
   CHECK(read->players == std::vector<std::string>{"ana", "bea = 7"});
 }
 
+TEST_CASE("the answer of the status socket tells where players are", "[web]") {
+  const auto read = parse_server_status(
+      "|player ana b\n|place 1.5 -20.0 3 ana b\n|place nan 1 2 x\n|place 1 2\n|place 1 2 3e x\n"
+      "|place inf 1 2 x\n=ok\n");
+  REQUIRE(read.has_value());
+  REQUIRE(read->places.size() == 1);
+  CHECK(read->places[0].name == "ana b");
+  CHECK(read->places[0].y == -20);
+}
+
 TEST_CASE("an answer that is cut, refused or something else gives no status", "[web]") {
   const std::string whole = "|counters sessions=2\n|player ana\n=ok";
   for (std::size_t size = 0; size < whole.size(); ++size)

@@ -1,4 +1,4 @@
-#include "client/map/map_materials.hpp"
+#include "common/map/map_materials.hpp"
 
 namespace runstone {
 

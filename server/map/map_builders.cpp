@@ -1,0 +1,104 @@
+#include "server/map/map_builders.hpp"
+
+#include <algorithm>
+
+#include "common/core/key_text.hpp"
+#include "common/core/utc_text.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/rollback/newest_edits.hpp"
+
+namespace runstone {
+namespace {
+
+// Edits near the column that are looked at. Their bounding boxes meet it, and their voxels may not.
+constexpr std::size_t kLooksMax = 256;
+
+/// Returns the time with its microseconds, in the form of parse_utc().
+std::string exact_utc(TimeUs utc_us) {
+  constexpr TimeUs kUsPerSecond = 1'000'000;
+  std::string text = utc_text(utc_us);
+  text.pop_back();  // Z
+  const TimeUs rest = ((utc_us % kUsPerSecond) + kUsPerSecond) % kUsPerSecond;
+  const std::string digits = std::to_string(kUsPerSecond + rest).substr(1);
+  return text + "." + digits + "Z";
+}
+
+bool restores(Cause cause) {
+  return cause == Cause::undo || cause == Cause::redo || cause == Cause::rollback;
+}
+
+std::string verb_of(const EditRecord& record) {
+  switch (record.cause) {
+    case Cause::undo:
+      return "undo, restored";
+    case Cause::redo:
+      return "redo, restored";
+    case Cause::rollback:
+      return "rollback, restored";
+    default:
+      break;
+  }
+  switch (kind_of(record.edit)) {
+    case EditKind::set_voxel:
+      return "voxel";
+    case EditKind::fill_box:
+      return "box";
+    case EditKind::fill_sphere:
+      return "sphere";
+    case EditKind::fill_stroke:
+      return "stroke";
+    case EditKind::paste:
+      return "paste";
+    default:
+      return "edit";
+  }
+}
+
+}  // namespace
+
+StoreResult<std::vector<EditRecord>> newest_edits_of_column(LogReader& reader, std::int32_t x,
+                                                            std::int32_t z, Sequence last) {
+  SelectionFilter filter;
+  filter.box = VoxelBox{{x, -kWorldLimit, z}, {x + 1, kWorldLimit, z + 1}};
+  filter.last = last;
+  auto found = newest_edits(reader, filter, kLooksMax);
+  if (!found) return found;
+  std::vector<EditRecord> out;
+  for (auto at = found->rbegin(); at != found->rend() && out.size() < kBuildersMax; ++at) {
+    if (changes_voxels(at->cause) && touches(at->edit, *filter.box)) out.push_back(*at);
+  }
+  return out;
+}
+
+StoreResult<std::vector<EditRecord>> newest_edits_of_world(LogReader& reader) {
+  auto found = newest_edits(reader, {}, kLooksMax);
+  if (!found) return found;
+  std::vector<EditRecord> out;
+  for (auto at = found->rbegin(); at != found->rend() && out.size() < kBuildersMax; ++at) {
+    if (changes_voxels(at->cause)) out.push_back(*at);
+  }
+  return out;
+}
+
+std::string edit_words(const EditRecord& record, const MaterialTable& materials) {
+  const VoxelBox box = bounding_box(record.edit);
+  std::string out = verb_of(record) + " " + text_of(box.min);
+  const VoxelPos last{box.max.x - 1, box.max.y - 1, box.max.z - 1};
+  if (last != box.min) out += " to " + text_of(last);
+  const bool has_material = !restores(record.cause) && kind_of(record.edit) != EditKind::paste &&
+                            materials.knows(record.edit.material);
+  if (has_material) out += " := " + materials[record.edit.material].name;
+  return out;
+}
+
+std::string undo_command(const EditRecord& record) {
+  const VoxelBox box = bounding_box(record.edit);
+  const std::string time = exact_utc(record.time_us);
+  // The server is no player, so its edits are found by time and place alone.
+  const std::string author =
+      record.op.author == 0 ? "" : " author #" + std::to_string(record.op.author);
+  return "rollback preview" + author + " since " + time + " until " + time + " box " +
+         text_of(box.min) + " " + text_of(VoxelPos{box.max.x - 1, box.max.y - 1, box.max.z - 1});
+}
+
+}  // namespace runstone

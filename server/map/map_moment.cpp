@@ -1,0 +1,78 @@
+#include "server/map/map_moment.hpp"
+
+#include <utility>
+
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/history/moments.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+StoreResult<std::unique_ptr<MapMoment>> MapMoment::open(const std::string& folder,
+                                                        const Generator& generator, Sequence at,
+                                                        const WorldAt::Progress& progress) {
+  auto reader = open_world(folder, StoreAccess::read_only);
+  if (!reader) return Unexpected<StoreError>{reader.error()};
+  std::unique_ptr<MapMoment> out(new MapMoment(*std::move(reader)));
+  bool is_too_far = false;
+  const auto bounded = [&](Sequence read, Sequence last) {
+    is_too_far = is_too_far || last - read > Moments::kEditsMax;
+    return !is_too_far && (!progress || progress(read, last));
+  };
+  auto world = WorldAt::open(*out->reader_, generator, at, bounded);
+  if (is_too_far) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::bad_request, out->reader_->file(), "keyframe",
+         "none is near enough to seq=" + std::to_string(at) + " yet: the moment cannot be shown"}};
+  }
+  if (!world) return Unexpected<StoreError>{world.error()};
+  out->world_ = std::make_unique<WorldAt>(*std::move(world));
+  const auto end = out->edit_at(at);
+  if (!end) return Unexpected<StoreError>{end.error()};
+  out->end_ = *end;
+  const auto base = out->reader_->base_chunks();
+  if (!base) return Unexpected<StoreError>{base.error()};
+  for (const StoredChunk& chunk : *base) {
+    if (chunk.key.lod == 0) out->ground_.add(chunk.key.at, out->world_->version(chunk.key));
+  }
+  for (const ChunkKey& key : out->world_->edited())
+    out->ground_.add(key.at, out->world_->version(key));
+  return out;
+}
+
+StoreResult<void> MapMoment::advance(Sequence at, const EachRecord& each) {
+  const auto end = edit_at(world_->at());
+  if (!end) return Unexpected<StoreError>{end.error()};
+  if (end->version != end_.version) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::bad_request, reader_->file(), "edit_log", "is another one than before"}};
+  }
+  const Sequence from = world_->at();
+  if (auto advanced = world_->advance(at); !advanced) return advanced;
+  std::vector<ChunkCoord> chunks;
+  const auto read = reader_->read_log(from + 1, at, [&](const EditRecord& record) {
+    touched_chunks(record.edit, meta().chunk_edge, chunks);
+    for (const ChunkCoord& chunk : chunks) ground_.add(chunk, record.version);
+    end_ = {record.version, record.time_us};
+    each(record);
+    return true;
+  });
+  if (read && end_.version.seq != at) {
+    return Unexpected<StoreError>{{StoreError::Kind::bad_request, reader_->file(), "edit_log",
+                                   "was compacted while it was read"}};
+  }
+  return read;
+}
+
+StoreResult<LogEnd> MapMoment::edit_at(Sequence seq) {
+  auto end = reader_->log_head();
+  if (!end || end->version.seq == seq) return end;
+  const auto read = reader_->read_log(seq, seq, [&](const EditRecord& record) {
+    end = LogEnd{record.version, record.time_us};
+    return true;
+  });
+  if (!read) return Unexpected<StoreError>{read.error()};
+  return end;
+}
+
+}  // namespace runstone

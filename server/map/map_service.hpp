@@ -1,0 +1,91 @@
+// MapService: draws the map of a world on request, on one thread of low priority. Requests wait in a
+// queue with a bound. Work that takes long is done in turns, so that it holds up nobody: what a turn
+// made is kept in the caches, and the next turn begins there. All caches together have a bound, and
+// nothing is written to the disk.
+// Threads: ask() by any. Replies are called on the service's thread, or by ask().
+#pragma once
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "server/map/map_answer.hpp"
+#include "server/map/map_caches.hpp"
+#include "server/map/map_request.hpp"
+#include "server/map/map_world.hpp"
+
+namespace runstone {
+
+class MapService {
+ public:
+  static constexpr std::size_t kQueueMax = 256;
+  /// The time of a first turn. The n-th one has n times as much.
+  static constexpr TimeUs kTurnUs = 200'000;
+  /// A request that was not answered within this time is answered with "ask again".
+  static constexpr TimeUs kAnswerUsMax = 8'000'000;
+
+  using Reply = std::function<void(MapAnswer)>;
+  /// Reports a fault of the world's folder, for the host alone.
+  using Warn = std::function<void(const std::string&)>;
+
+  /// `folder`: of the world, which need not exist yet. `cache_bytes` bounds all that is kept in
+  /// memory apart from the moments.
+  MapService(std::string folder, std::size_t cache_bytes, Warn warn);
+  /// Ends the turn under way and answers the requests that wait.
+  ~MapService();
+  MapService(const MapService&) = delete;
+  MapService& operator=(const MapService&) = delete;
+
+  /// Queues a request. `if_none_match`: the header of this name; a picture whose ETag is in it is
+  /// answered with 304. If the queue is full, the reply is called at once, with 503.
+  void ask(MapRequest request, std::string if_none_match, Reply reply);
+
+  /// Returns true if strangers could see the world when the last request was answered.
+  bool is_public() const { return is_public_.load(std::memory_order_relaxed); }
+  /// Returns the bytes of the caches.
+  std::size_t cache_bytes() const { return caches_.bytes(); }
+
+ private:
+  struct Job {
+    MapRequest request;
+    std::string if_none_match;
+    Reply reply;
+    TimeUs asked_us = 0;
+    TimeUs turn = 1;
+    std::uint64_t work_us = 0;
+  };
+  void run();
+  /// Returns the answer, or nullopt if the job needs another turn.
+  std::optional<MapAnswer> serve(const Job& job);
+  std::optional<MapAnswer> serve(const TilePictureRequest& request,
+                                 const std::string& if_none_match);
+  std::optional<MapAnswer> serve(const MapStateRequest& request);
+  std::optional<MapAnswer> serve(const BuildersRequest& request);
+  std::optional<MapAnswer> serve(const MapMomentRequest& request);
+  std::optional<MapAnswer> serve_recent_edits();
+  /// Returns the moment after edit `at`, or the present. The error is nullopt if the job needs another
+  /// turn.
+  Result<MapMoment*, std::optional<MapAnswer>> moment_of(const std::optional<Sequence>& at);
+  std::optional<MapAnswer> answer_to(const StoreError& error);
+  bool should_continue() const;
+
+  const Warn warn_;
+  MapCaches caches_;
+  // These belong to the thread.
+  MapWorld world_;
+  std::string warned_;
+  TimeUs turn_ends_us_ = 0;
+
+  std::mutex mutex_;  // a leaf: guards the queue
+  std::condition_variable changed_;
+  std::deque<Job> queue_;
+  std::atomic<bool> is_stopping_{false}, is_public_{false};
+  std::thread thread_;
+};
+
+}  // namespace runstone

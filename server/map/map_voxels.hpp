@@ -1,0 +1,57 @@
+// MapVoxels: the chunks and tiles of a moment. A tile is taken from the first of these that has it:
+//   1. the tiles in memory;
+//   2. the generator's coarse form, if nothing below the tile is stored or was edited;
+//   3. the table of tiles in the world's folder, if it has the version of the moment;
+//   4. its eight children.
+// It writes nothing.
+// Thread: one, as its reader.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+#include "common/mesh/visibility.hpp"
+#include "common/tiles/veiled_tile.hpp"
+#include "server/map/map_caches.hpp"
+#include "server/map/map_moment.hpp"
+
+namespace runstone {
+
+class MapVoxels {
+ public:
+  /// Returns false if the work should stop.
+  using ShouldContinue = std::function<bool()>;
+  using Voxels = std::shared_ptr<const RunChunk>;
+
+  /// The arguments must outlive the object.
+  MapVoxels(const Generator& generator, const VisibilityTable& visibility, WorldReader& reader,
+            MapCaches& caches, ShouldContinue should_continue)
+      : generator_(generator),
+        visibility_(visibility),
+        reader_(reader),
+        caches_(caches),
+        should_continue_(std::move(should_continue)) {}
+
+  /// Returns the voxels of a chunk or tile. A damaged chunk is empty, as in the tiles of the server,
+  /// and counted. Fails (cancelled) if should_continue() returned false; what was made until then is
+  /// kept in the caches. Fails if the folder cannot be read.
+  StoreResult<Voxels> at(const MapMoment& moment, const ChunkKey& key);
+  /// Returns the number of damaged chunks that were met.
+  std::size_t damaged_count() const { return damaged_count_; }
+
+ private:
+  StoreResult<Voxels> chunk(const MapMoment& moment, const ChunkKey& key);
+  StoreResult<Voxels> build(const MapMoment& moment, const ChunkKey& key);
+  StoreResult<Voxels> stored(const ChunkKey& key, const Version& version);
+
+  const Generator& generator_;
+  const VisibilityTable& visibility_;
+  WorldReader& reader_;
+  MapCaches& caches_;
+  const ShouldContinue should_continue_;
+  ReplayScratch replay_;
+  VeiledTileScratch build_;
+  std::size_t damaged_count_ = 0;
+};
+
+}  // namespace runstone

@@ -1,0 +1,188 @@
+#include "server/map/map_world.hpp"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <system_error>
+#include <vector>
+
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/store/store.hpp"
+#include "server/store/world_folder.hpp"
+
+namespace runstone {
+namespace {
+
+// A moment keeps the edits since the keyframe before it. When the present has so many, a newer
+// keyframe is looked for.
+constexpr Sequence kReopenEdits = 65'536;
+// A moment that is kept is moved forward so far at most. Beyond that a keyframe is nearer.
+constexpr Sequence kForwardEditsMax = 8'192;
+
+}  // namespace
+
+StoreResult<MapWorld::FileId> MapWorld::file_id() const {
+  const std::string file = folder_ + "/world.sqlite";
+  struct stat about{};
+  if (::stat(file.c_str(), &about) != 0) {
+    return Unexpected<StoreError>{{StoreError::Kind::io, file, "",
+                                   "cannot be read: " + std::generic_category().message(errno)}};
+  }
+  return FileId{static_cast<std::uint64_t>(about.st_dev), static_cast<std::uint64_t>(about.st_ino)};
+}
+
+StoreResult<void> MapWorld::refresh(TimeUs steady_us, TimeUs utc_us) {
+  if (world_ != nullptr && steady_us - refreshed_us_ < kAgeUsMax) return {};
+  const auto file = file_id();
+  StoreResult<void> done;
+  if (!file) {
+    done = Unexpected<StoreError>{file.error()};
+  } else if (world_ != nullptr && world_->file == *file) {
+    done = follow(utc_us);
+    // The log may have been compacted or replaced. Then the world is opened anew.
+    if (!done) done = open(*file, utc_us);
+  } else {
+    done = open(*file, utc_us);
+  }
+  if (!done) {
+    world_.reset();
+    past_.clear();
+  }
+  refreshed_us_ = steady_us;
+  return done;
+}
+
+StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us) {
+  past_.clear();
+  caches_.clear();
+  world_ = std::make_unique<Opened>();
+  world_->file = file;
+  auto reader = open_world(folder_, StoreAccess::read_only);
+  if (!reader) return Unexpected<StoreError>{reader.error()};
+  world_->reader = *std::move(reader);
+  auto generator = generator_of(*world_->reader);
+  if (!generator) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::not_a_world, world_->reader->file(), "meta", generator.error()}};
+  }
+  world_->generator = *std::move(generator);
+  if (auto read = read_materials(); !read) return read;
+  if (auto read = read_names(); !read) return read;
+  if (auto opened = open_present(); !opened) return opened;
+  auto rights = read_map_rights(*world_->reader, utc_us);
+  if (!rights) return Unexpected<StoreError>{rights.error()};
+  world_->rights = *std::move(rights);
+  world_->changes.begin(world_->present->at());
+  return {};
+}
+
+StoreResult<void> MapWorld::open_present() {
+  const auto last = world_->reader->last_sequence();
+  if (!last) return Unexpected<StoreError>{last.error()};
+  auto present = MapMoment::open(folder_, *world_->generator, *last);
+  if (!present) return Unexpected<StoreError>{present.error()};
+  world_->present = *std::move(present);
+  world_->reopen_at = world_->present->edits_kept() + kReopenEdits;
+  return {};
+}
+
+StoreResult<void> MapWorld::follow(TimeUs utc_us) {
+  Opened& world = *world_;
+  const auto last = world.reader->last_sequence();
+  if (!last) return Unexpected<StoreError>{last.error()};
+  if (*last == world.present->at()) return {};
+  bool has_rights = false, has_materials = false, has_new_author = false;
+  const auto advanced = world.present->advance(*last, [&](const EditRecord& record) {
+    has_rights = has_rights || record.cause == Cause::rights;
+    has_materials = has_materials || record.cause == Cause::materials;
+    has_new_author = has_new_author || !world.names.contains(record.op.author);
+    if (!changes_voxels(record.cause)) return;
+    const std::vector<ChunkCoord> chunks =
+        touched_chunks(record.edit, world.reader->meta().chunk_edge);
+    world.changes.add(record.version.seq, record.op.author, chunks);
+  });
+  if (!advanced) return advanced;
+  if (has_materials) {
+    if (auto read = read_materials(); !read) return read;
+  }
+  if (has_new_author) {
+    if (auto read = read_names(); !read) return read;
+  }
+  if (has_rights) {
+    auto rights = read_map_rights(*world.reader, utc_us);
+    if (!rights) return Unexpected<StoreError>{rights.error()};
+    world.rights = *std::move(rights);
+  }
+  if (world.present->edits_kept() >= world.reopen_at) return open_present();
+  return {};
+}
+
+StoreResult<void> MapWorld::read_materials() {
+  auto table = world_->reader->materials();
+  if (!table) return Unexpected<StoreError>{table.error()};
+  world_->visibility = VisibilityTable(visibilities(*table));
+  world_->map_materials = map_materials(*table);
+  world_->materials = *std::move(table);
+  return {};
+}
+
+StoreResult<void> MapWorld::read_names() {
+  const auto players = world_->reader->players();
+  if (!players) return Unexpected<StoreError>{players.error()};
+  world_->names.clear();
+  for (const PlayerRow& player : *players) world_->names[player.author] = player.name;
+  world_->names[0] = "the server";
+  return {};
+}
+
+StoreResult<MapMoment*> MapWorld::past(Sequence at, const WorldAt::Progress& progress) {
+  for (auto kept = past_.begin(); kept != past_.end(); ++kept) {
+    if (kept->first != at) continue;
+    past_.splice(past_.begin(), past_, kept);
+    return past_.front().second.get();
+  }
+  std::unique_ptr<MapMoment> moment;
+  if (past_.size() >= kMomentsMax) {
+    // The one that was not used for longest is moved forward, if that is cheap: so is playing.
+    const Sequence from = past_.back().first;
+    moment = std::move(past_.back().second);
+    past_.pop_back();
+    const bool is_near = from < at && at - from <= kForwardEditsMax &&
+                         moment->edits_kept() + (at - from) <= kReopenEdits;
+    if (!is_near || !moment->advance(at, [](const EditRecord&) {})) moment = nullptr;
+  }
+  if (moment == nullptr) {
+    auto opened = MapMoment::open(folder_, *world_->generator, at, progress);
+    if (!opened) return Unexpected<StoreError>{opened.error()};
+    moment = *std::move(opened);
+  }
+  past_.emplace_front(at, std::move(moment));
+  return past_.front().second.get();
+}
+
+StoreResult<std::shared_ptr<const std::string>> MapWorld::draw(
+    const MapMoment& moment, const MapPlace& place,
+    const MapVoxels::ShouldContinue& should_continue) {
+  MapVoxels voxels(*world_->generator, world_->visibility, *world_->reader, caches_,
+                   should_continue);
+  return MapDrawer(*world_->generator, world_->map_materials, voxels, caches_).draw(moment, place);
+}
+
+StoreResult<ColumnTop> MapWorld::top(const MapMoment& moment, std::int32_t x, std::int32_t z,
+                                     const MapVoxels::ShouldContinue& should_continue) {
+  MapVoxels voxels(*world_->generator, world_->visibility, *world_->reader, caches_,
+                   should_continue);
+  const std::int32_t edge = moment.meta().chunk_edge;
+  const ColumnKey key{0, floor_div(x, edge), floor_div(z, edge)};
+  const auto tops =
+      MapDrawer(*world_->generator, world_->map_materials, voxels, caches_).tops(moment, key);
+  if (!tops) return Unexpected<StoreError>{tops.error()};
+  return (*tops)->at(x - key.x * edge, z - key.z * edge);
+}
+
+std::string MapWorld::name_of(AuthorId author) const {
+  const auto found = world_->names.find(author);
+  return found == world_->names.end() ? "#" + std::to_string(author) : found->second;
+}
+
+}  // namespace runstone

@@ -1,0 +1,86 @@
+// MapWorld: a world's folder as the map reads it: the present, which follows the log, and the moments
+// of the past that were used last. It only reads, in short transactions, so that a server that runs
+// the world can always move its write-ahead log into the database.
+// Thread: one. Times are arguments. All functions but the const ones block on the disk.
+#pragma once
+#include <cstdint>
+#include <list>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "common/mesh/visibility.hpp"
+#include "server/map/map_drawer.hpp"
+#include "server/map/map_moment.hpp"
+#include "server/map/map_rights.hpp"
+#include "server/map/recent_changes.hpp"
+
+namespace runstone {
+
+class MapWorld {
+ public:
+  /// The log is not looked at again within this time.
+  static constexpr TimeUs kAgeUsMax = 200'000;
+  /// Moments of the past that are kept.
+  static constexpr std::size_t kMomentsMax = 4;
+
+  /// `caches` must outlive the object.
+  MapWorld(std::string folder, MapCaches& caches) : folder_(std::move(folder)), caches_(caches) {}
+
+  /// Opens the folder, or brings the present up to the log. A folder that holds another world than
+  /// before is opened anew. Fails if the world cannot be read; then present() may not be called until a
+  /// later call succeeds. `steady_us` and `utc_us` are the time.
+  StoreResult<void> refresh(TimeUs steady_us, TimeUs utc_us);
+
+  // These functions require that the last refresh() succeeded.
+  MapMoment& present() { return *world_->present; }
+  /// Returns the moment after edit `at`, from the ones that are kept or from the disk. It is valid
+  /// until the next call. Fails as MapMoment::open().
+  StoreResult<MapMoment*> past(Sequence at, const WorldAt::Progress& progress);
+  /// Returns the picture of a tile. Fails as MapDrawer::draw().
+  StoreResult<std::shared_ptr<const std::string>> draw(
+      const MapMoment& moment, const MapPlace& place,
+      const MapVoxels::ShouldContinue& should_continue);
+  /// Returns the highest voxel that shows in a column of voxels; it is not found if there is none.
+  StoreResult<ColumnTop> top(const MapMoment& moment, std::int32_t x, std::int32_t z,
+                             const MapVoxels::ShouldContinue& should_continue);
+  const MapRights& rights() const { return world_->rights; }
+  const RecentChanges& changes() const { return world_->changes; }
+  const MaterialTable& materials() const { return world_->materials; }
+  /// Returns the name of an author, such as "ana", or "#3" if it is not known.
+  std::string name_of(AuthorId author) const;
+
+ private:
+  struct FileId {
+    std::uint64_t device = 0, node = 0;
+    friend bool operator==(const FileId&, const FileId&) = default;
+  };
+  struct Opened {
+    FileId file;
+    std::unique_ptr<WorldReader> reader;  // of chunks and tiles
+    std::unique_ptr<Generator> generator;
+    MaterialTable materials;
+    MapMaterials map_materials;
+    VisibilityTable visibility{{}};
+    MapRights rights;
+    std::map<AuthorId, std::string> names;
+    RecentChanges changes;
+    std::unique_ptr<MapMoment> present;
+    Sequence reopen_at = 0;  // a present that has so many edits is opened anew
+  };
+  StoreResult<FileId> file_id() const;
+  StoreResult<void> open(const FileId& file, TimeUs utc_us);
+  StoreResult<void> follow(TimeUs utc_us);
+  StoreResult<void> open_present();
+  StoreResult<void> read_materials();
+  StoreResult<void> read_names();
+
+  const std::string folder_;
+  MapCaches& caches_;
+  TimeUs refreshed_us_ = 0;
+  std::unique_ptr<Opened> world_;                                    // null: not open
+  std::list<std::pair<Sequence, std::unique_ptr<MapMoment>>> past_;  // used last first
+};
+
+}  // namespace runstone

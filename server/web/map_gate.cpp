@@ -1,0 +1,98 @@
+#include "server/web/map_gate.hpp"
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <iostream>
+#include <optional>
+
+#include "common/os/steady_clock.hpp"
+#include "server/web/http_answer.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::uint64_t kUsPerMs = 1'000;
+// Times the budgets of a second. A first look at a world needs many tiles that nobody drew yet.
+constexpr std::uint64_t kRequestsAtOnce = 10, kWorkAtOnce = 40;
+
+std::unique_ptr<MapService> make_service(const WebConfig& config) {
+  if (config.world.empty()) return nullptr;
+  constexpr std::size_t kMib = std::size_t{1} << 20;
+  return std::make_unique<MapService>(
+      config.world, static_cast<std::size_t>(config.map_memory_mib) * kMib,
+      // For the host alone: the pages do not name paths and errors of this machine.
+      [](const std::string& fault) { std::cerr << "runstone-web: map: " << fault << std::endl; });
+}
+
+Budget budget_of(std::uint64_t per_second, std::uint64_t times_at_once) {
+  return {per_second, per_second * times_at_once};
+}
+
+}  // namespace
+
+/// A request for which a coroutine waits. The timer never expires; it is cancelled by the answer.
+struct MapGate::Waiting {
+  explicit Waiting(boost::asio::io_context& io) : answered(io) {
+    answered.expires_at(boost::asio::steady_timer::time_point::max());
+  }
+  boost::asio::steady_timer answered;
+  std::optional<MapAnswer> answer;
+};
+
+MapGate::MapGate(boost::asio::io_context& io, const WebConfig& config, WebCounters& counters)
+    : io_(io),
+      counters_(counters),
+      requests_(budget_of(config.map_requests_per_second, kRequestsAtOnce)),
+      work_us_(budget_of(config.map_ms_per_second * kUsPerMs, kWorkAtOnce)),
+      service_(make_service(config)) {}
+
+boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string_view target,
+                                                  std::string if_none_match) {
+  const std::size_t question = target.find('?');
+  const auto query =
+      question == std::string_view::npos ? std::string_view() : target.substr(question + 1);
+  auto request = parse_map_request(target.substr(0, question), query);
+  if (!request) {
+    const unsigned status = request.error().is_unknown_path ? 404 : 400;
+    co_return map_words(status, request.error().what);
+  }
+  if (service_ == nullptr)
+    co_return map_words(404, "this gateway shows no map: its host has not turned it on");
+  const auto refuse = [&](const char* words) {
+    ++counters_.map_refused;
+    return map_words(429, words);
+  };
+  if (!work_us_.has(from, 1, steady_now_us()))
+    co_return refuse("the map has drawn much for this address: ask again in a moment");
+  if (waiting_[from] >= kWaitingMax)
+    co_return refuse("many requests of this address wait for the map: ask again in a moment");
+  ++waiting_[from];
+  ++counters_.map_requests;
+  MapAnswer out = co_await wait_for(*std::move(request), std::move(if_none_match));
+  if (--waiting_[from] == 0) waiting_.erase(from);
+  work_us_.charge(from, out.work_us, steady_now_us());
+  counters_.map_work_us += out.work_us;
+  counters_.map_not_modified += out.status == 304 ? 1 : 0;
+  co_return out;
+}
+
+boost::asio::awaitable<MapAnswer> MapGate::wait_for(MapRequest request, std::string if_none_match) {
+  const auto waiting = std::make_shared<Waiting>(io_);
+  auto reply = [&io = io_, waiting](MapAnswer answer) {
+    boost::asio::post(io, [waiting, answer = std::move(answer)]() mutable {
+      waiting->answer = std::move(answer);
+      waiting->answered.cancel();
+    });
+  };
+  service_->ask(std::move(request), std::move(if_none_match), std::move(reply));
+  while (!waiting->answer) {
+    boost::system::error_code woken;
+    co_await waiting->answered.async_wait(
+        boost::asio::redirect_error(boost::asio::use_awaitable, woken));
+  }
+  co_return *std::move(waiting->answer);
+}
+
+}  // namespace runstone

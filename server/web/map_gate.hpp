@@ -1,0 +1,55 @@
+// MapGate: requests of browsers for the map: their limits by address, and the way to the thread that
+// draws.
+// Thread: the gateway's.
+#pragma once
+#include <utility>
+// Boost 1.74 uses std::exchange without its header, so <utility> comes first.
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "common/core/address_block.hpp"
+#include "server/limits/address_ledger.hpp"
+#include "server/map/map_service.hpp"
+#include "server/web/web_config.hpp"
+#include "server/web/web_counters.hpp"
+
+namespace runstone {
+
+class MapGate {
+ public:
+  /// The requests of one address that may wait for the thread that draws.
+  static constexpr std::size_t kWaitingMax = 16;
+
+  /// There is no map if the setting `world` is empty. `io` and `counters` must outlive the object.
+  MapGate(boost::asio::io_context& io, const WebConfig& config, WebCounters& counters);
+
+  bool is_on() const { return service_ != nullptr; }
+  /// Counts a request on a connection. Returns false if the address may not ask now.
+  bool ask(AddressBlock from, TimeUs now_us) { return requests_.take(from, 1, now_us); }
+  /// Returns the answer to a request for a path below kMapDataPath. The address pays for the time of
+  /// the thread that draws.
+  boost::asio::awaitable<MapAnswer> answer(AddressBlock from, std::string_view target,
+                                           std::string if_none_match);
+  /// Returns true if strangers could see the world when the map was asked last, so that places of
+  /// players are no secret.
+  bool is_public() const { return service_ != nullptr && service_->is_public(); }
+  std::size_t cache_bytes() const { return service_ == nullptr ? 0 : service_->cache_bytes(); }
+  /// Ends the thread that draws. Requests that wait are answered; later ones are refused.
+  void stop() { service_.reset(); }
+
+ private:
+  struct Waiting;
+  boost::asio::awaitable<MapAnswer> wait_for(MapRequest request, std::string if_none_match);
+
+  boost::asio::io_context& io_;
+  WebCounters& counters_;
+  AddressLedger requests_, work_us_;
+  std::map<AddressBlock, std::size_t> waiting_;  // no count is 0
+  std::unique_ptr<MapService> service_;          // null: no map
+};
+
+}  // namespace runstone
