@@ -1,11 +1,13 @@
-// HttpAnswer: the answer to an HTTP request that opens no WebSocket. Paths come from a fixed table
-// and nothing is looked up on disk, so no path can lead out of anything.
+// HttpAnswer: the answer to an HTTP request that opens no WebSocket. Paths come from fixed tables and
+// nothing is looked up on disk, so no path can lead out of anything.
 #pragma once
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "server/web/client_files.hpp"
 #include "server/web/server_status.hpp"
 #include "server/web/web_config.hpp"
 #include "server/web/web_counters.hpp"
@@ -15,12 +17,31 @@ namespace runstone {
 /// The path at which browsers open a WebSocket.
 inline constexpr std::string_view kPlayPath = "/play";
 
+/// How long browsers may keep an answer.
+enum class HttpCaching {
+  none,
+  an_hour,
+  while_unchanged,  // they ask each time whether their copy, named by its tag, is still right
+};
+
 struct HttpAnswer {
   unsigned status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::string body;
-  std::string allow;      // the header Allow; empty: none
-  bool is_fixed = false;  // browsers may keep it for an hour
+  std::string allow = {};  // the header Allow; empty: none
+  HttpCaching caching = HttpCaching::none;
+  bool runs_client = false;  // the answer is a file of the client for browsers
+  std::string location = {}, encoding = {}, tag = {};  // headers; empty: none
+  /// The body instead of `body`, shared by all answers that have it; may be null.
+  std::shared_ptr<const std::string> shared = nullptr;
+
+  std::string_view bytes() const { return shared ? std::string_view(*shared) : body; }
+};
+
+/// The headers of a request that matter.
+struct HttpRequest {
+  std::string_view method, target;
+  std::string_view accept_encoding = {}, if_none_match = {};
 };
 
 /// Returns the path of a request target: what stands before the first '?'.
@@ -28,13 +49,15 @@ std::string_view path_of(std::string_view target);
 /// Returns true if the page at this path shows the status of the server.
 bool shows_status(std::string_view target);
 /// Returns the answer to a request. `server` is used only if shows_status().
-HttpAnswer answer_request(std::string_view method, std::string_view target, const WebConfig& config,
-                          const ServerStatus& server, const WebCounters& web);
+HttpAnswer answer_request(const HttpRequest& request, const WebConfig& config,
+                          const ClientFiles& client, const ServerStatus& server,
+                          const WebCounters& web);
 /// Returns an answer that is one sentence.
 HttpAnswer plain_answer(unsigned status, std::string sentence);
 
-/// Returns the headers that each response has for the safety of browsers: pages load nothing from
-/// elsewhere, run no script, are shown in no frame, and share no process with other sites.
-const std::vector<std::pair<std::string, std::string>>& safety_headers();
+/// Returns the headers for the safety of browsers: pages load nothing from elsewhere, run no script,
+/// are shown in no frame, and share no process with other sites. The client for browsers may also run
+/// its own files and connect to this gateway.
+const std::vector<std::pair<std::string, std::string>>& safety_headers(bool runs_client);
 
 }  // namespace runstone

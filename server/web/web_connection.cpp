@@ -8,7 +8,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
-#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/span_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <string_view>
@@ -24,6 +24,21 @@ constexpr std::uint64_t kFinishSeconds = 2;
 constexpr std::size_t kDroppedBytesMax = 64 * 1024;
 // Bytes that may wait in the kernel, so that little terrain is ahead of an edit.
 constexpr int kNotSentBytes = 16 * 1024;
+
+// A browser that reads more slowly is not waited for.
+constexpr std::size_t kSlowestBytesPerSecond = 8 * 1024;
+
+const char* cache_control(HttpCaching caching) {
+  switch (caching) {
+    case HttpCaching::an_hour:
+      return "max-age=3600";
+    case HttpCaching::while_unchanged:
+      return "no-cache";
+    case HttpCaching::none:
+      break;
+  }
+  return "no-store";
+}
 
 std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -130,24 +145,34 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
   static const auto kNoStatus = std::make_shared<const ServerStatus>();
   std::shared_ptr<const ServerStatus> status = kNoStatus;
   if (shows_status(view_of(request.target()))) status = co_await self->state_.status.newest();
-  co_return answer_request(view_of(request.method_string()), view_of(request.target()),
-                           self->state_.config, *status, self->state_.counters);
+  const HttpRequest asked{view_of(request.method_string()), view_of(request.target()),
+                          view_of(request[http::field::accept_encoding]),
+                          view_of(request[http::field::if_none_match])};
+  co_return answer_request(asked, self->state_.config, self->state_.client, *status,
+                           self->state_.counters);
 }
 
 boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection> self,
                                                   const HttpAnswer& answer, const Request& request,
                                                   bool keeps_alive) {
-  http::response<http::string_body> response;
+  const std::string_view bytes = answer.bytes();
+  self->stream_.allow_s(self->state_.config.handshake_s + bytes.size() / kSlowestBytesPerSecond);
+  http::response<http::span_body<const char>> response;
   response.result(answer.status);
   response.version(request.version());
   response.set(http::field::content_type, answer.type);
-  response.set(http::field::cache_control, answer.is_fixed ? "max-age=3600" : "no-store");
+  response.set(http::field::cache_control, cache_control(answer.caching));
+  if (answer.caching == HttpCaching::while_unchanged)
+    response.set(http::field::vary, "Accept-Encoding");
+  if (!answer.tag.empty()) response.set(http::field::etag, answer.tag);
+  if (!answer.encoding.empty()) response.set(http::field::content_encoding, answer.encoding);
+  if (!answer.location.empty()) response.set(http::field::location, answer.location);
   if (!answer.allow.empty()) response.set(http::field::allow, answer.allow);
   if (answer.status == 426) response.set(http::field::upgrade, "websocket");
-  for (const auto& [name, value] : safety_headers()) response.set(name, value);
-  response.content_length(answer.body.size());
+  for (const auto& [name, value] : safety_headers(answer.runs_client)) response.set(name, value);
+  if (answer.status != 304) response.content_length(bytes.size());
   response.keep_alive(keeps_alive);
-  if (request.method() != http::verb::head) response.body() = answer.body;
+  if (request.method() != http::verb::head) response.body() = {bytes.data(), bytes.size()};
   boost::system::error_code error;
   co_await http::async_write(self->stream_, response,
                              boost::asio::redirect_error(boost::asio::use_awaitable, error));

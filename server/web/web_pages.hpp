@@ -14,7 +14,8 @@ namespace runstone {
 std::string html_text(std::string_view text);
 
 /// Returns the page of the world: its name, who is there, and how to join.
-std::string world_page(const WebConfig& config, const ServerStatus& server);
+/// `has_client`: the gateway has the client for browsers.
+std::string world_page(const WebConfig& config, bool has_client, const ServerStatus& server);
 /// Returns the page of the state of server and gateway.
 std::string status_page(const WebConfig& config, const ServerStatus& server,
                         const WebCounters& web);

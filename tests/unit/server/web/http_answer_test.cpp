@@ -18,7 +18,7 @@ ServerStatus running_server() {
 
 HttpAnswer get(const std::string& target, const ServerStatus& server = running_server(),
                const WebConfig& config = {}) {
-  return answer_request("GET", target, config, server, {});
+  return answer_request({"GET", target}, config, {}, server, {});
 }
 
 bool has(const HttpAnswer& answer, const std::string& text) {
@@ -61,8 +61,8 @@ TEST_CASE("the pages load nothing from elsewhere and need no script", "[web]") {
     CHECK(has(answer, "href=\"/style.css\""));
   }
   CHECK(get("/style.css").body.find("url(") == std::string::npos);
-  CHECK(get("/style.css").is_fixed);
-  CHECK_FALSE(get("/").is_fixed);
+  CHECK(get("/style.css").caching == HttpCaching::an_hour);
+  CHECK(get("/").caching == HttpCaching::none);
 }
 
 TEST_CASE("a page says in words that the server is not running", "[web]") {
@@ -88,7 +88,7 @@ TEST_CASE("a long list of players is cut and counted", "[web]") {
 TEST_CASE("the metrics are those of server and gateway", "[web]") {
   WebCounters web;
   web.frames_in = 77;
-  const HttpAnswer answer = answer_request("GET", "/metrics", {}, running_server(), web);
+  const HttpAnswer answer = answer_request({"GET", "/metrics"}, {}, {}, running_server(), web);
   CHECK(answer.type == "text/plain; version=0.0.4; charset=utf-8");
   CHECK(has(answer, "\nrunstone_seq 9120\n"));
   CHECK(has(answer, "\nrunstone_up 1\n"));
@@ -110,9 +110,9 @@ TEST_CASE("paths come from a table, so no path leads out of it", "[web]") {
 }
 
 TEST_CASE("other methods than GET and HEAD are refused with words", "[web]") {
-  const HttpAnswer answer = answer_request("POST", "/", {}, running_server(), {});
+  const HttpAnswer answer = answer_request({"POST", "/"}, {}, {}, running_server(), {});
   CHECK(answer.status == 405);
   CHECK(answer.allow == "GET, HEAD");
-  CHECK(answer_request("HEAD", "/", {}, running_server(), {}).status == 200);
+  CHECK(answer_request({"HEAD", "/"}, {}, {}, running_server(), {}).status == 200);
   CHECK(get("/play").status == 426);
 }
