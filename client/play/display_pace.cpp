@@ -1,4 +1,4 @@
-#include "client/app/display_pace.hpp"
+#include "client/play/display_pace.hpp"
 
 #include <utility>
 

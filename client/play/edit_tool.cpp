@@ -1,6 +1,4 @@
-#include "client/app/edit_tool.hpp"
-
-#include <spdlog/spdlog.h>
+#include "client/play/edit_tool.hpp"
 
 #include <utility>
 #include <variant>
@@ -133,7 +131,7 @@ Result<void, std::string> EditTool::submit(const EditDescriptor& edit, TimeUs du
     ++refused_;
   }
   std::string why = session_.refusal_text(edit, seq.error());
-  spdlog::warn("edit refused: {}", why);
+  if (on_refused_) on_refused_(why);
   return Unexpected<std::string>{std::move(why)};
 }
 

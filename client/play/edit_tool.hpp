@@ -2,12 +2,14 @@
 // and records when each was submitted. One thread.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "client/app/player.hpp"
+#include "client/play/player.hpp"
 #include "client/replica/ray_pick.hpp"
 #include "client/schedule/latency_recorder.hpp"
 #include "client/session/client_session.hpp"
@@ -21,9 +23,17 @@ namespace runstone {
 
 class EditTool {
  public:
-  /// All four must outlive the tool.
-  EditTool(ClientSession& session, const Player& player, LatencyRecorder& recorder, ToolBox& box)
-      : session_(session), player_(player), recorder_(recorder), box_(box) {}
+  /// Gets the reason of each edit that the client did not accept.
+  using OnRefused = std::function<void(const std::string&)>;
+
+  /// The first four must outlive the tool. `on_refused` may be null.
+  EditTool(ClientSession& session, const Player& player, LatencyRecorder& recorder, ToolBox& box,
+           OnRefused on_refused = nullptr)
+      : session_(session),
+        player_(player),
+        recorder_(recorder),
+        box_(box),
+        on_refused_(std::move(on_refused)) {}
 
   const Replica& replica() const { return session_.replica(); }
   ToolBox& box() { return box_; }
@@ -62,8 +72,8 @@ class EditTool {
   /// for the plain voxel tool.
   std::string text() const;
 
-  /// Submits an edit that was due at `due_us`. Fails with the reason, which is also logged, if the
-  /// client does not accept it. If the client had no room for it, the edit counts as infinitely
+  /// Submits an edit that was due at `due_us`. Fails with the reason, which `on_refused` gets as
+  /// well, if the client does not accept it. If the client had no room for it, the edit counts as infinitely
   /// late. Any other refusal, such as that of an edit while the view shows the past, counts in
   /// refused() only.
   Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
@@ -79,6 +89,7 @@ class EditTool {
   const Player& player_;
   LatencyRecorder& recorder_;
   ToolBox& box_;
+  const OnRefused on_refused_;
   std::optional<FixedAim> fixed_aim_;
   ClientSequence action_ = 0;  // the first edit of the action under way; 0: none was accepted yet
   std::uint64_t refused_ = 0;

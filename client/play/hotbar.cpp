@@ -1,4 +1,4 @@
-#include "client/app/hotbar.hpp"
+#include "client/play/hotbar.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "client/ui/hud_state.hpp"
+#include "client/input/action.hpp"
 #include "common/core/ids.hpp"
 #include "common/materials/material_table.hpp"
 

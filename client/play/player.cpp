@@ -1,4 +1,4 @@
-#include "client/app/player.hpp"
+#include "client/play/player.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "client/app/tool_actions.hpp"
+#include "client/play/tool_actions.hpp"
 
 #include <cstddef>
 #include <utility>

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "client/app/edit_tool.hpp"
 #include "client/input/action.hpp"
+#include "client/play/edit_tool.hpp"
 #include "common/core/result.hpp"
 
 namespace runstone {

@@ -1,4 +1,4 @@
-#include "client/app/view_follower.hpp"
+#include "client/play/view_follower.hpp"
 
 #include "client/far/far_reach.hpp"
 

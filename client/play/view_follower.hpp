@@ -3,7 +3,7 @@
 #pragma once
 #include <optional>
 
-#include "client/app/player.hpp"
+#include "client/play/player.hpp"
 #include "client/schedule/memory_budget.hpp"
 #include "client/schedule/view_pace.hpp"
 #include "client/session/client_session.hpp"

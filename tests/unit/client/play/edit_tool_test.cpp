@@ -1,9 +1,9 @@
-#include "client/app/edit_tool.hpp"
+#include "client/play/edit_tool.hpp"
 
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "client/app/tool_actions.hpp"
+#include "client/play/tool_actions.hpp"
 #include "tests/support/authority_model.hpp"
 #include "tests/support/chunks_message.hpp"
 #include "tests/support/test_keys.hpp"

@@ -1,4 +1,4 @@
-#include "client/app/held_button.hpp"
+#include "client/play/held_button.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "client/app/hotbar.hpp"
+#include "client/play/hotbar.hpp"
 
 #include <catch2/catch.hpp>
 #include <set>

@@ -1,4 +1,4 @@
-#include "client/net/receive_ack_scheduler.hpp"
+#include "client/stream/receive_ack_scheduler.hpp"
 
 #include <catch2/catch.hpp>
 
