@@ -33,7 +33,7 @@ endif()
 
 if(EMSCRIPTEN)
   # All browsers with WebGL 2 and SIMD run the same code, so Highway needs no choice at run time.
-  add_compile_options(-msimd128)
+  add_compile_options(-msimd128 -mbulk-memory)
   add_compile_definitions(HWY_COMPILE_ONLY_STATIC)
   # The library of Emscripten 3.1 has no <=> for arrays, so some defaulted operators do not exist
   # there. Its difference_type is narrower than that of 64-bit machines, where indices fit.

@@ -30,13 +30,13 @@ constexpr double kFieldOfView = 69;  // degrees, vertical
 
 /// Returns the share of the memory that tiles and their meshes may take: an eighth, if there are
 /// tiles.
-std::size_t far_bytes_max(const WebOptions& options) {
+std::size_t far_bytes_max(const JoinOptions& options) {
   return options.far_levels == 0 ? 0 : (options.memory_mib << 20) / 8;
 }
 
 }  // namespace
 
-WebClient::WebClient(const WebOptions& options, Screen& screen)
+WebClient::WebClient(const JoinOptions& options, Screen& screen)
     : options_(options),
       screen_(screen),
       started_us_(steady_now_us()),

@@ -24,8 +24,8 @@
 #include "client/report/report.hpp"
 #include "client/schedule/memory_budget.hpp"
 #include "client/tools/tool_box.hpp"
+#include "client/web/join_options.hpp"
 #include "client/web/web_hud.hpp"
-#include "client/web/web_options.hpp"
 #include "client/web/web_session.hpp"
 
 namespace runstone {
@@ -33,7 +33,7 @@ namespace runstone {
 class WebClient {
  public:
   /// `screen` must outlive the client.
-  WebClient(const WebOptions& options, Screen& screen);
+  WebClient(const JoinOptions& options, Screen& screen);
 
   /// Handles what has arrived, and draws a frame if one is due. `draws`: the page is visible.
   void turn(TimeUs now_us, bool draws);
@@ -79,7 +79,7 @@ class WebClient {
   void show_state(TimeUs now_us);
   void keep_server_key();
 
-  const WebOptions options_;
+  const JoinOptions options_;
   Screen& screen_;
   const TimeUs started_us_;
   WebSession network_;

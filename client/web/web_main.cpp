@@ -94,7 +94,7 @@ EMSCRIPTEN_KEEPALIVE void web_prepare() {
 EMSCRIPTEN_KEEPALIVE int web_join(const char* url, const char* name, const char* ticket,
                                   const char* seed, int is_key_kept, const char* pins,
                                   int view_radius, int far_levels, int quality) {
-  WebOptions options;
+  JoinOptions options;
   if (!read_hex(seed, options.seed)) return 0;
   options.url = url;
   options.name = name;

@@ -10,7 +10,7 @@
 namespace runstone {
 namespace {
 
-SessionConfig config_of(const WebOptions& options) {
+SessionConfig config_of(const JoinOptions& options) {
   SessionConfig config;
   config.keys = key_pair_of(options.seed);
   config.name = options.name;
@@ -34,7 +34,7 @@ std::string host_of(const std::string& url) {
 
 }  // namespace
 
-WebSession::WebSession(const WebOptions& options)
+WebSession::WebSession(const JoinOptions& options)
     : host_(host_of(options.url)), session_(config_of(options)), link_(options.url, *this) {}
 
 void WebSession::step(TimeUs now_us, TimeUs until_us) {

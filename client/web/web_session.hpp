@@ -6,14 +6,14 @@
 #include "client/report/report.hpp"
 #include "client/session/client_session.hpp"
 #include "client/session/failure_words.hpp"
+#include "client/web/join_options.hpp"
 #include "client/web/web_link.hpp"
-#include "client/web/web_options.hpp"
 
 namespace runstone {
 
 class WebSession final : private LinkCallbacks {
  public:
-  explicit WebSession(const WebOptions& options);
+  explicit WebSession(const JoinOptions& options);
 
   ClientSession& session() { return session_; }
   const ClientSession& session() const { return session_; }

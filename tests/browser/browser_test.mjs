@@ -7,7 +7,7 @@ import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
-import { differenceOf } from "./pictures.mjs";
+import { differenceOf, sideBySide } from "./pictures.mjs";
 import { Player, until } from "./player.mjs";
 import { World } from "./world.mjs";
 
@@ -296,6 +296,8 @@ test("the picture is that of the desktop client", async () => {
     writeFileSync(join(out, "picture-browser.png"), inBrowser);
     const onDesktop = hills.picture(eye, 0.4, -0.35, { width, height, view: 4, farLevels: 3 });
     writeFileSync(join(out, "picture-desktop.png"), onDesktop);
+    writeFileSync(join(out, "browser-and-desktop.png"), Buffer.from(
+      await sideBySide(player.page, inBrowser.toString("base64"), onDesktop.toString("base64")), "base64"));
     const { share, mean } = await differenceOf(player.page, inBrowser.toString("base64"),
       onDesktop.toString("base64"), 24);
     measured.picture = { share, mean };

@@ -1,5 +1,19 @@
 // Pictures, compared in a page: the browser decodes them.
 
+// Returns a PNG file in base64 with two pictures of the same size beside each other.
+export function sideBySide(page, one, other) {
+  return page.evaluate(async (...pictures) => {
+    const images = await Promise.all(pictures.map(async (png) =>
+      createImageBitmap(new Blob([Uint8Array.from(atob(png), (c) => c.charCodeAt(0))], { type: "image/png" }))));
+    const canvas = new OffscreenCanvas(2 * images[0].width + 4, images[0].height);
+    images.forEach((image, i) => canvas.getContext("2d").drawImage(image, i * (image.width + 4), 0));
+    const bytes = new Uint8Array(await (await canvas.convertToBlob({ type: "image/png" })).arrayBuffer());
+    let text = "";
+    for (const byte of bytes) text += String.fromCharCode(byte);
+    return btoa(text);
+  }, one, other);
+}
+
 // Returns the share of the pixels that differ by more than `tolerance` in a channel, and the mean
 // difference of a channel. The arguments are PNG files in base64 of the same size.
 export function differenceOf(page, one, other, tolerance) {

@@ -232,6 +232,8 @@ function listen() {
   window.addEventListener("blur", () => runstone?._web_focus_lost());
   window.addEventListener("resize", resize);
   window.addEventListener("pagehide", () => runstone?._web_leave());
+  // A page that comes back from the browser's history has said goodbye.
+  window.addEventListener("pageshow", (event) => event.persisted && location.reload());
   $("say").addEventListener("keydown", (event) => {
     if (event.key !== "Enter" && event.key !== "Escape") return;
     if (event.key === "Enter") runstone.ccall("web_say", null, ["string"], [$("say").value]);

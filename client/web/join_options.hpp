@@ -1,4 +1,4 @@
-// WebOptions: what the page gives to the browser client when the player joins.
+// JoinOptions: what the page gives to the browser client when the player joins.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace runstone {
 
-struct WebOptions {
+struct JoinOptions {
   std::string url;                                  // of the WebSocket: ws:// or wss://
   std::string name;                                 // shown to others
   std::string ticket;                               // an invite; empty: none
