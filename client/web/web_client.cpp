@@ -273,7 +273,7 @@ void WebClient::show_state(TimeUs now_us) {
   if (!network_.is_connected()) {
     state = "the server is gone: connecting again";
     const std::size_t waiting = session_.replica().local_edits().all().size();
-    if (waiting != 0) state += "; " + std::to_string(waiting) + " edits wait for it";
+    if (waiting != 0) state += "; edits that wait for it: " + std::to_string(waiting);
     if (!words.headline.empty()) state += " (" + words.headline + ": " + words.detail + ")";
   } else if (player_.is_waiting_for_ground()) {
     state = "the ground here has not arrived yet";
