@@ -11,7 +11,7 @@ if(PROJECT_IS_TOP_LEVEL)
     set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
   endif()
   find_program(MOLD_PROGRAM mold)
-  if(MOLD_PROGRAM)
+  if(MOLD_PROGRAM AND NOT EMSCRIPTEN)
     add_link_options(-fuse-ld=mold)
   endif()
   add_compile_options(
@@ -29,6 +29,15 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # In a unity build g++ takes a .cpp for a header, where a member's type may not be of an unnamed
   # namespace. The preset debug compiles each file alone and keeps this warning.
   add_compile_options($<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wno-subobject-linkage>)
+endif()
+
+if(EMSCRIPTEN)
+  # All browsers with WebGL 2 and SIMD run the same code, so Highway needs no choice at run time.
+  add_compile_options(-msimd128 -mbulk-memory)
+  add_compile_definitions(HWY_COMPILE_ONLY_STATIC)
+  # The library of Emscripten 3.1 has no <=> for arrays, so some defaulted operators do not exist
+  # there. Its difference_type is narrower than that of 64-bit machines, where indices fit.
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-defaulted-function-deleted> $<$<COMPILE_LANGUAGE:CXX>:-Wno-sign-conversion>)
 endif()
 
 if(RUNSTONE_SANITIZE)

@@ -1,4 +1,9 @@
 # Every dependency is a Debian 12 package; scripts/packages lists them by name.
+if(EMSCRIPTEN)
+  enable_language(C)
+  include(cmake/web_packages.cmake)
+  return()
+endif()
 find_package(hwy REQUIRED CONFIG)
 if(RUNSTONE_LIBRARY_ONLY)
   return()

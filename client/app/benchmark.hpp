@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "client/app/flight_path.hpp"
-#include "client/app/player.hpp"
-#include "client/app/view_follower.hpp"
 #include "client/display/mesh_pipeline.hpp"
+#include "client/play/player.hpp"
+#include "client/play/view_follower.hpp"
 
 namespace runstone {
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdio>
 #include <exception>
+#include <span>
 #include <utility>
 
 #include "client/app/connection_words.hpp"
@@ -87,7 +88,8 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
       menu_(menu),
       pipeline_(session_.replica(), display.draw_thread.get(), window_ != nullptr, options_.workers,
                 [this] { wake_.notify(); }),
-      tool_(session_, player_, pipeline_.recorder(), display.tools),
+      tool_(session_, player_, pipeline_.recorder(), display.tools,
+            [](const std::string& why) { spdlog::warn("edit refused: {}", why); }),
       previews_(session_, tool_),
       input_(router_of(options_.settings)),
       far_budget_(far_bytes_max(options_), options_.far_levels),
@@ -102,7 +104,7 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
                options_.screenshot_dir),
       controls_(session_, player_, tool_, pipeline_, hud_, chat_, actions_,
                 driver_of(options_, script)),
-      scene_(session_, player_, tool_, previews_, view_, panels_),
+      scene_(session_, player_, tool_, view_),
       notices_(session_, hud_) {
   controls_.show_ground(options_.show_protected);
   hud_.set_shown(window_ != nullptr);
@@ -146,6 +148,8 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     handle_input(now_us);
     step_menu(now_us);
     pipeline_.take_drawn();
+    for (const std::string& file : pipeline_.take_unwritten())
+      spdlog::warn("screenshot={} cannot be written", file);
     log_players(now_us);
     chat_.step();
     if (hud_.take_chat()) pipeline_.moved();
@@ -383,7 +387,10 @@ void Client::draw(TimeUs now_us) {
   order.width = size[0];
   order.height = size[1];
   use_quality();
-  order.contents = scene_.contents(!options_.headless, controls_.shows_ground());
+  order.contents = scene_.contents(panels_.poses(), !options_.headless, controls_.shows_ground());
+  const std::span<const GhostChunk> rollback = panels_.rollback().ghosts();
+  order.contents.ghosts.insert(order.contents.ghosts.end(), rollback.begin(), rollback.end());
+  previews_.append_ghosts(order.contents.ghosts);
   const bool has_menu = menu_ != nullptr && menu_->is_open();
   order.overlay = has_menu ? menu_->make_frame(connecting_state(network_, opened_us_.has_value(),
                                                                 options_.tls.has_value(), now_us),

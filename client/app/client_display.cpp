@@ -15,12 +15,12 @@ std::unique_ptr<Window> make_window(const ClientOptions& options) {
 std::unique_ptr<DrawThread> make_draw_thread(const ClientOptions& options, Window* window,
                                              WakeUp& wake) {
   if (!options.render) return nullptr;
-  const auto make_screen = [window] {
-    return window == nullptr ? make_headless_screen() : make_window_screen(*window);
+  const auto make = [window] {
+    return make_screen(window == nullptr ? make_headless_context() : make_window_context(*window));
   };
   // Off screen, frames must not delay the threads whose latency is measured.
   const auto priority = window == nullptr ? DrawPriority::background : DrawPriority::normal;
-  return std::make_unique<DrawThread>(make_screen, priority, [&wake] { wake.notify(); });
+  return std::make_unique<DrawThread>(make, priority, [&wake] { wake.notify(); });
 }
 
 }  // namespace

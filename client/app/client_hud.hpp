@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
-#include "client/app/edit_tool.hpp"
-#include "client/app/hotbar.hpp"
-#include "client/app/player.hpp"
 #include "client/app/terminal_chat.hpp"
 #include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
+#include "client/play/edit_tool.hpp"
+#include "client/play/hotbar.hpp"
+#include "client/play/player.hpp"
 #include "client/report/report.hpp"
 #include "client/session/client_session.hpp"
 #include "client/ui/hud.hpp"

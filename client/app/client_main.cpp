@@ -113,8 +113,9 @@ int main(int argc, char** argv) {
   auto parsed = runstone::parse_options(argc, argv);
   if (!parsed.options) return parsed.exit_code;
   if (parsed.options->draw) {
-    return runstone::draw_program(STDIN_FILENO, STDOUT_FILENO, parsed.options->workers,
-                                  runstone::make_headless_screen);
+    return runstone::draw_program(STDIN_FILENO, STDOUT_FILENO, parsed.options->workers, [] {
+      return runstone::make_screen(runstone::make_headless_context());
+    });
   }
   // Standard output is reserved for the table, so log lines go to standard error.
   spdlog::set_default_logger(spdlog::stderr_logger_mt("client"));

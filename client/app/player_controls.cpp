@@ -6,17 +6,13 @@
 #include <algorithm>
 #include <string>
 
-#include "client/app/tool_actions.hpp"
-#include "client/body/shown_space.hpp"
+#include "client/play/tool_actions.hpp"
 
 namespace runstone {
 namespace {
 
 /// The log is divided into this many steps of `[` and `]`.
 constexpr Sequence kScrubSteps = 100;
-/// A stick of a gamepad that is wholly to the side turns as the mouse does by so many units a
-/// second.
-constexpr double kStickLook = 1'000;
 
 }  // namespace
 
@@ -30,10 +26,12 @@ PlayerControls::PlayerControls(ClientSession& session, Player& player, EditTool&
       hud_(hud),
       chat_(chat),
       actions_(actions),
-      driver_(driver) {}
+      driver_(driver),
+      motion_(session.replica(), player),
+      clicks_(tool) {}
 
 void PlayerControls::set_materials(const MaterialTable& materials) {
-  body_materials_ = body_materials(materials);
+  motion_.set_materials(materials);
 }
 
 void PlayerControls::take(const WindowInput& input, double seconds, const ClientSettings& settings,
@@ -57,34 +55,14 @@ void PlayerControls::take(const WindowInput& input, double seconds, const Client
 
 void PlayerControls::move(const WindowInput& input, double seconds,
                           const ClientSettings& settings) {
-  WindowInput turned = input;
-  turned.look_dx += input.turn_x * kStickLook * seconds;
-  turned.look_dy += input.turn_y * kStickLook * seconds;
-  turned.look_dx *= settings.sensitivity;
-  turned.look_dy *= settings.sensitivity * (settings.invert_y ? -1 : 1);
-  player_.turn(turned);
-  if (!player_.is_walking()) return player_.fly(input, seconds);
-  const Replica& replica = session_.replica();
-  if (!replica.opened()) return;
-  player_.walk(input, seconds, ShownSpace(replica), body_materials_);
+  motion_.step(input, seconds, {settings.sensitivity, settings.invert_y});
   if (player_.take_fallen_out())
     hud_.notify("you fell out of the world: you are at its spawn, and fly", NoticeKind::warning);
 }
 
 void PlayerControls::edit(const WindowInput& input, TimeUs now_us) {
-  const auto note = [&](const Result<void, std::string>& done) {
-    if (!done) hud_.notify(done.error(), NoticeKind::warning);
-  };
-  const bool repeats = tool_.repeats();
-  int acts = remove_button_.acts(input.remove_clicks, input.remove_held && repeats, now_us);
-  while (acts-- > 0) note(tool_.press(ToolButton::clear, now_us));
-  acts = place_button_.acts(input.place_clicks, input.place_held && repeats, now_us);
-  while (acts-- > 0) note(tool_.press(ToolButton::place, now_us));
-  if (input.remove_held || input.place_held) {
-    tool_.drag();
-  } else if (driver_ != Driver::script || input.remove_clicks + input.place_clicks != 0) {
-    note(tool_.release(now_us));
-  }
+  for (const std::string& why : clicks_.step(input, driver_ != Driver::script, now_us))
+    hud_.notify(why, NoticeKind::warning);
   if (input.pick_clicks == 0) return;
   if (const auto hit = tool_.pick()) hud_.hold(hit->material);
 }

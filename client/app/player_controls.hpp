@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "client/app/client_hud.hpp"
-#include "client/app/edit_tool.hpp"
-#include "client/app/held_button.hpp"
-#include "client/app/player.hpp"
 #include "client/app/script_actions.hpp"
 #include "client/app/terminal_chat.hpp"
-#include "client/body/body_materials.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/input/window_input.hpp"
+#include "client/play/click_edits.hpp"
+#include "client/play/edit_tool.hpp"
+#include "client/play/player.hpp"
+#include "client/play/player_motion.hpp"
 #include "client/session/client_session.hpp"
 #include "client/settings/client_settings.hpp"
 
@@ -60,8 +60,8 @@ class PlayerControls {
   TerminalChat& chat_;
   ScriptActions& actions_;
   const Driver driver_;
-  BodyMaterials body_materials_;
-  HeldButton remove_button_, place_button_;
+  PlayerMotion motion_;
+  ClickEdits clicks_;
   bool shows_players_ = false, shows_ground_ = false, is_released_ = false;
 };
 

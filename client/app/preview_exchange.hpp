@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "client/app/edit_tool.hpp"
 #include "client/app/others_previews.hpp"
+#include "client/play/edit_tool.hpp"
 #include "client/session/client_session.hpp"
 #include "client/settings/client_settings.hpp"
 

@@ -6,13 +6,13 @@
 #include <string_view>
 
 #include "client/app/client_hud.hpp"
-#include "client/app/edit_tool.hpp"
-#include "client/app/player.hpp"
 #include "client/app/terminal_chat.hpp"
-#include "client/app/view_follower.hpp"
 #include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/input/input_router.hpp"
+#include "client/play/edit_tool.hpp"
+#include "client/play/player.hpp"
+#include "client/play/view_follower.hpp"
 #include "client/replica/copy_box.hpp"
 #include "client/report/report.hpp"
 #include "client/script/script_host.hpp"

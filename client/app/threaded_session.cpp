@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "client/net/key_file.hpp"
+#include "client/report/link_counts.hpp"
 #include "client/settings/recent_servers.hpp"
 #include "common/core/hex.hpp"
 #include "common/os/passphrase.hpp"
@@ -118,24 +119,11 @@ void ThreadedSession::on_connected(const LinkConnected& event) {
 
 void ThreadedSession::on_received(LinkReceived& event) {
   if (event.connection != connection_) return;
-  if (const auto* chunks = std::get_if<Chunks>(&event.message)) count_snapshots(*chunks, event);
+  if (const auto* chunks = std::get_if<Chunks>(&event.message))
+    count_snapshots(snapshots_, *chunks, event);
   session_.receive(std::move(event.message),
                    {event.received_us, event.unpacked_us, steady_now_us()});
   if (session_.connect_count() != connects_handled_) on_world_opened();
-}
-
-void ThreadedSession::count_snapshots(const Chunks& chunks, const LinkReceived& event) {
-  const auto entries = static_cast<std::int64_t>(chunks.chunks.size());
-  const std::uint64_t count_before = snapshots_.count;
-  for (const ChunkAnswer& answer : chunks.chunks) {
-    const auto* snapshot = std::get_if<ChunkSnapshot>(&answer);
-    if (snapshot == nullptr) continue;
-    ++snapshots_.count;
-    snapshots_.raw_bytes += raw_bytes(snapshot->chunk.voxels);
-    snapshots_.runs.add(static_cast<std::int64_t>(snapshot->chunk.voxels.runs.size()));
-    snapshots_.unpack_ns.add(event.unpack_ns / entries);
-  }
-  if (snapshots_.count != count_before) snapshots_.wire_bytes += event.bytes;
 }
 
 void ThreadedSession::on_disconnected(const LinkDisconnected& event) {
@@ -260,19 +248,7 @@ std::optional<std::string> ThreadedSession::timeout(TimeUs now_us) const {
   return fmt::format("no server at {}: {}", to_string(options_.server), last_failure_);
 }
 
-NetCounts ThreadedSession::net_counts() const {
-  NetCounts out;
-  const LinkStats& net = net_->stats();
-  out.bytes_received = net.bytes_received;
-  out.bytes_sent = net.bytes_sent;
-  const Traffic received = net.received.read();
-  out.control_bytes = of_class(received, FrameClass::control).bytes;
-  out.edit_bytes = of_class(received, FrameClass::edits).bytes;
-  out.chunk_bytes = of_class(received, FrameClass::chunks).bytes;
-  for (const KindTraffic& kind : received) out.messages_received += kind.messages;
-  out.connections = net.connections;
-  return out;
-}
+NetCounts ThreadedSession::net_counts() const { return runstone::net_counts(net_->stats()); }
 
 void ThreadedSession::add_to(ClientReport& report) const {
   report.snapshots = snapshots_;

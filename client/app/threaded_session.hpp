@@ -74,7 +74,6 @@ class ThreadedSession {
  private:
   void on_connected(const LinkConnected& event);
   void on_received(LinkReceived& event);
-  void count_snapshots(const Chunks& chunks, const LinkReceived& event);
   void on_disconnected(const LinkDisconnected& event);
   void on_world_opened();
   /// Puts the server into the list of servers that were joined, if the options name one.

@@ -5,10 +5,10 @@
 #include <map>
 #include <span>
 
-#include "client/app/player.hpp"
 #include "client/app/rollback_control.hpp"
 #include "client/display/smooth_players.hpp"
 #include "client/map/world_map.hpp"
+#include "client/play/player.hpp"
 #include "client/tools/tool_box.hpp"
 #include "client/ui/hud_state.hpp"
 

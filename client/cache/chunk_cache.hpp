@@ -23,21 +23,13 @@
 #include <string>
 #include <vector>
 
+#include "client/cache/cache_counters.hpp"
 #include "client/cache/cache_database.hpp"
 #include "client/replica/cache_lookup.hpp"
 #include "common/core/result.hpp"
 #include "common/os/file_lock.hpp"
 
 namespace runstone {
-
-struct CacheCounters {
-  std::uint64_t hits = 0, misses = 0;
-  std::uint64_t corrupt = 0;     // rows that failed a check
-  std::uint64_t kept = 0;        // chunks written
-  std::uint64_t evicted = 0;     // chunks dropped for the size bound
-  std::uint64_t not_common = 0;  // chunks dropped because they are outside the common history
-  std::uint64_t databases_set_aside = 0;
-};
 
 /// Returns $XDG_CACHE_HOME/runstone, otherwise $HOME/.cache/runstone, or an empty text if neither
 /// variable is an absolute path.

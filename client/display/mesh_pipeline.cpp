@@ -1,7 +1,5 @@
 #include "client/display/mesh_pipeline.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -16,22 +14,22 @@ namespace runstone {
 namespace {
 
 bool begins_with(std::span<const MaterialInfo> rows, std::span<const MaterialInfo> first) {
-  return rows.size() >= first.size() && std::ranges::equal(rows.first(first.size()), first);
+  return rows.size() >= first.size() && std::equal(first.begin(), first.end(), rows.begin());
 }
 
 }  // namespace
 
-MeshPipeline::MeshPipeline(const Replica& replica, DrawThread* draw_thread, bool watched,
+MeshPipeline::MeshPipeline(const Replica& replica, DrawQueue* draw_queue, bool watched,
                            unsigned workers, std::function<void()> wake)
     : watched_(watched),
       workers_(workers),
       wake_(std::move(wake)),
-      recorder_(draw_thread != nullptr ? LatencyStage::presented : LatencyStage::meshed),
+      recorder_(draw_queue != nullptr ? LatencyStage::presented : LatencyStage::meshed),
       replica_(replica),
       planner_(replica),
       far_planner_(replica.far_tiles()),
       look_(!watched),
-      draw_thread_(draw_thread) {}
+      draw_queue_(draw_queue) {}
 
 void MeshPipeline::set_materials(const MaterialTable& materials) {
   if (pool_ && materials_ == materials) return;
@@ -39,7 +37,7 @@ void MeshPipeline::set_materials(const MaterialTable& materials) {
   const bool has_grown = pool_ && begins_with(materials.rows(), materials_.rows());
   materials_ = materials;
   changed_ = true;
-  if (draw_thread_) draw_thread_->set_materials(materials_);
+  if (draw_queue_) draw_queue_->set_materials(materials_);
   if (has_grown) {
     pool_->set_visibility(VisibilityTable(visibilities(materials_)));
     far_planner_.mesh_again();
@@ -60,8 +58,8 @@ void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock,
   far_planner_.take(changes.tiles);
   for (const ChunkChange& chunk : changes.chunks) {
     far_planner_.set_chunk(chunk.key.at, !chunk.removed);
-    if (!chunk.removed || !draw_thread_) continue;
-    draw_thread_->remove(chunk.key);
+    if (!chunk.removed || !draw_queue_) continue;
+    draw_queue_->remove(chunk.key);
     tracker_.removed(chunk.key);
     gpu_bytes_.erase(chunk.key);
     changed_ = true;
@@ -69,9 +67,9 @@ void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock,
 }
 
 void MeshPipeline::take_drawn() {
-  if (!draw_thread_) return;
+  if (!draw_queue_) return;
   // The draw thread reports in order: a frame presents the uploads before it and none after it.
-  for (const DrawDone& done : draw_thread_->take_done()) {
+  for (const DrawDone& done : draw_queue_->take_done()) {
     if (const auto* upload = std::get_if<UploadDone>(&done)) {
       tracker_.uploaded(upload->key, upload->number);
       if (upload->key.lod > 0) continue;
@@ -88,14 +86,13 @@ void MeshPipeline::take_frame(const FrameDone& frame) {
   frames_.upload_us.add(frame.upload_us);
   last_frame_us_ = frame.presented_us - frame.started_us;
   frames_.draw_us.add(last_frame_us_);
-  look_.frame_took(last_frame_us_);
+  if (measures_frames_) look_.frame_took(last_frame_us_);
   recent_frames_.push_back(frame);
   if (recent_frames_.size() > kRecentFramesMax) recent_frames_.pop_front();
   if (frame_.screenshots) screenshots_written_ = frame.unwritten.empty();
   frame_ = {};
   if (!watched_ && !is_unpaced_) next_frame_us_ = frame.presented_us + kFrameOffScreenUs;
-  for (const std::string& file : frame.unwritten)
-    spdlog::warn("screenshot={} cannot be written", file);
+  unwritten_.insert(unwritten_.end(), frame.unwritten.begin(), frame.unwritten.end());
 }
 
 void MeshPipeline::mesh() {
@@ -118,7 +115,7 @@ void MeshPipeline::take_result(MeshResult result) {
     return;
   recorder_.meshed(result.key, result.serial, result.meshed_us);
   join_.done(result.key, result.meshed_us);
-  if (!draw_thread_) return;
+  if (!draw_queue_) return;
   const bool has_walls = result.open_sides != 0 && !result.mesh->transparent.quads.empty();
   if (has_walls && replica_.far_tiles().solid_count() != 0) {
     ChunkMesh mesh = *result.mesh;
@@ -128,8 +125,8 @@ void MeshPipeline::take_result(MeshResult result) {
   gpu_bytes_.set(result.key, runstone::gpu_bytes(*result.mesh, result.chunk.get()));
   inspection_.meshed(result, result.meshed_us);
   tracker_.queued(result.key, result.number, result.urgency);
-  draw_thread_->upload(result.key, {result.number, result.serial, result.edge, result.urgency,
-                                    std::move(result.mesh), std::move(result.chunk), nullptr});
+  draw_queue_->upload(result.key, {result.number, result.serial, result.edge, result.urgency,
+                                   std::move(result.mesh), std::move(result.chunk), nullptr});
 }
 
 void MeshPipeline::mesh_layers() {
@@ -144,7 +141,7 @@ void MeshPipeline::push_jobs() {
   while (pool_->in_flight() < pool_->capacity() && has_room_for_jobs()) {
     auto job = planner_.next();
     if (!job) return;
-    open_job_bytes_.set(job->number, (draw_thread_ ? 2 : 1) * mesh_bytes_about(*job));
+    open_job_bytes_.set(job->number, (draw_queue_ ? 2 : 1) * mesh_bytes_about(*job));
     pool_->push(std::move(*job));
   }
 }
@@ -152,8 +149,8 @@ void MeshPipeline::push_jobs() {
 void MeshPipeline::push_tiles() {
   for (FarMeshResult& result : pool_->take_tiles()) take_tile(std::move(result));
   for (const ChunkKey& key : far_planner_.take_removals()) {
-    if (!draw_thread_) continue;
-    draw_thread_->remove(key);
+    if (!draw_queue_) continue;
+    draw_queue_->remove(key);
     tracker_.removed(key);
     far_gpu_bytes_.erase(key);
     changed_ = true;
@@ -170,14 +167,14 @@ void MeshPipeline::push_tiles() {
 }
 
 void MeshPipeline::take_tile(FarMeshResult result) {
-  if (!far_planner_.finish(result.key, result.number) || !draw_thread_) return;
+  if (!far_planner_.finish(result.key, result.number) || !draw_queue_) return;
   far_gpu_bytes_.set(result.key, runstone::gpu_bytes(*result.mesh));
   tracker_.queued(result.key, result.number, Urgency::terrain);
   ChunkUpload upload;
   upload.number = result.number;
   upload.edge = result.edge;
   upload.tile = std::move(result.mesh);
-  draw_thread_->upload(result.key, std::move(upload));
+  draw_queue_->upload(result.key, std::move(upload));
 }
 
 bool MeshPipeline::has_room_for_jobs() const {
@@ -190,7 +187,7 @@ bool MeshPipeline::is_screenshot_due(TimeUs now_us) const {
 }
 
 bool MeshPipeline::is_frame_due(TimeUs now_us) const {
-  if (!draw_thread_ || frame_.in_progress) return false;
+  if (!draw_queue_ || frame_.in_progress) return false;
   // Off screen, frames serve edits and screenshots. More frames would only slow down loading.
   const bool is_changing =
       changed_ || !tracker_.empty() || (watched_ && inspection_.is_fading(now_us));
@@ -212,7 +209,7 @@ void MeshPipeline::draw(TimeUs now_us, FrameOrder order) {
     order.contents.inspection =
         inspection_.inspection(replica_, eye, order.contents.look.exact, now_us);
   }
-  draw_thread_->draw(std::move(order));
+  draw_queue_->draw(std::move(order));
   frame_ = {true, screenshot_due};
   changed_ = false;
   if (watched_) next_frame_us_ = now_us + frame_interval_us_;

@@ -9,9 +9,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "client/display/draw_thread.hpp"
+#include "client/display/draw_queue.hpp"
 #include "client/display/inspection_control.hpp"
 #include "client/display/look_control.hpp"
 #include "client/display/upload_tracker.hpp"
@@ -29,14 +30,14 @@ namespace runstone {
 
 class MeshPipeline {
  public:
-  /// `replica` and `draw_thread` must outlive the pipeline. Requires that `draw_thread` shows
-  /// nothing of another world (DrawThread::clear()). It may be null; then the last stage of an edit
+  /// `replica` and `draw_queue` must outlive the pipeline. Requires that `draw_queue` shows
+  /// nothing of another world (DrawQueue::clear()). It may be null; then the last stage of an edit
   /// is `meshed`. `watched` is true if frames go to a window. `wake` is called from mesh threads.
-  MeshPipeline(const Replica& replica, DrawThread* draw_thread, bool watched, unsigned workers,
+  MeshPipeline(const Replica& replica, DrawQueue* draw_queue, bool watched, unsigned workers,
                std::function<void()> wake);
 
-  bool draws() const { return draw_thread_ != nullptr; }
-  std::string renderer_name() const { return draw_thread_ ? draw_thread_->screen_name() : "none"; }
+  bool draws() const { return draw_queue_ != nullptr; }
+  std::string renderer_name() const { return draw_queue_ ? draw_queue_->screen_name() : "none"; }
 
   /// Sets the world's materials. If they only have more rows than before, the chunks that have one
   /// of these already are meshed again. If they differ otherwise, all chunks are.
@@ -79,6 +80,9 @@ class MeshPipeline {
   void set_unpaced(bool unpaced) { is_unpaced_ = unpaced; }
   /// Returns the time that drawing the last presented frame took.
   TimeUs last_frame_us() const { return last_frame_us_; }
+  /// With false, the automatic quality does not follow the time that drawing took. That is for
+  /// screens that do not wait for the GPU, whose owner calls look().frame_took().
+  void set_measures_frames(bool measures) { measures_frames_ = measures; }
   /// Sets the least time between two frames of a window that show no new edit.
   void set_frame_interval(TimeUs interval_us) { frame_interval_us_ = interval_us; }
   /// Call it when the camera or a marker moved.
@@ -103,6 +107,8 @@ class MeshPipeline {
   bool screenshots_done() const { return screenshots_.empty() && !frame_.screenshots; }
   /// Returns true if the newest completed screenshots could be written.
   bool screenshots_written() const { return screenshots_written_; }
+  /// Returns the screenshots since the last call that could not be written.
+  std::vector<std::string> take_unwritten() { return std::exchange(unwritten_, {}); }
 
   /// Returns true if all shown runs are meshed and a frame with all of these meshes was presented.
   bool is_up_to_date() const {
@@ -120,6 +126,7 @@ class MeshPipeline {
   const Histogram& whole_mesh_ns() const { return whole_ns_; }
   const Histogram& layers_mesh_ns() const { return layers_ns_; }
   std::uint64_t mesh_jobs() const { return planner_.jobs(); }
+  std::uint64_t far_jobs() const { return far_planner_.jobs(); }
   std::uint64_t frames_presented() const { return frames_.presented; }
   LatencyRecorder& recorder() { return recorder_; }
   const LatencyRecorder& recorder() const { return recorder_; }
@@ -172,21 +179,22 @@ class MeshPipeline {
   std::deque<FrameDone> recent_frames_;
   LookControl look_;
   InspectionControl inspection_;
-  bool is_unpaced_ = false;
+  bool is_unpaced_ = false, measures_frames_ = true;
   TimeUs last_frame_us_ = 0;
   // True if the camera, a marker or the look has changed since the last frame was ordered.
   bool changed_ = true;
   struct {
     bool in_progress = false, screenshots = false;
   } frame_;                                // the frame in progress
-  UploadTracker tracker_;                  // of the meshes that draw_thread_ got
+  UploadTracker tracker_;                  // of the meshes that draw_queue_ got
   std::optional<std::uint64_t> last_job_;  // has_caught_up(): the newest mesh job to wait for
   TimeUs frame_interval_us_ = kFrameUs;
   TimeUs next_frame_us_ = 0;              // the earliest time of a frame without new edits
   std::vector<std::string> screenshots_;  // files requested
   TimeUs screenshot_since_us_ = 0;
   bool screenshots_written_ = true;
-  DrawThread* const draw_thread_;  // may be null
+  std::vector<std::string> unwritten_;  // screenshots that could not be written
+  DrawQueue* const draw_queue_;         // may be null
   // Null until the materials are set. It is the last member, because its threads use the others.
   std::unique_ptr<MeshPool> pool_;
 };

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "client/platform/gl_context.hpp"
 #include "client/render/renderer.hpp"
 
 namespace runstone {
@@ -33,7 +32,7 @@ class GlScreen final : public Screen {
     const RenderStats stats = renderer_.draw(camera, width, height, contents);
     if (overlay_) renderer_.draw_overlay(*overlay_);
     if (context_->is_window()) renderer_.present(width, height);
-    renderer_.finish();
+    if (context_->can_wait()) renderer_.finish();
     context_->swap();
     return stats;
   }
@@ -47,11 +46,8 @@ class GlScreen final : public Screen {
 
 }  // namespace
 
-std::unique_ptr<Screen> make_headless_screen() {
-  return std::make_unique<GlScreen>(make_headless_context());
-}
-std::unique_ptr<Screen> make_window_screen(Window& window) {
-  return std::make_unique<GlScreen>(make_window_context(window));
+std::unique_ptr<Screen> make_screen(std::unique_ptr<GlContext> context) {
+  return std::make_unique<GlScreen>(std::move(context));
 }
 
 }  // namespace runstone

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "client/far/tile_mesh.hpp"
-#include "client/platform/window.hpp"
+#include "client/platform/gl_context.hpp"
 #include "client/render/image.hpp"
 #include "client/render/overlay_frame.hpp"
 #include "client/render/renderer.hpp"
@@ -34,17 +34,16 @@ class Screen {
   virtual void remove(const ChunkKey& key) = 0;
   /// Sets the user interface that the next frames have on top; null: none.
   virtual void set_overlay(std::shared_ptr<const OverlayFrame> overlay) = 0;
-  /// Draws a frame of width x height pixels. Waits for the fence after the frame off screen, and
-  /// for the swap in a window. Throws std::runtime_error if the driver fails.
+  /// Draws a frame of width x height pixels. Waits for the fence after the frame off screen, for
+  /// the swap in a window, and for nothing in a page. Throws std::runtime_error if the driver fails.
   virtual RenderStats draw(const Camera& camera, int width, int height,
                            const FrameContents& contents) = 0;
   /// Returns the last frame. Requires a draw() before.
   virtual Image read_image() = 0;
 };
 
-/// Both functions throw std::runtime_error if no such OpenGL context can be made.
-std::unique_ptr<Screen> make_headless_screen();
-/// `window` must outlive the screen.
-std::unique_ptr<Screen> make_window_screen(Window& window);
+/// Returns a screen on which a Renderer draws. Requires that the context is current. Throws
+/// std::runtime_error if the driver rejects a shader.
+std::unique_ptr<Screen> make_screen(std::unique_ptr<GlContext> context);
 
 }  // namespace runstone

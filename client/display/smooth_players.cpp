@@ -32,8 +32,9 @@ std::map<AuthorId, Pose> SmoothPlayers::at(TimeUs now_us) const {
 }
 
 bool SmoothPlayers::take_moved(TimeUs now_us) {
-  const bool is_moving = std::ranges::any_of(
-      tracks_, [now_us](const auto& entry) { return entry.second.is_moving(now_us); });
+  const bool is_moving = std::any_of(tracks_.begin(), tracks_.end(), [now_us](const auto& entry) {
+    return entry.second.is_moving(now_us);
+  });
   const bool was_moving = std::exchange(was_moving_, is_moving);
   const bool has_changed = std::exchange(has_changed_, false);
   return has_changed || is_moving || was_moving;

@@ -51,6 +51,8 @@ class FarPlanner {
   std::size_t dirty_count() const { return dirty_; }
   std::size_t ready_count() const { return ready_.size(); }
   std::size_t stand_in_count() const { return stand_ins_; }
+  /// Returns the number of jobs so far.
+  std::uint64_t jobs() const { return jobs_; }
   /// Returns the memory of stand-ins.
   std::size_t bytes() const { return bytes_; }
 

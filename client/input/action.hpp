@@ -76,6 +76,8 @@ enum class Action : std::uint8_t {
   inspect_layers,
   release,
 };
+/// The slots of the hotbar, each with an action hold_slot_N.
+inline constexpr std::size_t kSlotCount = 9;
 inline constexpr std::size_t kActionCount = static_cast<std::size_t>(Action::release) + 1;
 
 enum class ActionGroup : std::uint8_t { moving, building, others, time, window };

@@ -3,18 +3,14 @@
 #include <sodium.h>
 
 #include <algorithm>
-#include <array>
 #include <asio.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <chrono>
-#include <deque>
 #include <stdexcept>
 #include <utility>
 
 #include "client/net/link_socket.hpp"
-#include "client/net/receive_ack_scheduler.hpp"
 #include "common/os/steady_clock.hpp"
-#include "protocol/codec/message_table.hpp"
 
 namespace runstone {
 namespace {
@@ -34,7 +30,6 @@ struct Link::State {
       : io(context), config(std::move(link_config)), callbacks(link_callbacks) {}
 
   // These functions act on the current connection.
-  Result<void> take_message(FrameReader& reader, ByteView bytes, TimeUs received_us);
   void send_receive_ack();
   void enqueue(ConnectionNumber to, const EncodedMessage& message);
   void close_socket();
@@ -54,60 +49,17 @@ struct Link::State {
   bool up = false;
   bool closing = false;  // close once all queued messages are sent
   std::string why_closed;
-  std::uint16_t chunk_edge = 0;   // of this connection's world; 0 before Welcome
-  std::uint64_t features = 0;     // in force; none before Welcome
-  std::uint64_t chunk_bytes = 0;  // of chunk frames read on this connection
-  /// Frames read on this connection up to the last message of each class.
-  std::array<std::uint64_t, kFrameClassCount> frames_before{};
-  ReceiveAckScheduler receive_acks;
+  std::unique_ptr<MessageStream> stream;  // of the newest connection; null before the first
   asio::steady_timer ack_timer{io};
   bool is_ack_timer_set = false;
-  std::deque<EncodedMessage> edits, others;
-  std::size_t queued_bytes = 0;
 };
-
-Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, TimeUs received_us) {
-  return reader.feed(bytes, [&](MessageKind kind, ByteView body) -> Result<void> {
-    const FrameClass frame_class = info_of(kind).frame_class;
-    const std::uint64_t frames = reader.frames(frame_class) -
-                                 std::exchange(frames_before[static_cast<std::size_t>(frame_class)],
-                                               reader.frames(frame_class));
-    const auto taken = callbacks.on_bytes(kind, body, chunk_edge, received_us);
-    if (!taken) return Unexpected<Error>{taken.error()};
-    if (*taken) {
-      stats.received.add(kind, body.size(), frames);
-      return {};
-    }
-    const std::int64_t start_ns = steady_now_ns();
-    auto message = decode_message(Sender::server, kind, body, chunk_edge);
-    if (!message) return Unexpected<Error>{message.error()};
-    const std::int64_t end_ns = steady_now_ns();
-    stats.received.add(kind, body.size(), frames);
-    if (const auto* welcome = std::get_if<Welcome>(&*message)) {
-      chunk_edge = welcome->chunk_edge;
-      features = welcome->features;
-    }
-    LinkReceived received;
-    received.connection = connection;
-    received.message = std::move(*message);
-    received.bytes = body.size();
-    received.received_us = received_us;
-    received.unpacked_us = end_ns / 1000;
-    received.unpack_ns = end_ns - start_ns;
-    callbacks.on_received(std::move(received));
-    return {};
-  });
-}
 
 // Acknowledges the chunk bytes read, now or when the acknowledgement is due.
 void Link::State::send_receive_ack() {
-  if (!up || (features & kFeatureReceiveAck) == 0) return;
+  if (!up) return;
   const TimeUs now_us = steady_now_us();
-  if (receive_acks.is_due(chunk_bytes, now_us)) {
-    receive_acks.sent(chunk_bytes, now_us);
-    enqueue(connection, encode_message(ReceiveAck{chunk_bytes}));
-  }
-  const auto due_us = receive_acks.due(chunk_bytes);
+  const auto due_us = stream->acknowledge(now_us);
+  if (stream->has_output()) work_to_send.cancel();
   if (!due_us || is_ack_timer_set) return;
   is_ack_timer_set = true;
   ack_timer.expires_after(std::chrono::microseconds(std::max<TimeUs>(*due_us - now_us, 0)));
@@ -119,13 +71,11 @@ void Link::State::send_receive_ack() {
 
 void Link::State::enqueue(ConnectionNumber to, const EncodedMessage& message) {
   if (!up || to != connection) return;
-  queued_bytes += message.bytes->size();
-  if (queued_bytes > kSendBytesMax) {
+  if (!stream->queue(message)) {
     why_closed = "send queue full";
     close_socket();
     return;
   }
-  (class_of(message) == FrameClass::edits ? edits : others).push_back(message);
   work_to_send.cancel();
 }
 
@@ -140,7 +90,6 @@ namespace {
 
 template <class State>
 asio::awaitable<void> read_messages(State& state) {
-  FrameReader reader(Sender::server);
   std::vector<std::uint8_t> buffer(kReadBytes);
   while (true) {
     const auto [error, count] = co_await state.socket.read_some(asio::buffer(buffer));
@@ -153,7 +102,7 @@ asio::awaitable<void> read_messages(State& state) {
     Result<void> fed;
     for (std::size_t at = 0; at < count && fed && !state.stopping; at += kDecodeBytes) {
       const std::size_t bytes = std::min(kDecodeBytes, count - at);
-      fed = state.take_message(reader, ByteView(buffer.data() + at, bytes), received_us);
+      fed = state.stream->receive(ByteView(buffer.data() + at, bytes), received_us);
       while (!state.stopping && state.callbacks.is_full()) {
         state.pause.expires_after(milliseconds(1));
         co_await state.pause.async_wait(kTuple);
@@ -163,7 +112,6 @@ asio::awaitable<void> read_messages(State& state) {
       state.why_closed = std::string("bad bytes from the server: ") + fed.error().what;
       break;
     }
-    state.chunk_bytes = reader.frame_bytes(FrameClass::chunks);
     state.send_receive_ack();
   }
   state.up = false;
@@ -174,20 +122,10 @@ asio::awaitable<void> read_messages(State& state) {
 
 template <class State>
 asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
-  FrameWriter writer;
   Bytes out;
   while (state.up && state.connection == mine) {
     out.clear();
-    while (out.size() < kWriteBytes && (!state.edits.empty() || !state.others.empty())) {
-      auto& queue = state.edits.empty() ? state.others : state.edits;
-      const EncodedMessage& message = queue.front();
-      const std::size_t bytes = message.bytes->size();
-      writer.append(message, out);
-      state.stats.sent.add(message.kind, bytes,
-                           (bytes + kFragmentBytesMax - 1) / kFragmentBytesMax);
-      state.queued_bytes -= bytes;
-      queue.pop_front();
-    }
+    state.stream->write(out, kWriteBytes);
     if (out.empty()) {
       if (state.closing) {
         if (state.why_closed.empty()) state.why_closed = "closed by this client";
@@ -251,14 +189,8 @@ asio::awaitable<void> keep_connected(State& state) {
       state.up = true;
       state.closing = false;
       state.why_closed.clear();
-      state.chunk_edge = 0;
-      state.features = 0;
-      state.chunk_bytes = 0;
-      state.frames_before = {};
-      state.receive_acks = {};
-      state.edits.clear();
-      state.others.clear();
-      state.queued_bytes = 0;
+      state.stream = std::make_unique<MessageStream>(state.connection, state.stats, state.callbacks,
+                                                     steady_now_ns);
       pause_ms = state.config.pause_ms_first;
       state.callbacks.on_connected(state.connection, state.socket.binding());
       asio::co_spawn(state.io, write_messages(state, state.connection), asio::detached);

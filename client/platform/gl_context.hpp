@@ -17,11 +17,13 @@ class GlContext {
   /// Returns the address of a GL function by its name.
   using Loader = void (*(*)(const char*))();
   virtual Loader loader() const = 0;
-  /// Returns "EGL surfaceless", "EGL surfaceless, OpenGL ES", "OSMesa", "GLFW" or
-  /// "GLFW, OpenGL ES".
+  /// Returns "EGL surfaceless", "EGL surfaceless, OpenGL ES", "OSMesa", "GLFW", "GLFW, OpenGL ES" or
+  /// "WebGL 2".
   virtual const char* name() const = 0;
   /// Returns true if the default framebuffer is that of a window.
   virtual bool is_window() const { return false; }
+  /// Returns true if the thread may wait for the GPU.
+  virtual bool can_wait() const { return true; }
   /// Shows the default framebuffer in the window; may wait for the display. Does nothing off
   /// screen.
   virtual void swap() {}

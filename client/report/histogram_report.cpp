@@ -54,7 +54,7 @@ std::string histogram_bars(const Histogram& us) {
   for (const auto& row : rows) most = std::max(most, row.count);
   std::string out;
   for (const auto& row : rows) {
-    const std::size_t bar = (row.count * kBarMax + most - 1) / most;
+    const auto bar = static_cast<std::size_t>((row.count * kBarMax + most - 1) / most);
     out += fmt::format("  below {:>9.3f} ms {:>10} {}\n", static_cast<double>(row.below) / 1000,
                        row.count, std::string(bar, '#'));
   }

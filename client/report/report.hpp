@@ -1,9 +1,10 @@
 // ClientReport: the measurements of a client, as JSON and as a table for people.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
-#include "client/cache/chunk_cache.hpp"
+#include "client/cache/cache_counters.hpp"
 #include "client/far/horizon_recorder.hpp"
 #include "client/schedule/histogram.hpp"
 #include "client/schedule/join_recorder.hpp"

@@ -11,9 +11,9 @@ constexpr unsigned kSubBits = 8;  // 2^8 exact values, then 2^7 buckets per powe
 constexpr std::uint64_t kSub = 1U << kSubBits;
 
 std::size_t bucket_of(std::uint64_t value) {
-  if (value < kSub) return value;
+  if (value < kSub) return static_cast<std::size_t>(value);
   const auto shift = static_cast<unsigned>(std::bit_width(value)) - kSubBits;
-  return kSub + (shift - 1) * (kSub / 2) + ((value >> shift) - kSub / 2);
+  return static_cast<std::size_t>(kSub + (shift - 1) * (kSub / 2) + ((value >> shift) - kSub / 2));
 }
 
 /// Returns the middle of a bucket's values.

@@ -300,8 +300,8 @@ void ClientSession::refresh_view() {
     const auto look_up = [this](const ChunkKey& key) {
       if (looked_up_.insert(key).second) lookup_keys_.push_back(key);
     };
-    std::ranges::for_each(replica_->missing(), look_up);
-    std::ranges::for_each(replica_->take_missing_tiles(), look_up);
+    for (const ChunkKey& key : replica_->missing()) look_up(key);
+    for (const ChunkKey& key : replica_->take_missing_tiles()) look_up(key);
   }
   if (lookup_keys_.empty() && lookups_open_ == 0) return send_view();
   if (!view_waiting_since_us_) view_waiting_since_us_ = now_us_;

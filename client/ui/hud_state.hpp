@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "client/input/action.hpp"
 #include "client/render/inspection.hpp"
 #include "client/tools/tool_box.hpp"
 #include "client/ui/map_window.hpp"
@@ -19,8 +20,6 @@
 #include "protocol/codec/log_mark_messages.hpp"
 
 namespace runstone {
-
-inline constexpr std::size_t kSlotCount = 9;
 
 /// A player in the list. The first one is this client's.
 struct ListedPlayer {

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::uint8_t kFlagMore = 1;
 constexpr std::size_t kMessageBytesKept = 4 * kFragmentBytesMax;
-// Bodies are read in place and must be 16-aligned; std::vector takes its storage from operator new.
-static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= 16);
+// Bodies are read in place and must be 8-aligned; std::vector takes its storage from operator new.
+static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= 8);
 
 }  // namespace
 

@@ -62,7 +62,7 @@ class FrameReader {
  public:
   explicit FrameReader(Sender sender) : sender_(sender) {}
   /// Gets the kind and the bytes of a message. The sender may send this kind. The bytes are
-  /// 16-aligned and live until the call returns. It must not feed the same reader.
+  /// 8-aligned and live until the call returns. It must not feed the same reader.
   using OnMessage = std::function<Result<void>(MessageKind, ByteView)>;
   Result<void> feed(ByteView bytes, const OnMessage& on_message);
   /// Returns an upper bound of the bytes of messages that the next `bytes` bytes may complete.

@@ -13,46 +13,49 @@ namespace {
 struct Route {
   std::string_view path;
   bool shows_status;
-  HttpAnswer (*answer)(const WebConfig&, const ServerStatus&,
-                       const WebCounters&);  // null: kStatusPath
+  HttpAnswer (*answer)(const PageContents&);
 };
 
 constexpr const char* kHtml = "text/html; charset=utf-8";
 
+HttpAnswer fixed(std::string type, std::string_view body) {
+  return {200, std::move(type), std::string(body), "", HttpCaching::an_hour};
+}
+
 constexpr std::array<Route, 9> kRoutes = {{
     {"/", true,
-     [](const WebConfig& config, const ServerStatus& server, const WebCounters& /*web*/) {
-       return HttpAnswer{200, kHtml, world_page(config, server), "", false};
+     [](const PageContents& in) {
+       return HttpAnswer{200, kHtml, world_page(in.config, !in.client.empty(), in.server)};
      }},
-    {kStatusPath, true, nullptr},
+    {kStatusPath, true,
+     [](const PageContents& in) {
+       return HttpAnswer{200, kHtml, status_page(in.config, in.server, in.web, in.recent_edits)};
+     }},
     {"/metrics", true,
-     [](const WebConfig& /*config*/, const ServerStatus& server, const WebCounters& web) {
-       return HttpAnswer{200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(server, web),
-                         "", false};
+     [](const PageContents& in) {
+       return HttpAnswer{200, "text/plain; version=0.0.4; charset=utf-8",
+                         metrics_text(in.server, in.web)};
      }},
     {"/style.css", false,
-     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
-       return HttpAnswer{200, "text/css; charset=utf-8", std::string(style_sheet()), "", true};
-     }},
+     [](const PageContents& /*in*/) { return fixed("text/css; charset=utf-8", style_sheet()); }},
     {"/map", false,
-     [](const WebConfig& config, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
-       return HttpAnswer{config.world.empty() ? 404U : 200U, kHtml, map_page(config), "", false};
+     [](const PageContents& in) {
+       HttpAnswer page{in.config.world.empty() ? 404U : 200U, kHtml, map_page(in.config)};
+       page.scripts = PageScripts::own;
+       return page;
      }},
     {"/map.css", false,
-     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
-       return HttpAnswer{200, "text/css; charset=utf-8", std::string(map_style()), "", true};
-     }},
+     [](const PageContents& /*in*/) { return fixed("text/css; charset=utf-8", map_style()); }},
     {"/map.js", false,
-     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
-       return HttpAnswer{200, "text/javascript; charset=utf-8", std::string(map_script()), "",
-                         true};
+     [](const PageContents& /*in*/) {
+       return fixed("text/javascript; charset=utf-8", map_script());
      }},
     {kMapPlayersPath, true,
-     [](const WebConfig& /*config*/, const ServerStatus& server, const WebCounters& /*web*/) {
-       return HttpAnswer{200, "application/json", map_players_json(server), "", false};
+     [](const PageContents& in) {
+       return HttpAnswer{200, "application/json", map_players_json(in.server)};
      }},
     {kPlayPath, false,
-     [](const WebConfig& /*config*/, const ServerStatus& /*server*/, const WebCounters& /*web*/) {
+     [](const PageContents& /*in*/) {
        return plain_answer(426, "this address is for WebSockets");
      }},
 }};
@@ -64,6 +67,21 @@ const Route* find_route(std::string_view target) {
   return nullptr;
 }
 
+HttpAnswer file_answer(const ClientFile& file, const HttpRequest& request) {
+  HttpAnswer answer;
+  answer.type = file.type;
+  answer.caching = HttpCaching::while_unchanged;
+  answer.scripts = PageScripts::client;
+  answer.tag = file.tag;
+  if (request.if_none_match.find(file.tag) != std::string_view::npos) {
+    answer.status = 304;
+    return answer;
+  }
+  answer.encoding = file.encoding;
+  answer.shared = file.bytes;
+  return answer;
+}
+
 }  // namespace
 
 std::string_view path_of(std::string_view target) { return target.substr(0, target.find('?')); }
@@ -73,39 +91,62 @@ bool shows_status(std::string_view target) {
   return route != nullptr && route->shows_status;
 }
 
-HttpAnswer answer_request(std::string_view method, std::string_view target, const WebConfig& config,
-                          const ServerStatus& server, const WebCounters& web,
-                          std::string_view recent_edits) {
-  const Route* route = find_route(target);
-  const bool is_map_data = route == nullptr && target.starts_with(kMapDataPath);
-  if (route == nullptr && !is_map_data) return plain_answer(404, "there is no such page");
-  if (method != "GET" && method != "HEAD") {
+HttpAnswer answer_request(const HttpRequest& request, const PageContents& contents) {
+  const ClientFiles& client = contents.client;
+  const std::string_view path = path_of(request.target);
+  const ClientFile* const file = client.find(path, request.accept_encoding);
+  const bool is_folder = !client.empty() && path == kClientPath.substr(0, kClientPath.size() - 1);
+  const Route* const route = find_route(request.target);
+  const bool is_map_data = route == nullptr && path.starts_with(kMapDataPath);
+  if (file == nullptr && !is_folder && !is_map_data && route == nullptr)
+    return plain_answer(404, "there is no such page");
+  if (request.method != "GET" && request.method != "HEAD") {
     HttpAnswer answer = plain_answer(405, "this page can only be read");
     answer.allow = "GET, HEAD";
     return answer;
   }
+  if (file != nullptr) return file_answer(*file, request);
+  if (is_folder) {
+    HttpAnswer answer = plain_answer(308, "the client is one slash further");
+    answer.location = kClientPath;
+    return answer;
+  }
   if (is_map_data) return plain_answer(404, "this gateway shows no map");
-  if (route->answer == nullptr)
-    return {200, kHtml, status_page(config, server, web, recent_edits), "", false};
-  return route->answer(config, server, web);
+  return route->answer(contents);
 }
 
 HttpAnswer plain_answer(unsigned status, std::string sentence) {
-  return {status, "text/plain; charset=utf-8", std::move(sentence) + "\n", "", false};
+  return {status, "text/plain; charset=utf-8", std::move(sentence) + "\n"};
 }
 
-const std::vector<std::pair<std::string, std::string>>& safety_headers() {
-  static const std::vector<std::pair<std::string, std::string>> all = {
-      {"Content-Security-Policy",
-       "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; "
-       "frame-ancestors 'none'"},
-      {"Cross-Origin-Opener-Policy", "same-origin"},
-      {"Cross-Origin-Embedder-Policy", "require-corp"},
-      {"Cross-Origin-Resource-Policy", "same-origin"},
-      {"X-Content-Type-Options", "nosniff"},
-      {"Referrer-Policy", "no-referrer"},
+const std::vector<std::pair<std::string, std::string>>& safety_headers(PageScripts scripts) {
+  using Headers = std::vector<std::pair<std::string, std::string>>;
+  const auto allowing = [](const std::string& more) -> Headers {
+    return {
+        {"Content-Security-Policy",
+         "default-src 'none'; style-src 'self'; " + more +
+             "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+        {"Cross-Origin-Opener-Policy", "same-origin"},
+        {"Cross-Origin-Embedder-Policy", "require-corp"},
+        {"Cross-Origin-Resource-Policy", "same-origin"},
+        {"X-Content-Type-Options", "nosniff"},
+        {"Referrer-Policy", "no-referrer"},
+    };
   };
-  return all;
+  static const Headers none = allowing("");
+  static const Headers own = allowing("script-src 'self'; connect-src 'self'; ");
+  // 'wasm-unsafe-eval' allows WebAssembly and no other code that is made at run time.
+  static const Headers client =
+      allowing("script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; img-src data:; ");
+  switch (scripts) {
+    case PageScripts::own:
+      return own;
+    case PageScripts::client:
+      return client;
+    case PageScripts::none:
+      break;
+  }
+  return none;
 }
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// HttpAnswer: the answer to an HTTP request that opens no WebSocket. Paths come from a fixed table
-// and nothing is looked up on disk, so no path can lead out of anything.
+// HttpAnswer: the answer to an HTTP request that opens no WebSocket. Paths come from fixed tables and
+// nothing is looked up on disk, so no path can lead out of anything.
 #pragma once
 #include <memory>
 #include <string>
@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/web/client_files.hpp"
 #include "server/web/server_status.hpp"
 #include "server/web/web_config.hpp"
 #include "server/web/web_counters.hpp"
@@ -18,16 +19,38 @@ inline constexpr std::string_view kPlayPath = "/play";
 /// The path of the places of players, which are for those who may see the map alone.
 inline constexpr std::string_view kMapPlayersPath = "/map/players.json";
 
+/// How long browsers may keep an answer.
+enum class HttpCaching {
+  none,
+  an_hour,
+  while_unchanged,  // they ask each time whether their copy, named by its tag, is still right
+};
+
+/// The scripts that an answer may run.
+enum class PageScripts {
+  none,
+  own,    // those of the gateway, which may connect to it: the map
+  client  // likewise, and WebAssembly: the client for browsers
+};
+
 struct HttpAnswer {
   unsigned status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::string body;
-  std::string allow;                                    // the header Allow; empty: none
-  bool is_fixed = false;                                // browsers may keep it for an hour
-  std::string etag = {};                                // the header ETag; empty: none
-  std::shared_ptr<const std::string> shared = nullptr;  // the body instead of `body`, if not null
+  std::string allow = {};  // the header Allow; empty: none
+  HttpCaching caching = HttpCaching::none;
+  PageScripts scripts = PageScripts::none;
+  std::string location = {}, encoding = {}, tag = {};  // headers; empty: none
+  /// The body instead of `body`, shared by all answers that have it; may be null.
+  std::shared_ptr<const std::string> shared = nullptr;
 
-  const std::string& text() const { return shared == nullptr ? body : *shared; }
+  std::string_view bytes() const { return shared ? std::string_view(*shared) : body; }
+};
+
+/// The headers of a request that matter.
+struct HttpRequest {
+  std::string_view method, target;
+  std::string_view accept_encoding = {}, if_none_match = {};
 };
 
 /// Returns the path of a request target: what stands before the first '?'.
@@ -36,17 +59,22 @@ std::string_view path_of(std::string_view target);
 bool shows_status(std::string_view target);
 /// The path of the page that shows the state of the server.
 inline constexpr std::string_view kStatusPath = "/status";
-/// Returns the answer to a request. `server` is used only if shows_status(). `recent_edits`: JSON of
-/// the newest edits for the page of the state; empty: they are not shown.
-HttpAnswer answer_request(std::string_view method, std::string_view target, const WebConfig& config,
-                          const ServerStatus& server, const WebCounters& web,
-                          std::string_view recent_edits = {});
+/// What the pages show. `server` is used only if shows_status().
+struct PageContents {
+  const WebConfig& config;
+  const ClientFiles& client;
+  const ServerStatus& server;
+  const WebCounters& web;
+  /// JSON of the newest edits for the page of the state; empty: they are not shown.
+  std::string_view recent_edits = {};
+};
+/// Returns the answer to a request.
+HttpAnswer answer_request(const HttpRequest& request, const PageContents& contents);
 /// Returns an answer that is one sentence.
 HttpAnswer plain_answer(unsigned status, std::string sentence);
 
-/// Returns the headers that each response has for the safety of browsers: pages load nothing from
-/// elsewhere, run no script within tags, are shown in no frame, and share no process with other
-/// sites.
-const std::vector<std::pair<std::string, std::string>>& safety_headers();
+/// Returns the headers for the safety of browsers: pages load nothing from elsewhere, run no other
+/// scripts, are shown in no frame, and share no process with other sites.
+const std::vector<std::pair<std::string, std::string>>& safety_headers(PageScripts scripts);
 
 }  // namespace runstone

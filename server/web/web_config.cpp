@@ -42,6 +42,9 @@ const SettingsTable<WebConfig>& web_settings() {
           text("public_address",
                "HOST or HOST:PORT at which desktop clients reach the server, for the page",
                &C::public_address, true),
+          text("client_files",
+               "folder with the files of the client for browsers; empty: the pages have none",
+               &C::client_files, true),
           text("origins",
                "origins of pages that may open a WebSocket, such as https://play.example.org, "
                "separated by blanks or commas; empty: only pages of this gateway",

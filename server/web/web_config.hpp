@@ -19,6 +19,8 @@ struct WebConfig {
   std::string title = "A Runstone world";         // of the world, on the pages
   std::string
       public_address;  // HOST or HOST:PORT of the server for desktop clients; empty: unknown
+  /// Folder with the files of the client for browsers; empty: there is none on the pages.
+  std::string client_files;
   /// Origins of pages that may open a WebSocket, such as "https://play.example.org", separated by
   /// blanks or commas. Empty: only pages of this gateway.
   std::string origins;

@@ -27,6 +27,21 @@ constexpr std::size_t kDroppedBytesMax = 64 * 1024;
 // Bytes that may wait in the kernel, so that little terrain is ahead of an edit.
 constexpr int kNotSentBytes = 16 * 1024;
 
+// A browser that reads more slowly is not waited for.
+constexpr std::size_t kSlowestBytesPerSecond = 8 * 1024;
+
+const char* cache_control(HttpCaching caching) {
+  switch (caching) {
+    case HttpCaching::an_hour:
+      return "max-age=3600";
+    case HttpCaching::while_unchanged:
+      return "no-cache";
+    case HttpCaching::none:
+      break;
+  }
+  return "no-store";
+}
+
 std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
 HttpAnswer answer_to_broken_request(const boost::system::error_code& error) {
@@ -142,8 +157,9 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
     MapAnswer answer =
         co_await self->state_.map.answer(self->from_, view_of(request.target()),
                                          std::string(view_of(request[http::field::if_none_match])));
-    HttpAnswer out{answer.status, std::move(answer.type), "", "", false};
-    out.etag = std::move(answer.etag);
+    HttpAnswer out{answer.status, std::move(answer.type)};
+    out.tag = std::move(answer.etag);
+    if (!out.tag.empty()) out.caching = HttpCaching::while_unchanged;
     out.shared = std::move(answer.body);
     co_return out;
   }
@@ -159,30 +175,36 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
     self->state_.counters.memory_bytes = process_memory_bytes();
     self->state_.counters.map_cache_bytes = self->state_.map.cache_bytes();
   }
-  co_return answer_request(view_of(request.method_string()), view_of(request.target()),
-                           self->state_.config, *status, self->state_.counters, recent_edits);
+  const HttpRequest asked{view_of(request.method_string()), view_of(request.target()),
+                          view_of(request[http::field::accept_encoding]),
+                          view_of(request[http::field::if_none_match])};
+  const PageContents contents{self->state_.config, self->state_.client, *status,
+                              self->state_.counters, recent_edits};
+  co_return answer_request(asked, contents);
 }
 
 boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection> self,
                                                   const HttpAnswer& answer, const Request& request,
                                                   bool keeps_alive) {
+  const std::string_view bytes = answer.bytes();
+  self->stream_.allow_s(self->state_.config.handshake_s + bytes.size() / kSlowestBytesPerSecond);
   http::response<http::span_body<const char>> response;
   response.result(answer.status);
   response.version(request.version());
   response.set(http::field::content_type, answer.type);
-  // A picture of the map is kept and asked for again with its ETag.
-  const char* not_fixed = answer.etag.empty() ? "no-store" : "no-cache";
-  response.set(http::field::cache_control, answer.is_fixed ? "max-age=3600" : not_fixed);
-  if (!answer.etag.empty()) response.set(http::field::etag, answer.etag);
+  response.set(http::field::cache_control, cache_control(answer.caching));
+  if (answer.caching == HttpCaching::while_unchanged)
+    response.set(http::field::vary, "Accept-Encoding");
   if (answer.status == 429 || answer.status == 503) response.set(http::field::retry_after, "1");
+  if (!answer.tag.empty()) response.set(http::field::etag, answer.tag);
+  if (!answer.encoding.empty()) response.set(http::field::content_encoding, answer.encoding);
+  if (!answer.location.empty()) response.set(http::field::location, answer.location);
   if (!answer.allow.empty()) response.set(http::field::allow, answer.allow);
   if (answer.status == 426) response.set(http::field::upgrade, "websocket");
-  for (const auto& [name, value] : safety_headers()) response.set(name, value);
-  const std::string& text = answer.text();
-  if (answer.status != 304) response.content_length(text.size());
+  for (const auto& [name, value] : safety_headers(answer.scripts)) response.set(name, value);
+  if (answer.status != 304) response.content_length(bytes.size());
   response.keep_alive(keeps_alive);
-  if (request.method() != http::verb::head)
-    response.body() = boost::beast::span<const char>(text.data(), text.size());
+  if (request.method() != http::verb::head) response.body() = {bytes.data(), bytes.size()};
   boost::system::error_code error;
   co_await http::async_write(self->stream_, response,
                              boost::asio::redirect_error(boost::asio::use_awaitable, error));

@@ -66,9 +66,9 @@ Result<std::optional<boost::asio::ssl::context>, std::string> read_certificate(
 // Members are destroyed in reverse order. The sockets of the state and the acceptor need its
 // io_context, which is in the state.
 struct WebGateway::Parts {
-  Parts(const WebConfig& config, OriginCheck origin,
+  Parts(const WebConfig& config, ClientFiles client, OriginCheck origin,
         std::optional<boost::asio::ssl::context> certificate)
-      : state(config, std::move(origin), std::move(certificate)),
+      : state(config, std::move(client), std::move(origin), std::move(certificate)),
         acceptor(state.io),
         pause(state.io),
         sweep(state.io) {}
@@ -200,8 +200,12 @@ Result<std::unique_ptr<WebGateway>, std::string> WebGateway::start(const WebConf
   if (!origins) return failure(origins.error());
   auto certificate = read_certificate(config);
   if (!certificate) return failure(certificate.error());
+  Result<ClientFiles, std::string> client = ClientFiles();
+  if (!config.client_files.empty()) client = ClientFiles::load(config.client_files);
+  if (!client) return failure("client_files: " + client.error());
   OriginCheck origin(*std::move(origins), certificate->has_value());
-  auto parts = std::make_unique<Parts>(config, std::move(origin), std::move(certificate).value());
+  auto parts = std::make_unique<Parts>(config, *std::move(client), std::move(origin),
+                                       std::move(certificate).value());
   if (const auto bound = parts->listen(); !bound) return failure(bound.error());
   Parts& running = *parts;
   boost::asio::co_spawn(running.state.io, running.accept_loop(), boost::asio::detached);

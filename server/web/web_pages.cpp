@@ -156,20 +156,22 @@ std::string html_page(const std::string& title, const std::string& body) {
          html_text(title) + "</h1>\n" + body + "</body>\n</html>\n";
 }
 
-std::string world_page(const WebConfig& config, const ServerStatus& server) {
+std::string world_page(const WebConfig& config, bool has_client, const ServerStatus& server) {
   std::string body = server.is_up ? "<h2>Who is here</h2>\n" + players_list(server) : kDownText;
   body += "<h2>Join</h2>\n";
+  if (has_client) body += "<p class=\"play\"><a href=\"/client/\">Play in this browser</a></p>\n";
   if (config.public_address.empty()) {
-    body +=
-        "<p>Ask the host of this world for its address, and join with the desktop client.</p>\n";
+    if (!has_client) {
+      body +=
+          "<p>Ask the host of this world for its address, and join with the desktop client.</p>\n";
+    }
   } else {
     const std::string link = html_text("runstone://" + config.public_address);
     body += "<p>Join with the desktop client: <a href=\"" + link + "\">" + link +
             "</a>. In a terminal:</p>\n<pre>runstone-client --connect '" + link + "'</pre>\n";
   }
-  body +=
-      "<p>This page has no client for the browser.</p>\n"
-      "<p>";
+  if (!has_client) body += "<p>This page has no client for the browser.</p>\n";
+  body += "<p>";
   if (!config.world.empty()) body += "<a href=\"/map\">Map of the world</a>. ";
   body += "<a href=\"/status\">State of the server</a></p>\n";
   return html_page(config.title, body);
@@ -198,6 +200,7 @@ th { font-weight: normal; }
 td { text-align: right; font-variant-numeric: tabular-nums; }
 pre { background: #eee; padding: 0.5rem; overflow-x: auto; }
 a { color: #14568c; }
+.play a { font-size: 1.3rem; font-weight: bold; }
 .up { color: #1c6b2a; }
 .down { color: #9c2a10; }
 @media (prefers-color-scheme: dark) {

@@ -17,7 +17,8 @@ std::string html_text(std::string_view text);
 std::string html_page(const std::string& title, const std::string& body);
 
 /// Returns the page of the world: its name, who is there, and how to join.
-std::string world_page(const WebConfig& config, const ServerStatus& server);
+/// `has_client`: the gateway has the client for browsers.
+std::string world_page(const WebConfig& config, bool has_client, const ServerStatus& server);
 /// Returns the page of the state of server and gateway. `recent_edits`: JSON of the map's service, a
 /// list of edits with time, author and what; empty or anything else: none are shown.
 std::string status_page(const WebConfig& config, const ServerStatus& server, const WebCounters& web,

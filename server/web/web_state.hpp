@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "server/web/client_files.hpp"
 #include "server/web/map_gate.hpp"
 #include "server/web/origin_check.hpp"
 #include "server/web/socket_limits.hpp"
@@ -20,9 +21,10 @@ namespace runstone {
 class WebConnection;
 
 struct WebState {
-  WebState(const WebConfig& config_, OriginCheck origin_,
+  WebState(const WebConfig& config_, ClientFiles client_, OriginCheck origin_,
            std::optional<boost::asio::ssl::context> tls_)
       : config(config_),
+        client(std::move(client_)),
         origin(std::move(origin_)),
         tls(std::move(tls_)),
         status(io, config_.gateway_socket + ".status"),
@@ -30,6 +32,7 @@ struct WebState {
         limits(config_.sockets_per_address, config_.connections_per_second) {}
 
   const WebConfig config;
+  const ClientFiles client;  // may be empty
   const OriginCheck origin;
   boost::asio::io_context io{1};
   std::optional<boost::asio::ssl::context> tls;

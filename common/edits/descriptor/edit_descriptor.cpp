@@ -167,7 +167,8 @@ FillStroke read_stroke(ByteReader& r) {
   FillStroke shape;
   shape.radius =
       static_cast<std::uint16_t>(r.varint_max(kEditRadiusMax, "stroke radius too large"));
-  const std::uint64_t count = 2 + r.varint_max(kStrokePointsMax - 2, "stroke has too many points");
+  const auto count = static_cast<std::size_t>(
+      2 + r.varint_max(kStrokePointsMax - 2, "stroke has too many points"));
   VoxelPos at = read_position(r);
   if (!r.ok()) return shape;
   shape.points.reserve(count);

@@ -68,8 +68,8 @@ ClientRig::ClientRig(const VoxelWorld& world, const RigOptions& options)
       world_(world),
       draw_thread_(std::make_unique<DrawThread>(
           [this]() -> std::unique_ptr<Screen> {
-            if (!options_.watches_pixels) return make_headless_screen();
-            return std::make_unique<WatchedScreen>(make_headless_screen(), *this);
+            if (!options_.watches_pixels) return make_screen(make_headless_context());
+            return std::make_unique<WatchedScreen>(make_screen(make_headless_context()), *this);
           },
           DrawPriority::normal, [this] { wake_.notify(); }, options.budget)),
       pipeline_(replica_, draw_thread_.get(), true, 1, [this] { wake_.notify(); }) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "client/display/draw_thread.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/net/wake_up.hpp"
 #include "client/replica/replica.hpp"

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -53,6 +54,41 @@ TEST_CASE("each answer has the headers for the safety of browsers", "[integratio
     CHECK(reply.header("X-Content-Type-Options") == "nosniff");
   }
   CHECK(peer.upgrade().header("X-Content-Type-Options") == "nosniff");
+}
+
+TEST_CASE("the gateway serves the files of the client for browsers", "[integration]") {
+  const TempFolder folder;
+  for (const char* name : {"client.html", "client.css", "client.js", "keys.js",
+                           "runstone-web-client.js", "runstone-web-client.wasm"})
+    std::ofstream(folder.path() + "/" + name) << "plain " << name;
+  WebConfig config = web_config_of(folder);
+  config.client_files = folder.path();
+  const WebBench bench(server_config_of(folder), config);
+  WebPeer peer(bench.port());  // one connection for all
+  CHECK(has(peer.get("/"), "href=\"/client/\""));
+  const HttpReply page = peer.get("/client/");
+  CHECK(page.status == 200);
+  CHECK(page.body == "plain client.html");
+  CHECK(page.header("Content-Security-Policy").find("'wasm-unsafe-eval'") != std::string::npos);
+  CHECK(page.header("Cross-Origin-Embedder-Policy") == "require-corp");
+  CHECK(page.header("Cache-Control") == "no-cache");
+  CHECK_FALSE(page.header("ETag").empty());
+  CHECK(peer.get("/client/runstone-web-client.wasm").header("Content-Type") == "application/wasm");
+  CHECK(peer.get("/client").header("Location") == "/client/");
+  CHECK(peer.get("/client/web.sock").status == 404);
+  const HttpReply head = peer.request("HEAD", "/client/client.js");
+  CHECK(head.header("Content-Length") == std::to_string(std::string("plain client.js").size()));
+  CHECK(head.body.empty());
+}
+
+TEST_CASE("a gateway does not start with a folder that lacks the client", "[integration]") {
+  const TempFolder folder;
+  WebConfig config = web_config_of(folder);
+  config.client_files = folder.path() + "/nothing";
+  const auto gateway = WebGateway::start(config);
+  REQUIRE_FALSE(gateway.has_value());
+  CHECK(gateway.error() ==
+        "client_files: " + folder.path() + "/nothing/client.html cannot be read");
 }
 
 TEST_CASE("paths that lead elsewhere and broken requests get an answer in words", "[integration]") {

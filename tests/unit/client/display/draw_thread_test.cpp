@@ -7,34 +7,18 @@
 
 #include "client/net/wake_up.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/unit/client/display/draw_samples.hpp"
 #include "tests/unit/client/display/fake_screen.hpp"
 
 using namespace runstone;
+using test::chunk;
 using test::fake_screen_on;
 using test::FakeScreenLog;
+using test::Lines;
+using test::mesh_of;
+using test::small_frame;
 
 namespace {
-
-using Lines = std::vector<std::string>;
-
-ChunkKey chunk(std::int32_t x) { return {0, {x, 0, 0}}; }
-
-ChunkUpload mesh_of(std::uint64_t serial, std::size_t quads) {
-  ChunkUpload upload;
-  upload.serial = serial;
-  upload.edge = 16;
-  ChunkMesh mesh;
-  mesh.opaque.quads.resize(quads);
-  upload.mesh = std::make_shared<const ChunkMesh>(std::move(mesh));
-  return upload;
-}
-
-FrameOrder small_frame() {
-  FrameOrder order;
-  order.width = 4;
-  order.height = 2;
-  return order;
-}
 
 /// Uploads that take no time fit it, however busy the machine is.
 constexpr UploadBudget kAmple{3'600'000'000, std::size_t{1} << 40};

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "client/net/receive_ack_scheduler.hpp"
+#include "client/stream/receive_ack_scheduler.hpp"
 #include "common/core/hash.hpp"
 
 namespace runstone {

@@ -1,0 +1,138 @@
+#include "client/play/edit_tool.hpp"
+
+#include <utility>
+#include <variant>
+
+namespace runstone {
+namespace {
+
+/// The chunks that a preview compares and meshes in one turn. A paste of 64 voxels a side touches
+/// 27 chunks of edge 32 at most, and takes two steps for each of them.
+constexpr std::size_t kPreviewChunks = 64;
+
+const char* name_of(SymmetryKind kind) {
+  switch (kind) {
+    case SymmetryKind::none:
+      break;
+    case SymmetryKind::x:
+      return "mirrored along x";
+    case SymmetryKind::z:
+      return "mirrored along z";
+    case SymmetryKind::both:
+      return "mirrored along x and z";
+    case SymmetryKind::point:
+      return "turned by a half turn";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::optional<RayHit> EditTool::pick() const {
+  return runstone::pick(session_.replica(), player_.eye(), player_.direction(), kReach);
+}
+
+Aim EditTool::aim() const {
+  Aim out{player_.eye(), player_.direction(), std::nullopt, player_.held()};
+  if (!fixed_aim_) {
+    out.hit = pick();
+  } else if (const auto material = session_.replica().shown_at(fixed_aim_->voxel)) {
+    out.hit = RayHit{fixed_aim_->voxel, *material, fixed_aim_->face, 0};
+  }
+  return out;
+}
+
+Result<void, std::string> EditTool::press(ToolButton button, TimeUs now_us) {
+  if (!session_.replica().opened()) return failure("no world is open");
+  return submit_beside(box_.press(session_.replica(), aim(), button), now_us);
+}
+
+Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs now_us) {
+  const auto selected = box_.selection();
+  auto done =
+      submit_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command), now_us);
+  if (!done && box_.selection() != selected) box_.select(selected);  // it did not move
+  return done;
+}
+
+Result<void, std::string> EditTool::submit_beside(const ToolEdits& edits, TimeUs now_us) {
+  if (edits && edits->size() == 1 && edits->front().material != kEmpty) {
+    const auto* const voxel = std::get_if<SetVoxel>(&edits->front().shape);
+    if (voxel != nullptr && player_.is_in(voxel->at))
+      return failure("you stand there: step back first");
+  }
+  return submit(edits, now_us);
+}
+
+void EditTool::drag() {
+  if (session_.replica().opened()) box_.drag(aim());
+}
+
+Result<void, std::string> EditTool::release(TimeUs now_us) {
+  if (!session_.replica().opened()) return {};
+  return submit(box_.release(session_.replica(), aim()), now_us);
+}
+
+Result<void, std::string> EditTool::submit(const ToolEdits& edits, TimeUs now_us) {
+  if (!edits) return failure(edits.error());
+  for (std::size_t i = 0; i < edits->size(); ++i) {
+    if (auto done = submit((*edits)[i], now_us, now_us, part_of_action(i, edits->size())); !done)
+      return done;
+  }
+  return {};
+}
+
+bool EditTool::has_preview() const {
+  const bool is_plain =
+      repeats() && box_.symmetry().kind == SymmetryKind::none && !box_.typed_places();
+  return !is_plain && session_.replica().opened() && !session_.replica().past();
+}
+
+bool EditTool::step_preview() {
+  if (!has_preview()) return false;
+  return box_.step_preview(session_.replica(), aim(), kPreviewChunks);
+}
+
+std::span<const GhostChunk> EditTool::ghosts() const {
+  return has_preview() ? std::span<const GhostChunk>(box_.preview().ghosts())
+                       : std::span<const GhostChunk>();
+}
+
+std::string EditTool::text() const {
+  const Tool& tool = box_.tool();
+  if (repeats() && box_.symmetry().kind == SymmetryKind::none) return {};
+  std::string out = "tool: " + std::string(tool.name());
+  for (const ToolParameter& p : tool.parameters()) {
+    out += ", " + p.name + ' ';
+    out += p.choices.empty() ? std::to_string(p.value)
+                             : p.choices[static_cast<std::size_t>(p.value - p.low)];
+  }
+  if (box_.symmetry().kind != SymmetryKind::none)
+    out += std::string(", ") + name_of(box_.symmetry().kind);
+  if (!box_.points().empty()) out += ", places chosen: " + std::to_string(box_.points().size());
+  if (box_.preview().missing_chunks() != 0) out += ", a part of the preview is not loaded";
+  return out;
+}
+
+Result<void, std::string> EditTool::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                           ActionPart part) {
+  if (part == ActionPart::first) action_ = 0;
+  ClientSequence action = 0;
+  if (part != ActionPart::alone) action = action_ != 0 ? action_ : kBeginsAction;
+  const auto seq = session_.submit(edit, due_us, now_us, action);
+  if (seq) {
+    if (action == kBeginsAction) action_ = *seq;
+    recorder_.submitted(*seq, due_us);
+    return {};
+  }
+  if (session_.replica().local_edits().all().size() >= kLocalEditsMax) {
+    recorder_.not_submitted();
+  } else {
+    ++refused_;
+  }
+  std::string why = session_.refusal_text(edit, seq.error());
+  if (on_refused_) on_refused_(why);
+  return Unexpected<std::string>{std::move(why)};
+}
+
+}  // namespace runstone

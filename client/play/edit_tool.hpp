@@ -1,0 +1,98 @@
+// EditTool: gives clicks to the tool box, submits the edits of clicks and scripts to the session,
+// and records when each was submitted. One thread.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/play/player.hpp"
+#include "client/replica/ray_pick.hpp"
+#include "client/schedule/latency_recorder.hpp"
+#include "client/session/client_session.hpp"
+#include "client/tools/action_part.hpp"
+#include "client/tools/tool_box.hpp"
+#include "client/tools/tool_command.hpp"
+#include "common/core/result.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+
+namespace runstone {
+
+class EditTool {
+ public:
+  /// Gets the reason of each edit that the client did not accept.
+  using OnRefused = std::function<void(const std::string&)>;
+
+  /// The first four must outlive the tool. `on_refused` may be null.
+  EditTool(ClientSession& session, const Player& player, LatencyRecorder& recorder, ToolBox& box,
+           OnRefused on_refused = nullptr)
+      : session_(session),
+        player_(player),
+        recorder_(recorder),
+        box_(box),
+        on_refused_(std::move(on_refused)) {}
+
+  const Replica& replica() const { return session_.replica(); }
+  ToolBox& box() { return box_; }
+  const ToolBox& box() const { return box_; }
+  /// Returns the voxel that the player looks at, or nullopt if there is none within kReach.
+  std::optional<RayHit> pick() const;
+  /// Returns the place at which the player points, or at which a script aims.
+  Aim aim() const;
+  /// Aims at a face of a voxel, wherever the player looks; nullopt follows the look again.
+  void fix_aim(std::optional<FixedAim> aim) { fixed_aim_ = aim; }
+
+  /// Presses, holds and releases a mouse button, as ToolBox does. The edits are submitted. A single
+  /// voxel is never placed where the player is. Each fails with words for the player.
+  Result<void, std::string> press(ToolButton button, TimeUs now_us);
+  void drag();
+  Result<void, std::string> release(TimeUs now_us);
+  /// Returns true if the tool acts again and again while the button is held.
+  bool repeats() const { return &box_.tool() == box_.tools().front().get(); }
+  /// Submits the edits in their order, as one action. Fails with the first refusal; the edits after
+  /// it are not submitted. Passes on the failure of a tool.
+  Result<void, std::string> submit(const ToolEdits& edits, TimeUs now_us);
+
+  /// Carries out a command of the tool window, and submits its edits. Fails with words for the
+  /// player.
+  Result<void, std::string> carry_out(const ToolCommand& command, TimeUs now_us);
+
+  /// Makes the preview of the next click for a bounded time. Returns true if the ghosts changed.
+  bool step_preview();
+  /// Returns the ghosts to draw. There are none while the past is shown, and none of the plain
+  /// voxel tool, for which the outline of the voxel in sight suffices.
+  std::span<const GhostChunk> ghosts() const;
+  /// Returns true if the next click has a preview. A click of the plain voxel tool has none unless
+  /// its place is typed.
+  bool has_preview() const;
+  /// Returns the chosen tool, its parameters and the symmetry as a line for the player. It is empty
+  /// for the plain voxel tool.
+  std::string text() const;
+
+  /// Submits an edit that was due at `due_us`. Fails with the reason, which `on_refused` gets as
+  /// well, if the client does not accept it. If the client had no room for it, the edit counts as infinitely
+  /// late. Any other refusal, such as that of an edit while the view shows the past, counts in
+  /// refused() only.
+  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                   ActionPart part = ActionPart::alone);
+
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  /// Submits the edits, unless they would put a voxel where the player stands.
+  Result<void, std::string> submit_beside(const ToolEdits& edits, TimeUs now_us);
+
+  ClientSession& session_;
+  const Player& player_;
+  LatencyRecorder& recorder_;
+  ToolBox& box_;
+  const OnRefused on_refused_;
+  std::optional<FixedAim> fixed_aim_;
+  ClientSequence action_ = 0;  // the first edit of the action under way; 0: none was accepted yet
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace runstone

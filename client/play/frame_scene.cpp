@@ -1,0 +1,91 @@
+#include "client/play/frame_scene.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <numbers>
+#include <span>
+
+#include "client/display/ground_marker.hpp"
+#include "client/display/player_body.hpp"
+#include "client/far/far_reach.hpp"
+
+namespace runstone {
+namespace {
+
+/// Returns the outline of a box, `gap` voxels outside of it, so that it is drawn before the faces
+/// of the box.
+Marker outline_of(const VoxelBox& box, double gap, std::uint8_t r, std::uint8_t g, std::uint8_t b) {
+  return {box.min.x - gap,
+          box.min.y - gap,
+          box.min.z - gap,
+          box.max.x - box.min.x + 2 * gap,
+          box.max.y - box.min.y + 2 * gap,
+          box.max.z - box.min.z + 2 * gap,
+          r,
+          g,
+          b,
+          false};
+}
+
+}  // namespace
+
+double FrameScene::draw_distance() const {
+  return (view_.radii().h + 1.5) * std::max(16, session_.replica().chunk_edge());
+}
+
+double FrameScene::reach() const {
+  const Replica& replica = session_.replica();
+  if (replica.far_tiles().solid_count() == 0) return draw_distance();
+  return std::max(draw_distance(), far_reach(session_.view(), replica.chunk_edge()));
+}
+
+Camera FrameScene::camera(std::optional<double> field_of_view) const {
+  Camera out = player_.camera(reach());
+  if (reach() > draw_distance()) out.shadow_far = draw_distance();
+  if (field_of_view) out.fov_y = *field_of_view * std::numbers::pi / 180;
+  return out;
+}
+
+FrameContents FrameScene::contents(const std::map<AuthorId, Pose>& poses, bool outlines_aim,
+                                   bool shows_ground) const {
+  FrameContents out;
+  out.at_eye = session_.replica().shown_at(player_.voxel()).value_or(kEmpty);
+  add_bodies(poses, out.bodies);
+  if (shows_ground) add_ground(out.markers);
+  if (outlines_aim) add_aim(out.markers);
+  add_selection(out.markers);
+  const std::span<const GhostChunk> ghosts = tool_.ghosts();
+  out.ghosts.assign(ghosts.begin(), ghosts.end());
+  return out;
+}
+
+void FrameScene::add_bodies(const std::map<AuthorId, Pose>& poses,
+                            std::vector<Body>& bodies) const {
+  for (const auto& [author, pose] : poses) {
+    if (const auto body = player_body(author, pose, player_.eye())) bodies.push_back(*body);
+  }
+}
+
+void FrameScene::add_ground(std::vector<Marker>& markers) const {
+  const Replica& replica = session_.replica();
+  if (replica.past()) return;
+  for (const auto& [seq, box] : replica.ground().boxes()) {
+    if (const auto outline = ground_marker(box, player_.eye(), draw_distance()))
+      markers.push_back(*outline);
+  }
+}
+
+void FrameScene::add_aim(std::vector<Marker>& markers) const {
+  if (const auto hit = tool_.pick())
+    markers.push_back(outline_of(box_between(hit->voxel, hit->voxel), 0.002, 20, 20, 20));
+}
+
+void FrameScene::add_selection(std::vector<Marker>& markers) const {
+  constexpr double kGap = 0.01;
+  if (const auto& selection = tool_.box().selection())
+    markers.push_back(outline_of(*selection, kGap, 60, 160, 255));
+  for (const VoxelPos at : tool_.box().points())
+    markers.push_back(outline_of(box_between(at, at), kGap, 255, 200, 60));
+}
+
+}  // namespace runstone

@@ -1,0 +1,48 @@
+// FrameScene: makes the camera and the contents of a frame, besides the chunks and the interface:
+// other players, outlines and ghosts. Thread: the main thread.
+#pragma once
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "client/play/edit_tool.hpp"
+#include "client/play/player.hpp"
+#include "client/play/view_follower.hpp"
+#include "client/render/frame_contents.hpp"
+#include "client/render/renderer.hpp"
+#include "client/session/client_session.hpp"
+
+namespace runstone {
+
+class FrameScene {
+ public:
+  /// All must outlive the scene.
+  FrameScene(const ClientSession& session, const Player& player, const EditTool& tool,
+             const ViewFollower& view)
+      : session_(session), player_(player), tool_(tool), view_(view) {}
+
+  /// `field_of_view` is vertical, in degrees; nullopt: that of screenshots of scripts.
+  Camera camera(std::optional<double> field_of_view) const;
+  /// Returns the distance up to which ground is seen, in voxels: that of the tiles if some have
+  /// arrived, otherwise that of the chunks.
+  double reach() const;
+  /// `poses`: where the other players are shown. `outlines_aim`: the voxel in sight is outlined.
+  /// `shows_ground`: protected boxes are outlined. The ghosts are those of the tool.
+  FrameContents contents(const std::map<AuthorId, Pose>& poses, bool outlines_aim,
+                         bool shows_ground) const;
+
+ private:
+  double draw_distance() const;  // of chunks, voxels
+  void add_bodies(const std::map<AuthorId, Pose>& poses, std::vector<Body>& bodies) const;
+  void add_ground(std::vector<Marker>& markers) const;
+  void add_aim(std::vector<Marker>& markers) const;
+  /// Adds the outlines of the selection and of the places that a tool has so far.
+  void add_selection(std::vector<Marker>& markers) const;
+
+  const ClientSession& session_;
+  const Player& player_;
+  const EditTool& tool_;
+  const ViewFollower& view_;
+};
+
+}  // namespace runstone

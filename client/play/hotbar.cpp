@@ -1,0 +1,67 @@
+#include "client/play/hotbar.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "common/materials/material_lookup.hpp"
+
+namespace runstone {
+namespace {
+
+/// The materials that builders use most, one for each slot: the first name that the world has.
+/// Names of Luanti's default game precede those of the built-in table, which an imported world gets
+/// beside its own materials.
+constexpr std::array<std::string_view, 2> kFirst[] = {
+    {"stone"},           {"dirt_with_grass", "grass"},  {"dirt"},  {"wood", "planks"},
+    {"brick"},           {"stonebrick", "stone_brick"}, {"glass"}, {"tree", "log"},
+    {"meselamp", "lamp"}};
+
+bool is_block(const MaterialInfo& material) {
+  return material.visibility != Visibility::empty && material.body == MaterialBody::solid;
+}
+
+}  // namespace
+
+void Hotbar::fill(const MaterialTable& materials) {
+  slots_.fill(kEmpty);
+  std::size_t filled = 0;
+  const auto add = [&](Material material) {
+    const auto is_there = std::find(slots_.begin(), slots_.end(), material) != slots_.end();
+    if (filled < kSlotCount && !is_there) slots_[filled++] = material;
+  };
+  for (const auto& names : kFirst) {
+    for (const std::string_view name : names) {
+      const auto found = find_material(materials, name);
+      if (!found || !is_block(materials[*found])) continue;
+      add(*found);
+      break;
+    }
+  }
+  // Full blocks hide what is behind them, unlike plants and fences.
+  for (const Visibility visibility : {Visibility::opaque, Visibility::transparent}) {
+    for (std::size_t id = 1; id < materials.size() && filled < kSlotCount; ++id) {
+      const auto material = static_cast<Material>(id);
+      if (is_block(materials[material]) && materials[material].visibility == visibility)
+        add(material);
+    }
+  }
+  slot_ = 0;
+}
+
+void Hotbar::scroll(int steps) {
+  const auto count = static_cast<int>(kSlotCount);
+  const int slot = (static_cast<int>(slot_) - steps) % count;
+  slot_ = static_cast<std::size_t>((slot + count) % count);
+}
+
+void Hotbar::hold(Material material) {
+  const auto found = std::find(slots_.begin(), slots_.end(), material);
+  if (found != slots_.end()) {
+    slot_ = static_cast<std::size_t>(found - slots_.begin());
+  } else {
+    slots_[slot_] = material;
+  }
+}
+
+}  // namespace runstone

@@ -1,0 +1,100 @@
+#include "client/play/tool_actions.hpp"
+
+#include <cstddef>
+#include <utility>
+
+namespace runstone {
+namespace {
+
+using KeyAnswer = Result<std::string, std::string>;
+
+KeyAnswer choose_tool(EditTool& tool, const std::string& name) {
+  static_cast<void>(tool.box().choose(name));
+  return "tool: " + name;
+}
+
+/// Chooses the tool so many places further in the list.
+KeyAnswer choose_from_here(EditTool& tool, std::size_t places) {
+  ToolBox& box = tool.box();
+  std::size_t i = 0;
+  while (&box.tool() != box.tools()[i].get()) ++i;
+  return choose_tool(tool, std::string(box.tools()[(i + places) % box.tools().size()]->name()));
+}
+
+KeyAnswer resize(EditTool& tool, int steps) {
+  tool.box().change_size(steps);
+  const std::string text = tool.text();
+  return text.empty() ? "this tool has no size" : text;
+}
+
+KeyAnswer words(const Result<void, std::string>& done, const char* text) {
+  if (!done) return failure(done.error());
+  return std::string(text);
+}
+
+KeyAnswer next_symmetry(EditTool& tool) {
+  Symmetry next = tool.box().symmetry();
+  const auto kind = (static_cast<unsigned>(next.kind) + 1) % 5;
+  next.kind = static_cast<SymmetryKind>(kind);
+  if (next.kind == SymmetryKind::x) {
+    const auto hit = tool.aim().hit;
+    if (!hit) return failure("look at the voxel in the middle of the symmetry first");
+    next.centre2_x = 2 * hit->voxel.x;
+    next.centre2_z = 2 * hit->voxel.z;
+  }
+  tool.box().set_symmetry(next);
+  return next.kind == SymmetryKind::none ? "no symmetry" : tool.text();
+}
+
+KeyAnswer turn_preview(EditTool& tool) {
+  const bool is_shown = !tool.box().is_preview_shown();
+  tool.box().show_preview(is_shown);
+  return std::string(is_shown ? "previews are shown" : "previews are hidden");
+}
+
+}  // namespace
+
+std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Action action,
+                                                            TimeUs now_us) {
+  ToolBox& box = tool.box();
+  const Replica& replica = tool.replica();
+  if (action >= Action::tool_1 && action <= Action::tool_10) {
+    const auto i = static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::tool_1);
+    return choose_tool(tool, std::string(box.tools()[i]->name()));
+  }
+  switch (action) {
+    case Action::next_tool:
+      return choose_from_here(tool, 1);
+    case Action::previous_tool:
+      return choose_from_here(tool, box.tools().size() - 1);
+    case Action::larger:
+      return resize(tool, 1);
+    case Action::smaller:
+      return resize(tool, -1);
+    case Action::select:
+      return choose_tool(tool, "select");
+    case Action::copy:
+      return words(box.copy(replica, true), "copied");
+    case Action::cut:
+      return words(tool.submit(box.cut(replica, true), now_us), "cut");
+    case Action::paste:
+      if (!box.clipboard().content) return KeyAnswer(failure("nothing was copied"));
+      return choose_tool(tool, "paste");
+    case Action::clear_selection:
+      return words(tool.submit(box.fill(kEmpty), now_us), "cleared");
+    case Action::rotate:
+      box.rotate(1);
+      return KeyAnswer(std::string("the clipboard is turned"));
+    case Action::mirror:
+      box.mirror(Axis::x);
+      return KeyAnswer(std::string("the clipboard is mirrored"));
+    case Action::symmetry:
+      return next_symmetry(tool);
+    case Action::preview:
+      return turn_preview(tool);
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace runstone

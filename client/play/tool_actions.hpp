@@ -1,0 +1,17 @@
+// Tool actions: carries out the actions of the building keys on the tool box.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "client/input/action.hpp"
+#include "client/play/edit_tool.hpp"
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+/// Carries out an action of a key. Returns nullopt if it is no action of the tools. Otherwise
+/// returns a line for the player, as the value or as the failure.
+std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Action action,
+                                                            TimeUs now_us);
+
+}  // namespace runstone

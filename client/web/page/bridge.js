@@ -1,0 +1,47 @@
+// The functions of client/web/page.hpp: they pass their arguments on to Module.page (client.js).
+// Emscripten 3.1 takes functions apart as text, and knows no arrows.
+"use strict";
+mergeInto(LibraryManager.library, {
+  page_progress: function (text, share, detail) {
+    Module.page.progress(UTF8ToString(text), share, UTF8ToString(detail));
+  },
+  page_joined: function () {
+    Module.page.joined();
+  },
+  page_state: function (text) {
+    Module.page.state(UTF8ToString(text));
+  },
+  page_failed: function (headline, detail) {
+    Module.page.failed(UTF8ToString(headline), UTF8ToString(detail));
+  },
+  page_notice: function (text, isWarning) {
+    Module.page.notice(UTF8ToString(text), isWarning !== 0);
+  },
+  page_chat: function (name, text) {
+    Module.page.chat(UTF8ToString(name), UTF8ToString(text));
+  },
+  page_open_chat: function () {
+    Module.page.openChat();
+  },
+  page_clear_materials: function () {
+    Module.page.clearMaterials();
+  },
+  page_material: function (id, name, colour) {
+    Module.page.material(id, UTF8ToString(name), colour);
+  },
+  page_toggle_palette: function () {
+    Module.page.togglePalette();
+  },
+  page_slot: function (slot, material, isChosen) {
+    Module.page.slot(slot, material, isChosen !== 0);
+  },
+  page_players: function (count, names) {
+    Module.page.players(count, UTF8ToString(names));
+  },
+  page_walking: function (isWalking) {
+    Module.page.walking(isWalking !== 0);
+  },
+  page_keep_server: function (world, key) {
+    Module.page.keepServer(UTF8ToString(world), UTF8ToString(key));
+  },
+});

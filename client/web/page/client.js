@@ -1,0 +1,287 @@
+// The page of the browser client: the door, what lies over the canvas, and input. The world itself is
+// the program in runstone-web-client.wasm, which calls the functions of `page` (client/web/page.hpp).
+"use strict";
+
+const $ = (id) => document.getElementById(id);
+const NOTICE_MS = 6000;
+const LINES_MAX = 12;
+
+let runstone = null; // the program, once it has been loaded
+let isPlaying = false;
+const materials = new Map();
+
+function fail(headline, detail) {
+  isPlaying = false;
+  document.exitPointerLock?.();
+  document.body.classList.add("failed");
+  $("hud").hidden = true;
+  $("door").hidden = false;
+  $("share").hidden = true;
+  $("step").textContent = headline;
+  $("detail").textContent = detail;
+  $("enter").textContent = "Try again";
+  $("enter").disabled = false;
+  $("enter").onclick = (event) => {
+    event.preventDefault();
+    location.reload();
+  };
+}
+
+function colourOf(material) {
+  return `#${(materials.get(material)?.colour ?? 0).toString(16).padStart(6, "0")}`;
+}
+
+const page = {
+  progress(text, share, detail) {
+    $("step").textContent = text;
+    $("detail").textContent = detail;
+    $("share").hidden = false;
+    if (share >= 0) $("share").value = share;
+    else $("share").removeAttribute("value");
+  },
+  joined() {
+    isPlaying = true;
+    $("door").hidden = true;
+    $("hud").hidden = false;
+    $("canvas").focus();
+  },
+  state(text) {
+    $("state").textContent = text;
+  },
+  failed: fail,
+  notice(text, isWarning) {
+    const line = document.createElement("div");
+    line.textContent = text;
+    if (isWarning) line.className = "warning";
+    $("notices").append(line);
+    while ($("notices").children.length > 4) $("notices").firstChild.remove();
+    setTimeout(() => line.remove(), NOTICE_MS);
+  },
+  chat(name, text) {
+    const line = document.createElement("div");
+    line.textContent = name ? `${name}: ${text}` : text;
+    $("lines").append(line);
+    while ($("lines").children.length > LINES_MAX) $("lines").firstChild.remove();
+  },
+  openChat() {
+    document.exitPointerLock?.();
+    $("say").hidden = false;
+    $("say").focus();
+  },
+  clearMaterials() {
+    materials.clear();
+    $("palette").replaceChildren();
+  },
+  material(id, name, colour) {
+    materials.set(id, { name, colour });
+    const button = document.createElement("button");
+    button.textContent = name;
+    button.style.background = colourOf(id);
+    button.onclick = () => {
+      runstone._web_hold(id);
+      $("palette").hidden = true;
+      $("canvas").focus();
+    };
+    $("palette").append(button);
+  },
+  togglePalette() {
+    $("palette").hidden = !$("palette").hidden;
+    if (!$("palette").hidden) document.exitPointerLock?.();
+  },
+  slot(slot, material, isChosen) {
+    const button = $("slots").children[slot];
+    button.style.background = material === 0 ? "transparent" : colourOf(material);
+    button.title = materials.get(material)?.name ?? "";
+    button.classList.toggle("chosen", isChosen);
+  },
+  players(count, names) {
+    $("players").textContent = count === 0 ? "" : names;
+  },
+  walking(isWalking) {
+    $("walk").textContent = isWalking ? "fly" : "walk";
+  },
+  keepServer: Keys.keepServer,
+};
+
+// Joining.
+
+function missing() {
+  if (typeof WebAssembly !== "object") return ["This browser has no WebAssembly", "A browser of this decade has it."];
+  // A function that uses a vector instruction: (func v128.const drop).
+  const simd = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0,
+    253, 15, 253, 98, 11]);
+  if (!WebAssembly.validate(simd))
+    return ["This browser has no SIMD of WebAssembly", "Chrome 91, Firefox 89, Safari 16.4 and later versions have it."];
+  const probe = document.createElement("canvas").getContext("webgl2");
+  if (!probe) {
+    return ["This browser has no WebGL 2",
+      "It may be switched off in its settings, or the graphics driver may be blocked. The desktop client does not need it."];
+  }
+  probe.getExtension("WEBGL_lose_context")?.loseContext();
+  return null;
+}
+
+async function loadProgram() {
+  $("step").textContent = "loading the program";
+  await new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    script.src = "runstone-web-client.js";
+    script.onload = resolve;
+    script.onerror = () => reject(new Error("runstone-web-client.js cannot be loaded"));
+    document.head.append(script);
+  });
+  runstone = await makeRunstone({
+    page,
+    onAbort: (why) => fail("The client has failed", `${why}\nLoad the page again. Your edits are on the server.`),
+    printErr: (text) => console.warn(text),
+  });
+  runstone._web_prepare();
+}
+
+function resize() {
+  const canvas = $("canvas");
+  // More pixels than these cost more than they show.
+  const scale = Math.min(window.devicePixelRatio || 1, 2);
+  canvas.width = Math.max(1, Math.round(canvas.clientWidth * scale));
+  canvas.height = Math.max(1, Math.round(canvas.clientHeight * scale));
+  runstone?._web_resize(canvas.width, canvas.height, canvas.clientWidth, canvas.clientHeight);
+}
+
+async function join(event) {
+  event.preventDefault();
+  $("enter").disabled = true;
+  $("detail").textContent = "";
+  const name = $("name").value.trim();
+  localStorage.setItem("name", name);
+  localStorage.setItem("quality", $("quality").value);
+  localStorage.setItem("sight", $("sight").value);
+  const keys = await Keys.load();
+  if (!keys.isKept) page.notice("this browser keeps no keys: you are somebody else at your next visit", true);
+  const url = new URL("/play", location.href);
+  url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+  // An invite stands behind the '#', which browsers send to nobody.
+  const invite = new URLSearchParams(location.hash.slice(1)).get("invite") ?? "";
+  runstone.ccall("web_join", "number",
+    ["string", "string", "string", "string", "number", "string", "number", "number", "number"],
+    [url.href, name, invite, keys.seed, keys.isKept ? 1 : 0, keys.servers, Number($("sight").value), 3,
+      Number($("quality").value)]);
+  $("join").hidden = true;
+  resize();
+}
+
+// Input.
+
+const isTyping = (target) => target instanceof HTMLInputElement || target instanceof HTMLSelectElement;
+const modifiers = (event) => (event.ctrlKey ? 1 : 0) | (event.shiftKey ? 2 : 0) | (event.altKey ? 4 : 0);
+
+function onKey(event) {
+  if (!isPlaying || isTyping(event.target) || event.metaKey) return;
+  // The browser keeps its own keys.
+  if (event.code === "F5" || event.code === "F11" || event.code === "F12") return;
+  event.preventDefault();
+  runstone.ccall("web_key", null, ["string", "string", "number", "number", "number"],
+    [event.code, event.key, event.type === "keydown" ? 1 : 0, event.repeat ? 1 : 0, modifiers(event)]);
+}
+
+function onButton(event) {
+  if (!isPlaying || event.pointerType === "touch") return;
+  event.preventDefault();
+  const isPressed = event.type === "pointerdown";
+  if (isPressed) {
+    $("canvas").focus();
+    // Without a lock, as in some frames, the mouse turns the player while it is over the canvas.
+    if (document.pointerLockElement === null) $("canvas").requestPointerLock?.()?.catch?.(() => {});
+  }
+  runstone._web_button(event.button, isPressed ? 1 : 0);
+}
+
+function onTouch(event) {
+  if (!isPlaying) return;
+  event.preventDefault();
+  document.body.classList.add("touch");
+  const phase = { touchstart: 0, touchmove: 1, touchend: 2, touchcancel: 3 }[event.type];
+  for (const touch of event.changedTouches) runstone._web_touch(touch.identifier, phase, touch.clientX, touch.clientY);
+}
+
+// A button that is a key as long as it is held.
+function heldKey(id, code) {
+  const send = (isPressed) => (event) => {
+    event.preventDefault();
+    runstone.ccall("web_key", null, ["string", "string", "number", "number", "number"], [code, "", isPressed, 0, 0]);
+  };
+  $(id).addEventListener("pointerdown", send(1));
+  for (const type of ["pointerup", "pointercancel", "pointerleave"]) $(id).addEventListener(type, send(0));
+}
+
+function listen() {
+  const canvas = $("canvas");
+  window.addEventListener("keydown", onKey);
+  window.addEventListener("keyup", onKey);
+  canvas.addEventListener("pointerdown", onButton);
+  window.addEventListener("pointerup", onButton);
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener("mousemove", (event) => isPlaying && runstone._web_mouse(event.movementX, event.movementY));
+  canvas.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    if (isPlaying) runstone._web_wheel(-Math.sign(event.deltaY));
+  }, { passive: false });
+  for (const type of ["touchstart", "touchmove", "touchend", "touchcancel"])
+    canvas.addEventListener(type, onTouch, { passive: false });
+  document.addEventListener("pointerlockchange", () =>
+    isPlaying && runstone._web_capture(document.pointerLockElement === canvas ? 1 : 0));
+  window.addEventListener("blur", () => runstone?._web_focus_lost());
+  window.addEventListener("resize", resize);
+  window.addEventListener("pagehide", () => runstone?._web_leave());
+  // A page that comes back from the browser's history has said goodbye.
+  window.addEventListener("pageshow", (event) => event.persisted && location.reload());
+  $("say").addEventListener("keydown", (event) => {
+    if (event.key !== "Enter" && event.key !== "Escape") return;
+    if (event.key === "Enter") runstone.ccall("web_say", null, ["string"], [$("say").value]);
+    $("say").value = "";
+    $("say").hidden = true;
+    $("canvas").focus();
+  });
+  for (let slot = 0; slot < 9; ++slot) {
+    const button = document.createElement("button");
+    const number = document.createElement("span");
+    number.textContent = slot + 1;
+    button.append(number);
+    button.onclick = () => {
+      runstone._web_choose_slot(slot);
+      canvas.focus();
+    };
+    $("slots").append(button);
+  }
+  $("mode").onclick = () => {
+    const removes = $("mode").classList.toggle("removes");
+    $("mode").textContent = removes ? "remove" : "place";
+    runstone._web_tap_mode(removes ? 1 : 0);
+  };
+  heldKey("up", "Space");
+  heldKey("down", "ShiftLeft");
+  $("walk").onclick = () => runstone._web_walk_or_fly();
+  $("talk").onclick = page.openChat;
+  $("all").onclick = page.togglePalette;
+  if (window.matchMedia("(pointer: coarse)").matches) document.body.classList.add("touch");
+}
+
+async function begin() {
+  $("name").value = localStorage.getItem("name") ?? "";
+  $("quality").value = localStorage.getItem("quality") ?? "-1";
+  $("sight").value = localStorage.getItem("sight") ?? "6";
+  const lack = missing();
+  if (lack) return fail(...lack);
+  listen();
+  resize();
+  try {
+    await loadProgram();
+  } catch (error) {
+    return fail("The client cannot be loaded", String(error));
+  }
+  $("step").textContent = "";
+  $("enter").disabled = false;
+  $("join").addEventListener("submit", join);
+  if ($("name").value === "") $("name").focus();
+}
+
+begin();

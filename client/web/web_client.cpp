@@ -1,0 +1,334 @@
+#include "client/web/web_client.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "client/play/tool_actions.hpp"
+#include "client/web/page.hpp"
+#include "common/core/hex.hpp"
+#include "common/os/steady_clock.hpp"
+
+namespace runstone {
+namespace {
+
+/// The times that a turn gives to what was received and to meshes. Frames of 60 a second take 16 ms,
+/// and drawing needs some of them.
+constexpr TimeUs kReceiveUs = 4'000, kMeshUs = 6'000;
+/// While there is no ground to see, no frame is waited for.
+constexpr TimeUs kJoinReceiveUs = 12'000, kJoinMeshUs = 24'000;
+/// A view whose chunks have been here for this long is taken as meshed.
+constexpr TimeUs kMeshedUs = 2'000'000;
+/// Joining ends with this many meshed chunks, or this long after the world opened.
+constexpr std::uint64_t kGroundChunks = 27;
+constexpr TimeUs kGroundWaitUs = 5'000'000;
+/// A frame that follows the one before within this time has kept pace with a display of 60 Hz. Shorter
+/// times cannot be measured, because the browser waits for the display.
+constexpr TimeUs kPaceUs = 20'000;
+/// What the automatic quality is given for such a frame.
+constexpr TimeUs kPaceTookUs = 8'000;
+constexpr double kFieldOfView = 69;  // degrees, vertical
+
+/// Returns the share of the memory that tiles and their meshes may take: an eighth, if there are
+/// tiles.
+std::size_t far_bytes_max(const JoinOptions& options) {
+  return options.far_levels == 0 ? 0 : (options.memory_mib << 20) / 8;
+}
+
+}  // namespace
+
+WebClient::WebClient(const JoinOptions& options, Screen& screen)
+    : options_(options),
+      screen_(screen),
+      started_us_(steady_now_us()),
+      network_(options),
+      session_(network_.session()),
+      pipeline_(session_.replica(), &queue_, true, 0, nullptr),
+      tool_(session_, player_, pipeline_.recorder(), tools_),
+      motion_(session_.replica(), player_),
+      clicks_(tool_),
+      far_budget_(far_bytes_max(options), options.far_levels),
+      budget_((options.memory_mib << 20) - far_bytes_max(options),
+              {options.view_radius, options.view_radius_v}),
+      view_(session_, player_, budget_.radii(), options.far_levels),
+      scene_(session_, player_, tool_, view_),
+      hud_(session_, player_),
+      pins_kept_(options.pinned.size()),
+      input_us_(started_us_) {
+  queue_.set_drawing(screen.name());
+  pipeline_.set_measures_frames(false);
+  pipeline_.look().set_quality(options.quality);
+}
+
+void WebClient::turn(TimeUs now_us, bool draws) {
+  if (is_over_) return;
+  network_.step(now_us, now_us + (is_joined_ ? kReceiveUs : kJoinReceiveUs));
+  if (network_.take_world_opened()) on_world_opened();
+  take_new_materials();
+  drain_changes();
+  players_.update(session_.others(), now_us);
+  limit_memory(now_us);
+  handle_input(now_us);
+  pipeline_.take_drawn();
+  hud_.step();
+  view_.update_completeness(now_us);
+  network_.flush(now_us);  // local edits go first
+  follow_player(now_us);
+  session_.tick(now_us);
+  network_.flush(now_us);
+  drain_changes();
+  if (tool_.step_preview()) pipeline_.moved();
+  mesh_until(steady_now_us() + (is_joined_ ? kMeshUs : kJoinMeshUs));
+  if (draws) {
+    draw(now_us);
+  } else {
+    drawn_us_.reset();
+  }
+  show_state(now_us);
+}
+
+void WebClient::on_world_opened() {
+  if (!opened_us_) opened_us_ = steady_now_us();
+  const Welcome& welcome = *session_.welcome();
+  player_.enter(welcome.world_id, welcome.spawn);
+  pipeline_.set_materials(welcome.materials);
+  motion_.set_materials(welcome.materials);
+  static_cast<void>(tools_.set_materials(welcome.materials));
+  const bool is_new = std::exchange(world_, welcome.world_id) != welcome.world_id;
+  hud_.set_materials(welcome.materials, is_new);
+  budget_.set_wanted({std::min(options_.view_radius, welcome.view_radius_max),
+                      std::min(options_.view_radius_v, welcome.view_radius_max)});
+  if (view_.radii() != budget_.radii() || options_.far_levels != 0)
+    view_.set_radii(budget_.radii());
+  keep_server_key();
+}
+
+void WebClient::keep_server_key() {
+  const auto& pinned = session_.pinned();
+  if (pinned.size() == pins_kept_) return;
+  pins_kept_ = pinned.size();
+  const Welcome& welcome = *session_.welcome();
+  page_keep_server(to_hex(welcome.world_id).c_str(), to_hex(welcome.server_key).c_str());
+}
+
+void WebClient::take_new_materials() {
+  if (!session_.is_open()) return;
+  const MaterialTable& materials = session_.welcome()->materials;
+  if (materials.size() <= pipeline_.materials().size()) return;
+  pipeline_.set_materials(materials);
+  motion_.set_materials(materials);
+  static_cast<void>(tools_.set_materials(materials));
+  hud_.set_materials(materials, false);
+}
+
+void WebClient::drain_changes() {
+  const ReplicaChanges changes = session_.replica().drain_changes();
+  pipeline_.take(changes, session_.clock(), steady_now_us());
+  hud_.take(changes);
+}
+
+MemoryUse WebClient::memory_use() const {
+  return {session_.replica().chunk_bytes(), session_.replica().local_edits().bytes(),
+          pipeline_.mesh_bytes(), pipeline_.gpu_bytes()};
+}
+
+void WebClient::limit_memory(TimeUs now_us) {
+  const auto complete_since_us = view_.complete_since_us();
+  const bool is_meshed = complete_since_us && now_us - *complete_since_us >= kMeshedUs;
+  if (budget_.step(memory_use(), is_meshed, now_us)) {
+    view_.set_radii(budget_.radii());
+    pipeline_.view_changed();
+    drain_changes();
+  }
+  const MemoryUse kept = memory_use();
+  pipeline_.set_mesh_bytes_max(budget_.room(kept) + kept.meshes + kept.gpu);
+  const bool is_far_complete = is_meshed && pipeline_.is_far_meshed();
+  if (!far_budget_.step(pipeline_.far_bytes(), is_far_complete, now_us)) return;
+  view_.set_far_levels(far_budget_.levels());
+  drain_changes();
+}
+
+void WebClient::capture(bool is_captured) {
+  if (is_captured) {
+    input_.capture();
+  } else {
+    input_.release();
+  }
+}
+
+void WebClient::handle_input(TimeUs now_us) {
+  const double seconds = static_cast<double>(now_us - std::exchange(input_us_, now_us)) / 1e6;
+  touch_.step(now_us);
+  input_.push(touch_.take_events());
+  const RoutedInput routed = input_.route({});
+  const bool was_waiting = player_.is_waiting_for_ground();
+  motion_.step(routed.player, std::min(seconds, 0.1), {});
+  if (player_.take_fallen_out())
+    hud_.notify("you fell out of the world: you are at its spawn, and fly", true);
+  if (was_waiting != player_.is_waiting_for_ground()) pipeline_.moved();
+  for (const std::string& why : clicks_.step(routed.player, true, now_us)) hud_.notify(why, true);
+  if (routed.player.pick_clicks != 0) {
+    if (const auto hit = tool_.pick()) hud_.hold(hit->material);
+  }
+  if (routed.player.scroll != 0) hud_.scroll(routed.player.scroll);
+  for (const Action action : routed.player.actions) act(action);
+  if (!routed.player.actions.empty()) pipeline_.moved();
+}
+
+void WebClient::act(Action action) {
+  if (const auto done = act_on_tool(tool_, action, steady_now_us()))
+    return hud_.notify(*done ? **done : done->error(), !*done);
+  if (action >= Action::hold_slot_1 && action <= Action::hold_slot_9) {
+    return hud_.choose(static_cast<std::size_t>(action) -
+                       static_cast<std::size_t>(Action::hold_slot_1));
+  }
+  switch (action) {
+    case Action::walk_or_fly:
+      player_.set_walking(!player_.is_walking());
+      return page_walking(player_.is_walking() ? 1 : 0);
+    case Action::undo:
+      return hud_.say("/undo");
+    case Action::redo:
+      return hud_.say("/redo");
+    case Action::chat:
+    case Action::command:
+      input_.release();
+      return page_open_chat();
+    case Action::palette:
+      input_.release();
+      return page_toggle_palette();
+    default:
+      return;
+  }
+}
+
+void WebClient::follow_player(TimeUs now_us) {
+  if (view_.follow(now_us)) {
+    pipeline_.view_changed();
+    drain_changes();
+  }
+  if (!session_.replica().opened()) return;
+  pipeline_.joined(session_.view(), started_us_);
+  pipeline_.set_eye(player_.chunk(session_.replica().chunk_edge()));
+}
+
+void WebClient::mesh_until(TimeUs until_us) {
+  // Without workers each call meshes one chunk and one tile at most.
+  for (bool has_worked = true; has_worked;) {
+    const std::uint64_t before = pipeline_.mesh_jobs() + pipeline_.far_jobs();
+    pipeline_.mesh();
+    has_worked =
+        pipeline_.mesh_jobs() + pipeline_.far_jobs() != before && steady_now_us() < until_us;
+  }
+}
+
+void WebClient::draw(TimeUs now_us) {
+  const bool is_moving = players_.take_moved(now_us);
+  pace_.step(pipeline_, true, player_.pose(), is_moving, now_us);
+  if (!pipeline_.is_frame_due(now_us)) {
+    drawn_us_.reset();
+    if (queue_.waiting() != 0) queue_.serve(screen_);
+    return;
+  }
+  if (drawn_us_) {
+    const TimeUs took_us = now_us - *drawn_us_;
+    pipeline_.look().frame_took(took_us < kPaceUs ? kPaceTookUs : took_us);
+  }
+  drawn_us_ = now_us;
+  pace_.drew(now_us);
+  FrameOrder order;
+  order.camera = scene_.camera(is_exact_ ? std::nullopt : std::optional<double>(kFieldOfView));
+  order.width = size_[0];
+  order.height = size_[1];
+  order.contents = scene_.contents(players_.at(now_us), !is_exact_, false);
+  pipeline_.draw(now_us, std::move(order));
+  queue_.serve(screen_);
+  pipeline_.take_drawn();
+}
+
+void WebClient::show_state(TimeUs now_us) {
+  const FailureWords words = network_.failure_words();
+  if (network_.is_refused()) {
+    is_over_ = true;
+    network_.leave();
+    return page_failed(words.headline.c_str(), words.detail.c_str());
+  }
+  if (!opened_us_) {
+    const char* step = "showing your key to the server";
+    if (session_.state() == SessionState::offline) step = "connecting";
+    if (session_.state() == SessionState::hello_sent) step = "greeting the server";
+    const std::string why =
+        words.headline.empty() ? "" : words.headline + ". Trying again. " + words.detail;
+    return page_progress(step, -1, why.c_str());
+  }
+  if (!is_joined_) {
+    const bool has_ground = session_.is_open() && pipeline_.meshed_count() >= kGroundChunks;
+    if (has_ground || view_.is_complete() || now_us - *opened_us_ > kGroundWaitUs) {
+      is_joined_ = true;
+      return page_joined();
+    }
+    const double share = static_cast<double>(pipeline_.meshed_count()) / kGroundChunks;
+    return page_progress("receiving the world", std::min(share, 1.0), "");
+  }
+  std::string state;
+  if (!network_.is_connected()) {
+    state = "the server is gone: connecting again";
+    const std::size_t waiting = session_.replica().local_edits().all().size();
+    if (waiting != 0) state += "; edits that wait for it: " + std::to_string(waiting);
+    if (!words.headline.empty()) state += " (" + words.headline + ": " + words.detail + ")";
+  } else if (player_.is_waiting_for_ground()) {
+    state = "the ground here has not arrived yet";
+  } else if (budget_.binds()) {
+    state = "view " + std::to_string(budget_.radii().h) + " of " +
+            std::to_string(budget_.wanted().h) + " chunks, because memory is short";
+  } else {
+    state = tool_.text();
+  }
+  hud_.set_state(state);
+}
+
+void WebClient::leave() {
+  is_over_ = true;
+  network_.leave();
+}
+
+void WebClient::set_quality(std::optional<Quality> quality) {
+  pipeline_.look().set_quality(quality);
+  pipeline_.moved();
+}
+
+void WebClient::set_camera(const WorldPos& eye, double yaw, double pitch, bool is_exact) {
+  player_.move_to(eye);
+  player_.look(yaw, pitch);
+  is_exact_ = is_exact;
+  pipeline_.look().set_exact(is_exact);
+  pipeline_.moved();
+}
+
+bool WebClient::is_complete() const {
+  return session_.is_open() && view_.is_complete() && pipeline_.is_up_to_date();
+}
+
+std::string WebClient::report_json() const {
+  ClientReport out;
+  out.renderer = pipeline_.renderer_name();
+  out.seconds = static_cast<double>(steady_now_us() - started_us_) / 1e6;
+  out.latency = pipeline_.recorder().report();
+  out.join = pipeline_.join();
+  out.edits_refused = tool_.refused();
+  out.memory = memory_use();
+  out.budget = {budget_.bytes_max(), budget_.peak_bytes(), budget_.shrinks(),
+                budget_.growths(),   budget_.radii(),      budget_.wanted()};
+  out.far = {session_.replica().far_tiles().count(),
+             pipeline_.far_bytes(),
+             far_budget_.bytes_max(),
+             session_.view().levels,
+             far_budget_.wanted(),
+             scene_.reach(),
+             {}};
+  out.net = network_.net_counts();
+  out.snapshots = network_.snapshots();
+  pipeline_.add_to(out);
+  return to_json(out, session_);
+}
+
+}  // namespace runstone

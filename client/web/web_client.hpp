@@ -1,0 +1,113 @@
+// WebClient: the browser client while it plays on a server. It is the browser's counterpart of Client
+// (client/app), from the same parts, on one thread: turn() runs once a frame and does what the other
+// client does on several threads, in slices. Thread: the page's only one.
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/display/draw_queue.hpp"
+#include "client/display/mesh_pipeline.hpp"
+#include "client/display/smooth_players.hpp"
+#include "client/far/far_budget.hpp"
+#include "client/input/input_router.hpp"
+#include "client/input/touch_pad.hpp"
+#include "client/play/click_edits.hpp"
+#include "client/play/display_pace.hpp"
+#include "client/play/edit_tool.hpp"
+#include "client/play/frame_scene.hpp"
+#include "client/play/player.hpp"
+#include "client/play/player_motion.hpp"
+#include "client/play/view_follower.hpp"
+#include "client/report/report.hpp"
+#include "client/schedule/memory_budget.hpp"
+#include "client/tools/tool_box.hpp"
+#include "client/web/join_options.hpp"
+#include "client/web/web_hud.hpp"
+#include "client/web/web_session.hpp"
+
+namespace runstone {
+
+class WebClient {
+ public:
+  /// `screen` must outlive the client.
+  WebClient(const JoinOptions& options, Screen& screen);
+
+  /// Handles what has arrived, and draws a frame if one is due. `draws`: the page is visible.
+  void turn(TimeUs now_us, bool draws);
+  /// Says goodbye to the server and ends the play.
+  void leave();
+
+  /// Queues input for the next turn.
+  void push(const InputEvent& event) { input_.push({event}); }
+  TouchPad& touch() { return touch_; }
+  /// Captures the mouse, or frees it.
+  void capture(bool is_captured);
+  void set_size(int width, int height) { size_ = {width, height}; }
+  void set_quality(std::optional<Quality> quality);
+  void act(Action action);
+  WebHud& hud() { return hud_; }
+
+  /// For pictures that depend on world and camera only: moves the eye, and draws frames without
+  /// what follows the clock.
+  void set_camera(const WorldPos& eye, double yaw, double pitch, bool is_exact);
+
+  /// Returns true if the view is complete, meshed and on the screen.
+  bool is_complete() const;
+  const Player& player() const { return player_; }
+  const WebSession& network() const { return network_; }
+  const MeshPipeline& pipeline() const { return pipeline_; }
+  std::optional<Material> shown_at(VoxelPos at) const { return session_.replica().shown_at(at); }
+  std::optional<RayHit> sight() const { return tool_.pick(); }
+  /// Returns the measurements so far as the JSON of ClientReport.
+  std::string report_json() const;
+
+ private:
+  void on_world_opened();
+  void take_new_materials();
+  void drain_changes();
+  MemoryUse memory_use() const;
+  void limit_memory(TimeUs now_us);
+  void handle_input(TimeUs now_us);
+  void follow_player(TimeUs now_us);
+  /// Sends what is queued, and meshes until this time, one chunk at least.
+  void mesh_until(TimeUs until_us);
+  void draw(TimeUs now_us);
+  /// Shows how far joining is, or what is to be known while playing.
+  void show_state(TimeUs now_us);
+  void keep_server_key();
+
+  const JoinOptions options_;
+  Screen& screen_;
+  const TimeUs started_us_;
+  WebSession network_;
+  ClientSession& session_;  // of network_
+  DrawQueue queue_{nullptr};
+  MeshPipeline pipeline_;
+  Player player_;
+  ToolBox tools_;
+  EditTool tool_;
+  PlayerMotion motion_;
+  ClickEdits clicks_;
+  InputRouter input_;
+  TouchPad touch_;
+  FarBudget far_budget_;
+  MemoryBudget budget_;
+  ViewFollower view_;
+  SmoothPlayers players_;
+  FrameScene scene_;
+  DisplayPace pace_;
+  WebHud hud_;
+
+  std::array<int, 2> size_{640, 360};  // of the canvas, pixels
+  std::optional<WorldId> world_;       // whose materials the hotbar has
+  std::size_t pins_kept_ = 0;          // server keys that the page keeps
+  std::optional<TimeUs> opened_us_;    // when the first world opened
+  std::optional<TimeUs> drawn_us_;     // when the last turn began, if it drew a frame
+  TimeUs input_us_ = 0;                // when input was last handled
+  bool is_joined_ = false, is_over_ = false, is_exact_ = false;
+};
+
+}  // namespace runstone

@@ -1,0 +1,77 @@
+// WebLink: a link to the server over a WebSocket of the browser, which is made again after a loss. A
+// binary message is one frame (docs/protocol.md). A page cannot hold a WebSocket back, so what was
+// received waits here until read(); the server sends chunks only as fast as they are acknowledged,
+// that is, read.
+// Full: if kReceivedBytesMax wait, the connection is closed, and the session resumes.
+// Thread: the page's only one. Callbacks come from read() and step().
+#pragma once
+#include <emscripten/websocket.h>
+
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "client/stream/link_callbacks.hpp"
+#include "common/core/ids.hpp"
+
+namespace runstone {
+
+class WebLink {
+ public:
+  static constexpr std::size_t kReceivedBytesMax = std::size_t{64} << 20;
+  static constexpr TimeUs kConnectUsMax = 10'000'000;
+  /// The pause between attempts starts with `first` and doubles up to `max`. A random quarter is
+  /// added or subtracted.
+  static constexpr TimeUs kPauseUsFirst = 250'000, kPauseUsMax = 5'000'000;
+
+  /// `url` begins with ws:// or wss://. `callbacks` must outlive the link.
+  WebLink(std::string url, LinkCallbacks& callbacks);
+  ~WebLink();
+  WebLink(const WebLink&) = delete;
+  WebLink& operator=(const WebLink&) = delete;
+
+  /// Handles received messages until this time, one at least.
+  void read(TimeUs until_us);
+  /// Returns true if read() left messages for the next call.
+  bool has_received() const { return !received_.empty(); }
+  /// Sends what is queued, acknowledges, and connects when it is time. Call it about every 10 ms.
+  void step(TimeUs now_us);
+  /// Queues a message. Does nothing if the connection has ended.
+  void send(ConnectionNumber connection, const EncodedMessage& message);
+  /// Closes this connection once all queued messages are sent. The link connects again after a
+  /// pause.
+  void close(ConnectionNumber connection);
+  /// Sends what is queued, closes the connection and makes no other one.
+  void stop();
+  const LinkStats& stats() const { return stats_; }
+
+ private:
+  void connect(TimeUs now_us);
+  void disconnect(std::string why);
+  void flush();
+
+  static int on_open(int type, const EmscriptenWebSocketOpenEvent* event, void* link);
+  static int on_message(int type, const EmscriptenWebSocketMessageEvent* event, void* link);
+  static int on_close(int type, const EmscriptenWebSocketCloseEvent* event, void* link);
+
+  struct Received {
+    Bytes bytes;
+    TimeUs at_us = 0;
+  };
+
+  const std::string url_;
+  LinkCallbacks& callbacks_;
+  LinkStats stats_;
+  EMSCRIPTEN_WEBSOCKET_T socket_ = 0;  // 0: none
+  bool is_open_ = false, is_closing_ = false, is_stopped_ = false;
+  ConnectionNumber connection_ = 0;  // the newest one
+  std::unique_ptr<MessageStream> stream_;
+  std::deque<Received> received_;
+  std::size_t received_bytes_ = 0;  // of received_
+  std::string lost_;                // why the connection ended; reported after received_
+  bool is_lost_ = false;
+  TimeUs connect_us_ = 0;  // when the next attempt begins, or the one under way began
+  TimeUs pause_us_ = kPauseUsFirst;
+};
+
+}  // namespace runstone

@@ -1,0 +1,235 @@
+// runstone-web-client: the client in a browser. The page (page/client.js) calls the functions below.
+// The browser calls turn() once a frame, and a timer calls it while the page is hidden, so that the
+// connection lives.
+#include <emscripten.h>
+#include <emscripten/html5.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "client/input/dom_key.hpp"
+#include "client/platform/canvas_context.hpp"
+#include "client/web/page.hpp"
+#include "client/web/web_client.hpp"
+#include "common/core/hex.hpp"
+#include "common/os/steady_clock.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr const char* kCanvas = "#canvas";
+constexpr double kHiddenTurnMs = 500;
+/// A page that is shown has frames at least this often.
+constexpr TimeUs kShownUs = 250'000;
+
+std::unique_ptr<Screen> screen;
+std::unique_ptr<WebClient> client;  // null: nobody plays
+TimeUs frame_us = 0;                // when the last frame began
+
+EM_BOOL on_frame(double /*time_ms*/, void* /*unused*/) {
+  frame_us = steady_now_us();
+  if (client) client->turn(frame_us, true);
+  return EM_TRUE;
+}
+
+void on_timer(void* /*unused*/) {
+  const TimeUs now_us = steady_now_us();
+  if (client && now_us - frame_us > kShownUs) client->turn(now_us, false);
+}
+
+EM_BOOL on_context_lost(int /*type*/, const void* /*reserved*/, void* /*unused*/) {
+  if (client) client->leave();
+  page_failed("The graphics driver has failed",
+              "the context of WebGL 2 is lost; load the page again");
+  return EM_TRUE;
+}
+
+/// Reads lines "WORLD KEY" in hex. Lines of another form are left out.
+std::map<WorldId, PublicKey> read_pins(const char* text) {
+  std::map<WorldId, PublicKey> out;
+  std::istringstream in(text);
+  std::string world, key;
+  while (in >> world >> key) {
+    WorldId world_id;
+    PublicKey server_key;
+    if (read_hex(world, world_id) && read_hex(key, server_key)) out[world_id] = server_key;
+  }
+  return out;
+}
+
+std::optional<Quality> quality_of(int level) {
+  if (level < 0 || level > static_cast<int>(Quality::high)) return std::nullopt;
+  return static_cast<Quality>(level);
+}
+
+/// Returns the text of a function that gives one to the page. It lives until the next call.
+const char* kept(std::string text) {
+  static std::string last;
+  last = std::move(text);
+  return last.c_str();
+}
+
+}  // namespace
+}  // namespace runstone
+
+using namespace runstone;
+
+extern "C" {
+
+/// Makes the context of WebGL 2. Ends the program if the browser gives none, so the page asks for one
+/// before.
+EMSCRIPTEN_KEEPALIVE void web_prepare() {
+  screen = make_screen(make_canvas_context(kCanvas));
+  emscripten_set_webglcontextlost_callback(kCanvas, nullptr, false, on_context_lost);
+  emscripten_request_animation_frame_loop(on_frame, nullptr);
+  emscripten_set_interval(on_timer, kHiddenTurnMs, nullptr);
+}
+
+/// Joins the server. `seed` is the secret key of the player in hex, and `pins` has the known server
+/// keys. `quality` is -1 for automatic. Returns 0 if the seed has another form.
+EMSCRIPTEN_KEEPALIVE int web_join(const char* url, const char* name, const char* ticket,
+                                  const char* seed, int is_key_kept, const char* pins,
+                                  int view_radius, int far_levels, int quality) {
+  JoinOptions options;
+  if (!read_hex(seed, options.seed)) return 0;
+  options.url = url;
+  options.name = name;
+  options.ticket = ticket;
+  options.is_key_kept = is_key_kept != 0;
+  options.pinned = read_pins(pins);
+  options.view_radius = static_cast<std::uint8_t>(std::clamp(view_radius, 2, 16));
+  options.view_radius_v = static_cast<std::uint8_t>((options.view_radius + 1) / 2);
+  options.far_levels = static_cast<std::uint8_t>(std::clamp(far_levels, 0, 5));
+  options.quality = quality_of(quality);
+  client = std::make_unique<WebClient>(options, *screen);
+  return 1;
+}
+
+EMSCRIPTEN_KEEPALIVE void web_leave() {
+  if (client) client->leave();
+}
+
+EMSCRIPTEN_KEEPALIVE void web_resize(int width, int height, double page_width, double page_height) {
+  if (!client) return;
+  client->set_size(std::max(width, 1), std::max(height, 1));
+  client->touch().set_size(page_width, page_height);
+}
+
+/// `modifiers`: 1 control, 2 shift, 4 alt.
+EMSCRIPTEN_KEEPALIVE void web_key(const char* code, const char* text, int is_pressed, int is_repeat,
+                                  int modifiers) {
+  if (!client) return;
+  KeyEvent event;
+  event.place = key_of_code(code);
+  event.key = key_of_text(text, event.place);
+  event.is_pressed = is_pressed != 0;
+  event.is_repeat = is_repeat != 0;
+  event.control = (modifiers & 1) != 0;
+  event.shift = (modifiers & 2) != 0;
+  event.alt = (modifiers & 4) != 0;
+  client->push(event);
+}
+
+EMSCRIPTEN_KEEPALIVE void web_mouse(double dx, double dy) {
+  if (client) client->push(CursorEvent{0, 0, dx, dy});
+}
+
+/// `button` as in MouseEvent.button.
+EMSCRIPTEN_KEEPALIVE void web_button(int button, int is_pressed) {
+  if (!client || button < 0 || button > 2) return;
+  constexpr MouseButton kButtons[] = {MouseButton::left, MouseButton::middle, MouseButton::right};
+  client->push(ButtonEvent{kButtons[button], is_pressed != 0});
+}
+
+EMSCRIPTEN_KEEPALIVE void web_wheel(double steps) {
+  if (client) client->push(WheelEvent{steps});
+}
+
+EMSCRIPTEN_KEEPALIVE void web_capture(int is_captured) {
+  if (client) client->capture(is_captured != 0);
+}
+
+EMSCRIPTEN_KEEPALIVE void web_focus_lost() {
+  if (client) client->push(FocusEvent{false});
+}
+
+/// `phase`: 0 begins, 1 moves, 2 ends, 3 all touches are cancelled.
+EMSCRIPTEN_KEEPALIVE void web_touch(int id, int phase, double x, double y) {
+  if (!client) return;
+  client->capture(true);
+  TouchPad& touch = client->touch();
+  if (phase == 0) touch.begin(id, x, y, steady_now_us());
+  if (phase == 1) touch.move(id, x, y);
+  if (phase == 2) touch.end(id, steady_now_us());
+  if (phase == 3) touch.cancel();
+}
+
+EMSCRIPTEN_KEEPALIVE void web_tap_mode(int removes) {
+  if (client) client->touch().set_mode(removes != 0 ? TapMode::remove : TapMode::place);
+}
+
+EMSCRIPTEN_KEEPALIVE void web_choose_slot(int slot) {
+  if (client && slot >= 0) client->hud().choose(static_cast<std::size_t>(slot));
+}
+
+EMSCRIPTEN_KEEPALIVE void web_hold(int material) {
+  if (client && material > 0 && static_cast<std::size_t>(material) < kMaterialCountMax)
+    client->hud().hold(static_cast<Material>(material));
+}
+
+EMSCRIPTEN_KEEPALIVE void web_walk_or_fly() {
+  if (client) client->act(Action::walk_or_fly);
+}
+
+EMSCRIPTEN_KEEPALIVE void web_say(const char* line) {
+  if (client) client->hud().say(line);
+}
+
+EMSCRIPTEN_KEEPALIVE void web_quality(int level) {
+  if (client) client->set_quality(quality_of(level));
+}
+
+// For tests and measurements.
+
+EMSCRIPTEN_KEEPALIVE void web_camera(double x, double y, double z, double yaw, double pitch,
+                                     int is_exact) {
+  if (client) client->set_camera({x, y, z}, yaw, pitch, is_exact != 0);
+}
+
+/// Returns the material at a voxel, or -1 if it is not known.
+EMSCRIPTEN_KEEPALIVE int web_voxel(int x, int y, int z) {
+  const auto shown = client ? client->shown_at({x, y, z}) : std::nullopt;
+  return shown ? static_cast<int>(*shown) : -1;
+}
+
+EMSCRIPTEN_KEEPALIVE const char* web_state() {
+  if (!client) return kept("{}");
+  const WorldPos& eye = client->player().eye();
+  const auto sight = client->sight();
+  char text[512];
+  std::snprintf(text, sizeof text,
+                "{\"connected\": %s, \"complete\": %s, \"x\": %.3f, \"y\": %.3f, \"z\": %.3f, "
+                "\"walking\": %s, \"held\": %d, \"meshed\": %llu, \"frames\": %llu, \"sight\": %s",
+                client->network().is_connected() ? "true" : "false",
+                client->is_complete() ? "true" : "false", eye.x, eye.y, eye.z,
+                client->player().is_walking() ? "true" : "false", client->player().held(),
+                static_cast<unsigned long long>(client->pipeline().meshed_count()),
+                static_cast<unsigned long long>(client->pipeline().frames_presented()),
+                sight ? "[" : "null}");
+  std::string out = text;
+  if (sight) {
+    out += std::to_string(sight->voxel.x) + ", " + std::to_string(sight->voxel.y) + ", " +
+           std::to_string(sight->voxel.z) + ", " + std::to_string(sight->material) + "]}";
+  }
+  return kept(std::move(out));
+}
+
+EMSCRIPTEN_KEEPALIVE const char* web_report() {
+  return kept(client ? client->report_json() : std::string("{}"));
+}
+
+}  // extern "C"

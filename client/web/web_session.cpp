@@ -1,0 +1,97 @@
+#include "client/web/web_session.hpp"
+
+#include <sodium.h>
+
+#include <utility>
+
+#include "client/report/link_counts.hpp"
+#include "common/os/steady_clock.hpp"
+
+namespace runstone {
+namespace {
+
+SessionConfig config_of(const JoinOptions& options) {
+  SessionConfig config;
+  config.keys = key_pair_of(options.seed);
+  config.name = options.name;
+  config.ticket = options.ticket;
+  config.pinned = options.pinned;
+  if (options.is_key_kept) config.features |= kFeatureNames;
+  config.instance = 0;
+  while (config.instance == 0) randombytes_buf(&config.instance, sizeof config.instance);
+  config.view.radius_h = options.view_radius;
+  config.view.radius_v = options.view_radius_v;
+  config.view.levels = options.far_levels;
+  return config;
+}
+
+/// Returns the host and port of a URL.
+std::string host_of(const std::string& url) {
+  const std::size_t scheme = url.find("://");
+  const std::size_t begin = scheme == std::string::npos ? 0 : scheme + 3;
+  return url.substr(begin, url.find('/', begin) - begin);
+}
+
+}  // namespace
+
+WebSession::WebSession(const JoinOptions& options)
+    : host_(host_of(options.url)), session_(config_of(options)), link_(options.url, *this) {}
+
+void WebSession::step(TimeUs now_us, TimeUs until_us) {
+  if (has_left_) return;
+  link_.read(until_us);
+  if (!is_refused() || connection_ != 0) link_.step(now_us);
+}
+
+void WebSession::flush(TimeUs now_us) {
+  if (has_left_) return;
+  for (const Message& message : session_.take_outgoing())
+    link_.send(connection_, encode_message(message));
+  if (session_.wants_close() && connection_ != 0) link_.close(connection_);
+  if (connection_ != 0) link_.step(now_us);
+}
+
+bool WebSession::take_world_opened() { return std::exchange(world_opened_, false); }
+
+void WebSession::leave() {
+  if (std::exchange(has_left_, true)) return;
+  session_.close(GoodbyeReason::closing, "");
+  for (const Message& message : session_.take_outgoing())
+    link_.send(connection_, encode_message(message));
+  link_.stop();
+}
+
+void WebSession::on_connected(ConnectionNumber connection,
+                              const std::optional<ChannelBinding>& binding) {
+  connection_ = connection;
+  Nonce nonce;
+  randombytes_buf(nonce.data(), nonce.size());
+  session_.connected(nonce, binding, steady_now_us());
+  for (const Message& message : session_.take_outgoing())
+    link_.send(connection_, encode_message(message));
+}
+
+void WebSession::on_received(LinkReceived received) {
+  if (const auto* chunks = std::get_if<Chunks>(&received.message))
+    count_snapshots(snapshots_, *chunks, received);
+  session_.receive(std::move(received.message),
+                   {received.received_us, received.unpacked_us, steady_now_us()});
+  if (std::exchange(connects_handled_, session_.connect_count()) != session_.connect_count()) {
+    world_opened_ = true;
+    last_words_ = {};
+  }
+}
+
+void WebSession::on_disconnected(ConnectionNumber /*connection*/, std::string why) {
+  connection_ = 0;
+  session_.disconnected();
+  last_words_ = session_.end() ? words_of(*session_.end()) : words_of_link(why, host_);
+}
+
+FailureWords WebSession::failure_words() const {
+  return is_refused() ? words_of(*session_.end()) : last_words_;
+}
+
+NetCounts WebSession::net_counts() const { return runstone::net_counts(link_.stats()); }
+
+}  // namespace runstone

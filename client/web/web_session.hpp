@@ -1,0 +1,55 @@
+// WebSession: the session of the browser client on its link. Thread: the page's only one.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "client/report/report.hpp"
+#include "client/session/client_session.hpp"
+#include "client/session/failure_words.hpp"
+#include "client/web/join_options.hpp"
+#include "client/web/web_link.hpp"
+
+namespace runstone {
+
+class WebSession final : private LinkCallbacks {
+ public:
+  explicit WebSession(const JoinOptions& options);
+
+  ClientSession& session() { return session_; }
+  const ClientSession& session() const { return session_; }
+
+  /// Handles what was received until this time, and connects when it is time.
+  void step(TimeUs now_us, TimeUs until_us);
+  /// Sends the session's outgoing messages.
+  void flush(TimeUs now_us);
+  /// Returns true if a world was opened, for the first time or again, since the last call.
+  bool take_world_opened();
+  /// Says goodbye to the server. Nothing is sent or received afterwards.
+  void leave();
+
+  bool is_connected() const { return session_.is_open(); }
+  /// Returns true if the server has refused this client for good.
+  bool is_refused() const { return session_.end() && session_.end()->final; }
+  /// Returns in words why there is no connection, or what happened to the last attempt.
+  FailureWords failure_words() const;
+  NetCounts net_counts() const;
+  const SnapshotStats& snapshots() const { return snapshots_; }
+
+ private:
+  void on_connected(ConnectionNumber connection,
+                    const std::optional<ChannelBinding>& binding) override;
+  void on_received(LinkReceived received) override;
+  void on_disconnected(ConnectionNumber connection, std::string why) override;
+
+  const std::string host_;  // for words
+  ClientSession session_;
+  ConnectionNumber connection_ = 0;  // 0: none
+  std::uint64_t connects_handled_ = 0;
+  bool world_opened_ = false;  // until take_world_opened()
+  bool has_left_ = false;
+  FailureWords last_words_;
+  SnapshotStats snapshots_;
+  WebLink link_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,340 @@
+// Tests of the client in a browser: headless Chromium, a real server and a real gateway.
+//   node browser_test.mjs PROGRAMS PAGE [OUT]
+// PROGRAMS is the folder of the native programs, PAGE that of the files that the preset web builds.
+// Pictures and measurements go to OUT. scripts/check-browser builds both and runs this.
+import puppeteer from "puppeteer-core";
+import assert from "node:assert/strict";
+import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+
+import { differenceOf, sideBySide } from "./pictures.mjs";
+import { Player, until } from "./player.mjs";
+import { World } from "./world.mjs";
+
+const [bin, files, out = "browser-out"] = process.argv.slice(2);
+if (!files) {
+  console.error("usage: browser_test.mjs PROGRAMS PAGE [OUT]");
+  process.exit(2);
+}
+mkdirSync(out, { recursive: true });
+
+const PAGE_BYTES_MAX = 1_500_000; // compressed
+const FLAT = ["--generator", "flat"];
+// Above the flat ground of the world, looking down at 45 degrees.
+const ABOVE = { yaw: 0.5, pitch: -0.8 };
+
+const browser = await puppeteer.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+const cases = [];
+const test = (name, body) => cases.push({ name, body });
+const measured = {};
+
+// What all cases share: a world, and a way to open a browser of somebody who was never here.
+let world;
+const somebody = () => browser.createBrowserContext();
+
+// Looks from some voxels above a place of the ground that nobody has used yet.
+let places = 0;
+async function lookDown(player) {
+  const state = await player.state();
+  const x = 0.5 + 12 * places++;
+  await player.camera(x, state.y, 0.5, ABOVE.yaw, ABOVE.pitch);
+  return until("the ground is in sight", async () => (await player.state()).sight);
+}
+
+// Adds one voxel on top of the one in sight by a click. Returns its place.
+async function place(player) {
+  const [x, y, z] = (await player.state()).sight;
+  await player.click("right");
+  return until("the placed voxel is shown", async () => {
+    const { sight } = await player.state();
+    return sight && (sight[0] !== x || sight[1] !== y || sight[2] !== z) ? sight : null;
+  });
+}
+
+test("a browser joins, and shows the ground", async () => {
+  const player = await Player.open(await somebody(), world.address);
+  await player.joined("ada");
+  await player.complete();
+  const state = await player.state();
+  assert(state.meshed > 50, `${state.meshed} chunks were meshed`);
+  assert(await player.page.evaluate(() => crossOriginIsolated));
+  await player.page.screenshot({ path: join(out, "joined.png") });
+  assert.deepEqual(player.errors, []);
+  await player.page.close();
+});
+
+test("keys move the player, who walks on the ground", async () => {
+  const player = await Player.open(await somebody(), world.address);
+  await player.joined("wanda");
+  await player.complete();
+  await player.capture();
+  const before = await player.state();
+  await player.holdKey("KeyW", 700);
+  const after = await player.state();
+  assert(Math.hypot(after.x - before.x, after.z - before.z) > 2, "W moved the player");
+  await player.page.keyboard.press("KeyF");
+  await until("F lets the player walk", async () => (await player.state()).walking);
+  await until("the player stands", async () => {
+    const one = (await player.state()).y;
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    return one < before.y && (await player.state()).y === one;
+  });
+  await player.holdKey("KeyD", 500);
+  const there = await player.state();
+  assert(Math.hypot(there.x - after.x, there.z - after.z) > 0.5, "D walked to the side");
+  assert.deepEqual(player.errors, []);
+  await player.page.close();
+});
+
+test("what one builds and digs, the other sees, and a reload finds", async () => {
+  const context = await somebody();
+  const bob = await Player.open(context, world.address);
+  await bob.joined("bob");
+  await bob.complete();
+  const eve = await Player.open(await somebody(), world.address);
+  await eve.joined("eve");
+  await eve.complete();
+  await until("each sees the other's name", async () =>
+    (await bob.text("#players")) === "eve" && (await eve.text("#players")) === "bob");
+
+  await bob.page.bringToFront();
+  await bob.capture();
+  const ground = await lookDown(bob);
+  await bob.page.keyboard.press("Digit3");
+  const placed = await place(bob);
+  assert.notDeepEqual(placed.slice(0, 3), ground.slice(0, 3));
+  await until("eve sees what bob placed", async () => (await eve.voxel(...placed.slice(0, 3))) === placed[3]);
+  await bob.click("left");
+  await until("bob removed it", async () => (await bob.voxel(...placed.slice(0, 3))) === 0);
+  await bob.click("left");
+  await until("and dug into the ground", async () => (await bob.voxel(...ground.slice(0, 3))) === 0);
+  await until("eve sees the hole", async () => (await eve.voxel(...ground.slice(0, 3))) === 0);
+  await eve.page.bringToFront();
+  await eve.camera(ground[0] + 0.5, ground[1] + 6, ground[2] + 0.5, 0, -1.5);
+  await new Promise((resolve) => setTimeout(resolve, 500));
+  await eve.page.screenshot({ path: join(out, "hole.png") });
+  await eve.page.close();
+
+  // The key is in IndexedDB, so the player of the next visit is the same, and owns the name.
+  await bob.page.reload();
+  await bob.joined("bob");
+  await bob.complete();
+  assert.equal(await bob.voxel(...ground.slice(0, 3)), 0);
+  const seeds = await bob.page.evaluate(async () => [(await Keys.load()).seed, (await Keys.load()).seed]);
+  assert.equal(seeds[0], seeds[1]);
+  assert.match(seeds[0], /^[0-9a-f]{64}$/);
+  assert(!(await bob.page.evaluate(() => location.href)).includes(seeds[0]));
+  const mallory = await Player.open(await somebody(), world.address);
+  await mallory.join("bob");
+  await until("another key does not get the name", () =>
+    mallory.page.evaluate(() => document.body.classList.contains("failed")));
+  assert.match(await mallory.text("#step"), /refuses this name/);
+  await mallory.page.close();
+  assert.deepEqual(bob.errors, []);
+  await bob.page.close();
+});
+
+test("clicks are fast", async () => {
+  const player = await Player.open(await somebody(), world.address);
+  await player.joined("click");
+  await player.complete();
+  await player.capture();
+  await lookDown(player);
+  for (let i = 0; i < 20; ++i) {
+    await player.click(i % 2 === 0 ? "right" : "left");
+    await new Promise((resolve) => setTimeout(resolve, 150));
+  }
+  const report = await until("the edits are counted", async () => {
+    const now = await player.report();
+    return now.latency_us.local_predicted.edits >= 20 ? now : null;
+  });
+  measured.latency_us = report.latency_us.local_predicted;
+  measured.mesh = report.mesh;
+  measured.join = report.join;
+  assert.equal(report.latency_us.local_rejected, 0);
+  await player.page.close();
+});
+
+test("the connection is made again after the server has restarted", async () => {
+  const player = await Player.open(await somebody(), world.address);
+  await player.joined("rita");
+  await player.complete();
+  await player.capture();
+  await lookDown(player);
+  const before = await place(player);
+  await world.stopServer();
+  await until("the page says that the server is gone", async () => /server is gone/.test(await player.text("#state")));
+  const offline = await place(player); // it waits for the server
+  await player.page.screenshot({ path: join(out, "server-gone.png") });
+  await world.startServer();
+  await until("the player is there again", async () => (await player.state()).connected);
+  await until("the words are gone", async () => (await player.text("#state")) === "");
+  await player.complete();
+  assert.equal(await player.voxel(...before.slice(0, 3)), before[3]);
+  const witness = await Player.open(await somebody(), world.address);
+  await witness.joined("witness");
+  await witness.complete();
+  await until("what was built while the server was away has arrived", async () =>
+    (await witness.voxel(...offline.slice(0, 3))) === offline[3]);
+  await witness.page.close();
+  await player.page.close();
+});
+
+test("a network that drops for a while loses nothing", async () => {
+  const player = await Player.open(await somebody(), world.address,
+    { inject: () => {
+      // Every WebSocket of the page can be cut.
+      const Real = WebSocket;
+      window.sockets = [];
+      window.WebSocket = class extends Real {
+        constructor(...all) {
+          super(...all);
+          window.sockets.push(this);
+        }
+      };
+    } });
+  await player.joined("dropped");
+  await player.complete();
+  await player.page.evaluate(() => sockets.at(-1).close());
+  await until("the connection is made again", async () =>
+    (await player.page.evaluate(() => sockets.length)) === 2 && (await player.state()).connected);
+  await player.complete();
+  assert.deepEqual(player.errors, []);
+  await player.page.close();
+});
+
+test("tampered frames end the connection with words", async () => {
+  const player = await Player.open(await somebody(), world.address,
+    { inject: () => {
+      const Real = WebSocket;
+      window.WebSocket = class extends Real {
+        set onmessage(handle) {
+          super.onmessage = (event) => {
+            const bytes = new Uint8Array(event.data.slice(0));
+            if (window.tampers) bytes[bytes.length - 1] ^= 0xff, bytes[3] ^= 0x80;
+            handle(new MessageEvent("message", { data: bytes.buffer }));
+          };
+        }
+      };
+    } });
+  await player.joined("tampered");
+  await player.page.evaluate(() => (window.tampers = true));
+  await until("the page says what is wrong", async () => /no Runstone server, or it is broken/.test(await player.text("#state")));
+  await player.page.evaluate(() => (window.tampers = false));
+  await until("the connection is made again", async () => (await player.text("#state")) === "");
+  await player.page.close();
+});
+
+test("a browser that lacks something gets words", async () => {
+  const noWebGl = await Player.open(await somebody(), world.address, { inject: () => {
+    const real = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return kind === "webgl2" ? null : real.call(this, kind, ...rest);
+    };
+  } });
+  await until("words about WebGL", async () => /no WebGL 2/.test(await noWebGl.text("#step")));
+  await noWebGl.page.screenshot({ path: join(out, "no-webgl.png") });
+  await noWebGl.page.close();
+  const noWasm = await Player.open(await somebody(), world.address, { inject: () => delete window.WebAssembly });
+  await until("words about WebAssembly", async () => /no WebAssembly/.test(await noWasm.text("#step")));
+  await noWasm.page.close();
+});
+
+test("on a phone, thumbs move, turn, place and remove", async () => {
+  const player = await Player.open(await somebody(), world.address, { width: 390, height: 780, touch: true });
+  await player.joined("thumb");
+  await player.complete();
+  const ground = await lookDown(player);
+  const touch = player.page.touchscreen;
+  const before = await player.state();
+  await touch.touchStart(80, 640);
+  await touch.touchMove(80, 580);
+  await new Promise((resolve) => setTimeout(resolve, 600));
+  await touch.touchEnd();
+  const moved = await player.state();
+  assert(Math.hypot(moved.x - before.x, moved.z - before.z) > 1, "the stick moved the player");
+  await player.camera(before.x, before.y, before.z, ABOVE.yaw, ABOVE.pitch);
+  await until("the same ground is in sight", async () => (await player.state()).sight?.join() === ground.join());
+  await touch.tap(300, 200);
+  const placed = await until("the tap placed a voxel", async () => {
+    const { sight } = await player.state();
+    return sight && sight.join() !== ground.join() ? sight : null;
+  });
+  await player.page.screenshot({ path: join(out, "phone.png") });
+  await player.page.tap("#mode");
+  await touch.tap(300, 200);
+  await until("a tap removed it again", async () => (await player.voxel(...placed.slice(0, 3))) === 0);
+  await touch.touchStart(250, 300);
+  await touch.touchMove(330, 300);
+  await touch.touchEnd();
+  await until("a thumb turned the player", async () => (await player.state()).sight?.join() !== ground.join());
+  assert.deepEqual(player.errors, []);
+  await player.page.close();
+});
+
+test("the picture is that of the desktop client", async () => {
+  const hills = await World.open(bin, files, ["--generator", "terrain", "--seed", "7"]);
+  try {
+    const [width, height] = [640, 360];
+    const player = await Player.open(await somebody(), hills.address, { width, height });
+    await player.joined("pia", { quality: "2", sight: "4" });
+    const eye = { x: 20.5, y: 75.5, z: -30.5 };
+    await player.camera(eye.x, eye.y, eye.z, 0.4, -0.35, true);
+    await player.complete();
+    await until("the distant ground is there", async () => {
+      const one = (await player.report()).far_ground?.tiles ?? 1;
+      await new Promise((resolve) => setTimeout(resolve, 1500));
+      return ((await player.report()).far_ground?.tiles ?? 1) === one;
+    });
+    await player.complete();
+    await player.page.$eval("#hud", (hud) => (hud.hidden = true));
+    await new Promise((resolve) => setTimeout(resolve, 1000));
+    const inBrowser = Buffer.from(await player.page.screenshot());
+    writeFileSync(join(out, "picture-browser.png"), inBrowser);
+    const onDesktop = hills.picture(eye, 0.4, -0.35, { width, height, view: 4, farLevels: 3 });
+    writeFileSync(join(out, "picture-desktop.png"), onDesktop);
+    writeFileSync(join(out, "browser-and-desktop.png"), Buffer.from(
+      await sideBySide(player.page, inBrowser.toString("base64"), onDesktop.toString("base64")), "base64"));
+    const { share, mean } = await differenceOf(player.page, inBrowser.toString("base64"),
+      onDesktop.toString("base64"), 24);
+    measured.picture = { share, mean };
+    assert(share < 0.02, `${(100 * share).toFixed(2)} % of the pixels differ`);
+    await player.page.close();
+  } finally {
+    await hills.close();
+  }
+});
+
+test("the page is small", async () => {
+  let bytes = 0;
+  for (const name of readFileSync(join(files, "files"), "utf8").trim().split("\n"))
+    bytes += statSync(join(files, `${name}.br`)).size;
+  measured.page_bytes = bytes;
+  assert(bytes <= PAGE_BYTES_MAX, `${bytes} bytes compressed`);
+});
+
+const only = process.env.ONLY;
+let failed = 0;
+try {
+  world = await World.open(bin, files, FLAT);
+  for (const { name, body } of cases) {
+    if (only && !name.includes(only)) continue;
+    const start = Date.now();
+    try {
+      await body();
+      console.log(`ok      ${name} (${((Date.now() - start) / 1000).toFixed(1)} s)`);
+    } catch (error) {
+      ++failed;
+      console.log(`FAILED  ${name}: ${error.stack ?? error}`);
+    }
+  }
+} finally {
+  await browser.close();
+  await world?.close();
+}
+writeFileSync(join(out, "measured.json"), JSON.stringify(measured, null, 2) + "\n");
+console.log(failed === 0 ? "all passed" : `${failed} failed`);
+process.exit(failed === 0 ? 0 : 1);

@@ -1,0 +1,37 @@
+// The meshes that WebAssembly makes are those of the native programs, bit for bit; and what they cost.
+//   node mesh_test.mjs NATIVE WEB    the folders with runstone-mesh-probe
+import { execFileSync } from "node:child_process";
+import { join } from "node:path";
+
+const [native, web] = process.argv.slice(2);
+const SECONDS = "0.2"; // for each world
+
+// Returns for each world its quads, their number, and the time of a chunk in microseconds.
+function probe(program, args) {
+  const out = new Map();
+  for (const line of execFileSync(program, [...args, SECONDS], { encoding: "utf8", timeout: 240_000 }).trim().split("\n")) {
+    const [name, quads, number, us] = line.split(", ");
+    out.set(name, { mesh: `${quads} quads, ${number}`, us: Number(us) });
+  }
+  return out;
+}
+
+const onMachine = probe(join(native, "runstone-mesh-probe"), []);
+// Emscripten 3.1 takes a node that has fetch() for a browser.
+const inWasm = probe(process.execPath, ["--no-experimental-fetch", join(web, "runstone-mesh-probe.js")]);
+let failed = onMachine.size < 30 || inWasm.size !== onMachine.size;
+let logs = 0;
+for (const [name, { mesh, us }] of onMachine) {
+  const other = inWasm.get(name);
+  if (other?.mesh !== mesh) {
+    failed = true;
+    console.log(`FAILED  ${name}: ${mesh} natively, ${other?.mesh} in WebAssembly`);
+  } else {
+    logs += Math.log(other.us / us);
+  }
+}
+if (!failed) {
+  console.log(`ok      the meshes of ${onMachine.size} worlds are equal; WebAssembly takes ` +
+    `${Math.exp(logs / onMachine.size).toFixed(2)} times as long for a chunk (geometric mean)`);
+}
+process.exit(failed ? 1 : 0);

@@ -1,0 +1,79 @@
+// A player in a browser: a page of the gateway with the client for browsers.
+const STEP_MS = 60_000;
+
+const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+// Asks until the answer is true (or not null), and returns it. Fails with `what` otherwise.
+export async function until(what, ask, ms = STEP_MS) {
+  let last;
+  for (const end = Date.now() + ms; Date.now() < end; await sleep(50)) {
+    last = await ask();
+    if (last) return last;
+  }
+  throw new Error(`${what}: not within ${ms / 1000} s`);
+}
+
+export class Player {
+  // Opens the page and fills in the form. `context` is a browser context, which has keys of its own.
+  static async open(context, address, { width = 640, height = 360, touch = false, hash = "", inject = null } = {}) {
+    const out = new Player();
+    out.page = await context.newPage();
+    out.errors = [];
+    out.page.on("pageerror", (error) => out.errors.push(String(error)));
+    out.page.on("console", (line) => {
+      if (line.type() === "error") out.errors.push(line.text());
+    });
+    await out.page.setViewport({ width, height, deviceScaleFactor: 1, hasTouch: touch, isMobile: touch });
+    if (inject) await out.page.evaluateOnNewDocument(inject);
+    await out.page.goto(`${address}/client/${hash}`);
+    return out;
+  }
+
+  async join(name, { quality = "0", sight = "4" } = {}) {
+    await until("the program is loaded", () => this.page.$eval("#enter", (button) => !button.disabled));
+    await this.page.$eval("#name", (input, text) => (input.value = text), name);
+    await this.page.select("#quality", quality);
+    await this.page.select("#sight", sight);
+    await this.page.click("#enter");
+  }
+  async joined(name, options) {
+    await this.join(name, options);
+    await until(`${name} has joined`, () => this.page.$eval("#hud", (hud) => !hud.hidden));
+  }
+  // Waits until the view has arrived, is meshed, and is on the screen.
+  async complete() {
+    await until("the view is complete", async () => (await this.state()).complete);
+  }
+
+  state() {
+    return this.page.evaluate(() => JSON.parse(runstone.ccall("web_state", "string", [], [])));
+  }
+  report() {
+    return this.page.evaluate(() => JSON.parse(runstone.ccall("web_report", "string", [], [])));
+  }
+  voxel(x, y, z) {
+    return this.page.evaluate((...at) => runstone._web_voxel(...at), x, y, z);
+  }
+  camera(x, y, z, yaw, pitch, isExact = false) {
+    return this.page.evaluate((...all) => runstone._web_camera(...all), x, y, z, yaw, pitch, isExact ? 1 : 0);
+  }
+  text(id) {
+    return this.page.$eval(id, (element) => element.textContent);
+  }
+
+  // The mouse is captured by the first click on the canvas.
+  async capture() {
+    const { width, height } = this.page.viewport();
+    await this.page.mouse.click(width / 2, height / 2);
+    await sleep(200);
+  }
+  async click(button) {
+    const { width, height } = this.page.viewport();
+    await this.page.mouse.click(width / 2, height / 2, { button, delay: 60 });
+  }
+  async holdKey(code, ms) {
+    await this.page.keyboard.down(code);
+    await sleep(ms);
+    await this.page.keyboard.up(code);
+  }
+}

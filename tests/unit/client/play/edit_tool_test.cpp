@@ -1,0 +1,205 @@
+#include "client/play/edit_tool.hpp"
+
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "client/play/tool_actions.hpp"
+#include "tests/support/authority_model.hpp"
+#include "tests/support/chunks_message.hpp"
+#include "tests/support/test_keys.hpp"
+
+using namespace runstone;
+using runstone::test::keys;
+
+namespace {
+
+constexpr TimeUs kNow = 1'000'000;
+constexpr EditPath kPaths[] = {EditPath::local_predicted, EditPath::local_confirmed};
+
+SessionConfig config() {
+  SessionConfig out;
+  out.keys = keys(1);
+  out.instance = 42;
+  out.view = {1, {0, 0, 0}, 1, 1};
+  return out;
+}
+
+template <class T>
+T sent(ClientSession& session) {
+  for (const Message& message : session.take_outgoing()) {
+    if (const auto* wanted = std::get_if<T>(&message)) return *wanted;
+  }
+  FAIL("the session did not send the expected message");
+  return {};
+}
+
+/// A session in an open world whose server answers no edit.
+struct Fixture {
+  Fixture() {
+    session.connected({5}, std::nullopt, kNow);
+    const Hello hello = sent<Hello>(session);
+    const KeyPair server = keys(9);
+    Welcome welcome;
+    welcome.world_id = {1, 2, 3};
+    welcome.chunk_edge = 16;
+    welcome.materials = default_material_table();
+    welcome.server_key = server.public_key;
+    welcome.challenge = {7};
+    welcome.view_radius_max = 8;
+    welcome.edit_volume_max = 1000;
+    welcome.signature = sign(server, server_transcript(hello, welcome, std::nullopt));
+    receive(welcome);
+    receive(SessionAccepted{6, 0});
+    REQUIRE(session.is_open());
+  }
+  void receive(Message message) { session.receive(std::move(message), {kNow, kNow, kNow}); }
+  Result<void, std::string> submit(VoxelPos at) {
+    return tool.submit({SetVoxel{at}, {}, 1}, kNow, kNow);
+  }
+  std::uint64_t infinite(EditPath path) const {
+    return recorder.report()[path]
+        .since_submit[static_cast<std::size_t>(LatencyStage::applied)]
+        .infinite();
+  }
+
+  ClientSession session{config()};
+  Player player;
+  LatencyRecorder recorder;
+  ToolBox box;
+  EditTool tool{session, player, recorder, box};
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "an edit in the live world is submitted and counted until it is answered",
+                 "[client_app]") {
+  REQUIRE(submit({1, 2, 3}).has_value());
+  CHECK(tool.refused() == 0);
+  CHECK(session.replica().local_edits().all().size() == 1);
+  recorder.take(session.replica().drain_changes(), session.clock(), kNow);
+  CHECK(infinite(EditPath::local_confirmed) == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "an edit in the past is refused with a reason and is in no percentile",
+                 "[client_app]") {
+  REQUIRE(session.request_history({}).has_value());
+  ViewState past;
+  past.past = true;
+  receive(past);
+  REQUIRE(session.replica().past());
+  const auto refused = submit({1, 2, 3});
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(refused.error() == "the past cannot be edited");
+  CHECK(tool.refused() == 1);
+  for (const EditPath path : kPaths) {
+    CHECK(recorder.report()[path].edits == 0);
+    CHECK(infinite(path) == 0);
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "an edit that finds no room is infinitely late", "[client_app]") {
+  for (std::size_t i = 0; i < kLocalEditsMax; ++i)
+    REQUIRE(session.submit({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
+  REQUIRE_FALSE(submit({1, 2, 3}).has_value());
+  CHECK(tool.refused() == 0);
+  for (const EditPath path : kPaths) CHECK(infinite(path) == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "a click at nothing makes no edit", "[client_app]") {
+  CHECK(tool.press(ToolButton::clear, kNow).error() == "nothing is in reach");
+  CHECK(tool.press(ToolButton::place, kNow).error() == "nothing is in reach");
+  CHECK(tool.refused() == 0);
+  CHECK(session.replica().local_edits().all().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "a voxel is placed on the ground in sight, but not where the player is",
+                 "[client_app]") {
+  runstone::test::AuthorityModel world(16);  // solid below 0
+  for (const std::int32_t y : {-1, 0})
+    receive(runstone::test::chunks_of(world.snapshot({0, y, 0})));
+  player.look(0, -std::numbers::pi / 2);
+  for (const double inside : {0.5, -0.5}) {
+    player.move_to({0.5, inside, 0.5});
+    CHECK(tool.press(ToolButton::place, kNow).error() == "you stand there: step back first");
+  }
+  CHECK(session.replica().local_edits().all().empty());
+  player.move_to({0.5, 1.5, 0.5});
+  REQUIRE(tool.press(ToolButton::place, kNow).has_value());
+  REQUIRE(session.replica().local_edits().all().size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection", "[client_app]") {
+  runstone::test::AuthorityModel world(16);
+  receive(runstone::test::chunks_of(world.snapshot({0, -1, 0})));
+  const auto act = [&](Action action) {
+    const auto done = act_on_tool(tool, action, kNow);
+    REQUIRE(done.has_value());
+    return *done ? **done : "refused: " + done->error();
+  };
+  CHECK_FALSE(act_on_tool(tool, Action::help, kNow).has_value());
+  CHECK(act(Action::next_tool) == "tool: box");
+  CHECK(act(Action::previous_tool) == "tool: voxel");
+  CHECK(act(Action::previous_tool) == "tool: paste");
+  CHECK(act(Action::copy) == "refused: nothing is selected");
+  CHECK(act(Action::paste) == "refused: nothing was copied");
+  box.select(VoxelBox{{0, -2, 0}, {3, 0, 1}});
+  CHECK(act(Action::cut) == "cut");
+  REQUIRE(session.replica().local_edits().all().size() == 1);
+  CHECK(session.replica().local_edits().all().begin()->second.edit ==
+        EditDescriptor{FillBox{{{0, -2, 0}, {3, 0, 1}}}, {}, kEmpty});
+  act(Action::rotate);
+  act(Action::mirror);
+  CHECK(box.clipboard().orientation == Orientation{}.rotated_about_y(1).mirrored(Axis::x));
+  CHECK(act(Action::paste) == "tool: paste");
+  CHECK(act(Action::symmetry) == "refused: look at the voxel in the middle of the symmetry first");
+  tool.fix_aim(FixedAim{{4, -1, 7}, Direction::pos_y});
+  CHECK(act(Action::symmetry) == "tool: paste, mask everything, mirrored along x");
+  CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 8, 14});
+  CHECK(act(Action::preview) == "previews are hidden");
+  CHECK(act(Action::select) == "tool: select");
+  CHECK(act(Action::larger) == "tool: select, mirrored along x");
+}
+
+TEST_CASE_METHOD(Fixture, "a tool previews its next click, and nothing in the past",
+                 "[client_app]") {
+  runstone::test::AuthorityModel world(16);
+  for (const std::int32_t y : {-1, 0})
+    receive(runstone::test::chunks_of(world.snapshot({0, y, 0})));
+  player.hold(2);
+  tool.fix_aim(FixedAim{{4, -1, 7}, Direction::pos_y});
+  CHECK_FALSE(tool.step_preview());  // of the plain voxel tool
+  REQUIRE(tool.box().choose("fill").has_value());
+  CHECK(tool.step_preview());
+  REQUIRE(tool.ghosts().size() == 1);
+  CHECK(tool.ghosts()[0].placed->quad_count() > 0);
+  REQUIRE(tool.box().choose("voxel").has_value());
+  CHECK(tool.ghosts().empty());
+  REQUIRE(tool.box().choose("fill").has_value());
+  while (tool.step_preview()) continue;
+  CHECK_FALSE(tool.ghosts().empty());
+  REQUIRE(session.request_history({}).has_value());
+  ViewState past;
+  past.past = true;
+  receive(past);
+  CHECK(tool.ghosts().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next action is another one",
+                 "[client_app]") {
+  const std::vector<EditDescriptor> two = {{SetVoxel{{1, 2, 3}}, {}, 1},
+                                           {SetVoxel{{4, 2, 3}}, {}, 1}};
+  session.receive(Pong{kNow - 200, kNow}, {kNow, kNow, kNow});
+  REQUIRE(tool.submit(ToolEdits(two), kNow).has_value());
+  REQUIRE(submit({9, 9, 9}).has_value());
+  REQUIRE(tool.submit(ToolEdits(two), kNow).has_value());
+  std::vector<ClientSequence> actions;
+  for (const auto& [seq, local] : session.replica().local_edits().all())
+    actions.push_back(local.action);
+  CHECK(actions == std::vector<ClientSequence>{1, 1, 0, 4, 4});
+  actions.clear();
+  for (const Message& message : session.take_outgoing()) {
+    if (const auto* request = std::get_if<EditRequest>(&message))
+      actions.push_back(request->action);
+  }
+  CHECK(actions == std::vector<ClientSequence>{1, 1, 0, 4, 4});
+}
