@@ -92,9 +92,9 @@ void measure_strand(EditBenchResult& result, unsigned repetitions) {
     for (double& us : *samples) us *= kStrandEdits;
   }
   result.rows.push_back(
-      row_of("edits on the world strand, 20 players", 1, kStrandEdits, timing.near_us));
+      row_of("edits of 20 players on the world strand", 1, kStrandEdits, timing.near_us));
   result.rows.push_back(
-      row_of(fmt::format("edits on the world strand, 20 players who see {} levels of tiles",
+      row_of(fmt::format("edits of 20 players who see {} levels of tiles on the world strand",
                          kStrandLevels),
              1, kStrandEdits, timing.far_us));
   const double share = median(timing.far_us) / median(timing.near_us);

@@ -19,7 +19,9 @@ TEST_CASE("cancelled moments end their reads, and the log is not read to the end
   Moments moments(folder.path(), *generator);
   CHECK(moments.open(5).has_value());
   moments.cancel();
-  CHECK(moments.chunk(5, {0, {0, 0, 0}}).has_value());  // it is open already
+  const auto chunk = moments.chunk(5, {0, {0, 0, 0}});  // of a moment that is open
+  REQUIRE_FALSE(chunk.has_value());
+  CHECK(chunk.error().kind == StoreError::Kind::cancelled);
   const auto opened = moments.open(kEdits);
   REQUIRE_FALSE(opened.has_value());
   CHECK(opened.error().kind == StoreError::Kind::cancelled);
