@@ -157,7 +157,7 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
     MapAnswer answer =
         co_await self->state_.map.answer(self->from_, view_of(request.target()),
                                          std::string(view_of(request[http::field::if_none_match])));
-    HttpAnswer out{answer.status, std::move(answer.type)};
+    HttpAnswer out{answer.status, std::move(answer.type), ""};
     out.tag = std::move(answer.etag);
     if (!out.tag.empty()) out.caching = HttpCaching::while_unchanged;
     out.shared = std::move(answer.body);
