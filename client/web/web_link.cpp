@@ -111,8 +111,15 @@ void WebLink::read(TimeUs until_us) {
   }
 }
 
+bool WebLink::takes_bytes() const {
+  constexpr unsigned short kOpen = 1;  // of WebSocket.readyState
+  unsigned short state = 0;
+  return emscripten_websocket_get_ready_state(socket_, &state) == EMSCRIPTEN_RESULT_SUCCESS &&
+         state == kOpen;
+}
+
 void WebLink::flush() {
-  if (!is_open_) return;
+  if (!is_open_ || !takes_bytes()) return;
   Bytes out;
   stream_->write(out, kSendBytesMax);
   for (ByteView left(out); !left.empty();) {

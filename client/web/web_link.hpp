@@ -49,6 +49,8 @@ class WebLink {
   void connect(TimeUs now_us);
   void disconnect(std::string why);
   void flush();
+  /// Returns false if the WebSocket is about to close; its event follows.
+  bool takes_bytes() const;
 
   static int on_open(int type, const EmscriptenWebSocketOpenEvent* event, void* link);
   static int on_message(int type, const EmscriptenWebSocketMessageEvent* event, void* link);
