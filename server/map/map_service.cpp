@@ -67,7 +67,7 @@ void MapService::ask(MapRequest request, std::string if_none_match, Reply reply)
   {
     const std::lock_guard lock(mutex_);
     if (queue_.size() < kQueueMax) {
-      Job job{std::move(request), std::move(if_none_match), std::move(reply), steady_now_us()};
+      Job job{request, std::move(if_none_match), std::move(reply), steady_now_us()};
       queue_.push_back(std::move(job));
       changed_.notify_one();
       return;

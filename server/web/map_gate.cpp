@@ -86,7 +86,7 @@ boost::asio::awaitable<MapAnswer> MapGate::wait_for(MapRequest request, std::str
       waiting->answered.cancel();
     });
   };
-  service_->ask(std::move(request), std::move(if_none_match), std::move(reply));
+  service_->ask(request, std::move(if_none_match), std::move(reply));
   while (!waiting->answer) {
     boost::system::error_code woken;
     co_await waiting->answered.async_wait(

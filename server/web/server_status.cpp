@@ -34,7 +34,7 @@ std::optional<PlayerPlace> read_place(std::string_view text) {
   for (double* number : {&out.x, &out.y, &out.z}) {
     const std::string_view word = take_until(text, ' ');
     const char* end = word.data() + word.size();
-    const auto [rest, error] = std::from_chars(word.data(), end, *number);
+    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), *number);
     if (error != std::errc{} || rest != end || !std::isfinite(*number)) return std::nullopt;
   }
   out.name = text;
