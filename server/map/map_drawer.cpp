@@ -25,6 +25,7 @@ Columns columns_of(const MapPlace& place, std::int32_t edge) {
 /// Returns the tops of the last x of a column of chunks, by z.
 std::vector<ColumnTop> east_of(const MapTops& tops) {
   std::vector<ColumnTop> out;
+  out.reserve(static_cast<std::size_t>(tops.edge));
   for (std::int32_t z = 0; z < tops.edge; ++z) out.push_back(tops.at(tops.edge - 1, z));
   return out;
 }
