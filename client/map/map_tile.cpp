@@ -10,6 +10,7 @@ namespace {
 /// Returns the columns of the last x of a tile, by z.
 std::vector<ColumnTop> east_columns(const MapTops& tops) {
   std::vector<ColumnTop> out;
+  out.reserve(static_cast<std::size_t>(tops.edge));
   for (std::int32_t z = 0; z < tops.edge; ++z) out.push_back(tops.at(tops.edge - 1, z));
   return out;
 }
