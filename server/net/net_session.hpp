@@ -4,7 +4,7 @@
 // Threads: the two loops run on the session's strand. A read that may complete a large message is
 // decoded on a thread of `decoders`, so that the I/O threads are free for the small messages of
 // others; the read loop waits for it. send(), reserve_chunk(), fill_chunk(),
-// forget_outside(), close(), abort(), handled(), set_encodings() and set_features() may be called
+// forget_outside(), close(), abort(), handled(), set_encoding() and set_features() may be called
 // from any thread and return at once.
 #pragma once
 #include <asio/any_io_executor.hpp>
@@ -112,13 +112,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   void fill_chunk(ChunkPlace place, const ChunkEntry& chunk);
   /// Drops queued chunks outside of the view of which nothing was sent.
   void forget_outside(const View& view);
-  void set_encodings(ChunkEncoding chunks, ChunkEncoding tiles) {
-    chunk_encoding_.store(chunks);
-    tile_encoding_.store(tiles);
-  }
-  ChunkEncoding encoding_of(const ChunkKey& key) const {
-    return key.lod == 0 ? chunk_encoding_.load() : tile_encoding_.load();
-  }
+  void set_encoding(ChunkEncoding encoding) { encoding_.store(encoding); }
+  ChunkEncoding encoding() const { return encoding_.load(); }
   /// Sets the optional parts of the protocol that are in force. Call it once, before the first
   /// chunk.
   void set_features(std::uint64_t features);
@@ -182,8 +177,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::unique_ptr<ByteStream> stream_;
   std::string peer_;
   const AddressBlock address_;
-  std::atomic<ChunkEncoding> chunk_encoding_{ChunkEncoding::raw};
-  std::atomic<ChunkEncoding> tile_encoding_{ChunkEncoding::raw};
+  std::atomic<ChunkEncoding> encoding_{ChunkEncoding::raw};
   std::atomic<std::size_t> unhandled_{0};  // bytes, see NetLimits
   std::atomic<std::size_t> charged_{0};    // bytes to be added to the next read
   std::atomic<bool> reader_paused_{false};

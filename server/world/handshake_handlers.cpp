@@ -15,24 +15,15 @@
 namespace runstone {
 namespace {
 
-bool offers(std::uint8_t offered, ChunkEncoding encoding) {
-  return (offered >> (static_cast<unsigned>(encoding) - 1) & 1U) != 0;
-}
-
 ChunkEncoding choose_encoding(const WorldConfig& config, std::uint8_t offered) {
-  if (offers(offered, config.preferred_encoding)) return config.preferred_encoding;
+  const auto offers = [&](ChunkEncoding e) {
+    return (offered >> (static_cast<unsigned>(e) - 1) & 1U) != 0;
+  };
+  if (offers(config.preferred_encoding)) return config.preferred_encoding;
   for (const ChunkEncoding e : {ChunkEncoding::packed, ChunkEncoding::raw}) {
-    if (offers(offered, e)) return e;
+    if (offers(e)) return e;
   }
   return ChunkEncoding::coded;
-}
-
-/// A horizon has thousands of tiles, and a player waits for all of them at once. They are few against
-/// the chunks of a long walk, so their bytes count more than the time to decode them.
-ChunkEncoding tile_encoding(ChunkEncoding of_chunks, std::uint8_t offered) {
-  return of_chunks == ChunkEncoding::packed && offers(offered, ChunkEncoding::coded)
-             ? ChunkEncoding::coded
-             : of_chunks;
 }
 
 Welcome welcome_of(const WorldState& world, const PublicKey& key) {
@@ -221,8 +212,7 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.auth_transcript = client_transcript(hello, welcome, mine.binding);
   mine.durable_sent = welcome.durable;
   mine.state = SessionStage::authenticating;
-  world.environment.set_encodings(session, welcome.encoding,
-                                  tile_encoding(welcome.encoding, hello.encodings));
+  world.environment.set_encoding(session, welcome.encoding);
   world.environment.set_features(session, welcome.features);
   send_or_close(world, session, welcome);
 }

@@ -30,47 +30,6 @@ TileState state_of(const MadeTile& made) {
   return {made.tile->version, made.digest, made.is_complete()};
 }
 
-/// Requests tiles of the session whose turn it is. Answers at most `claims_left` claims, and takes them
-/// off.
-void request_some(WorldState& world, SessionId session, std::size_t& claims_left,
-                  const Clocks& now) {
-  if (world.find(session) == nullptr) return;
-  WorldSession& mine = *world.find(session);
-  if (!mine.tiles || is_stalled(world, mine, now)) return;
-  if (mine.begins_due) return;  // the tiles of a moment follow the message that begins it
-  while (mine.tiles->waiting_count() < kTilesWaitingMax) {
-    const bool waits = mine.history && waits_for_past_tiles(world, mine, now);
-    const auto key = mine.tiles->next_wanted(kWantedLookedAtMax, [&](const ChunkKey& wanted) {
-      return !waits || !is_past_tile(world, mine, wanted);
-    });
-    if (!key) break;
-    if (const CachedChunk* claim = mine.claims.find(*key)) {
-      if (claims_left == 0) {
-        world.deliveries.insert(session);  // the others have a task of their own
-        break;
-      }
-      --claims_left;
-      if (world.environment.is_tile_current(*claim)) {
-        mine.tiles->set_waiting(*key);
-        send_same_tile(world, session, *key, claim->version.seq);
-        continue;
-      }
-    }
-    if (world.tiles.request_tokens.wait_us(1, now.steady_us) != 0) {
-      world.tiles.requests.insert(session);
-      break;
-    }
-    if (!pay_load(world, mine, now)) break;
-    world.tiles.request_tokens.take(1, now.steady_us);
-    if (is_past_tile(world, mine, *key)) {
-      request_past_tile(world, session, *key, now);
-      continue;
-    }
-    mine.tiles->set_waiting(*key);
-    world.tiles.queue.want(*key, session);
-  }
-}
-
 }  // namespace
 
 void limit_levels(const WorldState& world, const WorldSession& session, View& view) {
@@ -98,15 +57,35 @@ std::size_t set_tile_view(WorldState& world, SessionId session, const View& view
 }
 
 void request_tiles(WorldState& world, SessionId session, const Clocks& now) {
-  if (world.is_stopping) return;
-  const WorldSession& mine = *world.find(session);
-  if (mine.tiles && mine.tiles->next_wanted()) world.tiles.requests.insert(session);
+  WorldSession& mine = *world.find(session);
+  if (!mine.tiles || world.is_stopping || is_stalled(world, mine, now)) return;
+  if (mine.begins_due) return;  // the tiles of a moment follow the message that begins it
   make_tiles_stale(world, now);
   std::size_t claims_left = kTileClaimsPerCall;
-  while (claims_left != 0 && world.tiles.request_tokens.wait_us(1, now.steady_us) == 0) {
-    const auto next = world.tiles.requests.take_next();
-    if (!next) break;
-    request_some(world, *next, claims_left, now);
+  while (mine.tiles->waiting_count() < kTilesWaitingMax) {
+    const bool waits = mine.history && waits_for_past_tiles(world, mine, now);
+    const auto key = mine.tiles->next_wanted(kWantedLookedAtMax, [&](const ChunkKey& wanted) {
+      return !waits || !is_past_tile(world, mine, wanted);
+    });
+    if (!key) break;
+    if (const CachedChunk* claim = mine.claims.find(*key)) {
+      if (claims_left-- == 0) {
+        world.deliveries.insert(session);  // the others have a task of their own
+        break;
+      }
+      if (world.environment.is_tile_current(*claim)) {
+        mine.tiles->set_waiting(*key);
+        send_same_tile(world, session, *key, claim->version.seq);
+        continue;
+      }
+    }
+    if (!pay_load(world, mine, now)) break;
+    if (is_past_tile(world, mine, *key)) {
+      request_past_tile(world, session, *key, now);
+      continue;
+    }
+    mine.tiles->set_waiting(*key);
+    world.tiles.queue.want(*key, session);
   }
   start_tiles(world, now);
 }
@@ -209,7 +188,6 @@ void on_tile_stopped(WorldState& world, const ChunkKey& key, const std::vector<M
 }
 
 void forget_tiles(WorldState& world, SessionId session, WorldSession& mine) {
-  world.tiles.requests.erase(session);
   if (mine.tiles) leave_tiles(world, session, mine.tiles->clear());
 }
 

@@ -39,10 +39,8 @@ bool accepts_claim(const WorldState& world, const WorldSession& session, const C
 /// Moves a session's tiles to its view. `skipped`: as in TileInterest::set_view(). Returns the cost.
 std::size_t set_tile_view(WorldState& world, SessionId session, const View& view,
                           std::span<const View> skipped);
-/// Enters the session into the turns of those that want tiles, and requests tiles for the sessions whose
-/// turn it is, up to kTilesWaitingMax each, as long as there are tokens (kTileRequestsPerSecond). Call it
-/// on each tick for each session, since one may have to wait for tokens. A tile of which a session
-/// claims a current copy is answered by "not modified", at most kTileClaimsPerCall of them in a call.
+/// Requests wanted tiles of the session, up to kTilesWaitingMax. A tile of which the session claims a
+/// current copy is answered by "not modified", at most kTileClaimsPerCall of them.
 void request_tiles(WorldState& world, SessionId session, const Clocks& now);
 /// Returns a request for a tile. Collects the chunks below it that are newer in memory than on disk. An
 /// absent one has edits that nobody has applied yet; then `head` is 0. Some of the absent ones are

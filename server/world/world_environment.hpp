@@ -69,10 +69,8 @@ class WorldEnvironment {
     }
     return full;
   }
-  /// Sets the encodings of the session's chunks and of its tiles. Called once, before its first
-  /// send_snapshot().
-  virtual void set_encodings(SessionId /*session*/, ChunkEncoding /*chunks*/,
-                             ChunkEncoding /*tiles*/) {}
+  /// Sets the encoding agreed with a session. Called once, before its first send_snapshot().
+  virtual void set_encoding(SessionId /*session*/, ChunkEncoding /*encoding*/) {}
   /// Sets the optional parts of the protocol in force with a session. Called once, before session
   /// accepted.
   virtual void set_features(SessionId /*session*/, std::uint64_t /*features*/) {}

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "common/core/token_bucket.hpp"
 #include "common/rights/rights_state.hpp"
 #include "server/interest/interest.hpp"
 #include "server/limits/address_ledger.hpp"
@@ -71,17 +70,10 @@ struct TileReceivers {
   Sequence through = 0;
 };
 
-/// All sessions together request so many tiles a second, after so many at once. Each takes the world
-/// strand some microseconds, so newcomers who see far take about a tenth of its time at most, and the
-/// first view of a single one has to wait for nothing.
-inline constexpr std::uint64_t kTileRequestsPerSecond = 20'000, kTileRequestsAtOnce = 1'000;
-
 /// Tiles (tile_handlers.hpp).
 struct WorldTiles {
   TileQueue queue;
-  SessionTurns requests;           // sessions that may want more tiles
-  std::size_t past_in_flight = 0;  // past tiles with workers (past_tiles.hpp)
-  TokenBucket request_tokens{kTileRequestsPerSecond, kTileRequestsAtOnce};
+  std::size_t past_in_flight = 0;         // past tiles with workers (past_tiles.hpp)
   std::map<ChunkKey, Payer> payers;       // of the tiles that workers make because a session waits
   ChunkHashMap<TileReceivers> receivers;  // no entry is without sessions for long
   // Chunks that commits touched since the tiles above them were last made stale. They may repeat.

@@ -295,8 +295,8 @@ std::vector<Target> TilesResult::targets() const {
           {fmt::format("{}: tiles of a view of {} voxels", rows[i].world,
                        kViewRadius * static_cast<std::int32_t>(rows[i].edge) << view.levels),
            fmt::format("at most {:.1f} MB", view.mb_max),
-           fmt::format("{:.2f} MB coded, {:.2f} MB packed", coded_mb, packed_mb),
-           coded_mb <= view.mb_max ? Verdict::met : Verdict::missed});
+           fmt::format("{:.2f} MB; {:.2f} MB if they were coded", packed_mb, coded_mb),
+           packed_mb <= view.mb_max ? Verdict::met : Verdict::missed});
     }
   }
   return out;

@@ -25,7 +25,7 @@ struct TilesRow {
   std::size_t tiles = 0, uniform = 0;
   std::size_t runs = 0, veiled_runs = 0;
   std::size_t bytes = 0, veiled_bytes = 0;  // packed
-  std::size_t coded_bytes = 0;              // of the veiled tiles, `coded`, as they are sent
+  std::size_t coded_bytes = 0;              // of the veiled tiles, `coded`
   std::size_t quads = 0;                    // without neighbours
   double make_us = 0;            // built and veiled, from the children in their own axis orders
   double make_one_order_us = 0;  // from the same children, reordered before the time starts

@@ -182,8 +182,8 @@ class SimServer final : public WorldEnvironment {
     }
     return it->second.connection->send_from_server(message);
   }
-  void set_encodings(SessionId id, ChunkEncoding chunks, ChunkEncoding /*tiles*/) override {
-    if (const auto it = sessions_.find(id); it != sessions_.end()) it->second.encoding = chunks;
+  void set_encoding(SessionId id, ChunkEncoding encoding) override {
+    if (const auto it = sessions_.find(id); it != sessions_.end()) it->second.encoding = encoding;
   }
   bool send_snapshot(SessionId id, std::uint32_t view, const ChunkKey& key,
                      const ChunkPtr& chunk) override {

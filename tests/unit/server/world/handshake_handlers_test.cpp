@@ -92,23 +92,6 @@ TEST_CASE("a client gets coded chunks if it reads nothing else or the server pre
   CHECK(chosen(ChunkEncoding::raw, 6) == ChunkEncoding::packed);
 }
 
-TEST_CASE("tiles are coded if the client reads that and chunks are packed", "[world]") {
-  const auto chosen = [](ChunkEncoding preferred, std::uint8_t offered) {
-    WorldConfig wanted = config();
-    wanted.preferred_encoding = preferred;
-    Bench bench(wanted);
-    bench.server.connected(1, bench.now());
-    Hello hello = bench.hello(1);
-    hello.encodings = offered;
-    bench.server.received(1, hello, bench.now());
-    return bench.environment.tile_encodings.at(1);
-  };
-  CHECK(chosen(ChunkEncoding::packed, 7) == ChunkEncoding::coded);
-  CHECK(chosen(ChunkEncoding::packed, 3) == ChunkEncoding::packed);
-  CHECK(chosen(ChunkEncoding::raw, 7) == ChunkEncoding::raw);
-  CHECK(chosen(ChunkEncoding::coded, 7) == ChunkEncoding::coded);
-}
-
 TEST_CASE("a message at the wrong stage closes the session with its reason", "[world]") {
   Bench bench;
   bench.server.connected(1, bench.now());

@@ -1,7 +1,6 @@
 #include "server/world/tile_handlers.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 
 #include "common/runs/run_chunk.hpp"
@@ -404,45 +403,6 @@ TEST_CASE("a player pays for each turn of a tile") {
   bench.join(2, 1, 2, {}, kFeatureTiles);  // the same player
   bench.look(2, 3, {});
   CHECK(bench.environment.tile_requests.empty());
-}
-
-TEST_CASE("newcomers who see far take turns, and get their tiles over some ticks") {
-  WorldConfig c = with_tiles();
-  TileBench bench(c);
-  constexpr SessionId kNewcomers = 20;  // each of them wants 117 tiles
-  for (SessionId session = 1; session <= kNewcomers; ++session) bench.enter(session, 0);
-  bench.tick(1'000'000);
-  for (SessionId session = 1; session <= kNewcomers; ++session) {
-    View v;
-    v.radius_h = 2;
-    v.radius_v = 1;
-    v.levels = 3;
-    bench.send_view(session, v);
-  }
-  const auto answer_all = [&bench] {
-    for (int round = 0; round < 10; ++round) {
-      bench.server.tick(bench.now());
-      while (bench.server.has_deliveries()) bench.server.deliver_next(bench.now());
-      answer_at_once(bench);
-    }
-  };
-  const auto sent = [&bench] {
-    std::vector<std::size_t> out;
-    for (SessionId session = 1; session <= kNewcomers; ++session)
-      out.push_back(bench.tiles_of(session).size());
-    return out;
-  };
-  const auto sum = [](const std::vector<std::size_t>& counts) {
-    return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
-  };
-  answer_all();
-  CHECK(sum(sent()) == kTileRequestsAtOnce);
-  bench.time_us += 50'000;
-  answer_all();
-  CHECK(sum(sent()) == kTileRequestsAtOnce + kTileRequestsPerSecond / 20);
-  bench.time_us += 50'000;
-  answer_all();
-  CHECK(std::ranges::min(sent()) == 117);
 }
 
 }  // namespace runstone::test
