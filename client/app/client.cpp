@@ -448,21 +448,15 @@ void Client::rest(TimeUs now_us) {
 
 ClientReport Client::report() const {
   ClientReport out;
-  out.renderer = pipeline_.renderer_name();
   out.seconds = static_cast<double>(steady_now_us() - started_us_) / 1e6;
-  out.latency = pipeline_.recorder().report();
-  out.join = pipeline_.join();
   out.edits_refused = tool_.refused();
   out.memory = memory_use();
-  out.budget = {budget_.bytes_max(), budget_.peak_bytes(), budget_.shrinks(),
-                budget_.growths(),   budget_.radii(),      budget_.wanted()};
-  out.far = {session_.replica().far_tiles().count(),
-             pipeline_.far_bytes(),
-             far_budget_.bytes_max(),
-             session_.view().levels,
-             far_budget_.wanted(),
-             scene_.reach(),
-             horizon_.report()};
+  out.budget = report_of(budget_);
+  out.far.bytes_max = far_budget_.bytes_max();
+  out.far.levels = session_.view().levels;
+  out.far.wanted = far_budget_.wanted();
+  out.far.reach = scene_.reach();
+  out.far.horizon = horizon_.report();
   network_.add_to(out);
   pipeline_.add_to(out);
   return out;

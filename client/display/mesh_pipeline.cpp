@@ -226,6 +226,11 @@ bool MeshPipeline::has_caught_up() {
 }
 
 void MeshPipeline::add_to(ClientReport& report) const {
+  report.renderer = renderer_name();
+  report.latency = recorder_.report();
+  report.join = join();
+  report.far.tiles = replica_.far_tiles().count();
+  report.far.bytes = far_bytes();
   report.meshes.whole_ns = whole_ns_;
   report.meshes.layers_ns = layers_ns_;
   report.meshes.kept_bytes = planner_.kept_bytes();

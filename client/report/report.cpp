@@ -186,6 +186,11 @@ void add_chunk_lines(std::string& out, const ClientReport& report, std::int32_t 
 
 }  // namespace
 
+BudgetReport report_of(const MemoryBudget& budget) {
+  return {budget.bytes_max(), budget.peak_bytes(), budget.shrinks(),
+          budget.growths(),   budget.radii(),      budget.wanted()};
+}
+
 std::string to_json(const ClientReport& report, const ClientSession& session) {
   Json out;
   out["world_id"] = session.welcome() ? Json(to_hex(session.welcome()->world_id)) : Json(nullptr);

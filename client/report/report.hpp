@@ -63,6 +63,9 @@ struct BudgetReport {
   ViewRadii radii, wanted;                 // at the end
 };
 
+/// Returns what the budget did up to now.
+BudgetReport report_of(const MemoryBudget& budget);
+
 struct ClientReport {
   std::string renderer;  // name of the OpenGL context, or "none"
   double seconds = 0;

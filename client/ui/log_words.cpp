@@ -4,28 +4,21 @@
 
 #include <cmath>
 
+#include "common/edits/descriptor/edit_kind_name.hpp"
+
 namespace runstone {
 namespace {
 
 std::string kind_words(EditKind kind) {
   switch (kind) {
-    case EditKind::set_voxel:
-      return "voxel";
-    case EditKind::fill_box:
-      return "box";
-    case EditKind::fill_sphere:
-      return "sphere";
-    case EditKind::fill_stroke:
-      return "stroke";
-    case EditKind::paste:
-      return "paste";
     case EditKind::rights:
       return "change of rights";
     case EditKind::materials:
     case EditKind::materials_with_looks:
       return "new materials";
+    default:
+      return name_of(kind);
   }
-  return "edit";  // a kind that this client does not know
 }
 
 }  // namespace

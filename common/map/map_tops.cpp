@@ -27,6 +27,13 @@ bool has_transparent(const RunChunk& chunk, const MapMaterials& materials) {
 
 }  // namespace
 
+std::vector<ColumnTop> MapTops::last_x() const {
+  std::vector<ColumnTop> out;
+  out.reserve(static_cast<std::size_t>(edge));
+  for (std::int32_t z = 0; z < edge; ++z) out.push_back(at(edge - 1, z));
+  return out;
+}
+
 MapTopsFinder::MapTopsFinder(std::int32_t edge, const MapMaterials& materials)
     : materials_(materials),
       tops_(edge),

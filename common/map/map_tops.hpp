@@ -32,6 +32,12 @@ struct MapTops {
   const ColumnTop& at(std::int32_t x, std::int32_t z) const {
     return surface[static_cast<std::size_t>(x + edge * z)];
   }
+  /// Returns the surface of the columns of the greatest x, by z.
+  std::vector<ColumnTop> last_x() const;
+  /// Returns the surface of the columns of the greatest z, by x.
+  std::span<const ColumnTop> last_z() const {
+    return std::span(surface).last(static_cast<std::size_t>(edge));
+  }
   std::span<const ColumnTop> ground_or_surface() const { return ground.empty() ? surface : ground; }
   std::size_t bytes() const { return (surface.size() + ground.size()) * sizeof(ColumnTop); }
 };

@@ -3,8 +3,8 @@
 // the edits that touched it since, with the same apply_stack() as the server's.
 // Memory: every edit read, once; for each chunk ever edited its stored form without voxels, and the
 // list of its edits. No chunk is kept.
-// Threads: one, which alone uses the reader; chunk() names the exception. A server may write the world meanwhile. A compaction
-// beyond the moment is detected and reported.
+// Threads: one, which alone uses the reader, except for voxels(). A server may write the world
+// meanwhile. A compaction beyond the moment is detected and reported.
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -158,11 +158,6 @@ TileInterest::Moved TileInterest::set_view(const View& view, std::span<const Vie
   return moved;
 }
 
-std::optional<ChunkKey> TileInterest::next_wanted() const {
-  if (queue_.empty()) return std::nullopt;
-  return std::get<ChunkKey>(*queue_.begin());
-}
-
 void TileInterest::set_waiting(const ChunkKey& key) {
   RUNSTONE_ASSERT(status(key) == TileStatus::wanted);
   set(key, TileStatus::waiting);

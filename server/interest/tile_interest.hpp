@@ -37,9 +37,8 @@ class TileInterest {
   /// O(tiles of the view) if there are skipped views or the radius changes.
   Moved set_view(const View& view, std::span<const View> skipped = {});
 
-  /// Returns the first wanted tile, or nullopt. It stays wanted.
-  std::optional<ChunkKey> next_wanted() const;
-  /// Returns the first of the next `count_max` wanted tiles that `accepts` accepts, or nullopt.
+  /// Returns the first of the next `count_max` wanted tiles for which accepts(key) is true, or nullopt. It
+  /// stays wanted.
   template <class Accepts>
   std::optional<ChunkKey> next_wanted(std::size_t count_max, const Accepts& accepts) const {
     for (const Place& place : queue_) {
@@ -67,10 +66,10 @@ class TileInterest {
   std::size_t known_count() const { return known_; }
 
  private:
-  /// Returns the known tiles, level by level.
-  std::vector<ChunkKey> known() const;
   using Place = std::tuple<int, std::int64_t, ChunkKey>;
   Place place_of(const ChunkKey& key) const;
+  /// Returns the known tiles, level by level.
+  std::vector<ChunkKey> known() const;
   /// Returns true if the session is to get this tile of the view.
   bool is_due(const ChunkKey& key) const;
   void set(const ChunkKey& key, TileStatus status);

@@ -23,37 +23,6 @@ std::string exact_utc(TimeUs utc_us) {
   return text + "." + digits + "Z";
 }
 
-bool restores(Cause cause) {
-  return cause == Cause::undo || cause == Cause::redo || cause == Cause::rollback;
-}
-
-std::string verb_of(const EditRecord& record) {
-  switch (record.cause) {
-    case Cause::undo:
-      return "undo, restored";
-    case Cause::redo:
-      return "redo, restored";
-    case Cause::rollback:
-      return "rollback, restored";
-    default:
-      break;
-  }
-  switch (kind_of(record.edit)) {
-    case EditKind::set_voxel:
-      return "voxel";
-    case EditKind::fill_box:
-      return "box";
-    case EditKind::fill_sphere:
-      return "sphere";
-    case EditKind::fill_stroke:
-      return "stroke";
-    case EditKind::paste:
-      return "paste";
-    default:
-      return "edit";
-  }
-}
-
 }  // namespace
 
 StoreResult<std::vector<EditRecord>> newest_edits_of_column(LogReader& reader, std::int32_t x,
@@ -77,17 +46,6 @@ StoreResult<std::vector<EditRecord>> newest_edits_of_world(LogReader& reader) {
   for (auto at = found->rbegin(); at != found->rend() && out.size() < kBuildersMax; ++at) {
     if (changes_voxels(at->cause)) out.push_back(*at);
   }
-  return out;
-}
-
-std::string edit_words(const EditRecord& record, const MaterialTable& materials) {
-  const VoxelBox box = bounding_box(record.edit);
-  std::string out = verb_of(record) + " " + text_of(box.min);
-  const VoxelPos last{box.max.x - 1, box.max.y - 1, box.max.z - 1};
-  if (last != box.min) out += " to " + text_of(last);
-  const bool has_material = !restores(record.cause) && kind_of(record.edit) != EditKind::paste &&
-                            materials.knows(record.edit.material);
-  if (has_material) out += " := " + materials[record.edit.material].name;
   return out;
 }
 

@@ -20,9 +20,6 @@ StoreResult<std::vector<EditRecord>> newest_edits_of_column(LogReader& reader, s
 /// Returns the newest edits of the world that changed voxels, newest first. Blocks on the disk.
 StoreResult<std::vector<EditRecord>> newest_edits_of_world(LogReader& reader);
 
-/// Returns what an edit did, such as "box 1 2 3 to 4 5 6 := stone". The material is left out if the
-/// edit restores voxels or pastes a clipboard, and if the table does not have it.
-std::string edit_words(const EditRecord& record, const MaterialTable& materials);
 /// Returns the arguments of `runstone-server control` with which an operator sees what taking back
 /// the edit would do: a preview for its author, its time and its box.
 std::string undo_command(const EditRecord& record);

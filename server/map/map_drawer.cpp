@@ -22,19 +22,6 @@ Columns columns_of(const MapPlace& place, std::int32_t edge) {
   return {per_side, place.x * per_side, place.z * per_side};
 }
 
-/// Returns the tops of the last x of a column of chunks, by z.
-std::vector<ColumnTop> east_of(const MapTops& tops) {
-  std::vector<ColumnTop> out;
-  out.reserve(static_cast<std::size_t>(tops.edge));
-  for (std::int32_t z = 0; z < tops.edge; ++z) out.push_back(tops.at(tops.edge - 1, z));
-  return out;
-}
-
-/// Returns the tops of the last z of a column of chunks, by x.
-std::span<const ColumnTop> south_of(const MapTops& tops) {
-  return std::span(tops.surface).last(static_cast<std::size_t>(tops.edge));
-}
-
 }  // namespace
 
 Version MapDrawer::version(const MapMoment& moment, const MapPlace& place) {
@@ -108,8 +95,8 @@ StoreResult<std::shared_ptr<const std::string>> MapDrawer::draw(const MapMoment&
         if (z >= 0) {
           const std::size_t first =
               static_cast<std::size_t>(z * edge) * kSide + static_cast<std::size_t>(x * edge);
-          painter.paint(*here, west == nullptr ? std::vector<ColumnTop>() : east_of(*west),
-                        before == nullptr ? std::span<const ColumnTop>() : south_of(*before),
+          painter.paint(*here, west == nullptr ? std::vector<ColumnTop>() : west->last_x(),
+                        before == nullptr ? std::span<const ColumnTop>() : before->last_z(),
                         std::span(pixels).subspan(first), kSide);
         }
         before = here;

@@ -4,6 +4,7 @@
 
 #include "common/core/text.hpp"
 #include "common/core/utc_text.hpp"
+#include "server/history/edit_text.hpp"
 #include "server/map/map_builders.hpp"
 
 namespace runstone {
@@ -28,7 +29,7 @@ Json list_of(const MapWorld& world, std::span<const EditRecord> edits) {
     list.push_back({{"seq", edit.version.seq},
                     {"time", utc_text(edit.time_us)},
                     {"author", world.name_of(edit.op.author)},
-                    {"what", edit_words(edit, world.materials())},
+                    {"what", edit_text(edit, world.materials())},
                     {"undo", undo_command(edit)}});
   }
   return list;

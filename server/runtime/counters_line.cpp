@@ -64,7 +64,7 @@ std::string counters_line(const WorldServer& world, const NetCounters& net,
                           const LogWriter::Counters& log, const RuntimeCounters& runtime) {
   return fmt::format("counters {} {} {} {} {} stack_depths=\"{}\" dense_expansions={}",
                      sessions_part(world, net), log_part(world, log), chunks_part(world, runtime),
-                     sending_part(world, net, runtime), waits_part(world.counters().edit_waits),
+                     sending_part(world, net, runtime), waits_part(world.edit_waits()),
                      world.stack_depths().text(), dense_expansions());
 }
 

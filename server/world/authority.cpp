@@ -58,7 +58,7 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
     ordered.cause = offer.cause;
     ordered.submitted_us = offer.submitted_us;
     ordered.ordered_us = now.steady_us;
-    if (offer.cause == Cause::player) batch.waits_us.push_back(now.steady_us - offer.arrived_us);
+    if (offer.cause == Cause::player) edit_waits_.add(now.steady_us - offer.arrived_us);
     ordered.edit = offer.edit;
     ordered.subject = offer.cause == Cause::player
                           ? actions_.order(offer.op, offer.action, version.seq)

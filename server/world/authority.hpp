@@ -20,6 +20,7 @@
 #include "server/world/log_clock.hpp"
 #include "server/world/open_actions.hpp"
 #include "server/world/operation_watermarks.hpp"
+#include "server/world/wait_histogram.hpp"
 #include "server/world/world_chunks.hpp"
 
 namespace runstone {
@@ -37,7 +38,6 @@ struct OrderedBatch {
   std::vector<EditRecord> records;
   std::vector<std::vector<ChunkKey>> touched;  // of each edit, ascending
   std::vector<ChunkKey> all_touched;           // of all edits, ascending, each once
-  std::vector<TimeUs> waits_us;                // of the edits of players: since they were accepted
 };
 
 class Authority {
@@ -67,6 +67,8 @@ class Authority {
   void reject(const OperationId& op, RejectReason reason) { resolved_.reject(op, reason); }
 
   const EditQueue& queue() const { return queue_; }
+  /// Returns how long the edits of players waited to be ordered.
+  const WaitHistogram& edit_waits() const { return edit_waits_; }
   /// Advances the log's time, and orders the edits that EditQueue::take(large_room) returns. Returns
   /// nullopt if there are none. Cost: O(runs + edits) for each touched chunk.
   std::optional<OrderedBatch> commit(const Clocks& now, std::uint64_t large_room = kAllLargeEdits);
@@ -86,6 +88,7 @@ class Authority {
   WorldChunks chunks_;
   OperationWatermarks resolved_;
   EditQueue queue_;
+  WaitHistogram edit_waits_;
   OpenActions actions_;
 };
 

@@ -124,7 +124,6 @@ bool commit_and_broadcast(WorldState& world, LargeEdits large, const Clocks& now
   if (!batch) return false;
   ++world.counters.commits;
   world.counters.edits_ordered += batch->records.size();
-  for (const TimeUs wait_us : batch->waits_us) world.counters.edit_waits.add(wait_us);
   apply_rights(world, batch->records);
   apply_materials(world, batch->records);
   std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);

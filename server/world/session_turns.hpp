@@ -1,6 +1,5 @@
 // SessionTurns: the sessions that wait for a piece of work, which take turns. Thread: the world strand.
 #pragma once
-#include <cstddef>
 #include <optional>
 #include <set>
 
@@ -14,7 +13,6 @@ class SessionTurns {
   void insert(SessionId session) { waiting_.insert(session); }
   void erase(SessionId session) { waiting_.erase(session); }
   bool empty() const { return waiting_.empty(); }
-  std::size_t size() const { return waiting_.size(); }
   /// Removes and returns the session whose turn it is: the one with the lowest number above that of
   /// the last turn, or the lowest of all if there is none. Returns nullopt if nobody waits. The session
   /// may be closed by now.

@@ -14,7 +14,8 @@ inline constexpr TimeUs kTileRemakeUs = 1'000'000;
 /// latest. So edits of one chunk between two calls of it cost as much as one.
 void tiles_edited(WorldState& world, std::span<const ChunkKey> chunks, const Clocks& now);
 /// Makes the tiles stale above the chunks that were edited since the last call. Every function that
-/// reads the state of tiles, or the newest edit below one, must call it first. Cost: O(edited chunks * levels).
+/// reads the state of tiles, or the newest edit below one, must call it first. Cost: O(edited chunks *
+/// levels).
 void make_tiles_stale(WorldState& world, const Clocks& now);
 
 }  // namespace runstone

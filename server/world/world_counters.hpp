@@ -3,8 +3,6 @@
 #pragma once
 #include <cstdint>
 
-#include "server/world/wait_histogram.hpp"
-
 namespace runstone {
 
 struct WorldCounters {
@@ -13,7 +11,6 @@ struct WorldCounters {
   std::uint64_t messages = 0;         // received
   std::uint64_t edits_ordered = 0;
   std::uint64_t edits_rejected = 0;
-  WaitHistogram edit_waits;  // of players
   std::uint64_t commits = 0;
   std::uint64_t commit_bytes = 0;  // of the messages; sessions that get the same edits share one
   std::uint64_t commits_sent = 0;  // commit times session that got edits of it

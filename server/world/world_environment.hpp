@@ -116,7 +116,7 @@ class WorldEnvironment {
   virtual void load_chunk(const ChunkKey& key) = 0;
   /// Makes a tile on a worker. Called at most once for a tile until it is answered. Answer:
   /// WorldServer::tiles_made() or tile_stopped(). Without tiles (WorldConfig::tile_levels_max is 0),
-  /// neither this nor the calls below are made.
+  /// neither this nor the next five calls are made.
   virtual void make_tile(TileRequest /*request*/) {}
   /// Makes the tile of a request that has `at`, for a session that sees the past. Answer:
   /// WorldServer::past_tile_made() or past_tile_stopped().

@@ -474,6 +474,7 @@ const StackDepths& WorldServer::stack_depths() const {
   return state_->authority.chunks().stack_depths();
 }
 const WorldCounters& WorldServer::counters() const { return state_->counters; }
+const WaitHistogram& WorldServer::edit_waits() const { return state_->authority.edit_waits(); }
 ChunkPtr WorldServer::find_chunk(const ChunkKey& key) const {
   return state_->authority.chunks().find(key);
 }

@@ -208,6 +208,8 @@ class WorldServer {
   std::size_t resident_chunks() const;
   WorldMemory memory() const;
   const WorldCounters& counters() const;
+  /// See Authority::edit_waits().
+  const WaitHistogram& edit_waits() const;
   /// Returns the depths of the edit stacks that were applied.
   const StackDepths& stack_depths() const;
   /// Returns null unless the chunk is in memory.
