@@ -15,8 +15,8 @@ namespace runstone {
 
 class MapPainter {
  public:
-  /// Heights count in units of `unit` voxels, as wide as the columns: slopes are those of the world
-  /// then, and depths are multiplied. `materials` must outlive the object.
+  /// Heights and the widths of columns are in units of `unit` voxels, so slopes do not change. Depths are
+  /// multiplied by `unit`. `materials` must outlive the object.
   explicit MapPainter(const MapMaterials& materials, std::int32_t unit = 1);
 
   /// Writes the pixels of the tops, +x right and +z down: sRGB, red is the lowest byte, alpha the

@@ -6,23 +6,6 @@
 #include "server/store/store.hpp"
 
 namespace runstone {
-namespace {
-
-/// Returns version and time of an edit, which are 0 before the first one. Requires that the log
-/// holds the edit, or that it is the log's head. Both are true of a moment that could be opened.
-StoreResult<LogEnd> edit_at(LogReader& reader, Sequence seq) {
-  auto end = reader.log_head();
-  if (!end || end->version.seq == seq) return end;
-  const auto read = reader.read_log(seq, seq, [&](const EditRecord& record) {
-    end = LogEnd{record.version, record.time_us};
-    return true;
-  });
-  if (!read) return Unexpected<StoreError>{read.error()};
-  return end;
-}
-
-}  // namespace
-
 StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
   std::shared_ptr<Kept> moment;
   {
@@ -56,11 +39,8 @@ StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
   const auto progress = [this](Sequence, Sequence) { return !is_cancelled_.load(); };
   auto world = WorldAt::open(**reader, generator_, at, progress);
   if (!world) return failed(world.error());
-  const auto end = edit_at(**reader, at);
-  if (!end) return failed(end.error());
   moment->reader = *std::move(reader);
   moment->world = std::make_unique<WorldAt>(*std::move(world));
-  moment->end = *end;
   return moment;
 }
 
@@ -72,7 +52,7 @@ void Moments::forget(Sequence at) {
 StoreResult<LogEnd> Moments::open(Sequence at) {
   const auto moment = find(at);
   if (!moment) return Unexpected<StoreError>{moment.error()};
-  return (*moment)->end;
+  return (*moment)->world->end();
 }
 
 StoreResult<LogEnd> Moments::open_at_time(TimeUs utc_us) {

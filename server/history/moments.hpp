@@ -41,7 +41,6 @@ class Moments {
     std::mutex mutex;  // guards the world and its reader
     std::unique_ptr<WorldReader> reader;
     std::unique_ptr<WorldAt> world;  // null until it is open
-    LogEnd end;
   };
   /// Returns the moment. Opens it if it is not open.
   StoreResult<std::shared_ptr<Kept>> find(Sequence at);

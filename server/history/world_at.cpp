@@ -37,7 +37,8 @@ StoreResult<WorldAt> WorldAt::open(WorldReader& reader, const Generator& generat
   return world;
 }
 
-StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress) {
+StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress,
+                                   const std::function<void(const EditRecord&)>& each) {
   const Sequence from = end_.version.seq;
   if (at < from) {
     return refuse("cannot be followed back from seq=" + std::to_string(from) +
@@ -55,6 +56,7 @@ StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress) {
     edits_.push_back(record.edit);
     versions_.push_back(record.version);
     end = {record.version, record.time_us};
+    if (each) each(record);
     if (progress && record.version.seq % kProgressEdits == 0)
       is_cancelled = !progress(record.version.seq, at);
     return !is_cancelled;

@@ -52,8 +52,10 @@ class WorldAt {
   std::vector<ChunkKey> edited() const;
 
   /// Moves to a later sequence. Reads only the edits between. Fails as open(), and (bad_request)
-  /// for an earlier sequence. After a failure the object is unchanged.
-  StoreResult<void> advance(Sequence at, const Progress& progress = {});
+  /// for an earlier sequence. After a failure the object is unchanged. `each` is called for every
+  /// record that is read, also if the call fails later.
+  StoreResult<void> advance(Sequence at, const Progress& progress = {},
+                            const std::function<void(const EditRecord&)>& each = {});
 
   /// Returns the sequence of the stored moment that open() began with. It is 0 in a world without
   /// keyframes.

@@ -21,6 +21,13 @@ void AddressLedger::charge(AddressBlock from, std::uint64_t price, TimeUs now_us
   budgets_of(from, now_us).address.charge(price, now_us);
 }
 
+void AddressLedger::charge_range(AddressBlock from, std::uint64_t price, TimeUs now_us) {
+  if (!of_address_.is_limited()) return;
+  const Budgets budgets = budgets_of(from, now_us);
+  budgets.address.charge(price, now_us);
+  budgets.range.charge(price, now_us);
+}
+
 AddressLedger::Budgets AddressLedger::budgets_of(AddressBlock from, TimeUs now_us) {
   if (size() > 2 * size_kept_ + kForgetSteps) forget_full(now_us);
   TokenBucket& address =

@@ -20,7 +20,7 @@ void GroundIndex::add(ChunkCoord chunk, const Version& version) {
                                        std::greater<>());
       column.heights.insert(at, key.at.y);
     } else if (entry->second >= version) {
-      return;  // all above have at least this version, too
+      return;  // All tiles above already have this version or a greater one.
     } else {
       entry->second = version;
     }

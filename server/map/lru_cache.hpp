@@ -1,5 +1,5 @@
-// LruCache: values by key, up to a number of bytes. Those that were not used for longest are removed
-// first. Threads: any. The mutex is a leaf.
+// LruCache: values by key, up to a number of bytes. If the cache is full, the values that were used least
+// recently are removed.
 #pragma once
 #include <cstddef>
 #include <list>

@@ -1,7 +1,5 @@
 #include "server/map/map_builders.hpp"
 
-#include <algorithm>
-
 #include "common/core/key_text.hpp"
 #include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -10,8 +8,10 @@
 namespace runstone {
 namespace {
 
-// Edits near the column that are looked at. Their bounding boxes meet it, and their voxels may not.
-constexpr std::size_t kLooksMax = 256;
+// The edits that are looked at in one search, and the searches. Their bounding boxes meet the column,
+// and their voxels may not.
+constexpr std::size_t kLookEdits = 256;
+constexpr int kLooks = 8;
 
 /// Returns the time with its microseconds, in the form of parse_utc().
 std::string exact_utc(TimeUs utc_us) {
@@ -30,17 +30,21 @@ StoreResult<std::vector<EditRecord>> newest_edits_of_column(LogReader& reader, s
   SelectionFilter filter;
   filter.box = VoxelBox{{x, -kWorldLimit, z}, {x + 1, kWorldLimit, z + 1}};
   filter.last = last;
-  auto found = newest_edits(reader, filter, kLooksMax);
-  if (!found) return found;
   std::vector<EditRecord> out;
-  for (auto at = found->rbegin(); at != found->rend() && out.size() < kBuildersMax; ++at) {
-    if (changes_voxels(at->cause) && touches(at->edit, *filter.box)) out.push_back(*at);
+  for (int look = 0; look < kLooks; ++look) {
+    const auto found = newest_edits(reader, filter, kLookEdits);
+    if (!found) return found;
+    for (auto at = found->rbegin(); at != found->rend() && out.size() < kBuildersMax; ++at) {
+      if (changes_voxels(at->cause) && touches(at->edit, *filter.box)) out.push_back(*at);
+    }
+    if (out.size() == kBuildersMax || found->size() < kLookEdits) break;
+    filter.last = found->front().version.seq - 1;
   }
   return out;
 }
 
 StoreResult<std::vector<EditRecord>> newest_edits_of_world(LogReader& reader) {
-  auto found = newest_edits(reader, {}, kLooksMax);
+  auto found = newest_edits(reader, {}, 4 * kBuildersMax);
   if (!found) return found;
   std::vector<EditRecord> out;
   for (auto at = found->rbegin(); at != found->rend() && out.size() < kBuildersMax; ++at) {

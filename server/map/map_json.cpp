@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/core/text.hpp"
 #include "common/core/utc_text.hpp"
 #include "server/history/edit_text.hpp"
 #include "server/map/map_builders.hpp"
@@ -58,9 +57,7 @@ std::string map_state_json(MapWorld& world, const LogRange& range, const LogEnd&
   out["is_complete"] = changes.is_complete;
   Json columns = Json::array();
   for (const ChangedColumn& column : changes.columns) {
-    Json entry{column.x, column.z, column.seq};
-    if (looks_back) entry.push_back(world.name_of(column.author));
-    columns.push_back(std::move(entry));
+    columns.push_back({column.x, column.z});
   }
   out["changed"] = std::move(columns);
   return text_of_json(out);

@@ -27,9 +27,6 @@ StoreResult<std::unique_ptr<MapMoment>> MapMoment::open(const std::string& folde
   }
   if (!world) return Unexpected<StoreError>{world.error()};
   out->world_ = std::make_unique<WorldAt>(*std::move(world));
-  const auto end = out->edit_at(at);
-  if (!end) return Unexpected<StoreError>{end.error()};
-  out->end_ = *end;
   const auto base = out->reader_->base_chunks();
   if (!base) return Unexpected<StoreError>{base.error()};
   for (const StoredChunk& chunk : *base) {
@@ -40,39 +37,22 @@ StoreResult<std::unique_ptr<MapMoment>> MapMoment::open(const std::string& folde
   return out;
 }
 
-StoreResult<void> MapMoment::advance(Sequence at, const EachRecord& each) {
-  const auto end = edit_at(world_->at());
+StoreResult<void> MapMoment::advance(Sequence at, const EachRecord& each,
+                                     const WorldAt::Progress& progress) {
+  const auto end = reader_->edit_at(world_->at());
   if (!end) return Unexpected<StoreError>{end.error()};
-  if (end->version != end_.version) {
+  // The log has no record of edit 0.
+  const bool is_same = world_->at() == 0 || (*end && (*end)->version == world_->end().version);
+  if (!is_same) {
     return Unexpected<StoreError>{
         {StoreError::Kind::bad_request, reader_->file(), "edit_log", "is another one than before"}};
   }
-  const Sequence from = world_->at();
-  if (auto advanced = world_->advance(at); !advanced) return advanced;
   std::vector<ChunkCoord> chunks;
-  const auto read = reader_->read_log(from + 1, at, [&](const EditRecord& record) {
+  return world_->advance(at, progress, [&](const EditRecord& record) {
     touched_chunks(record.edit, meta().chunk_edge, chunks);
     for (const ChunkCoord& chunk : chunks) ground_.add(chunk, record.version);
-    end_ = {record.version, record.time_us};
     each(record);
-    return true;
   });
-  if (read && end_.version.seq != at) {
-    return Unexpected<StoreError>{{StoreError::Kind::bad_request, reader_->file(), "edit_log",
-                                   "was compacted while it was read"}};
-  }
-  return read;
-}
-
-StoreResult<LogEnd> MapMoment::edit_at(Sequence seq) {
-  auto end = reader_->log_head();
-  if (!end || end->version.seq == seq) return end;
-  const auto read = reader_->read_log(seq, seq, [&](const EditRecord& record) {
-    end = LogEnd{record.version, record.time_us};
-    return true;
-  });
-  if (!read) return Unexpected<StoreError>{read.error()};
-  return end;
 }
 
 }  // namespace runstone

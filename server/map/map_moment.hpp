@@ -1,7 +1,7 @@
 // MapMoment: the world of one moment as the map needs it: its chunks, and the versions of all chunks
 // and tiles. The present is a moment that advances with the log.
-// Threads: open() and advance() by one thread while no other one uses the object. The other
-// functions by any thread, each with a reader and a scratch of its own.
+// Threads: open() and advance() by one thread while no other one uses the object; reader() belongs to
+// that thread. The other functions by any thread, each with a reader and a scratch of its own.
 #pragma once
 #include <functional>
 #include <memory>
@@ -26,10 +26,11 @@ class MapMoment {
   /// Moves to a later edit. `each` is called for every record between. After a failure the object
   /// may not be used any more. Fails as WorldAt::advance(), and (bad_request) if the log no longer has
   /// the edit at which the object stands, because another log has replaced it.
-  StoreResult<void> advance(Sequence at, const EachRecord& each);
+  StoreResult<void> advance(Sequence at, const EachRecord& each,
+                            const WorldAt::Progress& progress = {});
 
   Sequence at() const { return world_->at(); }
-  const LogEnd& end() const { return end_; }
+  const LogEnd& end() const { return world_->end(); }
   /// Returns the number of edits that are in memory.
   Sequence edits_kept() const { return world_->at() - world_->stored_at(); }
   const GroundIndex& ground() const { return ground_; }
@@ -44,11 +45,9 @@ class MapMoment {
 
  private:
   explicit MapMoment(std::unique_ptr<WorldReader> reader) : reader_(std::move(reader)) {}
-  StoreResult<LogEnd> edit_at(Sequence seq);
 
   std::unique_ptr<WorldReader> reader_;
   std::unique_ptr<WorldAt> world_;
-  LogEnd end_;
   GroundIndex ground_;
 };
 

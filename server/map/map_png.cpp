@@ -26,7 +26,7 @@ constexpr std::size_t kColoursMax = 256;
 
 /// Returns nullopt if there are more than kColoursMax colours.
 std::optional<Indexed> indexed(std::span<const std::uint32_t> pixels) {
-  // Twice as many slots as colours, so that few of them collide.
+  // There are four times as many slots as colours, so few colours collide.
   constexpr std::size_t kSlots = 1024;
   std::array<std::int16_t, kSlots> index_in{};
   index_in.fill(-1);

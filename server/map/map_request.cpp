@@ -37,6 +37,7 @@ class QueryFields {
       const std::size_t end = query.find('&');
       const std::string_view field = query.substr(0, end);
       query.remove_prefix(end == std::string_view::npos ? query.size() : end + 1);
+      if (end != std::string_view::npos && query.empty()) return std::nullopt;
       const std::size_t equals = field.find('=');
       if (equals == std::string_view::npos) return std::nullopt;
       const std::string_view name = field.substr(0, equals);
@@ -142,9 +143,10 @@ Result<MapRequest, MapRequestError> parse_map_request(std::string_view path,
                                                       std::string_view query) {
   constexpr std::string_view kTile = "tile/";
   if (!path.starts_with(kMapDataPath)) return unknown_path();
-  if (path == kRecentEditsPath) {
+  if (path == kRecentEditsPath || path == kMapRightsPath) {
     if (!query.empty()) return refused(kBadQuery);
-    return MapRequest(RecentEditsRequest{});
+    return path == kRecentEditsPath ? MapRequest(RecentEditsRequest{})
+                                    : MapRequest(RightsRequest{});
   }
   path.remove_prefix(kMapDataPath.size());
   if (path.starts_with(kTile)) return tile_request(path.substr(kTile.size()), query);

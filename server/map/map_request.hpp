@@ -37,12 +37,16 @@ struct MapMomentRequest {
 /// The newest edits of the whole world.
 struct RecentEditsRequest {};
 
+/// Whether strangers may see the world now: 200 if they may.
+struct RightsRequest {};
+
 using MapRequest = std::variant<TilePictureRequest, MapStateRequest, BuildersRequest,
-                                MapMomentRequest, RecentEditsRequest>;
+                                MapMomentRequest, RecentEditsRequest, RightsRequest>;
 
 /// The beginning of the paths of all requests.
 inline constexpr std::string_view kMapDataPath = "/map/";
 inline constexpr std::string_view kRecentEditsPath = "/map/recent.json";
+inline constexpr std::string_view kMapRightsPath = "/map/rights.json";
 
 /// The reason why a request is refused, as one sentence for the browser.
 struct MapRequestError {
@@ -56,6 +60,7 @@ struct MapRequestError {
 ///   /map/builders.json?x=X&z=Z[&at=SEQ]
 ///   /map/moment.json?seq=SEQ or ?time_ms=UTC
 ///   /map/recent.json
+///   /map/rights.json
 /// Numbers are decimal, without a plus, blanks or leading zeros. Fails for any other text.
 Result<MapRequest, MapRequestError> parse_map_request(std::string_view path,
                                                       std::string_view query);

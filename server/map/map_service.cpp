@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "common/core/hex.hpp"
 #include "common/os/low_priority.hpp"
 #include "common/os/steady_clock.hpp"
 #include "server/map/map_builders.hpp"
@@ -14,9 +15,10 @@ namespace {
 /// Raise it with each change of how tiles are drawn: browsers then load them again.
 constexpr int kMapStyle = 1;
 
-std::string etag_of(const Version& version) {
-  return "\"" + std::to_string(kMapStyle) + "-" + std::to_string(version.epoch) + "-" +
-         std::to_string(version.seq) + "\"";
+/// Ground without edits has the version 0 in every world, so the tag names the world, too.
+std::string etag_of(const WorldId& world, const Version& version) {
+  return "\"" + std::to_string(kMapStyle) + "-" + to_hex(ByteView(world).first(8)) + "-" +
+         std::to_string(version.epoch) + "-" + std::to_string(version.seq) + "\"";
 }
 
 /// Returns true if a header If-None-Match names the tag. A tag in quotes occurs in no other one.
@@ -37,6 +39,7 @@ MapAnswer json_answer(std::string json) {
   return out;
 }
 
+constexpr TimeUs kWarnUs = 10'000'000;
 constexpr const char* kNoPast = "strangers may not see the past of this world";
 
 }  // namespace
@@ -92,7 +95,8 @@ void MapService::run() {
     }
     const TimeUs begun_us = steady_now_us();
     turn_ends_us_ = begun_us + job.turn * kTurnUs;
-    std::optional<MapAnswer> answer = serve(job);
+    std::optional<MapAnswer> answer;
+    if (begun_us - job.asked_us <= kAnswerUsMax) answer = serve(job);
     const TimeUs now_us = steady_now_us();
     job.work_us += static_cast<std::uint64_t>(now_us - begun_us);
     if (!answer && now_us - job.asked_us > kAnswerUsMax)
@@ -113,8 +117,8 @@ bool MapService::should_continue() const {
 }
 
 std::optional<MapAnswer> MapService::serve(const Job& job) {
-  const auto refreshed = world_.refresh(steady_now_us(), utc_now_us());
-  is_public_.store(refreshed && world_.rights().may_see, std::memory_order_relaxed);
+  const auto refreshed = world_.refresh(
+      steady_now_us(), utc_now_us(), [this](Sequence, Sequence) { return !is_stopping_.load(); });
   if (!refreshed) return answer_to(refreshed.error());
   if (!world_.rights().may_see) return map_words(403, world_.rights().why);
   if (const auto* tile = std::get_if<TilePictureRequest>(&job.request))
@@ -122,6 +126,7 @@ std::optional<MapAnswer> MapService::serve(const Job& job) {
   if (const auto* state = std::get_if<MapStateRequest>(&job.request)) return serve(*state);
   if (const auto* builders = std::get_if<BuildersRequest>(&job.request)) return serve(*builders);
   if (std::holds_alternative<RecentEditsRequest>(job.request)) return serve_recent_edits();
+  if (std::holds_alternative<RightsRequest>(job.request)) return json_answer("{}");
   return serve(std::get<MapMomentRequest>(job.request));
 }
 
@@ -146,7 +151,7 @@ std::optional<MapAnswer> MapService::serve(const TilePictureRequest& request,
   if (!moment) return moment.error();
   const Version version = MapDrawer::version(**moment, request.place);
   MapAnswer out;
-  out.etag = etag_of(version);
+  out.etag = etag_of((*moment)->meta().world_id, version);
   if (is_matched(if_none_match, out.etag)) {
     out.status = 304;
     return out;
@@ -189,22 +194,17 @@ std::optional<MapAnswer> MapService::serve(const MapMomentRequest& request) {
   Sequence seq = 0;
   if (const auto* time_us = std::get_if<TimeUs>(&request.of)) {
     const auto found = reader.sequence_at(*time_us);
+    if (!found && found.error().kind != StoreError::Kind::bad_request)
+      return answer_to(found.error());
     if (!found) return map_words(404, "this moment is no longer in the log");
     seq = *found;
   } else {
     seq = std::get<Sequence>(request.of);
   }
-  auto end = reader.log_head();
+  const auto end = reader.edit_at(seq);
   if (!end) return answer_to(end.error());
-  if (seq != end->version.seq) {
-    const auto read = reader.read_log(seq, seq, [&](const EditRecord& record) {
-      end = LogEnd{record.version, record.time_us};
-      return false;
-    });
-    if (!read) return answer_to(read.error());
-    if (end->version.seq != seq) return map_words(404, "there is no such edit in the log");
-  }
-  return json_answer(map_moment_json(*end));
+  if (!end->has_value()) return map_words(404, "there is no such edit in the log");
+  return json_answer(map_moment_json(**end));
 }
 
 std::optional<MapAnswer> MapService::serve_recent_edits() {
@@ -216,9 +216,11 @@ std::optional<MapAnswer> MapService::serve_recent_edits() {
 
 std::optional<MapAnswer> MapService::answer_to(const StoreError& error) {
   if (error.kind == StoreError::Kind::cancelled) return std::nullopt;
-  const std::string message = error.message();
-  if (message != warned_) warn_(message);
-  warned_ = message;
+  const TimeUs now_us = steady_now_us();
+  if (warned_us_ == 0 || now_us - warned_us_ > kWarnUs) {
+    warned_us_ = now_us;
+    warn_(error.message());
+  }
   return map_words(503, "the world of this map cannot be read now");
 }
 

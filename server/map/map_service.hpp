@@ -1,6 +1,6 @@
 // MapService: draws the map of a world on request, on one thread of low priority. Requests wait in a
-// queue with a bound. Work that takes long is done in turns, so that it holds up nobody: what a turn
-// made is kept in the caches, and the next turn begins there. All caches together have a bound, and
+// queue with a bound. Drawing that takes long is done in turns, and other requests are served between
+// them: what a turn made is kept in the caches, and the next turn begins there. All caches together have a bound, and
 // nothing is written to the disk.
 // Threads: ask() by any. Replies are called on the service's thread, or by ask().
 #pragma once
@@ -30,7 +30,7 @@ class MapService {
   static constexpr TimeUs kAnswerUsMax = 8'000'000;
 
   using Reply = std::function<void(MapAnswer)>;
-  /// Reports a fault of the world's folder, for the host alone.
+  /// Reports a fault of the world's folder, for the host alone, at most once in ten seconds.
   using Warn = std::function<void(const std::string&)>;
 
   /// `folder`: of the world, which need not exist yet. `cache_bytes` bounds all that is kept in
@@ -45,8 +45,6 @@ class MapService {
   /// answered with 304. If the queue is full, the reply is called at once, with 503.
   void ask(MapRequest request, std::string if_none_match, Reply reply);
 
-  /// Returns true if strangers could see the world when the last request was answered.
-  bool is_public() const { return is_public_.load(std::memory_order_relaxed); }
   /// Returns the bytes of the caches.
   std::size_t cache_bytes() const { return caches_.bytes(); }
 
@@ -78,13 +76,13 @@ class MapService {
   MapCaches caches_;
   // These belong to the thread.
   MapWorld world_;
-  std::string warned_;
+  TimeUs warned_us_ = 0;  // the time of the last warning; 0: none
   TimeUs turn_ends_us_ = 0;
 
   std::mutex mutex_;  // a leaf: guards the queue
   std::condition_variable changed_;
   std::deque<Job> queue_;
-  std::atomic<bool> is_stopping_{false}, is_public_{false};
+  std::atomic<bool> is_stopping_{false};
   std::thread thread_;
 };
 

@@ -54,7 +54,6 @@ StoreResult<MapVoxels::Voxels> MapVoxels::chunk(const MapMoment& moment, const C
   if (voxels) return shared(*std::move(voxels));
   if (voxels.error().kind != StoreError::Kind::corrupt)
     return Unexpected<StoreError>{voxels.error()};
-  ++damaged_count_;
   return shared(uniform_chunk(Extent::cube(edge), kEmpty));
 }
 

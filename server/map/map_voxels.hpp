@@ -32,12 +32,10 @@ class MapVoxels {
         caches_(caches),
         should_continue_(std::move(should_continue)) {}
 
-  /// Returns the voxels of a chunk or tile. A damaged chunk is empty, as in the tiles of the server,
-  /// and counted. Fails (cancelled) if should_continue() returned false; what was made until then is
+  /// Returns the voxels of a chunk or tile. A damaged chunk is empty, as in the tiles of the server.
+  /// Fails (cancelled) if should_continue() returned false; what was made until then is
   /// kept in the caches. Fails if the folder cannot be read.
   StoreResult<Voxels> at(const MapMoment& moment, const ChunkKey& key);
-  /// Returns the number of damaged chunks that were met.
-  std::size_t damaged_count() const { return damaged_count_; }
 
  private:
   StoreResult<Voxels> chunk(const MapMoment& moment, const ChunkKey& key);
@@ -51,7 +49,6 @@ class MapVoxels {
   const ShouldContinue should_continue_;
   ReplayScratch replay_;
   VeiledTileScratch build_;
-  std::size_t damaged_count_ = 0;
 };
 
 }  // namespace runstone

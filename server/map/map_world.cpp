@@ -31,28 +31,35 @@ StoreResult<MapWorld::FileId> MapWorld::file_id() const {
   return FileId{static_cast<std::uint64_t>(about.st_dev), static_cast<std::uint64_t>(about.st_ino)};
 }
 
-StoreResult<void> MapWorld::refresh(TimeUs steady_us, TimeUs utc_us) {
-  if (world_ != nullptr && steady_us - refreshed_us_ < kAgeUsMax) return {};
+StoreResult<void> MapWorld::refresh(TimeUs steady_us, TimeUs utc_us,
+                                    const WorldAt::Progress& progress) {
+  if ((world_ != nullptr || failed_) && steady_us - refreshed_us_ < kAgeUsMax) {
+    if (failed_) return Unexpected<StoreError>{*failed_};
+    return {};
+  }
   const auto file = file_id();
   StoreResult<void> done;
   if (!file) {
     done = Unexpected<StoreError>{file.error()};
   } else if (world_ != nullptr && world_->file == *file) {
-    done = follow(utc_us);
+    done = follow(utc_us, progress);
     // The log may have been compacted or replaced. Then the world is opened anew.
-    if (!done) done = open(*file, utc_us);
+    if (!done) done = open(*file, utc_us, progress);
   } else {
-    done = open(*file, utc_us);
+    done = open(*file, utc_us, progress);
   }
+  failed_.reset();
   if (!done) {
+    failed_ = done.error();
+    past_.clear();  // the moments refer to the world's generator
     world_.reset();
-    past_.clear();
   }
   refreshed_us_ = steady_us;
   return done;
 }
 
-StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us) {
+StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us,
+                                 const WorldAt::Progress& progress) {
   past_.clear();
   caches_.clear();
   world_ = std::make_unique<Opened>();
@@ -66,9 +73,12 @@ StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us) {
         {StoreError::Kind::not_a_world, world_->reader->file(), "meta", generator.error()}};
   }
   world_->generator = *std::move(generator);
+  // What is read after the present is as new as it, or newer.
+  const auto last = world_->reader->last_sequence();
+  if (!last) return Unexpected<StoreError>{last.error()};
+  if (auto opened = open_present(*last, progress); !opened) return opened;
   if (auto read = read_materials(); !read) return read;
   if (auto read = read_names(); !read) return read;
-  if (auto opened = open_present(); !opened) return opened;
   auto rights = read_map_rights(*world_->reader, utc_us);
   if (!rights) return Unexpected<StoreError>{rights.error()};
   world_->rights = *std::move(rights);
@@ -76,31 +86,37 @@ StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us) {
   return {};
 }
 
-StoreResult<void> MapWorld::open_present() {
-  const auto last = world_->reader->last_sequence();
-  if (!last) return Unexpected<StoreError>{last.error()};
-  auto present = MapMoment::open(folder_, *world_->generator, *last);
+StoreResult<void> MapWorld::open_present(Sequence at, const WorldAt::Progress& progress) {
+  auto present = MapMoment::open(folder_, *world_->generator, at, progress);
   if (!present) return Unexpected<StoreError>{present.error()};
   world_->present = *std::move(present);
   world_->reopen_at = world_->present->edits_kept() + kReopenEdits;
   return {};
 }
 
-StoreResult<void> MapWorld::follow(TimeUs utc_us) {
+StoreResult<void> MapWorld::follow(TimeUs utc_us, const WorldAt::Progress& progress) {
   Opened& world = *world_;
   const auto last = world.reader->last_sequence();
   if (!last) return Unexpected<StoreError>{last.error()};
   if (*last == world.present->at()) return {};
+  if (*last > world.present->at() + kReopenEdits) {
+    // A newer keyframe is nearer than so many edits.
+    const FileId file = world.file;
+    return open(file, utc_us, progress);
+  }
   bool has_rights = false, has_materials = false, has_new_author = false;
-  const auto advanced = world.present->advance(*last, [&](const EditRecord& record) {
-    has_rights = has_rights || record.cause == Cause::rights;
-    has_materials = has_materials || record.cause == Cause::materials;
-    has_new_author = has_new_author || !world.names.contains(record.op.author);
-    if (!changes_voxels(record.cause)) return;
-    const std::vector<ChunkCoord> chunks =
-        touched_chunks(record.edit, world.reader->meta().chunk_edge);
-    world.changes.add(record.version.seq, record.op.author, chunks);
-  });
+  const auto advanced = world.present->advance(
+      *last,
+      [&](const EditRecord& record) {
+        has_rights = has_rights || record.cause == Cause::rights;
+        has_materials = has_materials || record.cause == Cause::materials;
+        has_new_author = has_new_author || !world.names.contains(record.op.author);
+        if (!changes_voxels(record.cause)) return;
+        const std::vector<ChunkCoord> chunks =
+            touched_chunks(record.edit, world.reader->meta().chunk_edge);
+        world.changes.add(record.version.seq, chunks);
+      },
+      progress);
   if (!advanced) return advanced;
   if (has_materials) {
     if (auto read = read_materials(); !read) return read;
@@ -113,7 +129,7 @@ StoreResult<void> MapWorld::follow(TimeUs utc_us) {
     if (!rights) return Unexpected<StoreError>{rights.error()};
     world.rights = *std::move(rights);
   }
-  if (world.present->edits_kept() >= world.reopen_at) return open_present();
+  if (world.present->edits_kept() >= world.reopen_at) return open_present(*last, progress);
   return {};
 }
 
@@ -143,7 +159,8 @@ StoreResult<MapMoment*> MapWorld::past(Sequence at, const WorldAt::Progress& pro
   }
   std::unique_ptr<MapMoment> moment;
   if (past_.size() >= kMomentsMax) {
-    // The one that was not used for longest is moved forward, if that is cheap: so is playing.
+    // The moment that was used least recently is advanced if few edits lie between. The button Play
+    // asks for moments in this order.
     const Sequence from = past_.back().first;
     moment = std::move(past_.back().second);
     past_.pop_back();

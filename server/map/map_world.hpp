@@ -7,6 +7,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -30,8 +31,10 @@ class MapWorld {
 
   /// Opens the folder, or brings the present up to the log. A folder that holds another world than
   /// before is opened anew. Fails if the world cannot be read; then present() may not be called until a
-  /// later call succeeds. `steady_us` and `utc_us` are the time.
-  StoreResult<void> refresh(TimeUs steady_us, TimeUs utc_us);
+  /// later call succeeds, and the same failure is returned within kAgeUsMax. `steady_us` and `utc_us` are
+  /// the time. Fails (cancelled) if `progress` returned false.
+  StoreResult<void> refresh(TimeUs steady_us, TimeUs utc_us,
+                            const WorldAt::Progress& progress = {});
 
   // These functions require that the last refresh() succeeded.
   MapMoment& present() { return *world_->present; }
@@ -70,17 +73,18 @@ class MapWorld {
     Sequence reopen_at = 0;  // a present that has so many edits is opened anew
   };
   StoreResult<FileId> file_id() const;
-  StoreResult<void> open(const FileId& file, TimeUs utc_us);
-  StoreResult<void> follow(TimeUs utc_us);
-  StoreResult<void> open_present();
+  StoreResult<void> open(const FileId& file, TimeUs utc_us, const WorldAt::Progress& progress);
+  StoreResult<void> follow(TimeUs utc_us, const WorldAt::Progress& progress);
+  StoreResult<void> open_present(Sequence at, const WorldAt::Progress& progress);
   StoreResult<void> read_materials();
   StoreResult<void> read_names();
 
   const std::string folder_;
   MapCaches& caches_;
   TimeUs refreshed_us_ = 0;
-  std::unique_ptr<Opened> world_;                                    // null: not open
-  std::list<std::pair<Sequence, std::unique_ptr<MapMoment>>> past_;  // used last first
+  std::optional<StoreError> failed_;  // why the last refresh() failed
+  std::unique_ptr<Opened> world_;     // null: not open
+  std::list<std::pair<Sequence, std::unique_ptr<MapMoment>>> past_;  // the most recently used first
 };
 
 }  // namespace runstone

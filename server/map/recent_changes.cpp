@@ -12,11 +12,11 @@ void RecentChanges::begin(Sequence seq) {
   columns_.clear();
 }
 
-void RecentChanges::add(Sequence seq, AuthorId author, std::span<const ChunkCoord> chunks) {
+void RecentChanges::add(Sequence seq, std::span<const ChunkCoord> chunks) {
   std::set<std::pair<std::int32_t, std::int32_t>> columns;
   for (const ChunkCoord& chunk : chunks) columns.emplace(chunk.x, chunk.z);
   if (columns.size() > kKeptMax) return begin(seq);
-  for (const auto& [x, z] : columns) columns_.push_back({x, z, seq, author});
+  for (const auto& [x, z] : columns) columns_.push_back({x, z, seq});
   // An edit is dropped as a whole, because after() answers for whole edits.
   while (columns_.size() > kKeptMax) {
     known_after_ = columns_.front().seq;

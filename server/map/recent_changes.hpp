@@ -1,5 +1,5 @@
 // RecentChanges: the columns of chunks that the newest edits touched, so that a browser learns in one
-// small answer which tiles changed and who changed them.
+// small answer which tiles changed.
 // Thread: one.
 #pragma once
 #include <cstddef>
@@ -17,7 +17,6 @@ namespace runstone {
 struct ChangedColumn {
   std::int32_t x = 0, z = 0;
   Sequence seq = 0;
-  AuthorId author = 0;
   friend bool operator==(const ChangedColumn&, const ChangedColumn&) = default;
 };
 
@@ -30,10 +29,10 @@ class RecentChanges {
   /// Forgets everything. Edits up to `seq` are not known.
   void begin(Sequence seq);
   /// Adds the next edit of the log. Cost: O(chunks log chunks).
-  void add(Sequence seq, AuthorId author, std::span<const ChunkCoord> chunks);
+  void add(Sequence seq, std::span<const ChunkCoord> chunks);
 
-  /// Returns the columns that edits after `since` touched, each with its newest edit, or nothing and
-  /// false if they are too many or no longer known.
+  /// Returns the columns that edits after `since` touched, each with its newest edit. If there are too
+  /// many, or if they are no longer known, is_complete is false and the list is empty.
   struct Answer {
     bool is_complete = false;
     std::vector<ChangedColumn> columns;  // ascending by x, then by z

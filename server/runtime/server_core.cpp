@@ -162,21 +162,22 @@ void ServerCore::after_task() {
 }
 
 void ServerCore::log_counters() {
-  strand_.post([this] { write_counters(); });
+  // The file of the memory is read here, because the world strand reads no files.
+  strand_.post([this, memory_bytes = process_memory_bytes()] {
+    logger("app").info("{}", all_counters(memory_bytes));
+  });
 }
 
-void ServerCore::write_counters() { logger("app").info("{}", all_counters()); }
-
-std::string ServerCore::all_counters() const {
+std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
   const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000,
-                                process_memory_bytes()};
+                                memory_bytes};
   return counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime);
 }
 
 void ServerCore::answer_gateway(const std::string& question, CommandReply reply) {
   if (question != "status") return refuse(reply, "the only question is `status`");
-  strand_.post([this, reply = std::move(reply)] {
-    std::string text = all_counters();
+  strand_.post([this, memory_bytes = process_memory_bytes(), reply = std::move(reply)] {
+    std::string text = all_counters(memory_bytes);
     for (const auto& player : world_->online_players()) {
       text += "\nplayer " + player.name;
       text += fmt::format("\nplace {:.1f} {:.1f} {:.1f} {}", player.at.x, player.at.y, player.at.z,

@@ -128,8 +128,7 @@ class ServerCore final : public NetEvents {
   /// already.
   void schedule_delivery();
   void finish_stop_if_flushed();
-  void write_counters();
-  std::string all_counters() const;
+  std::string all_counters(std::uint64_t memory_bytes) const;
   /// Logs what happened since the last call, if anything did.
   void write_activity();
 

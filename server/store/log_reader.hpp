@@ -2,6 +2,7 @@
 // A compaction moves the beginning of the log: edits before it are in the base alone.
 #pragma once
 #include <functional>
+#include <optional>
 
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
@@ -36,6 +37,9 @@ class LogReader : public virtual WorldInfo {
   virtual StoreResult<LogEnd> log_head() = 0;
   /// Returns the last sequence ever logged, compacted or not, or 0 if there is none.
   StoreResult<Sequence> last_sequence();
+  /// Returns sequence, epoch and time of an edit, or nullopt if the log does not have it. The edit 0 is
+  /// the state before the first one; an empty log has it.
+  StoreResult<std::optional<LogEnd>> edit_at(Sequence seq);
   /// Returns the last edit that is not later than a time (UTC). If all edits are later, returns the
   /// sequence before the first edit of the log. Fails (bad_request) if all are later and one of
   /// them was compacted away.

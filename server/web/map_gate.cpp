@@ -14,7 +14,8 @@ namespace runstone {
 namespace {
 
 constexpr std::uint64_t kUsPerMs = 1'000;
-// Times the budgets of a second. A first look at a world needs many tiles that nobody drew yet.
+// An address may use the budgets of so many seconds at once. A first look at a world needs many tiles
+// that nobody drew yet.
 constexpr std::uint64_t kRequestsAtOnce = 10, kWorkAtOnce = 40;
 
 std::unique_ptr<MapService> make_service(const WebConfig& config) {
@@ -58,6 +59,7 @@ boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string
     const unsigned status = request.error().is_unknown_path ? 404 : 400;
     co_return map_words(status, request.error().what);
   }
+  if (is_stopped_) co_return map_words(503, "the gateway stops");
   if (service_ == nullptr)
     co_return map_words(404, "this gateway shows no map: its host has not turned it on");
   const auto refuse = [&](const char* words) {
@@ -66,13 +68,21 @@ boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string
   };
   if (!work_us_.has(from, 1, steady_now_us()))
     co_return refuse("the map has drawn much for this address: ask again in a moment");
-  if (waiting_[from] >= kWaitingMax)
+  const AddressBlock range = address_range_of(from);
+  const auto count_of = [](const auto& counts, AddressBlock of) {
+    const auto found = counts.find(of);
+    return found == counts.end() ? 0 : found->second;
+  };
+  if (count_of(waiting_, from) >= kWaitingMax ||
+      count_of(waiting_of_range_, range) >= kWaitingOfRangeMax)
     co_return refuse("many requests of this address wait for the map: ask again in a moment");
   ++waiting_[from];
+  ++waiting_of_range_[range];
   ++counters_.map_requests;
   MapAnswer out = co_await wait_for(*std::move(request), std::move(if_none_match));
   if (--waiting_[from] == 0) waiting_.erase(from);
-  work_us_.charge(from, out.work_us, steady_now_us());
+  if (--waiting_of_range_[range] == 0) waiting_of_range_.erase(range);
+  work_us_.charge_range(from, out.work_us, steady_now_us());
   counters_.map_work_us += out.work_us;
   counters_.map_not_modified += out.status == 304 ? 1 : 0;
   co_return out;
@@ -80,8 +90,9 @@ boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string
 
 boost::asio::awaitable<MapAnswer> MapGate::wait_for(MapRequest request, std::string if_none_match) {
   const auto waiting = std::make_shared<Waiting>(io_);
-  auto reply = [&io = io_, waiting](MapAnswer answer) {
-    boost::asio::post(io, [waiting, answer = std::move(answer)]() mutable {
+  // The last reference to the timer must end on this thread, so the reply gives its own away.
+  auto reply = [&io = io_, waiting](MapAnswer answer) mutable {
+    boost::asio::post(io, [waiting = std::move(waiting), answer = std::move(answer)]() mutable {
       waiting->answer = std::move(answer);
       waiting->answered.cancel();
     });

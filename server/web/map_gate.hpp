@@ -1,5 +1,4 @@
-// MapGate: requests of browsers for the map: their limits by address, and the way to the thread that
-// draws.
+// MapGate limits the requests of each address for the map, and passes them to the drawing thread.
 // Thread: the gateway's.
 #pragma once
 #include <utility>
@@ -21,25 +20,30 @@ namespace runstone {
 
 class MapGate {
  public:
-  /// The requests of one address that may wait for the thread that draws.
-  static constexpr std::size_t kWaitingMax = 16;
+  /// The requests of one address, and of one range of addresses, that may wait for the drawing thread.
+  static constexpr std::size_t kWaitingMax = 16, kWaitingOfRangeMax = 64;
 
   /// There is no map if the setting `world` is empty. `io` and `counters` must outlive the object.
   MapGate(boost::asio::io_context& io, const WebConfig& config, WebCounters& counters);
 
   bool is_on() const { return service_ != nullptr; }
   /// Counts a request on a connection. Returns false if the address may not ask now.
-  bool ask(AddressBlock from, TimeUs now_us) { return requests_.take(from, 1, now_us); }
+  bool ask(AddressBlock from, TimeUs now_us) {
+    const bool may_ask = requests_.take(from, 1, now_us);
+    if (!may_ask) ++counters_.map_refused;
+    return may_ask;
+  }
   /// Returns the answer to a request for a path below kMapDataPath. The address pays for the time of
   /// the thread that draws.
   boost::asio::awaitable<MapAnswer> answer(AddressBlock from, std::string_view target,
                                            std::string if_none_match);
-  /// Returns true if strangers could see the world when the map was asked last, so that places of
-  /// players are no secret.
-  bool is_public() const { return service_ != nullptr && service_->is_public(); }
   std::size_t cache_bytes() const { return service_ == nullptr ? 0 : service_->cache_bytes(); }
-  /// Ends the thread that draws. Requests that wait are answered; later ones are refused.
-  void stop() { service_.reset(); }
+  /// Ends the thread that draws. Requests that wait are answered, and later ones are
+  /// answered that the gateway stops.
+  void stop() {
+    is_stopped_ = true;
+    service_.reset();
+  }
 
  private:
   struct Waiting;
@@ -48,8 +52,9 @@ class MapGate {
   boost::asio::io_context& io_;
   WebCounters& counters_;
   AddressLedger requests_, work_us_;
-  std::map<AddressBlock, std::size_t> waiting_;  // no count is 0
-  std::unique_ptr<MapService> service_;          // null: no map
+  std::map<AddressBlock, std::size_t> waiting_, waiting_of_range_;  // no count is 0
+  bool is_stopped_ = false;
+  std::unique_ptr<MapService> service_;  // null: no map
 };
 
 }  // namespace runstone

@@ -228,7 +228,11 @@ async function poll() {
       say('');
       if (isFirst) begin();
       if (isOther || !news.is_complete) {
-        for (const tile of tiles.values()) { tile.shown = undefined; tile.isDirty = true; }
+        for (const tile of tiles.values()) {
+          tile.shown = undefined;
+          tile.isDirty = true;
+          if (isOther) tile.etag = '';
+        }
       }
       for (const [x, z] of news.changed) {
         tileChanged(x, z);
@@ -245,12 +249,20 @@ async function poll() {
   setTimeout(poll, 1000);
 }
 
+const LIMIT = 2 ** 29;  // voxels from the origin
+
+/// Returns the nearest scale that the map can show, in pixels a voxel.
+function scaleOf(wanted) {
+  return Math.min(16, Math.max(0.5 / (1 << state.zoom_max), wanted));
+}
+
 function begin() {
   const hash = location.hash.slice(1).split(',').map(Number);
   const box = state.bounds;
   if (hash.length >= 3 && hash.slice(0, 3).every(Number.isFinite) && hash[2] > 0) {
-    [view.x, view.z, view.scale] = hash;
-    if (hash.length > 3 && state.look_back) show(hash[3]);
+    [view.x, view.z] = hash.slice(0, 2).map((one) => Math.max(-LIMIT, Math.min(LIMIT, one)));
+    view.scale = scaleOf(hash[2]);
+    if (Number.isSafeInteger(hash[3]) && state.look_back) show(hash[3]);
   } else if (box) {
     // A small world fills the window.
     const fit = Math.min(canvas.clientWidth / (box[2] - box[0]), canvas.clientHeight / (box[3] - box[1]));
@@ -286,10 +298,14 @@ async function showTime() {
     el('when').textContent = state.last.time_ms ? timeText(state.last.time_ms) : '';
     return;
   }
-  const answer = await fetch('/map/moment.json?seq=' + shown, {cache: 'no-store'});
-  if (answer.ok && whenOf === shown) {
+  try {
+    const answer = await fetch('/map/moment.json?seq=' + shown, {cache: 'no-store'});
+    if (!answer.ok) throw new Error(answer.status);
     const moment = await answer.json();
-    el('when').textContent = moment.seq ? timeText(moment.time_ms) : 'before the first edit';
+    if (whenOf === shown)
+      el('when').textContent = moment.seq ? timeText(moment.time_ms) : 'before the first edit';
+  } catch (error) {
+    if (whenOf === shown) whenOf = null;  // it is asked for again
   }
 }
 
@@ -326,10 +342,14 @@ function line(tag, text, parent) {
   return made;
 }
 
+let looks = 0;  // at builders; the answer of an older one is ignored
+
 async function showBuilders(x, z) {
   if (!state.look_back) return;
+  const look = ++looks;
   const answer = await fetch('/map/builders.json?x=' + x + '&z=' + z + (at === null ? '' : '&at=' + at),
                              {cache: 'no-store'});
+  if (look !== looks) return;
   const panel = el('builders'), list = panel.querySelector('ol'), title = panel.querySelector('h2');
   list.replaceChildren();
   panel.hidden = false;
@@ -361,8 +381,7 @@ function remember() {
 
 function zoomBy(factor, x, y) {
   if (!state) return;
-  const least = 0.5 / (1 << state.zoom_max);
-  const scale = Math.min(16, Math.max(least, view.scale * factor));
+  const scale = scaleOf(view.scale * factor);
   const dx = x - canvas.clientWidth / 2, dy = y - canvas.clientHeight / 2;
   view.x += dx / view.scale - dx / scale;
   view.z += dy / view.scale - dy / scale;

@@ -21,7 +21,7 @@ struct ServerStatus {
   std::string why;     // it has not
   std::map<std::string, std::int64_t> counters;
   std::vector<std::string> players;  // names, one for each session
-  std::vector<PlayerPlace> places;   // of the same players, from a server that tells them
+  std::vector<PlayerPlace> places;   // of the same players, empty if the server sends no places
 
   /// Returns a counter, or 0 if the server has none of this name.
   std::int64_t counter(const std::string& name) const;
@@ -35,8 +35,8 @@ struct EditWaits {
 std::vector<EditWaits> edit_waits(const ServerStatus& status);
 
 /// Reads an answer of the status socket: lines that begin with "|", and "=ok" at the end. The lines
-/// are "counters NAME=VALUE NAME=VALUE ...", "player NAME" and "place X Y Z NAME". Values that are no whole numbers and
-/// lines of other kinds are skipped, because a later server may have more of them.
+/// are "counters NAME=VALUE NAME=VALUE ...", "player NAME" and "place X Y Z NAME". Values that are no
+/// whole numbers and lines of other kinds are skipped, because a later server may have more of them.
 Result<ServerStatus> parse_server_status(std::string_view answer);
 
 }  // namespace runstone

@@ -26,8 +26,8 @@ struct WebConfig {
   std::string origins;
   std::string world;                   // folder of the world, for its map; empty: no map
   std::uint64_t map_memory_mib = 128;  // of what was drawn, 8..65536
-  std::uint64_t map_ms_per_second =
-      250;  // of drawing, of one address, forty times at once, 0: no limit
+  /// Milliseconds a second in which the map draws for one address, 40 seconds' worth at once. 0: no limit.
+  std::uint64_t map_ms_per_second = 250;
   std::uint64_t map_requests_per_second = 60;  // of one address, ten times at once, 0: no limit
   std::uint64_t sockets_max = 1'024;           // connections in any state, 1..65536
   std::uint64_t sockets_per_address = 64;      // 1..65536

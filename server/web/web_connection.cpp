@@ -151,9 +151,22 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
   static const auto kNoStatus = std::make_shared<const ServerStatus>();
   const std::string_view path = path_of(view_of(request.target()));
   const bool is_read = request.method() == http::verb::get || request.method() == http::verb::head;
-  if (path == kMapPlayersPath && !self->state_.map.is_public())
-    co_return plain_answer(403, "strangers may not see this world now");
-  if (is_read && path.starts_with(kMapDataPath) && path != kMapPlayersPath) {
+  const bool is_for_map = is_read && path.starts_with(kMapDataPath);
+  if (is_for_map || path == kStatusPath) {
+    // An answer of the map comes after at most this time.
+    constexpr auto kMapSeconds = static_cast<std::uint64_t>(MapService::kAnswerUsMax / 1'000'000);
+    self->stream_.allow_s(self->state_.config.handshake_s + kMapSeconds + 2);
+  }
+  if (is_for_map && path == kMapPlayersPath) {
+    MapAnswer allowed =
+        co_await self->state_.map.answer(self->from_, kMapRightsPath, std::string());
+    if (allowed.status != 200) {
+      HttpAnswer out{allowed.status, std::move(allowed.type), ""};
+      out.shared = std::move(allowed.body);
+      co_return out;
+    }
+  }
+  if (is_for_map && path != kMapPlayersPath) {
     MapAnswer answer =
         co_await self->state_.map.answer(self->from_, view_of(request.target()),
                                          std::string(view_of(request[http::field::if_none_match])));
@@ -165,7 +178,7 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
   }
   std::shared_ptr<const ServerStatus> status = kNoStatus;
   std::string recent_edits;
-  if (path == kStatusPath && self->state_.map.is_on()) {
+  if (is_read && path == kStatusPath && self->state_.map.is_on()) {
     const MapAnswer recent =
         co_await self->state_.map.answer(self->from_, kRecentEditsPath, std::string());
     if (recent.status == 200 && recent.body != nullptr) recent_edits = *recent.body;
@@ -193,8 +206,7 @@ boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection>
   response.version(request.version());
   response.set(http::field::content_type, answer.type);
   response.set(http::field::cache_control, cache_control(answer.caching));
-  if (answer.caching == HttpCaching::while_unchanged)
-    response.set(http::field::vary, "Accept-Encoding");
+  if (answer.scripts == PageScripts::client) response.set(http::field::vary, "Accept-Encoding");
   if (answer.status == 429 || answer.status == 503) response.set(http::field::retry_after, "1");
   if (!answer.tag.empty()) response.set(http::field::etag, answer.tag);
   if (!answer.encoding.empty()) response.set(http::field::content_encoding, answer.encoding);

@@ -16,11 +16,11 @@ struct WebCounters {
   std::uint64_t frames_out = 0;        // to browsers
   std::uint64_t bytes_in = 0;          // of these frames
   std::uint64_t bytes_out = 0;
-  std::uint64_t map_requests = 0;      // that the thread that draws the map got
+  std::uint64_t map_requests = 0;      // requests that were queued for the drawing thread
   std::uint64_t map_refused = 0;       // because of a limit of their address
   std::uint64_t map_not_modified = 0;  // answered with 304
   std::uint64_t map_work_us = 0;       // time of the thread that draws
-  // When they were asked for.
+  // These two are measured when a page shows them.
   std::uint64_t memory_bytes = 0;     // of the process, in RAM
   std::uint64_t map_cache_bytes = 0;  // of what the map has drawn
 };

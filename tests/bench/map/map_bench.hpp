@@ -32,7 +32,8 @@ struct MapResult {
   // The whole Luanti world at all zooms, from opening the folder on, with empty caches.
   std::size_t whole_tiles = 0;
   double whole_ms = 0, whole_cpu_ms = 0;
-  std::int64_t written_bytes = 0;  // by which the world's folder changed in size meanwhile
+  std::uint64_t writes =
+      0;  // drawings of the whole world after which a file of its folder differed
   std::vector<Target> targets() const;
 };
 

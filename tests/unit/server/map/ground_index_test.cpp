@@ -14,7 +14,7 @@ TEST_CASE("the index gives each tile and column the greatest version below it", 
   std::map<ChunkCoord, Version> chunks;
   for (Sequence seq = 0; seq < 400; ++seq) {
     const ChunkCoord at{rng.between(-20, 20), rng.between(-5, 5), rng.between(-20, 20)};
-    const Version version = seq < 50 ? Version{} : Version{1 + rng.below(1), seq};
+    const Version version = seq < 50 ? Version{} : Version{static_cast<Epoch>(1 + seq / 100), seq};
     index.add(at, version);
     chunks[at] = std::max(chunks[at], version);
   }

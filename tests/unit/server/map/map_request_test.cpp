@@ -88,8 +88,7 @@ TEST_CASE("only one spelling of a request is understood", "[map]") {
   for (const char* query : {"at", "at=", "at=01", "at=+1", "at=1&at=1", "at=1&", "at=1&b=2", "AT=1",
                             "at=1%20", "at=1 ", "at==1", "&at=1", "at=0x10", "at=1;b"}) {
     CAPTURE(query);
-    const bool is_trailing = std::string(query) == "at=1&";
-    CHECK(error_of("/map/tile/0/0/0.png", query).empty() == is_trailing);
+    CHECK_FALSE(error_of("/map/tile/0/0/0.png", query).empty());
   }
   for (const char* query : {"", "x=1", "z=1", "x=1&z=", "x=1&z=2&y=3", "x=1&x=1&z=2"}) {
     CAPTURE(query);
