@@ -161,8 +161,12 @@ void HeadlessSession::send_view() {
 }
 
 bool HeadlessSession::loaded() const {
-  return is_open() && connection_.view_was_sent() && versions_.behind() == 0 &&
-         versions_.known() == chunks_in(view(), CoordLimit::of(welcome()->chunk_edge));
+  const bool is_near_loaded =
+      is_open() && connection_.view_was_sent() && versions_.behind() == 0 &&
+      versions_.known() == chunks_in(view(), CoordLimit::of(welcome()->chunk_edge));
+  if (!is_near_loaded) return false;
+  const bool has_tiles = (welcome()->features & kFeatureTiles) != 0 && tile_levels(view()) != 0;
+  return !has_tiles || versions_.tiles_are_complete();
 }
 
 // Edits.

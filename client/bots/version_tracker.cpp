@@ -45,12 +45,14 @@ void VersionTracker::open(Epoch epoch, CoordLimit world) {
   world_ = world;
   views_.reopen();
   chunks_.clear();
+  tiles_.clear();
   requests_.clear();
   held_ = unavailable_ = behind_ = 0;
 }
 
 void VersionTracker::set_view(const View& view) {
   views_.set(view);
+  tiles_.set_view(view);
   for (auto it = chunks_.begin(); it != chunks_.end();) {
     if (view.contains(it->first)) {
       ++it;
@@ -82,12 +84,12 @@ void VersionTracker::take(const ChunkSnapshot& snapshot, std::uint32_t view, Tim
     violations_.add("snapshot digest", "chunk " + text_of(snapshot.key) + " at seq " +
                                            std::to_string(snapshot.chunk.version.seq));
   }
-  take(snapshot.key, view, snapshot.chunk.version, now_us);
+  take(snapshot.key, view, snapshot.chunk.version, is_empty(snapshot.chunk.voxels), now_us);
 }
 
 void VersionTracker::receive(const UniformChunks& uniform, TimeUs now_us) {
   for (const UniformChunk& chunk : uniform.chunks) {
-    take(chunk.key, uniform.view, chunk.version, now_us);
+    take(chunk.key, uniform.view, chunk.version, chunk.material == kEmpty, now_us);
   }
 }
 
@@ -105,13 +107,14 @@ bool VersionTracker::accepts(const ChunkKey& key, std::uint32_t view) {
 }
 
 /// Takes a snapshot whose voxels are verified already.
-void VersionTracker::take(const ChunkKey& key, std::uint32_t view, Version version, TimeUs now_us) {
+void VersionTracker::take(const ChunkKey& key, std::uint32_t view, Version version, bool is_empty,
+                          TimeUs now_us) {
   if (version.epoch > epoch_) {
     violations_.add("epoch",
                     "chunk " + text_of(key) + " is of epoch " + std::to_string(version.epoch));
   }
   ++counts_.snapshots;
-  if (key.lod > 0) return take_tile(key, view);
+  if (key.lod > 0) return take_tile(key, view, is_empty);
   if (!accepts(key, view)) return;
   Known& chunk = chunks_[key.at];
   if (std::exchange(chunk.unavailable, false)) --unavailable_;
@@ -128,9 +131,10 @@ void VersionTracker::take(const ChunkKey& key, std::uint32_t view, Version versi
   advance(chunk, now_us);
 }
 
-void VersionTracker::take_tile(const ChunkKey& key, std::uint32_t view) {
+void VersionTracker::take_tile(const ChunkKey& key, std::uint32_t view, bool is_empty) {
   ++counts_.tiles;
   const auto& current = views_.current();
+  if (current && contains_key(*current, key)) tiles_.add(key, is_empty);
   // A tile of a view before the newest one may be on its way when its place leaves the view.
   if (current && view == current->number && !contains_key(*current, key))
     violations_.add("tile outside",

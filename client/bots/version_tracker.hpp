@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "client/bots/tile_answers.hpp"
 #include "client/replica/recent_views.hpp"
 #include "client/schedule/histogram.hpp"
 #include "common/core/coords.hpp"
@@ -90,6 +91,8 @@ class VersionTracker {
   std::size_t known() const { return held_ + unavailable_; }
   /// Returns the number of chunks that lack edits.
   std::size_t behind() const { return behind_; }
+  /// Returns true if every tile of the view that has an answer arrived. Requires a view with tiles.
+  bool tiles_are_complete() const { return tiles_.are_complete(*views_.current(), world_); }
   /// Returns the sequence of a chunk, or nullopt if it has not arrived.
   std::optional<Sequence> version(ChunkCoord at) const;
   const VersionCounts& counts() const { return counts_; }
@@ -109,8 +112,8 @@ class VersionTracker {
   };
   void take(const ChunkSnapshot& snapshot, std::uint32_t view, TimeUs now_us);
   bool accepts(const ChunkKey& key, std::uint32_t view);
-  void take(const ChunkKey& key, std::uint32_t view, Version version, TimeUs now_us);
-  void take_tile(const ChunkKey& key, std::uint32_t view);
+  void take(const ChunkKey& key, std::uint32_t view, Version version, bool is_empty, TimeUs now_us);
+  void take_tile(const ChunkKey& key, std::uint32_t view, bool is_empty);
   void advance(Known& chunk, TimeUs now_us);
   void forget(const Known& chunk);
 
@@ -119,6 +122,7 @@ class VersionTracker {
   RecentViews views_;
   std::map<ChunkCoord, Known> chunks_;
   std::size_t held_ = 0, unavailable_ = 0, behind_ = 0;
+  TileAnswers tiles_;
   std::set<ChunkKey> requests_;
   VersionCounts counts_;
   Violations violations_;

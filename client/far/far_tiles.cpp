@@ -171,22 +171,14 @@ std::vector<ChunkKey> FarTiles::take_not_held() {
   if (!view_ || rules_ == 0) return out;
   const std::optional<View> before = std::exchange(looked_for_, view_);
   const CoordLimit world = CoordLimit::of(edge_);
-  const std::int32_t radius = view_->radius_h;
   for (std::uint8_t level = 1; level <= tile_levels(*view_); ++level) {
-    const ChunkCoord centre = tile_at(view_->centre, level);
     const bool is_listed = before && before->radius_h == view_->radius_h &&
                            level <= tile_levels(*before) &&
-                           tile_at(before->centre, level) == centre;
+                           tile_at(before->centre, level) == tile_at(view_->centre, level);
     if (is_listed) continue;
-    for (std::int32_t dx = -radius; dx <= radius; ++dx) {
-      for (std::int32_t dy = -kTileRadiusV; dy <= kTileRadiusV; ++dy) {
-        for (std::int32_t dz = -radius; dz <= radius; ++dz) {
-          const ChunkKey key{level, {centre.x + dx, centre.y + dy, centre.z + dz}};
-          if (has_key(*view_, world, key) && !tiles_.contains(key) && !is_below_empty(key))
-            out.push_back(key);
-        }
-      }
-    }
+    for_each_tile(*view_, world, level, [&](const ChunkKey& key) {
+      if (!tiles_.contains(key) && !is_below_empty(key)) out.push_back(key);
+    });
   }
   return out;
 }
@@ -195,17 +187,9 @@ FarTiles::Missing FarTiles::missing() const {
   Missing out;
   if (!view_ || tile_levels(*view_) == 0) return out;
   const CoordLimit world = CoordLimit::of(edge_);
-  const std::uint8_t levels = tile_levels(*view_);
-  const ChunkCoord centre = tile_at(view_->centre, levels);
-  const std::int32_t radius = view_->radius_h;
-  for (std::int32_t dx = -radius; dx <= radius; ++dx) {
-    for (std::int32_t dz = -radius; dz <= radius; ++dz) {
-      for (std::int32_t dy = -kTileRadiusV; dy <= kTileRadiusV; ++dy) {
-        const ChunkKey root{levels, {centre.x + dx, centre.y + dy, centre.z + dz}};
-        if (has_key(*view_, world, root) && !tiles_.contains(root)) ++out.roots;
-      }
-    }
-  }
+  for_each_tile(*view_, world, tile_levels(*view_), [&](const ChunkKey& root) {
+    if (!tiles_.contains(root)) ++out.roots;
+  });
   for (const auto& [key, tile] : tiles_) {
     if (key.lod <= 1 || is_empty(*tile.voxels)) continue;
     for (unsigned i = 0; i < kTileChildren; ++i) {

@@ -46,4 +46,21 @@ inline bool has_key(const View& view, CoordLimit world, const ChunkKey& key) {
   return contains_key(view, key) && has_place(world, key);
 }
 
+/// Calls visit(key) for each tile of a level in the view, ascending, without those outside of the world.
+/// Requires that the view has tiles of this level.
+template <class Visit>
+void for_each_tile(const View& view, CoordLimit world, std::uint8_t level, const Visit& visit) {
+  const ChunkCoord centre = tile_at(view.centre, level);
+  const std::int32_t radius = view.radius_h;
+  for (std::int32_t dx = -radius; dx <= radius; ++dx) {
+    for (std::int32_t dy = -kTileRadiusV; dy <= kTileRadiusV; ++dy) {
+      for (std::int32_t dz = -radius; dz <= radius; ++dz) {
+        if (dx * dx + dz * dz > radius * radius) continue;
+        const ChunkKey key{level, {centre.x + dx, centre.y + dy, centre.z + dz}};
+        if (has_place(world, key)) visit(key);
+      }
+    }
+  }
+}
+
 }  // namespace runstone

@@ -1,6 +1,7 @@
 #include "server/interest/tile_interest.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "common/core/assert.hpp"
@@ -9,30 +10,13 @@
 namespace runstone {
 namespace {
 
-/// Calls visit(key) for each tile of a level in the view, without those outside of the world.
-template <class Visit>
-void for_each_tile(const View& view, CoordLimit world, std::uint8_t level, const Visit& visit) {
-  const ChunkCoord centre = tile_at(view.centre, level);
-  const std::int32_t radius = view.radius_h;
-  for (std::int32_t dx = -radius; dx <= radius; ++dx) {
-    for (std::int32_t dz = -radius; dz <= radius; ++dz) {
-      if (dx * dx + dz * dz > radius * radius) continue;
-      for (std::int32_t dy = -kTileRadiusV; dy <= kTileRadiusV; ++dy) {
-        const ChunkKey key{level, {centre.x + dx, centre.y + dy, centre.z + dz}};
-        if (has_place(world, key)) visit(key);
-      }
-    }
-  }
-}
-
 bool has_same_tiles(const View& a, const View& b, std::uint8_t level) {
   return level <= tile_levels(a) && level <= tile_levels(b) && a.radius_h == b.radius_h &&
          tile_at(a.centre, level) == tile_at(b.centre, level);
 }
 
-bool is_with_client(TileStatus status) {
-  return status == TileStatus::waiting || status == TileStatus::sent ||
-         status == TileStatus::sent_empty;
+bool is_requested_or_sent(TileStatus status) {
+  return status == TileStatus::waiting || client_has(status);
 }
 
 }  // namespace
@@ -67,7 +51,9 @@ std::vector<ChunkKey> TileInterest::known() const {
 }
 
 bool TileInterest::is_due(const ChunkKey& key) const {
-  return key.lod == tile_levels(*view_) || status(tile_parent(key)) == TileStatus::sent;
+  if (key.lod == tile_levels(*view_)) return true;
+  const TileStatus parent = status(tile_parent(key));
+  return parent == TileStatus::sent || parent == TileStatus::behind;
 }
 
 void TileInterest::set(const ChunkKey& key, TileStatus now) {
@@ -77,13 +63,15 @@ void TileInterest::set(const ChunkKey& key, TileStatus now) {
   if (was == TileStatus::waiting) --waiting_;
   if (now == TileStatus::wanted) queue_.insert(place_of(key));
   if (now == TileStatus::waiting) ++waiting_;
+  if (was == TileStatus::behind) behind_.erase(key);
+  if (now == TileStatus::behind) behind_.insert(key);
   if (was == TileStatus::unknown) ++known_;
   if (now == TileStatus::unknown) --known_;
   tiles_.set(key, now);
 }
 
 void TileInterest::drop(const ChunkKey& key, std::vector<ChunkKey>& left) {
-  if (is_with_client(status(key))) left.push_back(key);
+  if (is_requested_or_sent(status(key))) left.push_back(key);
   set(key, TileStatus::unknown);
 }
 
@@ -146,6 +134,11 @@ TileInterest::Moved TileInterest::set_view(const View& view, std::span<const Vie
   moved.steps += queue.size();
   view_ = view;
   for (const Place& place : queue) queue_.insert(place_of(std::get<ChunkKey>(place)));
+  const std::vector<ChunkKey> behind(behind_.begin(), behind_.end());
+  moved.steps += behind.size();
+  for (const ChunkKey& key : behind) {
+    if (!is_hidden(key)) set(key, TileStatus::wanted);
+  }
   // Parents come first, because a tile is due only if its parent is sent.
   for (std::uint8_t level = levels; level >= 1; --level) {
     const bool is_root = level == levels && levels != levels_before;
@@ -164,12 +157,31 @@ void TileInterest::set_waiting(const ChunkKey& key) {
 }
 
 void TileInterest::want_again(const ChunkKey& key) {
-  RUNSTONE_ASSERT(is_with_client(status(key)));
+  RUNSTONE_ASSERT(is_requested_or_sent(status(key)));
   set(key, TileStatus::wanted);
 }
 
+void TileInterest::set_behind(const ChunkKey& key) {
+  RUNSTONE_ASSERT(status(key) == TileStatus::sent && is_hidden(key));
+  set(key, TileStatus::behind);
+}
+
+bool TileInterest::is_hidden(const ChunkKey& key) const {
+  const std::int32_t margin = view_->radius_h < kHiddenMarginRadius ? 0 : kHiddenMargin;
+  const std::int64_t radius_h = view_->radius_h - margin;
+  const std::int32_t radius_v = (key.lod == 1 ? view_->radius_v : kTileRadiusV) - margin;
+  const ChunkCoord centre = tile_at(view_->centre, static_cast<std::uint8_t>(key.lod - 1));
+  for (unsigned i = 0; i < kTileChildren; ++i) {
+    const ChunkCoord child = tile_child(key, i).at;
+    const std::int64_t dx = std::int64_t{child.x} - centre.x, dz = std::int64_t{child.z} - centre.z;
+    if (dx * dx + dz * dz > radius_h * radius_h || std::abs(child.y - centre.y) > radius_v)
+      return false;
+  }
+  return true;
+}
+
 std::vector<ChunkKey> TileInterest::set_sent(const ChunkKey& key, bool is_empty) {
-  RUNSTONE_ASSERT(is_with_client(status(key)));
+  RUNSTONE_ASSERT(is_requested_or_sent(status(key)));
   std::vector<ChunkKey> left;
   set(key, is_empty ? TileStatus::sent_empty : TileStatus::sent);
   if (is_empty) {
@@ -186,9 +198,11 @@ std::vector<ChunkKey> TileInterest::set_sent(const ChunkKey& key, bool is_empty)
 
 std::vector<ChunkKey> TileInterest::clear() {
   std::vector<ChunkKey> left = known();
-  std::erase_if(left, [this](const ChunkKey& key) { return !is_with_client(tiles_.at(key)); });
+  std::erase_if(left,
+                [this](const ChunkKey& key) { return !is_requested_or_sent(tiles_.at(key)); });
   tiles_.reset(0);
   queue_.clear();
+  behind_.clear();
   waiting_ = known_ = 0;
   view_.reset();
   return left;

@@ -6,7 +6,10 @@
 //             view first;
 //   waiting   it is being made for the session;
 //   sent      the session has it. A changed one is sent again.
-// Memory: a byte for each tile of the view, and an entry of a set for each wanted one. One thread.
+//   behind    the session has an earlier state of it, and does not draw it (is_hidden()). It becomes
+//             wanted when the view moves so that it may be drawn.
+// Memory: a byte for each tile of the view, and an entry of a set for each one that is wanted or behind.
+// One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -22,14 +25,25 @@
 
 namespace runstone {
 
-enum class TileStatus : std::uint8_t { unknown, wanted, waiting, sent, sent_empty };
+enum class TileStatus : std::uint8_t { unknown, wanted, waiting, sent, sent_empty, behind };
+
+/// A tile is hidden only if its children lie so far inside the view that a move by this many of them does
+/// not show it. Views of a smaller radius than kHiddenMarginRadius have no margin.
+inline constexpr std::int32_t kHiddenMargin = 1;
+inline constexpr std::uint8_t kHiddenMarginRadius = 4;
+
+/// Returns true if the client has the tile, perhaps in an earlier state.
+constexpr bool client_has(TileStatus status) {
+  return status == TileStatus::sent || status == TileStatus::sent_empty ||
+         status == TileStatus::behind;
+}
 
 class TileInterest {
  public:
   explicit TileInterest(CoordLimit limit) : limit_(limit) {}
 
   struct Moved {
-    std::vector<ChunkKey> left;  // tiles that were waiting or sent, and are unknown now
+    std::vector<ChunkKey> left;  // tiles that were waiting or with the client, and are unknown now
     std::size_t steps = 0;       // tiles visited: the cost of the call
   };
   /// Sets the view. `skipped`: views that the client had in between; tiles outside of one of them are
@@ -52,6 +66,10 @@ class TileInterest {
   void set_waiting(const ChunkKey& key);
   /// Makes a waiting or sent tile wanted again.
   void want_again(const ChunkKey& key);
+  /// Makes a sent tile behind. Requires that it is hidden.
+  void set_behind(const ChunkKey& key);
+  /// Returns true if the client draws the children of the tile in its place: all of them are in the view.
+  bool is_hidden(const ChunkKey& key) const;
   /// Reports that a waiting or sent tile was sent. If it is not empty, its children in the view become
   /// wanted unless they are known. If it is empty, everything below it becomes unknown; returns those
   /// of them that were waiting or sent.
@@ -84,6 +102,7 @@ class TileInterest {
   std::optional<View> view_;
   TileGrid<TileStatus> tiles_;  // of view_
   std::set<Place> queue_;       // the wanted tiles
+  std::set<ChunkKey> behind_;   // the tiles that are behind
   std::size_t waiting_ = 0, known_ = 0;
 };
 

@@ -14,6 +14,7 @@
 #include "server/runtime/logging.hpp"
 #include "server/runtime/read_clocks.hpp"
 #include "server/runtime/recovery.hpp"
+#include "server/world/tile_resends.hpp"
 
 namespace runstone {
 namespace {
@@ -46,6 +47,7 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
              [this](Sequence at, const ChunkKey& key) { return readers_.past_chunk(at, key); }),
       environment_(sessions_, *listener_, sender_, readers_, tiles_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
+      tile_resends_(strand_.make_timer()),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
       stalls_(strand_, kStallInterval, [this] { close_stalled(); }),
       activity_(strand_, std::chrono::seconds(config.counters_s), [this] { write_activity(); }),
@@ -158,6 +160,7 @@ void ServerCore::close_stalled() {
 void ServerCore::after_task() {
   if (world_->has_ready_edits(steady_now_us())) commits_.schedule();
   schedule_delivery();
+  schedule_tile_resends();
   finish_stop_if_flushed();
 }
 
@@ -239,6 +242,7 @@ void ServerCore::finish_stop_if_flushed() {
   stalls_.stop();
   activity_.stop();
   chat_retention_.stop();
+  tile_resends_.cancel();
   stopping_->set_value();
   stopping_.reset();
 }
@@ -293,6 +297,15 @@ void ServerCore::schedule_delivery() {
   strand_.post([this] {
     is_delivery_posted_ = false;
     world_->deliver_next(read_clocks());
+  });
+}
+
+void ServerCore::schedule_tile_resends() {
+  if (!world_->has_tile_resends() || std::exchange(is_resend_scheduled_, true)) return;
+  tile_resends_.expires_after(std::chrono::microseconds(kTileResendBurstUs));
+  strand_.wait(tile_resends_, [this](const asio::error_code& error) {
+    is_resend_scheduled_ = false;
+    if (!error) world_->resend_tiles(read_clocks());
   });
 }
 

@@ -127,6 +127,7 @@ class ServerCore final : public NetEvents {
   /// Posts a task that sends chunks, if a session's delivery is not complete, unless it is posted
   /// already.
   void schedule_delivery();
+  void schedule_tile_resends();
   void finish_stop_if_flushed();
   std::string all_counters(std::uint64_t memory_bytes) const;
   /// Logs what happened since the last call, if anything did.
@@ -151,6 +152,8 @@ class ServerCore final : public NetEvents {
   TileMaking tiles_;
   ServerEnvironment environment_;
   CommitScheduler commits_;
+  asio::steady_timer tile_resends_;   // WorldServer::resend_tiles()
+  bool is_resend_scheduled_ = false;  // used on the world strand
   PeriodicTask ticks_, stalls_, activity_, chat_retention_;
   ActivitySample sampled_;  // at the last write_activity(). Used on the world strand
   // The answer of begin_stop(), set while it waits. Used on the world strand.

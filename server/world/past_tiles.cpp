@@ -32,7 +32,7 @@ void want_differing(const WorldState& world, TileInterest& tiles, const ChunkKey
   // A live tile that the session waits for is compared with its moment when it is made. A past one is
   // of another moment.
   const bool waits_for_past = status == TileStatus::waiting && newest > move.from;
-  if (waits_for_past || status == TileStatus::sent || status == TileStatus::sent_empty) {
+  if (waits_for_past || client_has(status)) {
     tiles.want_again(key);
     left.push_back(key);
   }

@@ -30,7 +30,55 @@ TileState state_of(const MadeTile& made) {
   return {made.tile->version, made.digest, made.is_complete()};
 }
 
+/// Queues a tile for the sessions that have it in another state. A tile is often made because one more
+/// session wants it: then the others have it already.
+void resend_changed(WorldState& world, const ChunkKey& key, const MadeTile& made,
+                    const Clocks& now) {
+  const TileReceivers* const having = world.tiles.receivers.find(key);
+  if (having == nullptr || having->state == state_of(made)) return;
+  const std::vector<SessionId> sessions = having->sessions;
+  const Sequence through = having->through;  // of what they have, but for those of `lagging`
+  const std::vector<SessionId> lagging = world.tiles.resends.cancel(key);
+  std::vector<SessionId> receivers;
+  for (const SessionId session : sessions) {
+    WorldSession& mine = *world.find(session);
+    const TileStatus status = mine.tiles->status(key);
+    if (is_past_tile(world, mine, key)) {
+      // What it has may lack edits before its moment.
+      if (through < mine.history->seq || std::ranges::find(lagging, session) != lagging.end()) {
+        mine.tiles->want_again(key);
+        leave_tiles(world, session, {&key, 1});
+      }
+    } else if (status == TileStatus::sent && mine.tiles->is_hidden(key) &&
+               !is_empty(made.tile->voxels)) {
+      mine.tiles->set_behind(key);
+      leave_tiles(world, session, {&key, 1});
+    } else {
+      receivers.push_back(session);
+    }
+  }
+  world.tiles.queue.charge_changed(now.steady_us,
+                                   kTileResendUs * static_cast<TimeUs>(receivers.size()));
+  world.tiles.resends.add(key, made.tile, std::move(receivers));
+}
+
 }  // namespace
+
+void resend_tiles(WorldState& world, const Clocks& now) {
+  if (world.tiles.resends.empty()) return;
+  make_tiles_stale(world, now);
+  while (const auto next = world.tiles.resends.next(now.steady_us)) {
+    const TileReceivers* const having = world.tiles.receivers.find(next->key);
+    if (having == nullptr || !std::ranges::binary_search(having->sessions, next->session)) continue;
+    WorldSession& mine = *world.find(next->session);
+    if (is_past_tile(world, mine, next->key)) {
+      mine.tiles->want_again(next->key);
+      leave_tiles(world, next->session, {&next->key, 1});
+    } else {
+      send_tile(world, next->session, next->key, next->tile, now);
+    }
+  }
+}
 
 void limit_levels(const WorldState& world, const WorldSession& session, View& view) {
   const bool has_tiles = (session.features & kFeatureTiles) != 0;
@@ -40,8 +88,7 @@ void limit_levels(const WorldState& world, const WorldSession& session, View& vi
 bool accepts_claim(const WorldState& world, const WorldSession& session, const ChunkKey& key) {
   if ((session.features & kFeatureTiles) == 0 || key.lod > world.config.tile_levels_max)
     return false;
-  const TileStatus status = session.tiles ? session.tiles->status(key) : TileStatus::unknown;
-  return status != TileStatus::sent && status != TileStatus::sent_empty;
+  return !session.tiles || !client_has(session.tiles->status(key));
 }
 
 std::size_t set_tile_view(WorldState& world, SessionId session, const View& view,
@@ -139,31 +186,20 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   const MadeTile& tile = made.back();
   charge(world, key, made, now);
   world.tiles.payers.erase(key);
-  const TileState state = state_of(tile);
-  std::vector<SessionId> receivers;
-  // A tile is often made because one more session wants it: the others have it already.
-  TileReceivers* const having = world.tiles.receivers.find(key);
-  const Sequence through = having != nullptr ? having->through : 0;  // of what the others have
-  if (having != nullptr && having->state != state) receivers = having->sessions;
-  world.tiles.queue.charge_changed(now.steady_us,
-                                   kTileResendUs * static_cast<TimeUs>(receivers.size()));
+  resend_changed(world, key, tile, now);
   for (const SessionId session : waiting) {
-    if (std::ranges::find(receivers, session) == receivers.end()) receivers.push_back(session);
-  }
-  for (const SessionId session : receivers) {
     WorldSession& mine = *world.find(session);
     if (!is_past_tile(world, mine, key)) {
       send_tile(world, session, key, tile.tile, now);
-    } else if (mine.tiles->status(key) == TileStatus::waiting || through < mine.history->seq) {
-      // An edit came after the session's request, or what it has lacks edits before its moment. It needs
-      // the tile as it was.
+    } else if (mine.tiles->status(key) == TileStatus::waiting) {
+      // An edit came after the session's request. It needs the tile as it was.
       mine.tiles->want_again(key);
       leave_tiles(world, session, {&key, 1});
     }
   }
   if (TileReceivers* found = world.tiles.receivers.find(key)) {
     found->made_us = now.steady_us;
-    found->state = state;
+    found->state = state_of(tile);
     found->through = tile.through;
     if (world.environment.newest_tile_edit(key) > tile.through)
       world.tiles.queue.make_again(key, now.steady_us + kTileRetryUs);

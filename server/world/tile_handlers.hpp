@@ -12,9 +12,6 @@
 
 namespace runstone {
 
-/// The time that a changed tile owes for each session to which it is sent
-/// (TileQueue::charge_changed()). So all sessions together get about 5,000 changed tiles a second.
-inline constexpr TimeUs kTileResendUs = 200;
 /// After this time a tile is tried again that could not be made, or that lacks edits of chunks that
 /// are not in memory.
 inline constexpr TimeUs kTileRetryUs = 1'000'000;
@@ -36,6 +33,9 @@ void limit_levels(const WorldState& world, const WorldSession& session, View& vi
 /// Returns true if the server may use this claim of a tile: the session has tiles of its level, and
 /// waits for this one or may wait for it later.
 bool accepts_claim(const WorldState& world, const WorldSession& session, const ChunkKey& key);
+/// Sends changed tiles to sessions that have them (tile_resends.hpp), as far as their pace allows. Cost:
+/// O(kTileResendBurstUs / kTileResendUs) sends.
+void resend_tiles(WorldState& world, const Clocks& now);
 /// Moves a session's tiles to its view. `skipped`: as in TileInterest::set_view(). Returns the cost.
 std::size_t set_tile_view(WorldState& world, SessionId session, const View& view,
                           std::span<const View> skipped);

@@ -42,6 +42,8 @@ void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
   for (const MadeTile& one : made) {
     if (!one.is_worth_storing() || one.tile->voxels.is_uniform()) continue;
     if (world.environment.newest_tile_edit(one.key) > one.through) continue;
+    // The store refuses it, and it is made again after the edits that come meanwhile.
+    if (one.tile->version.seq > world.durable) continue;
     tiles.emplace_back(one.key, one.tile);
   }
   if (!tiles.empty() && !world.is_stopping && !world.disk_is_full)
@@ -55,6 +57,7 @@ void leave_tiles(WorldState& world, SessionId session, std::span<const ChunkKey>
       std::erase(receivers->sessions, session);
       if (!receivers->sessions.empty()) continue;
       world.tiles.receivers.erase(key);
+      world.tiles.resends.cancel(key);
     }
     if (!world.tiles.queue.is_waited_for(key)) world.tiles.queue.cancel_again(key);
   }

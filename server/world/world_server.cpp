@@ -310,7 +310,12 @@ void WorldServer::tick(const Clocks& now) {
   keep_memory_bounds(world);
   start_loads(world, now);  // of the chunks that waited for memory
   start_tiles(world, now);
+  runstone::resend_tiles(world, now);
 }
+
+bool WorldServer::has_tile_resends() const { return !state_->tiles.resends.empty(); }
+
+void WorldServer::resend_tiles(const Clocks& now) { runstone::resend_tiles(*state_, now); }
 
 void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
   WorldState& world = *state_;

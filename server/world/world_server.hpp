@@ -69,6 +69,10 @@ class WorldServer {
   bool has_deliveries() const;
   /// Sends some chunks of one session. Sessions take turns.
   void deliver_next(const Clocks& now);
+  /// Returns true if changed tiles wait to be sent. Then call resend_tiles() after kTileResendBurstUs
+  /// (tile_resends.hpp).
+  bool has_tile_resends() const;
+  void resend_tiles(const Clocks& now);
   /// Does periodic work: timeouts, views, presence, digest checks, retries, checkpoints and
   /// eviction.
   void tick(const Clocks& now);

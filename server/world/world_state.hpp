@@ -22,6 +22,7 @@
 #include "server/world/players.hpp"
 #include "server/world/session_turns.hpp"
 #include "server/world/tile_queue.hpp"
+#include "server/world/tile_resends.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
 #include "server/world/world_environment.hpp"
@@ -65,7 +66,8 @@ struct TileReceivers {
   std::vector<SessionId> sessions;  // ascending
   std::optional<TimeUs> made_us;    // when it was made last
   /// The state in which it was made last, and MadeTile::through of that. All of them have it, or one
-  /// that they claimed. A session that sees the past may have an earlier one.
+  /// that they claimed, or get it from TileResends. A session that sees the past may have an earlier
+  /// one.
   std::optional<TileState> state;
   Sequence through = 0;
 };
@@ -73,6 +75,7 @@ struct TileReceivers {
 /// Tiles (tile_handlers.hpp).
 struct WorldTiles {
   TileQueue queue;
+  TileResends resends;
   std::size_t past_in_flight = 0;         // past tiles with workers (past_tiles.hpp)
   std::map<ChunkKey, Payer> payers;       // of the tiles that workers make because a session waits
   ChunkHashMap<TileReceivers> receivers;  // no entry is without sessions for long

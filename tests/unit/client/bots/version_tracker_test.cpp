@@ -43,6 +43,33 @@ TEST_CASE("versions follow edits that continue them", "[bots][headless]") {
   CHECK(tracker.violations().total() == 0);
 }
 
+TEST_CASE("a far view is complete when all tiles below tiles that are not empty arrived",
+          "[bots][headless]") {
+  VersionTracker tracker;
+  tracker.open(1, {});
+  View view{1, kTracked, 2, 2};
+  view.levels = 2;
+  tracker.set_view(view);
+  CHECK_FALSE(tracker.tiles_are_complete());
+  const auto answer = [&](const ChunkKey& key, Material material) {
+    UniformChunks out;
+    out.view = 1;
+    out.chunks.push_back({key, material, {}});
+    tracker.receive(out, 0);
+  };
+  const ChunkKey solid{2, {0, 0, 0}};
+  for_each_tile(view, {}, 2, [&](const ChunkKey& key) {
+    if (key != solid) answer(key, kEmpty);
+  });
+  CHECK_FALSE(tracker.tiles_are_complete());
+  answer(solid, 3);
+  CHECK_FALSE(tracker.tiles_are_complete());
+  for (unsigned i = 0; i < kTileChildren; ++i) answer(tile_child(solid, i), 3);
+  CHECK(tracker.tiles_are_complete());
+  tracker.open(1, {});
+  CHECK_FALSE(tracker.tiles_are_complete());
+}
+
 TEST_CASE("tiles are counted, and one outside of the view is a violation", "[bots][headless]") {
   VersionTracker tracker;
   tracker.open(1, {});

@@ -60,6 +60,8 @@ TEST_CASE("a copy that is known to be current is answered without a tile being m
   CHECK(bench.tiles_of(1).size() == kAllTiles - claims.size());
   CHECK(bench.server.counters().tiles_not_modified == claims.size());
   // From then on the session gets what edits change.
+  bench.look(1, 3, kAside);
+  bench.answer_tiles();
   bench.edit(1, 1, kAtOrigin);
   for (int n = 0; n < 10; ++n) {
     bench.tick(500'000);

@@ -77,6 +77,7 @@ TEST_CASE(
     "an edit makes the tiles above it again, the coarser the later, for those who have them") {
   TileBench bench;
   bench.enter(1);
+  bench.look(1, 3, kAside);
   bench.enter(2, 0);
   bench.answer_tiles();
   const std::multiset<ChunkKey> before = bench.tiles_of(1);
@@ -95,8 +96,63 @@ TEST_CASE(
     }
   }
   CHECK(made == std::vector<ChunkKey>{{1, {}}, {2, {}}, {3, {}}});
-  CHECK(bench.tiles_of(1).size() == before.size() + 3);
+  CHECK(bench.tiles_of(1).size() == before.size() + 2);  // the one of level 3 is hidden
   CHECK(bench.tiles_of(2).empty());
+}
+
+TEST_CASE("a hidden tile is made once after an edit, and sent when the view moves away from it") {
+  TileBench bench;
+  const ChunkKey hidden{1, {}};
+  bench.enter(1);
+  bench.answer_tiles();
+  const std::size_t before = bench.tiles_of(1).count(hidden);
+  std::size_t made = 0;
+  for (Sequence edit = 1; edit <= 5; ++edit) {
+    bench.edit(1, edit, kAtOrigin, edit % 2 == 0 ? Material{1} : Material{2});
+    for (int n = 0; n < 10; ++n) {
+      bench.tick(500'000);
+      for (const TileRequest& request : bench.answer_tiles()) made += request.key == hidden;
+    }
+  }
+  CHECK(made == 1);
+  CHECK(bench.tiles_of(1).count(hidden) == before);
+  bench.look(1, 3, kAside);
+  for (const TileRequest& request : bench.answer_tiles()) {
+    if (request.key == hidden) CHECK(request.head == 5);
+  }
+  CHECK(bench.tiles_of(1).count(hidden) == before + 1);
+  // From here it is drawn, so the next edit is sent.
+  bench.edit(1, 6, kAtOrigin);
+  for (int n = 0; n < 10; ++n) {
+    bench.tick(500'000);
+    bench.answer_tiles();
+  }
+  CHECK(bench.tiles_of(1).count(hidden) == before + 2);
+}
+
+TEST_CASE("a tile with an edit that is not durable is not saved") {
+  TileBench bench;
+  bench.enter(1);
+  bench.look(1, 3, kAside);
+  bench.answer_tiles();
+  const auto is_saved = [&](Sequence seq) {
+    return std::ranges::any_of(bench.environment.saved_tiles,
+                               [seq](const auto& one) { return one.second->version.seq == seq; });
+  };
+  const auto remake = [&] {
+    for (int n = 0; n < 10; ++n) {
+      bench.tick(500'000);
+      bench.answer_tiles();
+    }
+  };
+  bench.edit(1, 1, kAtOrigin);
+  remake();
+  CHECK_FALSE(is_saved(1));
+  bench.edit(1, 2, kAtOrigin, 2);
+  bench.tick();
+  bench.server.durable(2, bench.now());
+  remake();
+  CHECK(is_saved(2));
 }
 
 TEST_CASE("a tile that one more session wants is not sent again to those who have it") {
@@ -115,6 +171,7 @@ TEST_CASE("those who have a tile get it again if anything of it has changed") {
   const ChunkKey key{1, {}};
   SessionId newcomer = 1;
   bench.enter(newcomer);
+  bench.look(newcomer, 3, kAside);
   bench.answer_tiles();
   // Each newcomer makes the tile be made once more. Returns how often session 1 got it then.
   const auto sent_for = [&](const MadeTile& tile) {
@@ -146,6 +203,7 @@ TEST_CASE("an older state of a tile that waits to be sent is not sent after a ne
   v.levels = 3;
   bench.send_view(2, v);
   answer_at_once(bench, newer);
+  bench.server.resend_tiles(bench.now());
   bench.tick();
   CHECK(bench.tiles_of(1).count(kAbove) == 1);
   const auto& snapshots = bench.environment.snapshots;
@@ -293,8 +351,9 @@ TEST_CASE("a session whose queue was full gets the newest tile when it has room 
   TileBench bench;
   bench.enter(1);
   bench.enter(2);
+  bench.look(1, 3, kAside);
   bench.answer_tiles();
-  const ChunkKey key{3, {}};
+  const ChunkKey key{1, {}};
   const std::size_t before = bench.tiles_of(1).count(key);
   bench.environment.snapshot_room[1] = 0;
   for (ClientSequence seq = 1; seq <= 2; ++seq) {
