@@ -6,8 +6,8 @@
 #include <string>
 
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/web_player.hpp"
 #include "tests/support/pem_files.hpp"
+#include "tests/support/web_player.hpp"
 
 namespace runstone::test {
 namespace {
