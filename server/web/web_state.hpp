@@ -44,7 +44,9 @@ struct WebState {
   const WebConfig config;
   const ClientFiles client;  // may be empty
   const OriginCheck origin;
-  boost::asio::io_context io{1};
+  // Other threads only post to it. Sockets and timers are used by one thread, so Asio need not lock
+  // them.
+  boost::asio::io_context io{BOOST_ASIO_CONCURRENCY_HINT_UNSAFE_IO};
   Certificate certificate;
   WebCounters counters;
   MapBudgets map_budgets;
