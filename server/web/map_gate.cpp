@@ -92,7 +92,7 @@ boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string
 boost::asio::awaitable<MapAnswer> MapGate::wait_for(MapRequest request, std::string if_none_match) {
   const auto waiting = std::make_shared<Waiting>(io_);
   // The last reference to the timer must end on this thread, so the reply gives its own away.
-  auto reply = [&io = io_, waiting](MapAnswer answer) mutable {
+  auto reply = [&io = io_, waiting = waiting](MapAnswer answer) mutable {
     boost::asio::post(io, [waiting = std::move(waiting), answer = std::move(answer)]() mutable {
       waiting->answer = std::move(answer);
       waiting->answered.cancel();
