@@ -56,6 +56,7 @@ struct BehaviourFleet::Parts {
     net.host = options.server.host;
     net.port = options.server.port;
     net.tls = options.tls;
+    net.web_path = options.web_path;
     if (!options.password.empty()) password = std::make_shared<PasswordKeys>(options.password);
     // All keys are read or drawn before the first bot connects, so that a missing file fails at the
     // start.

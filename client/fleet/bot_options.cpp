@@ -19,6 +19,36 @@ double speed_of(const std::string& text) {
   return speed;
 }
 
+/// Where `--connect` leads: to a server, or to the WebSocket of a gateway.
+struct Target {
+  HostPort server;
+  std::string web_path;  // empty: a server
+  bool is_encrypted = true;
+};
+
+Target target_of(std::string text) {
+  constexpr std::uint16_t kHttpPort = 80, kHttpsPort = 443;
+  Target out;
+  std::uint16_t default_port = kDefaultPort;
+  for (const std::string scheme : {"ws://", "wss://"}) {
+    if (!text.starts_with(scheme)) continue;
+    out.is_encrypted = scheme == "wss://";
+    default_port = out.is_encrypted ? kHttpsPort : kHttpPort;
+    text.erase(0, scheme.size());
+    const std::size_t slash = std::min(text.find('/'), text.size());
+    out.web_path = text.substr(slash);
+    text.erase(slash);
+    if (out.web_path.size() < 2)
+      throw CLI::ValidationError("--connect", "a WebSocket has a path, such as /play");
+    if (out.web_path.find_first_of(" \r\n?#") != std::string::npos)
+      throw CLI::ValidationError("--connect", "not the path of a WebSocket: " + out.web_path);
+  }
+  auto server = parse_host_port(text, default_port);
+  if (!server) throw CLI::ValidationError("--connect", server.error());
+  out.server = *std::move(server);
+  return out;
+}
+
 constexpr const char* kRoleNames = "idle, walk, run-away, build, brush, griefer, join-storm";
 constexpr std::size_t kMixSharesMax = 1'000;
 
@@ -55,7 +85,8 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   unsigned view = out.view_radius, far_levels = out.far_levels;
   std::uint64_t edits = 0;
   app.add_option("--connect", address,
-                 "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort))
+                 "server: HOST or HOST:PORT, default port " + std::to_string(kDefaultPort) +
+                     "; gateway: wss://HOST:PORT/play, or ws:// without encryption")
       ->required();
   bool insecure = false;
   CLI::Option* const no_encryption = app.add_flag(
@@ -122,10 +153,15 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   }
   try {
     app.parse(argc, argv);
-    auto server = parse_host_port(address, kDefaultPort);
-    if (!server) throw CLI::ValidationError("--connect", server.error());
-    out.server = *std::move(server);
+    Target target = target_of(address);
+    if (!target.web_path.empty() && target.is_encrypted && insecure)
+      throw CLI::ValidationError("--insecure", "a gateway without encryption is ws://HOST/PATH");
+    if (!target.is_encrypted) insecure = true;
+    out.server = std::move(target.server);
+    out.web_path = std::move(target.web_path);
     if (!password_file.empty()) {
+      if (!out.web_path.empty())
+        throw CLI::ValidationError("--password-file", "a gateway passes no passwords on");
       auto password = read_passphrase(password_file);
       if (!password) throw CLI::ValidationError("--password-file", password.error());
       out.password = *std::move(password);

@@ -17,10 +17,11 @@ inline constexpr double kPlaySpeedMax = 1'000'000;
 struct BotOptions {
   HostPort server{"127.0.0.1", kDefaultPort};
   std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
-  std::size_t count = 1;                                 // bots
-  std::vector<BotRole> roles = {BotRole::build};         // bot i has role i modulo their number
-  std::size_t replicas = 20;           // this many bots, the first ones, keep a replica
-  double join_rate = 100;              // bots a second that join
+  std::string web_path;   // of a gateway's WebSocket; empty: `server` is no gateway
+  std::size_t count = 1;  // bots
+  std::vector<BotRole> roles = {BotRole::build};  // bot i has role i modulo their number
+  std::size_t replicas = 20;                      // this many bots, the first ones, keep a replica
+  double join_rate = 100;                         // bots a second that join
   std::string name = "bot";            // bots are NAME-1, NAME-2, ...; a single bot is NAME
   std::string key_dir;                 // has a key file for each bot; empty: new keys each time
   std::string password;                // of the world; empty: none

@@ -38,8 +38,10 @@ std::uint64_t progress_of(const PlayBot& bot) {
 struct PlayFleet::Parts {
   Parts(const BotOptions& fleet_options, const RecordedLog& recorded)
       : options(fleet_options), log(recorded) {
-    const LinkConfig net{
-        .host = options.server.host, .port = options.server.port, .tls = options.tls};
+    const LinkConfig net{.host = options.server.host,
+                         .port = options.server.port,
+                         .tls = options.tls,
+                         .web_path = options.web_path};
     for (const RecordedAuthor& author : log.authors)
       players.push_back(std::make_unique<Player>(io, net, author, new_player(), options.speed));
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "client/net/link_socket.hpp"
+#include "common/os/host_port.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
@@ -94,7 +95,8 @@ asio::awaitable<void> read_messages(State& state) {
   while (true) {
     const auto [error, count] = co_await state.socket.read_some(asio::buffer(buffer));
     if (error) {
-      if (state.why_closed.empty()) state.why_closed = error.message();
+      const std::string& words = state.socket.closing_words();
+      if (state.why_closed.empty()) state.why_closed = words.empty() ? error.message() : words;
       break;
     }
     state.stats.bytes_received.fetch_add(count, std::memory_order_relaxed);
@@ -143,8 +145,8 @@ asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
   }
 }
 
-/// Connects and, unless the link is not encrypted, performs the TLS handshake. Returns as
-/// connect().
+/// Connects, performs the TLS handshake if the link is encrypted, and opens the WebSocket if it has
+/// one. Returns as connect().
 template <class State>
 asio::awaitable<std::string> open(State& state,
                                   const asio::ip::tcp::resolver::results_type& endpoints) {
@@ -152,8 +154,12 @@ asio::awaitable<std::string> open(State& state,
       co_await asio::async_connect(state.socket.tcp(), endpoints, kTuple);
   if (error) co_return "cannot connect: " + error.message();
   state.socket.set_no_delay();
-  if (!state.config.tls) co_return std::string();
-  std::string failure = co_await state.socket.secure(*state.config.tls, state.config.host);
+  const LinkConfig& config = state.config;
+  std::string failure;
+  if (config.tls) failure = co_await state.socket.secure(*config.tls, config.host);
+  if (!failure.empty() || config.web_path.empty()) co_return failure;
+  const std::string host = to_string(HostPort{config.host, config.port});
+  failure = co_await state.socket.open_websocket(host, config.web_path);
   co_return failure;
 }
 

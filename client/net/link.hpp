@@ -1,5 +1,5 @@
 // Link: a connection to the server that is made again after a loss. It carries the messages of a
-// MessageStream over TCP and TLS. After a loss it connects again, with growing pauses, until it is
+// MessageStream over TCP and TLS, or over a WebSocket of a gateway. After a loss it connects again, with growing pauses, until it is
 // stopped. Messages carry the number of their connection; those of an
 // older connection are dropped. The io_context belongs to the caller, so one thread may run one
 // link (NetClient) or a thousand (bots).
@@ -21,6 +21,9 @@ struct LinkConfig {
   std::uint16_t port = 0;
   /// nullopt: the connection is not encrypted.
   std::optional<TlsContext> tls = TlsContext::client();
+  /// Path of the WebSocket of a gateway, such as "/play". Empty: `port` is that of the server, which
+  /// takes frames without a WebSocket.
+  std::string web_path = {};
   // Of NetClient: events that were not taken yet, and the memory of their messages.
   std::size_t events_max = 4096;
   std::size_t event_bytes_max = std::size_t{16} << 20;

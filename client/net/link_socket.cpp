@@ -21,6 +21,10 @@ bool is_handshake_record(std::uint8_t first) { return first == 22 || first == 21
 void LinkSocket::reset() {
   tls_.reset();
   binding_.reset();
+  web_.reset();
+  contents_.clear();
+  contents_read_ = 0;
+  closing_words_.clear();
   tcp_ = asio::ip::tcp::socket(tcp_.get_executor());
 }
 
@@ -49,7 +53,53 @@ asio::awaitable<std::string> LinkSocket::secure(const TlsContext& context,
   co_return std::string();
 }
 
+asio::awaitable<std::string> LinkSocket::open_websocket(const std::string& host,
+                                                        const std::string& path) {
+  WebSocketCodec codec;
+  const std::string request = codec.request(host, path);
+  const ByteView request_bytes(reinterpret_cast<const std::uint8_t*>(request.data()),
+                               request.size());
+  const asio::error_code unsent = co_await write_below(request_bytes);
+  if (unsent) co_return "the gateway takes no request: " + unsent.message();
+  received_.resize(kReceiveBytes);
+  std::string answer;
+  for (;;) {
+    const Read got = co_await read_below(asio::buffer(received_));
+    if (got.error) co_return "the gateway gives no answer: " + got.error.message();
+    answer.append(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(got.bytes));
+    const auto end = codec.read_answer(answer);
+    if (!end) co_return end.error();
+    if (*end == 0) continue;
+    const Bytes rest(answer.begin() + static_cast<std::ptrdiff_t>(*end), answer.end());
+    if (const auto read = codec.read(rest, contents_); !read) co_return read.error();
+    web_.emplace(std::move(codec));
+    co_return std::string();
+  }
+}
+
 asio::awaitable<LinkSocket::Read> LinkSocket::read_some(asio::mutable_buffer into) {
+  if (!web_) {
+    const Read plain = co_await read_below(into);
+    co_return plain;
+  }
+  while (contents_read_ == contents_.size()) {
+    contents_.clear();
+    contents_read_ = 0;
+    const Read got = co_await read_below(asio::buffer(received_));
+    if (got.error) co_return got;
+    const auto read = web_->read(ByteView(received_).first(got.bytes), contents_);
+    if (read) continue;
+    closing_words_ = read.error();
+    co_return Read{asio::error::eof, 0};
+  }
+  const std::size_t bytes = std::min(into.size(), contents_.size() - contents_read_);
+  std::copy_n(contents_.begin() + static_cast<std::ptrdiff_t>(contents_read_), bytes,
+              static_cast<std::uint8_t*>(into.data()));
+  contents_read_ += bytes;
+  co_return Read{{}, bytes};
+}
+
+asio::awaitable<LinkSocket::Read> LinkSocket::read_below(asio::mutable_buffer into) {
   Read result;
   if (!tls_) {
     const auto [error, bytes] = co_await tcp_.async_read_some(into, kSocketTuple);
@@ -70,6 +120,16 @@ asio::awaitable<LinkSocket::Read> LinkSocket::read_some(asio::mutable_buffer int
 }
 
 asio::awaitable<asio::error_code> LinkSocket::write(ByteView bytes) {
+  if (web_) {
+    messages_.clear();
+    web_->write(bytes, messages_);
+    bytes = messages_;
+  }
+  const asio::error_code error = co_await write_below(bytes);
+  co_return error;
+}
+
+asio::awaitable<asio::error_code> LinkSocket::write_below(ByteView bytes) {
   if (!tls_) {
     const auto [error, count] =
         co_await asio::async_write(tcp_, asio::buffer(bytes.data(), bytes.size()), kSocketTuple);

@@ -54,13 +54,22 @@ class SettingsTable {
     return {};
   }
   /// Sets the values that a TOML file names; `file` is only for messages. Fails on unknown names and
-  /// wrong values, with their line; `config` is then unchanged.
-  Result<void, TextError> read_toml(Config& config, std::string_view toml,
-                                    std::string_view file) const {
-    const auto values = read_toml_settings(toml, file);
+  /// wrong values, with their line; `config` is then unchanged. `sections`: a kind of sections that
+  /// the caller reads (read_toml_sections); empty: there are none.
+  Result<void, TextError> read_toml(Config& config, std::string_view toml, std::string_view file,
+                                    std::string_view sections = {}) const {
+    auto values = read_toml_settings(toml, file);
     if (!values) return Unexpected<TextError>{values.error()};
+    std::erase_if(*values, [&](const TomlSetting& value) {
+      return !sections.empty() && value.key == sections;
+    });
+    return read_values(config, *values, file);
+  }
+  /// The same for values that were read.
+  Result<void, TextError> read_values(Config& config, const std::vector<TomlSetting>& values,
+                                      std::string_view file) const {
     Config read = config;
-    for (const TomlSetting& value : *values) {
+    for (const TomlSetting& value : values) {
       const Setting<Config>* setting = find(value.key);
       std::optional<std::string> wrong = "no such setting";
       if (setting != nullptr) {

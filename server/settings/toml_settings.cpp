@@ -6,15 +6,18 @@
 
 namespace runstone {
 
-Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view toml,
-                                                               std::string_view file) {
-  toml::table table;
+namespace {
+
+Result<toml::table, TextError> parse_toml(std::string_view toml, std::string_view file) {
   try {
-    table = toml::parse(toml, file);
+    return toml::parse(toml, file);
   } catch (const toml::parse_error& error) {
     return Unexpected<TextError>{
         {std::string(file), error.source().begin.line, "", std::string(error.description())}};
   }
+}
+
+std::vector<TomlSetting> settings_in(const toml::table& table) {
   std::vector<TomlSetting> out;
   for (const auto& [key, node] : table) {
     TomlSetting setting{key.source().begin.line, std::string(key.str()), std::nullopt, {}};
@@ -29,6 +32,36 @@ Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view 
       setting.text = std::to_string(*number);
     }
     out.push_back(std::move(setting));
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view toml,
+                                                               std::string_view file) {
+  const auto table = parse_toml(toml, file);
+  if (!table) return Unexpected<TextError>{table.error()};
+  return settings_in(*table);
+}
+
+Result<std::vector<TomlSection>, TextError> read_toml_sections(std::string_view toml,
+                                                               std::string_view file,
+                                                               std::string_view kind) {
+  const auto table = parse_toml(toml, file);
+  if (!table) return Unexpected<TextError>{table.error()};
+  std::vector<TomlSection> out;
+  const toml::node* const found = table->get(kind);
+  if (found == nullptr) return out;
+  const auto wrong = [&](const toml::node& node, const std::string& key) {
+    return Unexpected<TextError>{{std::string(file), node.source().begin.line, key,
+                                  "must be a section: [" + std::string(kind) + ".NAME]"}};
+  };
+  if (!found->is_table()) return wrong(*found, std::string(kind));
+  for (const auto& [key, node] : *found->as_table()) {
+    const std::string name(key.str());
+    if (!node.is_table()) return wrong(node, std::string(kind) + "." + name);
+    out.push_back({node.source().begin.line, name, settings_in(*node.as_table())});
   }
   return out;
 }

@@ -1,4 +1,5 @@
-// TOML files of settings: one line a setting, without tables. Reads their values as text, and writes
+// TOML files of settings: one line a setting. A program may also have sections, such as
+// [server.valley], with settings of their own. Reads their values as text, and writes
 // such lines. Which settings there are is known to SettingsTable. Thread: any.
 #pragma once
 #include <cstdint>
@@ -21,6 +22,17 @@ struct TomlSetting {
   std::optional<SettingType> type;  // nullopt: no setting has a value of this type
   std::string text;                 // as a flag of the command line has it
 };
+/// The settings under a header such as [server.valley].
+struct TomlSection {
+  std::uint32_t line = 0;
+  std::string name;  // "valley"
+  std::vector<TomlSetting> settings;
+};
+/// Returns the sections of a kind, such as "server", by name. Fails if the file is no TOML, or if the
+/// kind is a value and no table of sections.
+Result<std::vector<TomlSection>, TextError> read_toml_sections(std::string_view toml,
+                                                               std::string_view file,
+                                                               std::string_view kind);
 /// Returns all keys of a file with their values. `file` is only for messages. Fails if it is no TOML.
 Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view toml,
                                                                std::string_view file);

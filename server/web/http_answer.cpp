@@ -1,11 +1,13 @@
 #include "server/web/http_answer.hpp"
 
 #include <array>
+#include <memory>
 
 #include "server/map/map_request.hpp"
 #include "server/web/map_page.hpp"
 #include "server/web/metrics_text.hpp"
 #include "server/web/web_pages.hpp"
+#include "server/web/web_world.hpp"
 
 namespace runstone {
 namespace {
@@ -17,9 +19,14 @@ struct Route {
 };
 
 constexpr const char* kHtml = "text/html; charset=utf-8";
+constexpr std::string_view kMetricsPath = "/metrics", kStylePath = "/style.css";
 
 HttpAnswer fixed(std::string type, std::string_view body) {
   return {200, std::move(type), std::string(body), "", HttpCaching::an_hour};
+}
+
+HttpAnswer metrics_answer(std::span<const WorldStatus> worlds, const WebCounters& web) {
+  return {200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(worlds, web)};
 }
 
 constexpr std::array<Route, 9> kRoutes = {{
@@ -29,14 +36,19 @@ constexpr std::array<Route, 9> kRoutes = {{
      }},
     {kStatusPath, true,
      [](const PageContents& in) {
-       return HttpAnswer{200, kHtml, status_page(in.config, in.server, in.web, in.recent_edits)};
+       return HttpAnswer{
+           200, kHtml,
+           status_page(in.config, in.server, in.web, in.recent_edits, !in.world_name.empty())};
      }},
-    {"/metrics", true,
+    {kMetricsPath, true,
      [](const PageContents& in) {
-       return HttpAnswer{200, "text/plain; version=0.0.4; charset=utf-8",
-                         metrics_text(in.server, in.web)};
+       if (!in.world_name.empty())
+         return plain_answer(404, "the numbers of all worlds are at /metrics");
+       const std::array<WorldStatus, 1> world = {
+           {{"", in.config.title, {std::shared_ptr<void>(), &in.server}}}};
+       return metrics_answer(world, in.web);
      }},
-    {"/style.css", false,
+    {kStylePath, false,
      [](const PageContents& /*in*/) { return fixed("text/css; charset=utf-8", style_sheet()); }},
     {"/map", false,
      [](const PageContents& in) {
@@ -65,6 +77,16 @@ const Route* find_route(std::string_view target) {
     if (route.path == path_of(target)) return &route;
   }
   return nullptr;
+}
+
+bool is_read(const HttpRequest& request) {
+  return request.method == "GET" || request.method == "HEAD";
+}
+
+HttpAnswer only_read_answer() {
+  HttpAnswer answer = plain_answer(405, "this page can only be read");
+  answer.allow = "GET, HEAD";
+  return answer;
 }
 
 HttpAnswer file_answer(const ClientFile& file, const HttpRequest& request) {
@@ -100,19 +122,43 @@ HttpAnswer answer_request(const HttpRequest& request, const PageContents& conten
   const bool is_map_data = route == nullptr && path.starts_with(kMapDataPath);
   if (file == nullptr && !is_folder && !is_map_data && route == nullptr)
     return plain_answer(404, "there is no such page");
-  if (request.method != "GET" && request.method != "HEAD") {
-    HttpAnswer answer = plain_answer(405, "this page can only be read");
-    answer.allow = "GET, HEAD";
-    return answer;
-  }
+  if (!is_read(request)) return only_read_answer();
   if (file != nullptr) return file_answer(*file, request);
   if (is_folder) {
     HttpAnswer answer = plain_answer(308, "the client is one slash further");
-    answer.location = kClientPath;
+    // Relative to the request, because the folder may be that of one of several worlds.
+    answer.location = kClientPath.substr(1);
     return answer;
   }
   if (is_map_data) return plain_answer(404, "this gateway shows no map");
   return route->answer(contents);
+}
+
+HttpAnswer answer_gateway_request(const HttpRequest& request, const GatewayContents& contents) {
+  const std::string_view path = path_of(request.target);
+  std::string_view folder;  // that the request names without its last slash
+  for (const WorldStatus& world : contents.worlds) {
+    if (path.starts_with(kWorldsPath) && path.substr(kWorldsPath.size()) == world.name)
+      folder = world.name;
+  }
+  const bool is_page =
+      path == "/" || path == kStatusPath || path == kMetricsPath || path == kStylePath;
+  if (!is_page && folder.empty()) {
+    const bool is_of_world = path == kPlayPath || path.starts_with(kClientPath) || path == "/map";
+    return plain_answer(404, is_of_world ? "this gateway has several worlds: choose one at /"
+                                         : "there is no such page");
+  }
+  if (!is_read(request)) return only_read_answer();
+  if (!folder.empty()) {
+    HttpAnswer answer = plain_answer(308, "the world is one slash further");
+    answer.location = std::string(folder) + "/";
+    return answer;
+  }
+  if (path == kStylePath) return fixed("text/css; charset=utf-8", style_sheet());
+  if (path == kMetricsPath) return metrics_answer(contents.worlds, contents.web);
+  if (path == kStatusPath)
+    return {200, kHtml, gateway_status_page(contents.config, contents.worlds, contents.web)};
+  return {200, kHtml, worlds_page(contents.config, contents.worlds)};
 }
 
 HttpAnswer plain_answer(unsigned status, std::string sentence) {

@@ -2,6 +2,7 @@
 // nothing is looked up on disk, so no path can lead out of anything.
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -67,9 +68,19 @@ struct PageContents {
   const WebCounters& web;
   /// JSON of the newest edits for the page of the state; empty: they are not shown.
   std::string_view recent_edits = {};
+  /// Of the world among several ones; empty: there is one.
+  std::string_view world_name = {};
 };
 /// Returns the answer to a request.
 HttpAnswer answer_request(const HttpRequest& request, const PageContents& contents);
+/// What the pages of a gateway with several servers show outside of the folders of the worlds.
+struct GatewayContents {
+  const WebConfig& config;
+  std::span<const WorldStatus> worlds;  // each has a status if shows_status()
+  const WebCounters& web;
+};
+/// Returns the answer to a request that leads to no world.
+HttpAnswer answer_gateway_request(const HttpRequest& request, const GatewayContents& contents);
 /// Returns an answer that is one sentence.
 HttpAnswer plain_answer(unsigned status, std::string sentence);
 

@@ -42,12 +42,13 @@ struct MapGate::Waiting {
   std::optional<MapAnswer> answer;
 };
 
-MapGate::MapGate(boost::asio::io_context& io, const WebConfig& config, WebCounters& counters)
-    : io_(io),
-      counters_(counters),
-      requests_(budget_of(config.map_requests_per_second, kRequestsAtOnce)),
-      work_us_(budget_of(config.map_ms_per_second * kUsPerMs, kWorkAtOnce)),
-      service_(make_service(config)) {}
+MapBudgets::MapBudgets(const WebConfig& config)
+    : requests(budget_of(config.map_requests_per_second, kRequestsAtOnce)),
+      work_us(budget_of(config.map_ms_per_second * kUsPerMs, kWorkAtOnce)) {}
+
+MapGate::MapGate(boost::asio::io_context& io, const WebConfig& config, MapBudgets& budgets,
+                 WebCounters& counters)
+    : io_(io), budgets_(budgets), counters_(counters), service_(make_service(config)) {}
 
 boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string_view target,
                                                   std::string if_none_match) {
@@ -66,7 +67,7 @@ boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string
     ++counters_.map_refused;
     return map_words(429, words);
   };
-  if (!work_us_.has(from, 1, steady_now_us()))
+  if (!budgets_.work_us.has(from, 1, steady_now_us()))
     co_return refuse("the map has drawn much for this address: ask again in a moment");
   const AddressBlock range = address_range_of(from);
   const auto count_of = [](const auto& counts, AddressBlock of) {
@@ -82,7 +83,7 @@ boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string
   MapAnswer out = co_await wait_for(*std::move(request), std::move(if_none_match));
   if (--waiting_[from] == 0) waiting_.erase(from);
   if (--waiting_of_range_[range] == 0) waiting_of_range_.erase(range);
-  work_us_.charge_range(from, out.work_us, steady_now_us());
+  budgets_.work_us.charge_range(from, out.work_us, steady_now_us());
   counters_.map_work_us += out.work_us;
   counters_.map_not_modified += out.status == 304 ? 1 : 0;
   co_return out;
@@ -91,7 +92,7 @@ boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string
 boost::asio::awaitable<MapAnswer> MapGate::wait_for(MapRequest request, std::string if_none_match) {
   const auto waiting = std::make_shared<Waiting>(io_);
   // The last reference to the timer must end on this thread, so the reply gives its own away.
-  auto reply = [&io = io_, waiting](MapAnswer answer) mutable {
+  auto reply = [&io = io_, waiting = waiting](MapAnswer answer) mutable {
     boost::asio::post(io, [waiting = std::move(waiting), answer = std::move(answer)]() mutable {
       waiting->answer = std::move(answer);
       waiting->answered.cancel();

@@ -18,18 +18,25 @@
 
 namespace runstone {
 
+/// What each address may ask of the maps of a gateway together.
+struct MapBudgets {
+  explicit MapBudgets(const WebConfig& config);
+  AddressLedger requests, work_us;
+};
+
 class MapGate {
  public:
   /// The requests of one address, and of one range of addresses, that may wait for the drawing thread.
   static constexpr std::size_t kWaitingMax = 16, kWaitingOfRangeMax = 64;
 
-  /// There is no map if the setting `world` is empty. `io` and `counters` must outlive the object.
-  MapGate(boost::asio::io_context& io, const WebConfig& config, WebCounters& counters);
+  /// There is no map if the setting `world` is empty. The others must outlive the object.
+  MapGate(boost::asio::io_context& io, const WebConfig& config, MapBudgets& budgets,
+          WebCounters& counters);
 
   bool is_on() const { return service_ != nullptr; }
   /// Counts a request on a connection. Returns false if the address may not ask now.
   bool ask(AddressBlock from, TimeUs now_us) {
-    const bool may_ask = requests_.take(from, 1, now_us);
+    const bool may_ask = budgets_.requests.take(from, 1, now_us);
     if (!may_ask) ++counters_.map_refused;
     return may_ask;
   }
@@ -50,8 +57,8 @@ class MapGate {
   boost::asio::awaitable<MapAnswer> wait_for(MapRequest request, std::string if_none_match);
 
   boost::asio::io_context& io_;
+  MapBudgets& budgets_;
   WebCounters& counters_;
-  AddressLedger requests_, work_us_;
   std::map<AddressBlock, std::size_t> waiting_, waiting_of_range_;  // no count is 0
   bool is_stopped_ = false;
   std::unique_ptr<MapService> service_;  // null: no map

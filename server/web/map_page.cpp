@@ -10,20 +10,20 @@ std::string map_page(const WebConfig& config) {
   if (config.world.empty()) {
     return html_page(config.title + ": map",
                      "<p>This gateway shows no map: its host has not turned it on.</p>\n"
-                     "<p><a href=\"/\">Back to the world</a></p>\n");
+                     "<p><a href=\"./\">Back to the world</a></p>\n");
   }
   const std::string title = html_text(config.title);
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
          title +
-         ": map</title>\n<link rel=\"stylesheet\" href=\"/map.css\">\n"
-         "<script src=\"/map.js\" defer></script>\n</head>\n<body>\n"
+         ": map</title>\n<link rel=\"stylesheet\" href=\"map.css\">\n"
+         "<script src=\"map.js\" defer></script>\n</head>\n<body>\n"
          "<canvas id=\"map\" tabindex=\"0\" aria-label=\"Map of the world from above\"></canvas>\n"
-         "<header><h1><a href=\"/\">" +
+         "<header><h1><a href=\"./\">" +
          title +
          "</a></h1><span id=\"place\"></span></header>\n"
          "<p id=\"words\" role=\"status\">"
-         "<noscript>The map needs JavaScript. <a href=\"/status\">The state of the server</a> "
+         "<noscript>The map needs JavaScript. <a href=\"status\">The state of the server</a> "
          "does not.</noscript></p>\n"
          "<aside id=\"builders\" hidden><button id=\"close\" aria-label=\"Close\">&#215;</button>"
          "<h2></h2><ol></ol></aside>\n"

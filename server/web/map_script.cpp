@@ -53,7 +53,7 @@ async function load(tile) {
   ++loads;
   try {
     const headers = tile.etag ? {'If-None-Match': tile.etag} : {};
-    const answer = await fetch('/map/tile/' + tile.key + '.png' + (at === null ? '' : '?at=' + at),
+    const answer = await fetch('map/tile/' + tile.key + '.png' + (at === null ? '' : '?at=' + at),
                                {headers, cache: 'no-store'});
     if (answer.status === 200) {
       const picture = await createImageBitmap(await answer.blob());
@@ -217,7 +217,7 @@ function tileChanged(x, z) {
 
 async function poll() {
   try {
-    const answer = await fetch('/map/state.json' + (state ? '?since=' + state.seq : ''),
+    const answer = await fetch('map/state.json' + (state ? '?since=' + state.seq : ''),
                                {cache: 'no-store'});
     if (!answer.ok) {
       if (answer.status !== 429) say(await answer.text());
@@ -239,7 +239,7 @@ async function poll() {
         glows.set(x + '/' + z, {x, z, since: performance.now()});
       }
       showTime();
-      const list = await fetch('/map/players.json', {cache: 'no-store'});
+      const list = await fetch('map/players.json', {cache: 'no-store'});
       players = list.ok ? await list.json() : [];
       redraw();
     }
@@ -299,7 +299,7 @@ async function showTime() {
     return;
   }
   try {
-    const answer = await fetch('/map/moment.json?seq=' + shown, {cache: 'no-store'});
+    const answer = await fetch('map/moment.json?seq=' + shown, {cache: 'no-store'});
     if (!answer.ok) throw new Error(answer.status);
     const moment = await answer.json();
     if (whenOf === shown)
@@ -347,7 +347,7 @@ let looks = 0;  // at builders; the answer of an older one is ignored
 async function showBuilders(x, z) {
   if (!state.look_back) return;
   const look = ++looks;
-  const answer = await fetch('/map/builders.json?x=' + x + '&z=' + z + (at === null ? '' : '&at=' + at),
+  const answer = await fetch('map/builders.json?x=' + x + '&z=' + z + (at === null ? '' : '&at=' + at),
                              {cache: 'no-store'});
   if (look !== looks) return;
   const panel = el('builders'), list = panel.querySelector('ol'), title = panel.querySelector('h2');

@@ -3,20 +3,37 @@
 #include <prometheus/text_serializer.h>
 
 #include <limits>
+#include <map>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace runstone {
 namespace {
 
-void add_metric(std::vector<prometheus::MetricFamily>& out, const std::string& name,
-                const std::string& help, double value) {
+using Families = std::map<std::string, prometheus::MetricFamily>;
+
+/// Adds a value to the family of its name. `world`: the label of one of several worlds, or empty.
+void add_metric(Families& out, const std::string& name, const std::string& help,
+                prometheus::MetricType type, prometheus::ClientMetric metric,
+                std::string_view world) {
+  if (!world.empty()) metric.label.push_back({"world", std::string(world)});
+  prometheus::MetricFamily& family = out[name];
+  family.name = "runstone_" + name;
+  family.help = help;
+  family.type = type;
+  family.metric.push_back(std::move(metric));
+}
+
+void add_number(Families& out, const std::string& name, const std::string& help, double value,
+                std::string_view world = {}) {
   prometheus::ClientMetric metric;
   metric.untyped.value = value;
-  out.push_back({"runstone_" + name, help, prometheus::MetricType::Untyped, {std::move(metric)}});
+  add_metric(out, name, help, prometheus::MetricType::Untyped, std::move(metric), world);
 }
 
 /// Adds the histogram that the counters edit_wait_* describe. A later server may have other bounds.
-void add_waits(std::vector<prometheus::MetricFamily>& out, const ServerStatus& server) {
+void add_waits(Families& out, const ServerStatus& server, std::string_view world) {
   prometheus::ClientMetric metric;
   metric.histogram.sample_count = static_cast<std::uint64_t>(server.counter("edit_wait_count"));
   metric.histogram.sample_sum = static_cast<double>(server.counter("edit_wait_us")) / 1e6;
@@ -24,26 +41,35 @@ void add_waits(std::vector<prometheus::MetricFamily>& out, const ServerStatus& s
     metric.histogram.bucket.push_back({waits.count, static_cast<double>(waits.ms_max) / 1e3});
   metric.histogram.bucket.push_back(
       {metric.histogram.sample_count, std::numeric_limits<double>::infinity()});
-  out.push_back({"runstone_edit_wait_seconds",
-                 "time from accepting an edit of a player to sending its commit",
-                 prometheus::MetricType::Histogram,
-                 {std::move(metric)}});
+  add_metric(out, "edit_wait_seconds",
+             "time from accepting an edit of a player to sending its commit",
+             prometheus::MetricType::Histogram, std::move(metric), world);
 }
 
 }  // namespace
 
-std::string metrics_text(const ServerStatus& server, const WebCounters& web) {
-  std::vector<prometheus::MetricFamily> families;
-  add_metric(families, "up", "1 if the server answers the gateway", server.is_up ? 1 : 0);
-  for (const auto& [name, value] : server.counters) {
-    add_metric(families, name, "counter of the server with this name", static_cast<double>(value));
+std::string metrics_text(std::span<const WorldStatus> worlds, const WebCounters& web) {
+  Families families;
+  for (const WorldStatus& world : worlds) {
+    const ServerStatus& server = *world.status;
+    add_number(families, "up", "1 if the server answers the gateway", server.is_up ? 1 : 0,
+               world.name);
+    for (const auto& [name, value] : server.counters) {
+      add_number(families, name, "counter of the server with this name", static_cast<double>(value),
+                 world.name);
+    }
+    if (server.is_up) add_waits(families, server, world.name);
   }
-  if (server.is_up) add_waits(families, server);
   const auto add = [&](const char* name, const char* help, std::uint64_t value) {
-    add_metric(families, std::string("web_") + name, help, static_cast<double>(value));
+    add_number(families, std::string("web_") + name, help, static_cast<double>(value));
   };
   add("connections", "connections accepted since the start", web.connections);
   add("refused", "connections closed at once because of a limit", web.refused);
+  add("accepts_failed", "times that the system gave no socket to a connection", web.accepts_failed);
+  add("certificate_ends_seconds", "end of the certificate, UTC since 1970; 0: there is none",
+      web.certificate_ends_s);
+  add("certificates_read", "certificates that replaced the first one", web.certificates_read);
+  add("certificates_refused", "new certificates that could not be used", web.certificates_refused);
   add("connections_open", "connections now", web.connections_open);
   add("requests", "requests answered since the start", web.requests);
   add("websockets", "WebSockets opened since the start", web.websockets);
@@ -59,7 +85,9 @@ std::string metrics_text(const ServerStatus& server, const WebCounters& web) {
   add("map_work_us", "microseconds of drawing", web.map_work_us);
   add("memory_bytes", "memory of the gateway in RAM", web.memory_bytes);
   add("map_cache_bytes", "memory of what the map has drawn", web.map_cache_bytes);
-  return prometheus::TextSerializer().Serialize(families);
+  std::vector<prometheus::MetricFamily> all;
+  for (auto& [name, family] : families) all.push_back(std::move(family));
+  return prometheus::TextSerializer().Serialize(all);
 }
 
 }  // namespace runstone

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,13 @@ struct ServerStatus {
 
   /// Returns a counter, or 0 if the server has none of this name.
   std::int64_t counter(const std::string& name) const;
+};
+
+/// One of the worlds of a gateway.
+struct WorldStatus {
+  std::string_view name;  // empty: the only one
+  std::string_view title;
+  std::shared_ptr<const ServerStatus> status;  // null: nobody asked for it
 };
 
 /// How many edits waited at most so long on the server.

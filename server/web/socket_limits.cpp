@@ -14,12 +14,12 @@ SocketLimits::SocketLimits(std::size_t per_address, std::uint64_t connections_pe
       connections_per_second_(connections_per_second),
       connects_({connections_per_second, connections_per_second * kConnectsAtOnce}) {}
 
-bool SocketLimits::add(AddressBlock from, TimeUs now_us) {
-  if (!connects_.take(from, 1, now_us)) return false;
+const char* SocketLimits::try_add(AddressBlock from, TimeUs now_us) {
+  if (!connects_.take(from, 1, now_us)) return "connections_per_second";
   const auto found = sockets_.find(from);
-  if (found != sockets_.end() && found->second >= per_address_) return false;
+  if (found != sockets_.end() && found->second >= per_address_) return "sockets_per_address";
   ++sockets_[from];
-  return true;
+  return nullptr;
 }
 
 void SocketLimits::remove(AddressBlock from) {

@@ -15,8 +15,11 @@ class SocketLimits {
   /// request on a connection counts as one more connection.
   SocketLimits(std::size_t per_address, std::uint64_t connections_per_second);
 
-  /// Counts a connection. Returns false if the address may not have it now.
-  bool add(AddressBlock from, TimeUs now_us);
+  /// Counts a connection and returns null. If the address may not have it now, it counts nothing
+  /// and returns the name of the setting that forbids it.
+  const char* try_add(AddressBlock from, TimeUs now_us);
+  /// The same. Returns false if the address may not have the connection.
+  bool add(AddressBlock from, TimeUs now_us) { return try_add(from, now_us) == nullptr; }
   /// Counts a further request on a connection. Returns false if the address may not ask now.
   bool ask(AddressBlock from, TimeUs now_us) { return connects_.take(from, 1, now_us); }
   /// Charges an address that broke a rule: it may connect about once in the next second.

@@ -8,24 +8,111 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kWebTextBytesMax = 1'024;
+constexpr const char* kSectionKind = "server";
+constexpr std::size_t kServerNameBytesMax = 32;
+
+/// Makes a setting that is one line of text.
+template <class Config>
+Setting<Config> line_setting(const char* name, const char* help, std::string Config::* member,
+                             bool is_optional) {
+  Setting<Config> out = text_setting(name, help, member, is_optional);
+  // The texts stand on pages and in log lines.
+  out.set = [set = out.set](Config& config,
+                            const std::string& value) -> std::optional<std::string> {
+    if (value.size() > kWebTextBytesMax || !is_printable_utf8(value))
+      return "must be one line of UTF-8 text of at most " + std::to_string(kWebTextBytesMax) +
+             " bytes";
+    return set(config, value);
+  };
+  return out;
+}
+
+const SettingsTable<WebServer>& server_settings() {
+  using S = WebServer;
+  static const SettingsTable<S> all(
+      "", {
+              line_setting<S>("gateway_socket", "path of the server's setting gateway_socket",
+                              &S::gateway_socket, false),
+              line_setting<S>("title", "name of the world on the pages", &S::title, true),
+              line_setting<S>("public_address",
+                              "HOST or HOST:PORT at which desktop clients reach the server",
+                              &S::public_address, true),
+              line_setting<S>("world", "folder of the world, to show its map; empty: no map",
+                              &S::world, true),
+          });
+  return all;
+}
+
+bool is_server_name(std::string_view name) {
+  return !name.empty() && name.size() <= kServerNameBytesMax &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string_view::npos;
+}
+
+/// Returns what is wrong with the sections of a configuration, or nullopt.
+std::optional<std::string> fault_of_servers(const WebConfig& config) {
+  if (config.servers.empty()) return std::nullopt;
+  if (config.servers.size() > kWebServersMax)
+    return "at most " + std::to_string(kWebServersMax) + " servers fit behind one gateway";
+  const WebConfig defaults;
+  if (config.gateway_socket != defaults.gateway_socket || !config.world.empty() ||
+      !config.public_address.empty())
+    return "gateway_socket, world and public_address belong into the sections of the servers";
+  return std::nullopt;
+}
 
 }  // namespace
+
+Result<void, TextError> read_web_toml(WebConfig& config, std::string_view toml,
+                                      std::string_view file) {
+  WebConfig read = config;
+  if (auto done = web_settings().read_toml(read, toml, file, kSectionKind); !done) return done;
+  const auto sections = read_toml_sections(toml, file, kSectionKind);
+  if (!sections) return Unexpected<TextError>{sections.error()};
+  for (const TomlSection& section : *sections) {
+    const auto wrong = [&](const std::string& why) {
+      return Unexpected<TextError>{
+          {std::string(file), section.line, std::string(kSectionKind) + "." + section.name, why}};
+    };
+    if (!is_server_name(section.name))
+      return wrong("the name of a server has 1 to 32 characters of a-z, 0-9 and '-'");
+    WebServer server{section.name, "", "", "", ""};
+    if (auto done = server_settings().read_values(server, section.settings, file); !done)
+      return done;
+    if (server.gateway_socket.empty()) return wrong("gateway_socket is missing");
+    for (const WebServer& other : read.servers) {
+      if (other.gateway_socket == server.gateway_socket)
+        return wrong("its gateway_socket is that of the server " + other.name);
+    }
+    read.servers.push_back(std::move(server));
+    if (const auto fault = fault_of_servers(read)) return wrong(*fault);
+  }
+  config = std::move(read);
+  return {};
+}
+
+std::string to_web_toml(const WebConfig& config) {
+  std::string out = web_settings().to_toml(config);
+  for (const WebServer& server : config.servers) {
+    out += std::string("\n[") + kSectionKind + "." + server.name + "]\n" +
+           server_settings().to_toml(server);
+  }
+  return out;
+}
+
+WebConfig config_for(const WebConfig& gateway, const WebServer& server) {
+  WebConfig out = gateway;
+  out.servers.clear();
+  out.gateway_socket = server.gateway_socket;
+  out.title = server.title.empty() ? server.name : server.title;
+  out.public_address = server.public_address;
+  out.world = server.world;
+  return out;
+}
 
 const SettingsTable<WebConfig>& web_settings() {
   using C = WebConfig;
   const auto number = number_setting<C>;
-  const auto text = [](const char* name, const char* help, std::string C::* member,
-                       bool is_optional) {
-    Setting<C> out = text_setting(name, help, member, is_optional);
-    // The texts stand on pages and in log lines.
-    out.set = [set = out.set](C& config, const std::string& value) -> std::optional<std::string> {
-      if (value.size() > kWebTextBytesMax || !is_printable_utf8(value))
-        return "must be one line of UTF-8 text of at most " + std::to_string(kWebTextBytesMax) +
-               " bytes";
-      return set(config, value);
-    };
-    return out;
-  };
+  const auto text = line_setting<C>;
   static const SettingsTable<C> all(
       "RUNSTONE_WEB_",
       {

@@ -3,10 +3,21 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "server/settings/settings_table.hpp"
 
 namespace runstone {
+
+/// One of several servers behind a gateway: a section [server.NAME] of the file.
+struct WebServer {
+  std::string name;            // in paths: 1..32 of a-z, 0-9 and '-'
+  std::string gateway_socket;  // as in WebConfig, as are the next ones; never empty
+  std::string title;           // empty: the name
+  std::string public_address, world;
+  friend bool operator==(const WebServer&, const WebServer&) = default;
+};
 
 struct WebConfig {
   // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
@@ -34,10 +45,23 @@ struct WebConfig {
   std::uint64_t connections_per_second = 20;   // of one address, ten times at once, 0: no limit
   std::uint64_t handshake_s = 10;  // seconds for TLS, for a request and for its answer, 1..3600
   std::uint64_t idle_s = 60;       // seconds without a sign of life from a browser, 2..86400
+  /// Empty: there is one server, that of `gateway_socket`. Otherwise `gateway_socket`,
+  /// `public_address` and `world` are not used, and `title` is that of the list of servers.
+  std::vector<WebServer> servers;
   friend bool operator==(const WebConfig&, const WebConfig&) = default;
 };
 
-/// Returns all settings, in the order of the struct.
+inline constexpr std::size_t kWebServersMax = 64;
+
+/// Returns all settings, in the order of the struct, without the sections.
 const SettingsTable<WebConfig>& web_settings();
+/// Reads the settings and the sections of a TOML file, see SettingsTable::read_toml().
+Result<void, TextError> read_web_toml(WebConfig& config, std::string_view toml,
+                                      std::string_view file);
+/// Returns all settings and sections as TOML, which read_web_toml() reads back.
+std::string to_web_toml(const WebConfig& config);
+/// Returns the configuration for the pages and the map of one server of several: that of the gateway
+/// with what the section says.
+WebConfig config_for(const WebConfig& gateway, const WebServer& server);
 
 }  // namespace runstone

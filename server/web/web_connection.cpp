@@ -4,6 +4,8 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/parser.hpp>
@@ -12,6 +14,7 @@
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <string_view>
+#include <vector>
 
 #include "common/os/process_memory.hpp"
 
@@ -44,6 +47,18 @@ const char* cache_control(HttpCaching caching) {
 
 std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
+HttpRequest asked_by(const WebSocketSession::Request& request, std::string_view target) {
+  return {view_of(request.method_string()), target, view_of(request[http::field::accept_encoding]),
+          view_of(request[http::field::if_none_match])};
+}
+
+/// Brings the counters up to date that are measured for a page.
+void measure(WebState& state) {
+  state.counters.memory_bytes = process_memory_bytes();
+  state.counters.map_cache_bytes = 0;
+  for (const auto& world : state.worlds) state.counters.map_cache_bytes += world->map.cache_bytes();
+}
+
 HttpAnswer answer_to_broken_request(const boost::system::error_code& error) {
   if (error == http::error::header_limit || error == http::error::buffer_overflow)
     return plain_answer(431, "the headers of the request are too long");
@@ -59,7 +74,7 @@ WebConnection::WebConnection(WebState& state, std::uint64_t id, WebStream::Socke
     : state_(state),
       id_(id),
       from_(from),
-      stream_(std::move(socket), state.tls ? &*state.tls : nullptr),
+      stream_(std::move(socket), state.certificate.context()),
       read_(2 * kRequestHeaderBytesMax) {
   state_.connections.emplace(id_, this);
   ++state_.counters.connections_open;
@@ -78,13 +93,8 @@ WebConnection::~WebConnection() {
 
 boost::asio::awaitable<void> WebConnection::run(std::shared_ptr<WebConnection> self) {
   self->stream_.allow_s(self->state_.config.handshake_s);
-  if (self->stream_.tls() != nullptr) {
-    boost::system::error_code error;
-    co_await self->stream_.tls()->async_handshake(
-        boost::asio::ssl::stream_base::server,
-        boost::asio::redirect_error(boost::asio::use_awaitable, error));
-    if (error) co_return;
-  }
+  const bool is_secure = co_await WebStream::handshake(self->stream_);
+  if (!is_secure) co_return;
   const bool is_in_order = co_await serve(self);
   if (is_in_order) co_await finish(self);
   self->stream_.close();
@@ -110,32 +120,33 @@ boost::asio::awaitable<bool> WebConnection::serve(std::shared_ptr<WebConnection>
       co_return co_await write(self, broken, none, false);
     }
     Request request = parser.release();
-    const bool is_for_map = view_of(request.target()).starts_with(kMapDataPath);
+    const WebPlace place = place_of(self->state_, view_of(request.target()));
+    const bool is_for_map = place.world != nullptr && place.target.starts_with(kMapDataPath);
     const bool may_ask = is_for_map
-                             ? self->state_.map.ask(self->from_, steady_now_us())
+                             ? place.world->map.ask(self->from_, steady_now_us())
                              : is_first || self->state_.limits.ask(self->from_, steady_now_us());
     if (!may_ask) {
       const HttpAnswer later = plain_answer(429, "too many requests from this address: ask later");
       co_return co_await write(self, later, request, false);
     }
     if (boost::beast::websocket::is_upgrade(request)) {
-      const std::optional<HttpAnswer> refusal = self->refusal_of(request);
+      const std::optional<HttpAnswer> refusal = self->refusal_of(request, place);
       if (refusal) co_return co_await write(self, *refusal, request, false);
       --self->state_.counters.requests;
-      self->websocket_ =
-          std::make_shared<WebSocketSession>(self->state_, self->stream_, self->from_);
+      self->websocket_ = std::make_shared<WebSocketSession>(
+          self->state_, self->stream_, self->from_, place.world->config.gateway_socket);
       co_await WebSocketSession::run(self->websocket_, std::move(request));
       co_return false;
     }
-    const HttpAnswer answer = co_await answer_to(self, request);
+    const HttpAnswer answer = co_await answer_to(self, request, place);
     const bool keeps_alive = request.keep_alive();
     const bool is_written = co_await write(self, answer, request, keeps_alive);
     if (!is_written || !keeps_alive) co_return is_written;
   }
 }
 
-std::optional<HttpAnswer> WebConnection::refusal_of(const Request& request) const {
-  if (path_of(view_of(request.target())) != kPlayPath)
+std::optional<HttpAnswer> WebConnection::refusal_of(const Request& request, WebPlace place) const {
+  if (place.world == nullptr || path_of(place.target) != kPlayPath)
     return plain_answer(404, "there is no WebSocket at this address");
   const auto origin = request.find(http::field::origin);
   const bool has_origin = origin != request.end();
@@ -147,9 +158,15 @@ std::optional<HttpAnswer> WebConnection::refusal_of(const Request& request) cons
 }
 
 boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebConnection> self,
-                                                            const Request& request) {
+                                                            const Request& request,
+                                                            WebPlace place) {
   static const auto kNoStatus = std::make_shared<const ServerStatus>();
-  const std::string_view path = path_of(view_of(request.target()));
+  if (place.world == nullptr) {
+    HttpAnswer out = co_await answer_of_gateway(self, request);
+    co_return out;
+  }
+  WebWorld& world = *place.world;
+  const std::string_view path = path_of(place.target);
   const bool is_read = request.method() == http::verb::get || request.method() == http::verb::head;
   const bool is_for_map = is_read && path.starts_with(kMapDataPath);
   if (is_for_map || path == kStatusPath) {
@@ -158,8 +175,7 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
     self->stream_.allow_s(self->state_.config.handshake_s + kMapSeconds + 2);
   }
   if (is_for_map && path == kMapPlayersPath) {
-    MapAnswer allowed =
-        co_await self->state_.map.answer(self->from_, kMapRightsPath, std::string());
+    MapAnswer allowed = co_await world.map.answer(self->from_, kMapRightsPath, std::string());
     if (allowed.status != 200) {
       HttpAnswer out{allowed.status, std::move(allowed.type), ""};
       out.shared = std::move(allowed.body);
@@ -167,9 +183,8 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
     }
   }
   if (is_for_map && path != kMapPlayersPath) {
-    MapAnswer answer =
-        co_await self->state_.map.answer(self->from_, view_of(request.target()),
-                                         std::string(view_of(request[http::field::if_none_match])));
+    MapAnswer answer = co_await world.map.answer(
+        self->from_, place.target, std::string(view_of(request[http::field::if_none_match])));
     HttpAnswer out{answer.status, std::move(answer.type), ""};
     out.tag = std::move(answer.etag);
     if (!out.tag.empty()) out.caching = HttpCaching::while_unchanged;
@@ -178,22 +193,39 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
   }
   std::shared_ptr<const ServerStatus> status = kNoStatus;
   std::string recent_edits;
-  if (is_read && path == kStatusPath && self->state_.map.is_on()) {
+  if (is_read && path == kStatusPath && world.map.is_on()) {
     const MapAnswer recent =
-        co_await self->state_.map.answer(self->from_, kRecentEditsPath, std::string());
+        co_await world.map.answer(self->from_, kRecentEditsPath, std::string());
     if (recent.status == 200 && recent.body != nullptr) recent_edits = *recent.body;
   }
-  if (shows_status(view_of(request.target()))) {
-    status = co_await self->state_.status.newest();
-    self->state_.counters.memory_bytes = process_memory_bytes();
-    self->state_.counters.map_cache_bytes = self->state_.map.cache_bytes();
+  if (shows_status(place.target)) {
+    status = co_await world.status.newest();
+    measure(self->state_);
   }
-  const HttpRequest asked{view_of(request.method_string()), view_of(request.target()),
-                          view_of(request[http::field::accept_encoding]),
-                          view_of(request[http::field::if_none_match])};
-  const PageContents contents{self->state_.config, self->state_.client, *status,
-                              self->state_.counters, recent_edits};
-  co_return answer_request(asked, contents);
+  const PageContents contents{world.config,          self->state_.client, *status,
+                              self->state_.counters, recent_edits,        world.name};
+  co_return answer_request(asked_by(request, place.target), contents);
+}
+
+boost::asio::awaitable<HttpAnswer> WebConnection::answer_of_gateway(
+    std::shared_ptr<WebConnection> self, const Request& request) {
+  WebState& state = self->state_;
+  std::vector<WorldStatus> worlds;
+  if (shows_status(view_of(request.target()))) {
+    // They are asked all at once, so that one that does not answer delays the page only once.
+    for (const auto& world : state.worlds)
+      boost::asio::co_spawn(state.io, world->status.newest(), boost::asio::detached);
+    for (const auto& world : state.worlds) {
+      const std::shared_ptr<const ServerStatus> status = co_await world->status.newest();
+      worlds.push_back({world->name, world->config.title, status});
+    }
+    measure(state);
+  } else {
+    for (const auto& world : state.worlds)
+      worlds.push_back({world->name, world->config.title, nullptr});
+  }
+  co_return answer_gateway_request(asked_by(request, view_of(request.target())),
+                                   {state.config, worlds, state.counters});
 }
 
 boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection> self,
@@ -226,12 +258,7 @@ boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection>
 boost::asio::awaitable<void> WebConnection::finish(std::shared_ptr<WebConnection> self) {
   self->stream_.allow_s(kFinishSeconds);
   boost::system::error_code error;
-  if (self->stream_.tls() != nullptr) {
-    co_await self->stream_.tls()->async_shutdown(
-        boost::asio::redirect_error(boost::asio::use_awaitable, error));
-    co_return;
-  }
-  self->stream_.next_layer().shutdown(WebStream::Socket::shutdown_send, error);
+  self->stream_.end_sending();
   std::size_t dropped = 0;
   while (!error && dropped < kDroppedBytesMax) {
     self->read_.clear();

@@ -26,6 +26,8 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
 
   static boost::asio::awaitable<void> run(std::shared_ptr<WebConnection> self);
   bool is_websocket() const { return websocket_ != nullptr; }
+  /// Returns true for a WebSocket that has not sent anything.
+  bool is_silent_websocket() const { return is_websocket() && !websocket_->has_sent(); }
   /// Returns true if close() was called. The object lives until its coroutine has ended.
   bool is_closed() const { return is_closed_; }
   /// Closes the connection without a word.
@@ -43,7 +45,10 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   /// order.
   static boost::asio::awaitable<bool> serve(std::shared_ptr<WebConnection> self);
   static boost::asio::awaitable<HttpAnswer> answer_to(std::shared_ptr<WebConnection> self,
-                                                      const Request& request);
+                                                      const Request& request, WebPlace place);
+  /// Answers for a gateway with several servers, outside of their folders.
+  static boost::asio::awaitable<HttpAnswer> answer_of_gateway(std::shared_ptr<WebConnection> self,
+                                                              const Request& request);
   /// Writes an answer. Returns false if that failed.
   static boost::asio::awaitable<bool> write(std::shared_ptr<WebConnection> self,
                                             const HttpAnswer& answer, const Request& request,
@@ -51,7 +56,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   /// Ends sending, and reads what still comes, so that the browser gets the last answer.
   static boost::asio::awaitable<void> finish(std::shared_ptr<WebConnection> self);
   /// Returns the answer that refuses this WebSocket, or nullopt.
-  std::optional<HttpAnswer> refusal_of(const Request& request) const;
+  std::optional<HttpAnswer> refusal_of(const Request& request, WebPlace place) const;
 
   WebState& state_;
   const std::uint64_t id_;

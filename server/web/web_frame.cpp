@@ -21,6 +21,17 @@ const char* fault_of_web_message(ByteView message) {
   return nullptr;
 }
 
+void append_web_header(Bytes& out, std::size_t bytes) {
+  constexpr std::uint8_t kLastBinary = 0x82;
+  out.push_back(kLastBinary);
+  const int length_bytes = bytes < 126 ? 0 : bytes < 65'536 ? 2 : 8;
+  out.push_back(static_cast<std::uint8_t>(length_bytes == 0   ? bytes
+                                          : length_bytes == 2 ? 126
+                                                              : 127));
+  for (int i = length_bytes - 1; i >= 0; --i)
+    out.push_back(static_cast<std::uint8_t>(bytes >> (8 * i)));
+}
+
 std::optional<ByteView> FrameCutter::next() {
   const ByteView left = ByteView(bytes_).subspan(begin_, end_ - begin_);
   if (broken_ || left.size() < kFrameHeaderBytes) return std::nullopt;

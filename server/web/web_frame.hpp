@@ -1,6 +1,7 @@
-// Frames between a WebSocket and the stream of the server. A binary message of the WebSocket is one
-// frame of the protocol as it is in the stream, with its header (protocol/codec/frame.hpp). So bytes
-// pass in both directions unchanged, and only their bounds are looked at here.
+// Frames between a WebSocket and the stream of the server. A binary message of a browser is one frame
+// of the protocol as it is in the stream, with its header (protocol/codec/frame.hpp). A message to a
+// browser is one frame or several. So bytes pass in both directions unchanged, and only their bounds
+// are looked at here.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -16,6 +17,10 @@ inline constexpr std::size_t kFrameBytesMax = kFrameHeaderBytes + kFragmentBytes
 /// Returns a sentence about why the message is not exactly one frame, or nullptr if it is. Of the
 /// header only the length is read; the server checks the rest.
 const char* fault_of_web_message(ByteView message);
+
+/// Appends the header of a WebSocket's message to a browser: binary, in one fragment, not masked (RFC
+/// 6455). `bytes`: of its contents.
+void append_web_header(Bytes& out, std::size_t bytes);
 
 /// Cuts the server's stream into frames. It holds at most two frames. Thread: one.
 class FrameCutter {

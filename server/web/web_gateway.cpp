@@ -1,8 +1,8 @@
 #include "server/web/web_gateway.hpp"
 
-#include <sys/stat.h>
 #include <sys/un.h>
 
+#include <cerrno>
 #include <utility>
 // Boost 1.74 uses std::exchange without its header, so <utility> comes first.
 #include <boost/asio/co_spawn.hpp>
@@ -13,11 +13,13 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <chrono>
-#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string_view>
 #include <thread>
-#include <vector>
 
 #include "common/os/host_port.hpp"
+#include "server/web/rare_line.hpp"
 #include "server/web/web_connection.hpp"
 
 namespace runstone {
@@ -36,29 +38,21 @@ AddressBlock block_of(const boost::asio::ip::address& address) {
                          : address_block_v4(address.to_v4().to_uint());
 }
 
-Result<std::optional<boost::asio::ssl::context>, std::string> read_certificate(
-    const WebConfig& config) {
-  std::optional<boost::asio::ssl::context> out;
-  if (config.tls_certificate.empty() != config.tls_key.empty())
-    return failure("tls_certificate and tls_key: one of them is missing");
-  if (config.tls_key.empty()) return out;
-  struct stat about{};
-  if (::stat(config.tls_key.c_str(), &about) == 0 && (about.st_mode & S_IROTH) != 0) {
-    return failure("tls_key = \"" + config.tls_key +
-                   "\": every user of this machine can read the secret key: chmod o-r it");
+/// Returns what is wrong with the path of a server's socket, or nullopt.
+std::optional<std::string> fault_of_socket(const std::string& path) {
+  if (path.size() + std::string_view(".status").size() <= kSocketNameBytesMax) return std::nullopt;
+  return "gateway_socket = " + path + ": the path of a socket has at most " +
+         std::to_string(kSocketNameBytesMax) +
+         " bytes, with \".status\": use a shorter or a relative one";
+}
+
+/// Returns true if an accept failed because the process or the system has no room for a socket.
+bool is_out_of_sockets(const boost::system::error_code& error) {
+  for (const int number : {EMFILE, ENFILE, ENOBUFS, ENOMEM}) {
+    if (error.value() == number && error.category() == boost::system::system_category())
+      return true;
   }
-  out.emplace(boost::asio::ssl::context::tls_server);
-  SSL_CTX_set_min_proto_version(out->native_handle(), TLS1_3_VERSION);
-  // Neither ended sessions nor idle connections keep memory.
-  SSL_CTX_set_session_cache_mode(out->native_handle(), SSL_SESS_CACHE_OFF);
-  SSL_CTX_set_mode(out->native_handle(), SSL_MODE_RELEASE_BUFFERS);
-  boost::system::error_code error;
-  out->use_certificate_chain_file(config.tls_certificate, error);
-  if (error)
-    return failure("tls_certificate = \"" + config.tls_certificate + "\": " + error.message());
-  out->use_private_key_file(config.tls_key, boost::asio::ssl::context::pem, error);
-  if (error) return failure("tls_key = \"" + config.tls_key + "\": " + error.message());
-  return out;
+  return false;
 }
 
 }  // namespace
@@ -66,20 +60,23 @@ Result<std::optional<boost::asio::ssl::context>, std::string> read_certificate(
 // Members are destroyed in reverse order. The sockets of the state and the acceptor need its
 // io_context, which is in the state.
 struct WebGateway::Parts {
-  Parts(const WebConfig& config, ClientFiles client, OriginCheck origin,
-        std::optional<boost::asio::ssl::context> certificate)
+  Parts(const WebConfig& config, ClientFiles client, OriginCheck origin, Certificate certificate)
       : state(config, std::move(client), std::move(origin), std::move(certificate)),
         acceptor(state.io),
         pause(state.io),
-        sweep(state.io) {}
+        sweep(state.io) {
+    state.counters.certificate_ends_s = static_cast<std::uint64_t>(state.certificate.ends_s());
+  }
 
   Result<void, std::string> listen();
   boost::asio::awaitable<void> accept_loop();
   boost::asio::awaitable<void> sweep_loop();
   void admit(tcp::socket socket);
-  /// Makes room for one more connection by closing the oldest one that is no WebSocket. Returns
-  /// false if there is none.
+  /// Makes room for one more connection by closing the oldest one that is no WebSocket, or else the
+  /// oldest WebSocket that has sent nothing. Returns false if there is none.
   bool make_room();
+  bool close_oldest();
+  void reload_certificate();
   void stop();
 
   WebState state;
@@ -87,7 +84,9 @@ struct WebGateway::Parts {
   boost::asio::steady_timer pause, sweep;
   std::uint64_t next_id = 1;
   bool is_stopped = false;
+  RareLine refusal_line, accept_line;
   std::uint16_t port = 0;
+  const bool is_encrypted = state.certificate.is_there();
   std::thread thread;
 };
 
@@ -104,7 +103,7 @@ Result<void, std::string> WebGateway::Parts::listen() {
                        tcp::resolver::passive | tcp::resolver::numeric_service, error);
   if (error) return cannot(error.message());
   const tcp::endpoint end = ends.begin()->endpoint();
-  if (!state.tls && !state.config.i_know && !end.address().is_loopback()) {
+  if (!state.certificate.is_there() && !state.config.i_know && !end.address().is_loopback()) {
     return cannot(
         "without a certificate the gateway is for this machine only, because everybody on the way "
         "could read and change what players send: set tls_certificate and tls_key, or listen on "
@@ -128,7 +127,12 @@ boost::asio::awaitable<void> WebGateway::Parts::accept_loop() {
     if (!error) {
       if (!is_stopped) admit(std::move(socket));
     } else if (acceptor.is_open()) {
-      // The process is probably out of file descriptors. Connections that end release some.
+      ++state.counters.accepts_failed;
+      accept_line.print(steady_now_us(),
+                        "cannot take a connection: " + error.message() +
+                            (is_out_of_sockets(error) ? ": see ulimit -n and sockets_max" : ""));
+      // A connection that ends releases file descriptors. Until then the others wait in the kernel.
+      if (is_out_of_sockets(error)) close_oldest();
       pause.expires_after(std::chrono::milliseconds(100));
       co_await pause.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, error));
     }
@@ -147,18 +151,26 @@ boost::asio::awaitable<void> WebGateway::Parts::sweep_loop() {
     co_await sweep.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, error));
     const TimeUs now_us = steady_now_us();
     for (const auto& [id, connection] : state.connections) connection->close_if_due(now_us);
+    if (!is_stopped && state.certificate.has_changed(now_us)) reload_certificate();
   }
 }
 
 void WebGateway::Parts::admit(tcp::socket socket) {
   ++state.counters.connections;
   boost::system::error_code ignored, gone;
-  const AddressBlock from = block_of(socket.remote_endpoint(gone).address());
+  const boost::asio::ip::address address = socket.remote_endpoint(gone).address();
   if (gone) return;
-  const bool has_room = state.limits.add(from, steady_now_us());
-  if (!has_room || !make_room()) {
-    if (has_room) state.limits.remove(from);
+  const AddressBlock from = block_of(address);
+  const TimeUs now_us = steady_now_us();
+  const char* limit = state.limits.try_add(from, now_us);
+  if (limit == nullptr && !make_room()) {
+    state.limits.remove(from);
+    limit = "sockets_max";
+  }
+  if (limit != nullptr) {
     ++state.counters.refused;
+    refusal_line.print(now_us, "a connection from " + address.to_string() +
+                                   " is refused because of the setting " + limit);
     // A reset leaves nothing in the kernel. Otherwise each of these sockets would stay in TIME_WAIT.
     socket.set_option(boost::asio::socket_base::linger(true, 0), ignored);
     return;
@@ -168,14 +180,42 @@ void WebGateway::Parts::admit(tcp::socket socket) {
 }
 
 bool WebGateway::Parts::make_room() {
-  if (state.connections.size() < state.config.sockets_max) return true;
+  return state.connections.size() < state.config.sockets_max || close_oldest();
+}
+
+bool WebGateway::Parts::close_oldest() {
+  WebConnection* silent = nullptr;
+  WebConnection* oldest = nullptr;
   for (const auto& [id, connection] : state.connections) {
-    if (connection->is_websocket() || connection->is_closed()) continue;
-    connection->close();
-    ++state.counters.refused;
-    return true;
+    if (connection->is_closed()) continue;
+    if (!connection->is_websocket()) {
+      oldest = connection;
+      break;
+    }
+    if (silent == nullptr && connection->is_silent_websocket()) silent = connection;
   }
-  return false;
+  if (oldest == nullptr) oldest = silent;
+  if (oldest == nullptr) return false;
+  oldest->close();
+  ++state.counters.refused;
+  return true;
+}
+
+void WebGateway::Parts::reload_certificate() {
+  if (!state.certificate.is_there()) {
+    std::cerr << "runstone-web: there is no certificate to read again" << std::endl;
+    return;
+  }
+  const auto done = state.certificate.reload();
+  if (!done) {
+    ++state.counters.certificates_refused;
+    std::cerr << "runstone-web: the new certificate is refused, and the old one stays: "
+              << done.error() << std::endl;
+    return;
+  }
+  ++state.counters.certificates_read;
+  state.counters.certificate_ends_s = static_cast<std::uint64_t>(state.certificate.ends_s());
+  std::cerr << "runstone-web: new connections get the new certificate" << std::endl;
 }
 
 void WebGateway::Parts::stop() {
@@ -185,27 +225,27 @@ void WebGateway::Parts::stop() {
   pause.cancel();
   sweep.cancel();
   for (const auto& [id, connection] : state.connections) connection->end_because_of_stop();
-  state.map.stop();
+  for (const auto& world : state.worlds) world->map.stop();
 }
 
 WebGateway::WebGateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 Result<std::unique_ptr<WebGateway>, std::string> WebGateway::start(const WebConfig& config) {
-  if (config.gateway_socket.size() + std::string_view(".status").size() > kSocketNameBytesMax) {
-    return failure("gateway_socket = " + config.gateway_socket +
-                   ": the path of a socket has at most " + std::to_string(kSocketNameBytesMax) +
-                   " bytes, with \".status\": use a shorter or a relative one");
+  auto fault = config.servers.empty() ? fault_of_socket(config.gateway_socket) : std::nullopt;
+  for (const WebServer& server : config.servers) {
+    if (!fault) fault = fault_of_socket(server.gateway_socket);
   }
+  if (fault) return failure(*fault);
   auto origins = parse_origins(config.origins);
   if (!origins) return failure(origins.error());
-  auto certificate = read_certificate(config);
+  auto certificate = Certificate::read(config.tls_certificate, config.tls_key);
   if (!certificate) return failure(certificate.error());
   Result<ClientFiles, std::string> client = ClientFiles();
   if (!config.client_files.empty()) client = ClientFiles::load(config.client_files);
   if (!client) return failure("client_files: " + client.error());
-  OriginCheck origin(*std::move(origins), certificate->has_value());
+  OriginCheck origin(*std::move(origins), certificate->is_there());
   auto parts = std::make_unique<Parts>(config, *std::move(client), std::move(origin),
-                                       std::move(certificate).value());
+                                       *std::move(certificate));
   if (const auto bound = parts->listen(); !bound) return failure(bound.error());
   Parts& running = *parts;
   boost::asio::co_spawn(running.state.io, running.accept_loop(), boost::asio::detached);
@@ -220,6 +260,9 @@ WebGateway::~WebGateway() {
 }
 
 std::uint16_t WebGateway::port() const { return parts_->port; }
-bool WebGateway::is_encrypted() const { return parts_->state.tls.has_value(); }
+bool WebGateway::is_encrypted() const { return parts_->is_encrypted; }
+void WebGateway::reload_certificate() {
+  boost::asio::post(parts_->state.io, [parts = parts_.get()] { parts->reload_certificate(); });
+}
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
 // WebGateway: a running gateway: it listens for browsers, serves pages, and passes WebSockets on to
-// a server on this machine. The program runs one, tests run several.
+// servers on this machine. The program runs one, tests run several.
 // Threads: the functions may be called from any thread. The gateway has one thread of its own, on
 // which all of its connections live.
 #pragma once
@@ -14,7 +14,7 @@ namespace runstone {
 
 class WebGateway {
  public:
-  /// Binds the address and runs. The server need not run yet. The error is one line for the
+  /// Binds the address and runs. The servers need not run yet. The error is one line for the
   /// operator.
   static Result<std::unique_ptr<WebGateway>, std::string> start(const WebConfig& config);
   /// Closes the WebSockets with words, all other connections at once, and ends the thread. Blocks
@@ -25,6 +25,10 @@ class WebGateway {
 
   std::uint16_t port() const;
   bool is_encrypted() const;
+  /// Reads the certificate again, for connections that are made from then on. If it cannot be used,
+  /// the old one stays. Either way a line for the operator says so. The gateway does the same by
+  /// itself when the files have changed.
+  void reload_certificate();
 
  private:
   struct Parts;

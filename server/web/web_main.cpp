@@ -1,4 +1,5 @@
-// runstone-web: a gateway for browsers in front of one server on the same machine.
+// runstone-web: a gateway for browsers in front of servers on the same machine. SIGHUP reads the
+// certificate again.
 // Exit codes: 0 stopped by SIGINT or SIGTERM, 2 could not start (docs/server-reference.md).
 #include <signal.h>
 
@@ -31,7 +32,7 @@ Result<WebConfig, std::string> read_config(const WebOptions& options) {
     std::ifstream in(options.config_file, std::ios::binary);
     if (!in) return failure(options.config_file + ": cannot be read");
     const std::string toml((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    const auto read = web_settings().read_toml(config, toml, options.config_file);
+    const auto read = read_web_toml(config, toml, options.config_file);
     if (!read) return failure(read.error().message());
   }
   const auto look_up = [](const std::string& name) -> std::optional<std::string> {
@@ -48,30 +49,46 @@ Result<WebConfig, std::string> read_config(const WebOptions& options) {
   return config;
 }
 
-/// Raises the limit of open files: two sockets for each connection, and a reserve.
-void allow_files_for(const WebConfig& config) {
-  const std::size_t needed = 2 * config.sockets_max + 64;
+/// Raises the limit of open files: two sockets for each connection, and a reserve. If the hard limit
+/// is lower, it lowers sockets_max, so that every connection that is accepted can reach its server.
+Result<void, std::string> allow_files_for(WebConfig& config) {
+  const std::size_t reserve = 64 + 16 * config.servers.size();
+  const std::size_t needed = 2 * config.sockets_max + reserve;
   const std::size_t allowed = allow_open_files(needed);
-  if (allowed >= needed) return;
-  std::cerr << "runstone-web: sockets_max=" << config.sockets_max << " needs " << needed
-            << " open files, and the hard limit is " << allowed << ": see ulimit -Hn\n";
+  if (allowed >= needed) return {};
+  const std::string why = "sockets_max=" + std::to_string(config.sockets_max) + " needs " +
+                          std::to_string(needed) + " open files, and the hard limit is " +
+                          std::to_string(allowed);
+  if (allowed < reserve + 2) return failure(why + ": see ulimit -Hn");
+  config.sockets_max = (allowed - reserve) / 2;
+  std::cerr << "runstone-web: " << why << ": sockets_max is " << config.sockets_max
+            << " instead, see ulimit -Hn\n";
+  return {};
+}
+
+std::string socket_names(const WebConfig& config) {
+  std::string out = config.servers.empty() ? config.gateway_socket : "";
+  for (const WebServer& server : config.servers)
+    out += (out.empty() ? "" : ",") + server.gateway_socket;
+  return out;
 }
 
 int web_program(int argc, char** argv) {
   const auto [options, exit_code] = parse_web_options(argc, argv);
   if (!options) return exit_code;
-  const auto config = read_config(*options);
+  auto config = read_config(*options);
   if (!config) return cannot_start(config.error());
   if (options->print_config) {
-    std::cout << web_settings().to_toml(*config);
+    std::cout << to_web_toml(*config);
     return kStopped;
   }
-  allow_files_for(*config);
+  if (const auto allowed = allow_files_for(*config); !allowed) return cannot_start(allowed.error());
   // The threads inherit the mask, so the signals wait for sigwait().
   sigset_t stops;
   sigemptyset(&stops);
   sigaddset(&stops, SIGINT);
   sigaddset(&stops, SIGTERM);
+  sigaddset(&stops, SIGHUP);
   ::pthread_sigmask(SIG_BLOCK, &stops, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
   const auto gateway = WebGateway::start(*config);
@@ -83,9 +100,13 @@ int web_program(int argc, char** argv) {
   }
   std::cerr << "runstone-web: listening port=" << port
             << " encryption=" << ((*gateway)->is_encrypted() ? "tls" : "none")
-            << " server=" << config->gateway_socket << std::endl;
-  int signal = 0;
-  ::sigwait(&stops, &signal);
+            << " server=" << socket_names(*config) << std::endl;
+  int signal = SIGHUP;
+  for (;;) {
+    ::sigwait(&stops, &signal);
+    if (signal != SIGHUP) break;
+    (*gateway)->reload_certificate();
+  }
   ::pthread_sigmask(SIG_UNBLOCK, &stops, nullptr);  // a second signal ends the process at once
   std::cerr << "runstone-web: stopping" << std::endl;
   return kStopped;

@@ -20,6 +20,9 @@ std::string players_list(const ServerStatus& server) {
   return out + "</ul>\n";
 }
 
+constexpr const char* kMetricsText =
+    "The same numbers for Prometheus: <a href=\"metrics\">/metrics</a></p>\n";
+
 constexpr const char* kDownText =
     "<p class=\"down\">The server of this world is not running, or it is restarting. This page shows "
     "the world again when the server is back.</p>\n";
@@ -108,6 +111,7 @@ std::string gateway_table(const WebCounters& web) {
                                        {"WebSockets since the start", number(web.websockets)},
                                        {"WebSockets that broke a rule", number(web.rules_broken)},
                                        {"connections refused", number(web.refused)},
+                                       {"connections without a socket", number(web.accepts_failed)},
                                        {"pages sent", number(web.requests)},
                                        {"frames from browsers", number(web.frames_in)},
                                        {"frames to browsers", number(web.frames_out)},
@@ -151,7 +155,7 @@ std::string html_page(const std::string& title, const std::string& body) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
          html_text(title) +
-         "</title>\n<link rel=\"stylesheet\" href=\"/style.css\">\n"
+         "</title>\n<link rel=\"stylesheet\" href=\"style.css\">\n"
          "</head>\n<body>\n<h1>" +
          html_text(title) + "</h1>\n" + body + "</body>\n</html>\n";
 }
@@ -159,7 +163,7 @@ std::string html_page(const std::string& title, const std::string& body) {
 std::string world_page(const WebConfig& config, bool has_client, const ServerStatus& server) {
   std::string body = server.is_up ? "<h2>Who is here</h2>\n" + players_list(server) : kDownText;
   body += "<h2>Join</h2>\n";
-  if (has_client) body += "<p class=\"play\"><a href=\"/client/\">Play in this browser</a></p>\n";
+  if (has_client) body += "<p class=\"play\"><a href=\"client/\">Play in this browser</a></p>\n";
   if (config.public_address.empty()) {
     if (!has_client) {
       body +=
@@ -172,20 +176,56 @@ std::string world_page(const WebConfig& config, bool has_client, const ServerSta
   }
   if (!has_client) body += "<p>This page has no client for the browser.</p>\n";
   body += "<p>";
-  if (!config.world.empty()) body += "<a href=\"/map\">Map of the world</a>. ";
-  body += "<a href=\"/status\">State of the server</a></p>\n";
+  if (!config.world.empty()) body += "<a href=\"map\">Map of the world</a>. ";
+  body += "<a href=\"status\">State of the server</a></p>\n";
   return html_page(config.title, body);
 }
 
 std::string status_page(const WebConfig& config, const ServerStatus& server, const WebCounters& web,
-                        std::string_view recent_edits) {
+                        std::string_view recent_edits, bool is_one_of_several) {
   std::string body = server.is_up ? "<p class=\"up\">The server is running.</p>\n" +
                                         players_list(server) + server_tables(server)
                                   : kDownText;
-  body += edits_table(recent_edits) + gateway_table(web);
-  body +=
-      "<p><a href=\"/\">Back to the world</a>. The same numbers for Prometheus: "
-      "<a href=\"/metrics\">/metrics</a></p>\n";
+  body += edits_table(recent_edits);
+  if (is_one_of_several) {
+    body +=
+        "<p><a href=\"./\">Back to the world</a>. <a href=\"../../status\">State of all worlds and "
+        "of the gateway</a></p>\n";
+  } else {
+    body += gateway_table(web) + "<p><a href=\"./\">Back to the world</a>. " + kMetricsText;
+  }
+  return html_page(config.title + ": state", body);
+}
+
+std::string worlds_page(const WebConfig& config, std::span<const WorldStatus> worlds) {
+  std::string body = "<h2>Worlds</h2>\n<ul>\n";
+  for (const WorldStatus& world : worlds) {
+    const std::size_t players = world.status->players.size();
+    body += "<li><a href=\"world/" + html_text(world.name) + "/\">" + html_text(world.title) +
+            "</a>: " +
+            (!world.status->is_up ? "not running now"
+             : players == 0       ? "nobody is there"
+             : players == 1       ? "1 player"
+                                  : std::to_string(players) + " players") +
+            "</li>\n";
+  }
+  body += "</ul>\n<p><a href=\"status\">State of the servers</a></p>\n";
+  return html_page(config.title, body);
+}
+
+std::string gateway_status_page(const WebConfig& config, std::span<const WorldStatus> worlds,
+                                const WebCounters& web) {
+  std::string body = "<table>\n<caption>Worlds</caption>\n";
+  for (const WorldStatus& world : worlds) {
+    body += "<tr><th scope=\"row\"><a href=\"world/" + html_text(world.name) + "/status\">" +
+            html_text(world.title) + "</a></th><td>" +
+            (world.status->is_up
+                 ? "running, sessions: " + std::to_string(world.status->counter("sessions"))
+                 : "not running") +
+            "</td></tr>\n";
+  }
+  body += "</table>\n" + gateway_table(web) + "<p><a href=\"./\">Back to the worlds</a>. " +
+          kMetricsText;
   return html_page(config.title + ": state", body);
 }
 

@@ -1,6 +1,7 @@
 // The pages of world and state. They are plain HTML without scripts and load nothing but the style
 // sheet of the gateway.
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,10 +20,16 @@ std::string html_page(const std::string& title, const std::string& body);
 /// Returns the page of the world: its name, who is there, and how to join.
 /// `has_client`: the gateway has the client for browsers.
 std::string world_page(const WebConfig& config, bool has_client, const ServerStatus& server);
+/// Returns the page of a gateway with several servers: their worlds, and who is there.
+std::string worlds_page(const WebConfig& config, std::span<const WorldStatus> worlds);
+/// Returns the page of the state of such a gateway.
+std::string gateway_status_page(const WebConfig& config, std::span<const WorldStatus> worlds,
+                                const WebCounters& web);
 /// Returns the page of the state of server and gateway. `recent_edits`: JSON of the map's service, a
 /// list of edits with time, author and what; empty or anything else: none are shown.
+/// `is_one_of_several`: the gateway has a page of its own.
 std::string status_page(const WebConfig& config, const ServerStatus& server, const WebCounters& web,
-                        std::string_view recent_edits = {});
+                        std::string_view recent_edits = {}, bool is_one_of_several = false);
 /// Returns the style sheet of both pages.
 std::string_view style_sheet();
 

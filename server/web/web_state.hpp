@@ -3,18 +3,21 @@
 #include <utility>
 // Boost 1.74 uses std::exchange without its header, so <utility> comes first.
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ssl/context.hpp>
 #include <cstdint>
 #include <map>
-#include <optional>
+#include <memory>
+#include <string_view>
+#include <vector>
 
+#include "common/core/bytes.hpp"
+#include "server/web/certificate.hpp"
 #include "server/web/client_files.hpp"
 #include "server/web/map_gate.hpp"
 #include "server/web/origin_check.hpp"
 #include "server/web/socket_limits.hpp"
-#include "server/web/status_source.hpp"
 #include "server/web/web_config.hpp"
 #include "server/web/web_counters.hpp"
+#include "server/web/web_world.hpp"
 
 namespace runstone {
 
@@ -22,26 +25,53 @@ class WebConnection;
 
 struct WebState {
   WebState(const WebConfig& config_, ClientFiles client_, OriginCheck origin_,
-           std::optional<boost::asio::ssl::context> tls_)
+           Certificate certificate_)
       : config(config_),
         client(std::move(client_)),
         origin(std::move(origin_)),
-        tls(std::move(tls_)),
-        status(io, config_.gateway_socket + ".status"),
-        map(io, config_, counters),
-        limits(config_.sockets_per_address, config_.connections_per_second) {}
+        certificate(std::move(certificate_)),
+        map_budgets(config_),
+        limits(config_.sockets_per_address, config_.connections_per_second) {
+    if (config.servers.empty())
+      worlds.push_back(std::make_unique<WebWorld>(io, "", config, map_budgets, counters));
+    for (const WebServer& server : config.servers) {
+      worlds.push_back(std::make_unique<WebWorld>(io, server.name, config_for(config, server),
+                                                  map_budgets, counters));
+    }
+  }
+  bool has_several_worlds() const { return !config.servers.empty(); }
 
   const WebConfig config;
   const ClientFiles client;  // may be empty
   const OriginCheck origin;
-  boost::asio::io_context io{1};
-  std::optional<boost::asio::ssl::context> tls;
+  // Other threads only post to it. Sockets and timers are used by one thread, so Asio need not lock
+  // them.
+  boost::asio::io_context io{BOOST_ASIO_CONCURRENCY_HINT_UNSAFE_IO};
+  Certificate certificate;
   WebCounters counters;
-  StatusSource status;
-  MapGate map;
+  MapBudgets map_budgets;
+  std::vector<std::unique_ptr<WebWorld>> worlds;  // one at least, in the order of the configuration
   SocketLimits limits;
+  Bytes message;  // to a browser, while it is written
   /// All connections, oldest first. A connection removes itself when it is destroyed.
   std::map<std::uint64_t, WebConnection*> connections;
 };
+
+/// Where a request leads.
+struct WebPlace {
+  WebWorld* world = nullptr;  // null: to the pages of a gateway with several servers
+  std::string_view target;    // within the folder of the world; it begins with '/'
+};
+inline WebPlace place_of(const WebState& state, std::string_view target) {
+  if (!state.has_several_worlds()) return {state.worlds.front().get(), target};
+  if (!target.starts_with(kWorldsPath)) return {nullptr, target};
+  const std::string_view inside = target.substr(kWorldsPath.size());
+  for (const auto& world : state.worlds) {
+    const std::string_view name = world->name;
+    if (inside.starts_with(name) && inside.substr(name.size()).starts_with('/'))
+      return {world.get(), inside.substr(name.size())};
+  }
+  return {nullptr, target};
+}
 
 }  // namespace runstone

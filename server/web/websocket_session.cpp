@@ -27,12 +27,14 @@ PeerEndpoint peer_endpoint(const boost::asio::ip::tcp::endpoint& end) {
 
 }  // namespace
 
-WebSocketSession::WebSocketSession(WebState& state, WebStream& stream, AddressBlock from)
+WebSocketSession::WebSocketSession(WebState& state, WebStream& stream, AddressBlock from,
+                                   const std::string& server)
     : state_(state),
       stream_(stream),
       from_(from),
+      server_(server),
       websocket_(stream),
-      link_(state.io),
+      link_(state.io.get_executor()),
       message_(kFrameBytesMax + 1),
       tasks_done_(state.io) {
   tasks_done_.expires_at(boost::asio::steady_timer::time_point::max());
@@ -42,6 +44,9 @@ WebSocketSession::WebSocketSession(WebState& state, WebStream& stream, AddressBl
   websocket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
     for (const auto& [name, value] : safety_headers(PageScripts::none)) response.set(name, value);
   }));
+  websocket_.control_callback([this](websocket::frame_type kind, boost::beast::string_view) {
+    if (kind != websocket::frame_type::close) on_control_frame();
+  });
   websocket_.binary(true);
   websocket_.auto_fragment(false);
   // Longer messages are closed with words, see browser_to_server().
@@ -61,7 +66,7 @@ boost::asio::awaitable<void> WebSocketSession::run(std::shared_ptr<WebSocketSess
   ++self->state_.counters.websockets_open;
   if (has_server) {
     ++self->tasks_;
-    boost::asio::co_spawn(self->state_.io, server_to_browser(self), boost::asio::detached);
+    self->read_link();
     co_await browser_to_server(self);
   } else {
     self->end(CloseCode::try_again_later,
@@ -90,7 +95,7 @@ boost::asio::awaitable<bool> WebSocketSession::open_link(std::shared_ptr<WebSock
   if (error) co_return false;
   const auto here = self->stream_.next_layer().local_endpoint(error);
   if (error) co_return false;
-  const boost::asio::local::stream_protocol::endpoint server(self->state_.config.gateway_socket);
+  const boost::asio::local::stream_protocol::endpoint server(self->server_);
   co_await self->link_.async_connect(
       server, boost::asio::redirect_error(boost::asio::use_awaitable, error));
   if (error) co_return false;
@@ -103,11 +108,6 @@ boost::asio::awaitable<bool> WebSocketSession::open_link(std::shared_ptr<WebSock
 boost::asio::awaitable<void> WebSocketSession::browser_to_server(
     std::shared_ptr<WebSocketSession> self) {
   WebCounters& counters = self->state_.counters;
-  const auto broke_rule = [&](CloseCode code, const char* words) {
-    ++counters.rules_broken;
-    self->state_.limits.broke_rule(self->from_, steady_now_us());
-    self->end(code, words);
-  };
   while (!self->is_ending_) {
     boost::system::error_code error;
     std::size_t bytes = 0;
@@ -118,58 +118,84 @@ boost::asio::awaitable<void> WebSocketSession::browser_to_server(
     } while (!error && !self->websocket_.is_message_done() && bytes <= kFrameBytesMax);
     if (error || self->is_ending_) break;  // the browser has closed, or the close is under way
     if (!self->websocket_.got_binary()) {
-      broke_rule(CloseCode::unknown_data, "only binary messages are read here");
+      self->broke_rule(CloseCode::unknown_data, "only binary messages are read here");
       break;
     }
     const ByteView message = ByteView(self->message_).first(bytes);
     if (const char* fault = fault_of_web_message(message)) {
-      broke_rule(bytes > kFrameBytesMax ? CloseCode::too_big : CloseCode::bad_payload, fault);
+      self->broke_rule(bytes > kFrameBytesMax ? CloseCode::too_big : CloseCode::bad_payload, fault);
       break;
     }
     co_await boost::asio::async_write(
         self->link_, boost::asio::buffer(message.data(), message.size()),
         boost::asio::redirect_error(boost::asio::use_awaitable, error));
-    // If the write failed, server_to_browser() passes on what the server has said at last.
+    // If the write failed, on_link() passes on what the server has said at last.
     if (error) continue;
+    self->has_sent_ = true;
     ++counters.frames_in;
     counters.bytes_in += bytes;
   }
 }
 
-boost::asio::awaitable<void> WebSocketSession::server_to_browser(
-    std::shared_ptr<WebSocketSession> self) {
-  WebCounters& counters = self->state_.counters;
-  boost::system::error_code error;
-  while (!error && !self->cutter_.broken()) {
-    self->cutter_.drop_taken();
-    const auto room = self->cutter_.room();
-    const std::size_t read = co_await self->link_.async_read_some(
-        boost::asio::buffer(room.data(), room.size()),
-        boost::asio::redirect_error(boost::asio::use_awaitable, error));
-    if (error) break;
-    self->cutter_.add(read);
-    while (const auto frame = self->cutter_.next()) {
-      // A browser that reads nothing for so long is closed, even if it sends.
-      if (!self->is_ending_) self->stream_.allow_s(self->state_.config.idle_s);
-      co_await self->websocket_.async_write(
-          boost::asio::buffer(frame->data(), frame->size()),
-          boost::asio::redirect_error(boost::asio::use_awaitable, error));
-      if (!self->is_ending_) self->stream_.forget_due();
-      if (error) break;
-      self->has_answer_ = true;
-      ++counters.frames_out;
-      counters.bytes_out += frame->size();
-    }
+void WebSocketSession::read_link() {
+  cutter_.drop_taken();
+  const auto room = cutter_.room();
+  link_.async_read_some(
+      boost::asio::buffer(room.data(), room.size()),
+      [self = shared_from_this()](const boost::system::error_code& error, std::size_t bytes) {
+        self->on_link(error, bytes);
+      });
+}
+
+void WebSocketSession::on_link(const boost::system::error_code& error, std::size_t bytes) {
+  if (error || is_ending_) return on_link_end();
+  cutter_.add(bytes);
+  ByteView frames;
+  std::uint64_t frame_count = 0;
+  while (const auto frame = cutter_.next()) {
+    frames = {frame_count == 0 ? frame->data() : frames.data(), frames.size() + frame->size()};
+    ++frame_count;
   }
-  if (self->cutter_.broken() || !self->cutter_.is_between_frames()) {
-    self->end(CloseCode::internal_error, "the server's stream is broken");
-  } else if (self->has_answer_) {
-    self->end(CloseCode::normal, "the server has ended the session");
+  if (frame_count == 0) return go_on();
+  Bytes& message = state_.message;
+  message.clear();
+  append_web_header(message, frames.size());
+  message.insert(message.end(), frames.begin(), frames.end());
+  if (!stream_.write_now(message)) return on_link_end();
+  has_answer_ = true;
+  state_.counters.frames_out += frame_count;
+  state_.counters.bytes_out += frames.size();
+  if (!stream_.has_unsent()) return go_on();
+  // A browser that reads nothing for so long is closed, even if it sends.
+  stream_.allow_s(state_.config.idle_s);
+  wait_until_sent();
+}
+
+void WebSocketSession::wait_until_sent() {
+  stream_.next_layer().async_wait(
+      WebStream::Socket::wait_write,
+      [self = shared_from_this()](const boost::system::error_code& error) {
+        if (error || !self->stream_.send_now()) return self->on_link_end();
+        if (self->stream_.has_unsent()) return self->wait_until_sent();
+        if (!self->is_ending_) self->stream_.forget_due();
+        self->go_on();
+      });
+}
+
+void WebSocketSession::go_on() {
+  if (cutter_.broken()) return on_link_end();
+  read_link();
+}
+
+void WebSocketSession::on_link_end() {
+  if (cutter_.broken() || !cutter_.is_between_frames()) {
+    end(CloseCode::internal_error, "the server's stream is broken");
+  } else if (has_answer_) {
+    end(CloseCode::normal, "the server has ended the session");
   } else {
-    self->end(CloseCode::try_again_later,
-              "the server has not taken the connection: try again soon");
+    end(CloseCode::try_again_later, "the server has not taken the connection: try again soon");
   }
-  self->task_ended();
+  task_ended();
 }
 
 boost::asio::awaitable<void> WebSocketSession::close_websocket(
@@ -180,6 +206,26 @@ boost::asio::awaitable<void> WebSocketSession::close_websocket(
       reason, boost::asio::redirect_error(boost::asio::use_awaitable, error));
   self->stream_.close();  // a read of browser_to_server() ends
   self->task_ended();
+}
+
+void WebSocketSession::on_control_frame() {
+  // A page cannot send pings, and answers those of the gateway, which sends one in idle_s / 2.
+  constexpr std::uint64_t kControlFramesMax = 100;  // in ten seconds
+  constexpr TimeUs kControlUs = 10'000'000;
+  const TimeUs now_us = steady_now_us();
+  if (now_us - control_since_us_ >= kControlUs) {
+    control_since_us_ = now_us;
+    control_frames_ = 0;
+  }
+  if (++control_frames_ == kControlFramesMax)
+    broke_rule(CloseCode::policy_error, "a browser sends no pings");
+}
+
+void WebSocketSession::broke_rule(CloseCode code, const char* words) {
+  if (is_ending_) return;
+  ++state_.counters.rules_broken;
+  state_.limits.broke_rule(from_, steady_now_us());
+  end(code, words);
 }
 
 void WebSocketSession::close_link() {

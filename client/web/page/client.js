@@ -157,7 +157,7 @@ async function join(event) {
   localStorage.setItem("sight", $("sight").value);
   const keys = await Keys.load();
   if (!keys.isKept) page.notice("this browser keeps no keys: you are somebody else at your next visit", true);
-  const url = new URL("/play", location.href);
+  const url = new URL("../play", location.href);
   url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
   // An invite stands behind the '#', which browsers send to nobody.
   const invite = new URLSearchParams(location.hash.slice(1)).get("invite") ?? "";

@@ -9,6 +9,7 @@
 #include "tests/bench/network/attack_case.hpp"
 #include "tests/bench/network/backup_case.hpp"
 #include "tests/bench/network/fleet_case.hpp"
+#include "tests/bench/network/gateway_case.hpp"
 #include "tests/bench/network/horizon_case.hpp"
 #include "tests/bench/network/hostile_case.hpp"
 #include "tests/bench/network/join_case.hpp"
@@ -24,11 +25,12 @@ struct Experiment {
   const char* name;
   Done (*measure)(Testbed&, NetFindings&);
 };
-constexpr std::array<Experiment, 11> kExperiments = {{{"latency", measure_latency},
+constexpr std::array<Experiment, 12> kExperiments = {{{"latency", measure_latency},
                                                       {"join", measure_joins},
                                                       {"transfer", measure_transfers},
                                                       {"horizon", measure_horizon},
                                                       {"crowd", measure_fleets},
+                                                      {"gateway", measure_gateway},
                                                       {"attack", measure_attacks},
                                                       {"memory", measure_memory},
                                                       {"siege", measure_siege},

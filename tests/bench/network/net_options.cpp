@@ -18,6 +18,7 @@ void apply_quick(const CLI::App& command, NetOptions& options) {
   if (command.count("--min-runs") == 0) options.repetitions = 1;
   if (command.count("--clients") == 0) options.clients = {1, 20};
   if (command.count("--crowd-seconds") == 0) options.fleet_seconds = 3;
+  if (command.count("--gateway-bots") == 0) options.gateway_bots = 5;
   if (command.count("--attack-seconds") == 0) options.attack_seconds = 2;
   if (command.count("--strangers") == 0) options.strangers = 60;
   if (command.count("--siege-seconds") == 0) options.siege_seconds = 30;
@@ -44,6 +45,14 @@ void add_siege_options(CLI::App& command, NetOptions& options) {
       ->check(CLI::Range(1, 1000));
 }
 
+void add_gateway_options(CLI::App& command, NetOptions& options) {
+  command
+      .add_option("--gateway-bots", options.gateway_bots,
+                  "bots that build through a gateway, and as many without")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10'000));
+}
+
 void add_backup_options(CLI::App& command, NetOptions& options) {
   command
       .add_option("--backup-mib", options.backup_mib, "size of the world that is backed up, in MiB")
@@ -65,11 +74,11 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   std::set<std::string> profiles;
   for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
   net->add_option("--experiments", options.experiments,
-                  "which; all but siege, strangers, floods and backup by default")
+                  "which; all but siege, strangers, floods, backup and gateway by default")
       ->delimiter(',')
       ->check(CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack",
                                                   "horizon", "memory", "siege", "strangers",
-                                                  "floods", "backup"}));
+                                                  "floods", "backup", "gateway"}));
   net->add_option("--profiles", options.profiles, "links; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(profiles));
@@ -128,6 +137,7 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--strangers", options.strangers, "connections that never become players")
       ->capture_default_str()
       ->check(CLI::Range(1, 15'000));
+  add_gateway_options(*net, options);
   add_backup_options(*net, options);
   add_siege_options(*net, options);
   net->add_option("--seed", options.seed,

@@ -14,8 +14,8 @@ class App;
 namespace runstone::bench {
 
 struct NetOptions {
-  // All experiments but "siege", "strangers" and "floods", which take ten minutes each, and
-  // "backup", which writes some GB.
+  // All experiments but "siege", "strangers" and "floods", which take ten minutes each, "backup",
+  // which writes some GB, and "gateway", which takes five minutes.
   std::vector<std::string> experiments = {"latency", "join",   "transfer", "horizon",
                                           "crowd",   "attack", "memory"};
   std::vector<std::string> profiles;  // of the links; empty: all
@@ -23,7 +23,7 @@ struct NetOptions {
   std::string luanti;                 // folder of the real world
   std::string link = "auto";          // namespaces where possible; or "namespaces", "shaper"
   unsigned edits = 1000;              // of each client of a latency case
-  unsigned repetitions = 5;           // joins and transfers
+  unsigned repetitions = 5;           // joins, transfers, fleets behind a gateway
   std::vector<unsigned> clients = {1, 10, 100, 300, 1000};  // sizes of the fleets
   double fleet_seconds = 20;
   unsigned fleet_sites = 1;                  // places where a fleet builds
@@ -36,6 +36,7 @@ struct NetOptions {
   unsigned strangers = 5000;        // connections that never become players
   double siege_seconds = 600;       // of the windows of a siege together
   unsigned siege_bots = 100;        // honest clients in a siege
+  unsigned gateway_bots = 200;      // of a fleet behind a gateway
   unsigned backup_mib = 1024;       // size of the world that is backed up
   unsigned backup_rounds = 5;       // windows with backups, and as many without
   std::uint64_t seed = 1;

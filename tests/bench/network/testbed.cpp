@@ -25,8 +25,26 @@ std::string program_file(const std::string& name) {
   return sibling_program("",
                          name == "runstone-client" ? "RUNSTONE_CLIENT"
                          : name == "runstone-bot"  ? "RUNSTONE_BOT"
+                         : name == "runstone-web"  ? "RUNSTONE_WEB"
                                                    : "RUNSTONE_SERVER",
                          name);
+}
+
+/// Waits until a program of the server's side listens, and returns it with its address.
+Result<TestbedServer, std::string> wait_for_port(
+    TestbedLink& link, const std::string& port_file,
+    Result<std::unique_ptr<Child>, std::string> program) {
+  if (!program) return failure(program.error());
+  TestbedServer out{*std::move(program), "", 0};
+  const bool listens = wait_until(kStartSeconds, [&] {
+    std::ifstream in(port_file);
+    return static_cast<bool>(in >> out.port) || out.program->wait(0).has_value();
+  });
+  if (!listens || out.port == 0) return failure(out.program->explain("did not start"));
+  const auto entrance = link.entrance(out.port);
+  if (!entrance) return failure(entrance.error());
+  out.address = fmt::format("{}:{}", link.server_address(), *entrance);
+  return out;
 }
 
 }  // namespace
@@ -59,18 +77,20 @@ Result<TestbedServer, std::string> Testbed::start_server(TestbedLink& link,
       link.server_address() + ":0",    "--port-file", port_file};
   words.insert(words.end(), flags.begin(), flags.end());
   if (options_.insecure) words.insert(words.end(), {"--insecure", "--i-know"});
-  auto program = Child::start(link.server_side(), std::move(words), fresh("server.log"));
-  if (!program) return failure(program.error());
-  TestbedServer out{*std::move(program), "", 0};
-  const bool listens = wait_until(kStartSeconds, [&] {
-    std::ifstream in(port_file);
-    return static_cast<bool>(in >> out.port) || out.program->wait(0).has_value();
-  });
-  if (!listens || out.port == 0) return failure(out.program->explain("did not start"));
-  const auto entrance = link.entrance(out.port);
-  if (!entrance) return failure(entrance.error());
-  out.address = fmt::format("{}:{}", link.server_address(), *entrance);
-  return out;
+  return wait_for_port(link, port_file,
+                       Child::start(link.server_side(), std::move(words), fresh("server.log")));
+}
+
+Result<TestbedServer, std::string> Testbed::start_gateway(TestbedLink& link,
+                                                          const std::string& socket,
+                                                          const std::vector<std::string>& flags) {
+  const std::string port_file = fresh("port");
+  std::vector<std::string> words = {
+      program_file("runstone-web"), "--gateway-socket", socket,   "--listen",
+      link.server_address() + ":0", "--port-file",      port_file};
+  words.insert(words.end(), flags.begin(), flags.end());
+  return wait_for_port(link, port_file,
+                       Child::start(link.server_side(), std::move(words), fresh("gateway.log")));
 }
 
 Done Testbed::stop_server(TestbedServer& server) {

@@ -50,7 +50,11 @@ class Testbed {
   /// world with `flags` if it is missing.
   Result<TestbedServer, std::string> start_server(TestbedLink& link, const std::string& world,
                                                   const std::vector<std::string>& flags);
-  /// Stops the server. Fails if it does not end properly.
+  /// Starts runstone-web in front of a server, whose setting gateway_socket is `socket`, and waits
+  /// until it listens.
+  Result<TestbedServer, std::string> start_gateway(TestbedLink& link, const std::string& socket,
+                                                   const std::vector<std::string>& flags);
+  /// Stops a server or a gateway. Fails if it does not end properly.
   Done stop_server(TestbedServer& server);
   /// Starts one of the product's programs on the client side of the link. `log` as in Child.
   Result<std::unique_ptr<Child>, std::string> start_client(TestbedLink& link,

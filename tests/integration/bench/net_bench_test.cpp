@@ -26,6 +26,7 @@ json run_testbed(std::vector<std::string> arguments, std::string& tables) {
   ::setenv("RUNSTONE_SERVER", RUNSTONE_SERVER_PROGRAM, 1);
   ::setenv("RUNSTONE_CLIENT", RUNSTONE_CLIENT_PROGRAM, 1);
   ::setenv("RUNSTONE_BOT", RUNSTONE_BOT_PROGRAM, 1);
+  ::setenv("RUNSTONE_WEB", RUNSTONE_WEB_PROGRAM, 1);
   const test::TempFolder folder;
   const std::string file = folder / "testbed.json", csv = folder / "testbed.csv";
   arguments.insert(arguments.begin(),
@@ -134,6 +135,25 @@ TEST_CASE("the testbed measures fleets", "[testbed]") {
   CHECK(in_rows == figure(testbed, "crowd", "3 clients", "samples"));
   CHECK(tables.find("These latencies of 3 clients:\n\n| from, below ms | samples |") !=
         std::string::npos);
+}
+
+TEST_CASE("the testbed measures what the gateway costs", "[testbed]") {
+  std::string tables;
+  const json testbed = run_testbed(
+      {"--experiments", "gateway", "--gateway-bots", "3", "--crowd-seconds", "1"}, tables);
+  for (const char* frames : {"ping and pong", "edit and commit"}) {
+    CAPTURE(frames);
+    CHECK(figure(testbed, "gateway", frames, "tcp_p50_ms") > 0);
+    CHECK(figure(testbed, "gateway", frames, "gateway_p99_ms") > 0);
+  }
+  for (const char* way : {"3 bots by TCP", "3 bots by gateway"}) {
+    CAPTURE(way);
+    CHECK(figure(testbed, "gateway", way, "samples") > 0);
+    CHECK(figure(testbed, "gateway", way, "disconnects") == 0);
+    CHECK(figure(testbed, "gateway", way, "violations") == 0);
+  }
+  CHECK(testbed["bars"].size() == 2);
+  CHECK(tables.find("### Gateway") != std::string::npos);
 }
 
 TEST_CASE("the testbed measures the server's memory of loaded chunks", "[testbed]") {

@@ -6,10 +6,10 @@
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/visibility.hpp"
 #include "tests/integration/client/travel/live_session.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/support/face_oracle.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

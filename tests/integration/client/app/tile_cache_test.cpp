@@ -11,9 +11,9 @@
 #include "client/session/client_session.hpp"
 #include "common/core/tile_keys.hpp"
 #include "common/os/steady_clock.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/raw_sql.hpp"
 
 namespace runstone::test::tile_cache_test {

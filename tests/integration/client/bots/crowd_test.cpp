@@ -8,10 +8,10 @@
 
 #include "client/fleet/behaviour_fleet.hpp"
 #include "tests/integration/client/travel/live_session.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/run_replay.hpp"
 
 namespace runstone::test {

@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "tests/integration/client/window/title_bench.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -8,8 +8,8 @@
 #include "common/materials/material_table.hpp"
 #include "tests/integration/client/window/child_process.hpp"
 #include "tests/integration/client/window/virtual_display.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone {
 namespace {

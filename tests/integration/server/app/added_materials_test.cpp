@@ -10,9 +10,9 @@
 #include "server/replay/rlog_file.hpp"
 #include "server/replay/world_copy.hpp"
 #include "server/store/world_folder.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/server_process.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/run_replay.hpp"
 
 namespace runstone::test {

@@ -6,9 +6,9 @@
 #include "common/core/epoch_branch.hpp"
 #include "server/app/backup_child.hpp"
 #include "server/backup/backup_program.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/text_contains.hpp"
 
 namespace runstone::test {

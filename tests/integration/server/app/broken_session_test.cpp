@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "protocol/codec/message_table.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

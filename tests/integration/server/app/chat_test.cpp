@@ -6,10 +6,10 @@
 #include <string>
 
 #include "server/backup/backup_program.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/support/full_disk_vfs.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/text_contains.hpp"
 
 namespace runstone::test {

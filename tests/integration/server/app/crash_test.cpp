@@ -5,9 +5,9 @@
 #include <string>
 #include <thread>
 
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_process.hpp"
 #include "tests/support/crash_image.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/raw_sql.hpp"
 
 namespace runstone {

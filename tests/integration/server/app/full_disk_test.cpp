@@ -1,9 +1,9 @@
 // A whole server whose disk has no space: it is read-only until there is space again.
 #include <catch2/catch.hpp>
 
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/support/full_disk_vfs.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

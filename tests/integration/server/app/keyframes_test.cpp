@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "server/history/world_at.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "protocol/codec/key_fingerprint.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/server_process.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -13,9 +13,9 @@
 #include <string>
 
 #include "server/app/first_invite.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -16,9 +16,9 @@
 #include "server/admin/control_program.hpp"
 #include "server/admin/control_socket.hpp"
 #include "server/store/store.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/run_replay.hpp"
 
 namespace runstone::test {

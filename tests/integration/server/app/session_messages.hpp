@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/integration/server/app/raw_client.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 

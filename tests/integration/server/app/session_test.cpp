@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/runs/dense.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/view_distance.hpp"
 
 namespace runstone::test {

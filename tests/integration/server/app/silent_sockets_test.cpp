@@ -2,8 +2,8 @@
 #include <memory>
 #include <vector>
 
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

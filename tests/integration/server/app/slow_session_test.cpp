@@ -5,9 +5,9 @@
 #include <thread>
 #include <variant>
 
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -9,10 +9,10 @@
 #include <set>
 
 #include "common/core/epoch_branch.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/support/compact_by_hand.hpp"
 #include "tests/support/crash_image.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/text_contains.hpp"
 

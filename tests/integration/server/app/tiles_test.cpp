@@ -16,9 +16,9 @@
 #include "common/mesh/visibility.hpp"
 #include "common/tiles/veiled_tile.hpp"
 #include "protocol/codec/view_tiles.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
+#include "tests/support/raw_client.hpp"
 #include "tests/support/raw_sql.hpp"
 
 namespace runstone::test::tiles_test {

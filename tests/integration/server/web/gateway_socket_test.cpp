@@ -10,8 +10,8 @@
 #include <string>
 
 #include "protocol/codec/proxy_header.hpp"
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/integration/server/web/web_player.hpp"
+#include "tests/support/web_player.hpp"
 
 namespace runstone::test {
 namespace {
@@ -91,6 +91,22 @@ TEST_CASE("a length without end and a frame without a mask close the WebSocket",
   const auto refused = unmasked.next_close();
   REQUIRE(refused.has_value());
   CHECK(refused->close_code() == 1002);
+}
+
+TEST_CASE("a browser that sends pings without end is closed with words", "[integration]") {
+  const TempFolder folder;
+  const WebBench bench(folder);
+  WebPlayer bystander(bench.port());
+  REQUIRE(bystander.join(1).has_value());
+  WebPeer peer(bench.port());
+  REQUIRE(peer.upgrade().status == 101);
+  for (int i = 0; i < 150; ++i) peer.send_frame(WebMessage::ping, Bytes(100));
+  const auto closed = peer.next_close();
+  REQUIRE(closed.has_value());
+  CHECK(closed->close_code() == 1008);
+  CHECK(closed->close_words() == "a browser sends no pings");
+  bystander.send(Ping{5});
+  CHECK(bystander.next_of<Pong>().has_value());
 }
 
 TEST_CASE("only pages of the gateway may open a WebSocket", "[integration]") {

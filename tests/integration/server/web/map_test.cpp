@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
+#include "tests/support/raw_client.hpp"
 
 namespace runstone::test {
 namespace {
@@ -64,7 +64,7 @@ TEST_CASE("the map follows the log: tiles have the version of what they show", "
   const TempFolder folder;
   const WebBench bench(server_config_of(folder), map_config_of(folder));
   WebPeer peer(bench.port());
-  CHECK(peer.get("/map").body.find("/map.js") != std::string::npos);
+  CHECK(peer.get("/map").body.find("map.js") != std::string::npos);
   CHECK(peer.get("/map.js").header("Content-Type") == "text/javascript; charset=utf-8");
   const Json first = json_of(peer.get("/map/state.json"));
   const HttpReply before = peer.get(kTile);
@@ -291,7 +291,7 @@ TEST_CASE("the map needs no running server, writes nothing, and can be off", "[i
   CHECK(visitor.get("/map").status == 404);
   CHECK(visitor.get("/map").body.find("shows no map") != std::string::npos);
   CHECK(visitor.get(kTile).body == "this gateway shows no map: its host has not turned it on\n");
-  CHECK(visitor.get("/").body.find("href=\"/map\"") == std::string::npos);
+  CHECK(visitor.get("/").body.find("href=\"map\"") == std::string::npos);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/integration/server/web/web_player.hpp"
+#include "tests/support/web_player.hpp"
 
 namespace runstone::test {
 namespace {
@@ -65,7 +65,7 @@ TEST_CASE("the gateway serves the files of the client for browsers", "[integrati
   config.client_files = folder.path();
   const WebBench bench(server_config_of(folder), config);
   WebPeer peer(bench.port());  // one connection for all
-  CHECK(has(peer.get("/"), "href=\"/client/\""));
+  CHECK(has(peer.get("/"), "href=\"client/\""));
   const HttpReply page = peer.get("/client/");
   CHECK(page.status == 200);
   CHECK(page.body == "plain client.html");
@@ -74,7 +74,7 @@ TEST_CASE("the gateway serves the files of the client for browsers", "[integrati
   CHECK(page.header("Cache-Control") == "no-cache");
   CHECK_FALSE(page.header("ETag").empty());
   CHECK(peer.get("/client/runstone-web-client.wasm").header("Content-Type") == "application/wasm");
-  CHECK(peer.get("/client").header("Location") == "/client/");
+  CHECK(peer.get("/client").header("Location") == "client/");
   CHECK(peer.get("/client/web.sock").status == 404);
   const HttpReply head = peer.request("HEAD", "/client/client.js");
   CHECK(head.header("Content-Length") == std::to_string(std::string("plain client.js").size()));

@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "tests/integration/server/app/raw_client.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/integration/server/web/web_player.hpp"
 #include "tests/support/pem_files.hpp"
+#include "tests/support/raw_client.hpp"
+#include "tests/support/web_player.hpp"
 
 namespace runstone::test {
 namespace {
@@ -63,7 +63,7 @@ TEST_CASE("a player joins over TLS with the certificate of the gateway", "[integ
   CHECK(plain.sees_the_end());
 }
 
-TEST_CASE("terrain in messages of many frames passes, each frame as one message of the WebSocket",
+TEST_CASE("terrain in messages of many frames passes, in messages of whole frames",
           "[integration]") {
   const TempFolder folder;
   WorldCreation hills;
@@ -82,6 +82,7 @@ TEST_CASE("terrain in messages of many frames passes, each frame as one message 
     if (state->phase == ViewPhase::complete) break;
   }
   CHECK(browser.frames_read() > browser.messages_read());
+  CHECK(browser.frames_read() >= browser.web_messages_read());
 }
 
 TEST_CASE("the limits of an address hold for players behind the gateway", "[integration]") {

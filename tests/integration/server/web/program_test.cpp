@@ -5,13 +5,16 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <fstream>
+#include <iterator>
+#include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "common/os/child_program.hpp"
-#include "tests/integration/server/web/web_peer.hpp"
 #include "tests/support/shell_run.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/support/web_peer.hpp"
 
 namespace runstone::test {
 namespace {
@@ -58,6 +61,55 @@ TEST_CASE("the gateway runs as a program, also without a server, until it is tol
   int status = 0;
   REQUIRE(::waitpid(*child, &status, 0) == *child);
   CHECK(how_it_ended(status) == "ended with exit code 0");
+}
+
+TEST_CASE("a gateway that may open few files admits fewer connections and says so",
+          "[integration]") {
+  const ShellRun none = run_shell("ulimit -n 60; exec " + kWeb + " --listen 127.0.0.1:0 2>&1");
+  CHECK(none.exit_code == 2);
+  CHECK(none.text.find("see ulimit -Hn") != std::string::npos);
+  const TempFolder folder;
+  const std::string errors = folder / "errors";
+  // The soft and the hard limit: room for 18 connections.
+  ChildProgram program;
+  program.words = {"/bin/sh",
+                   "-c",
+                   "ulimit -n 100; exec \"$0\" \"$@\" 2>\"" + errors + "\"",
+                   kWeb,
+                   "--listen",
+                   "127.0.0.1:0",
+                   "--port-file",
+                   folder / "port",
+                   "--gateway-socket",
+                   folder / "web.sock"};
+  const auto child = start_program(std::move(program));
+  REQUIRE(child.has_value());
+  const std::uint16_t port = port_in(folder / "port");
+  std::vector<std::unique_ptr<WebPeer>> idle;
+  for (int i = 0; i < 300; ++i) {
+    idle.push_back(std::make_unique<WebPeer>(port, 0x7f010001 + static_cast<std::uint32_t>(i)));
+  }
+  {
+    WebPeer peer(port);
+    CHECK(peer.get("/").status == 200);
+    const HttpReply metrics = peer.get("/metrics");
+    CHECK(metrics.body.find("\nrunstone_web_accepts_failed 0\n") != std::string::npos);
+    CHECK(metrics.body.find("\nrunstone_web_connections_open 18\n") != std::string::npos);
+  }
+  ::kill(*child, SIGHUP);  // without a certificate it does nothing but say so
+  {
+    WebPeer peer(port);
+    CHECK(peer.get("/").status == 200);
+  }
+  ::kill(*child, SIGTERM);
+  int status = 0;
+  REQUIRE(::waitpid(*child, &status, 0) == *child);
+  CHECK(how_it_ended(status) == "ended with exit code 0");
+  std::ifstream in(errors);
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  CHECK(text.find("sockets_max=1024 needs 2112 open files, and the hard limit is 100: sockets_max "
+                  "is 18 instead") != std::string::npos);
+  CHECK(text.find("there is no certificate to read again") != std::string::npos);
 }
 
 TEST_CASE("the command line of the gateway names what is wrong with it", "[integration]") {

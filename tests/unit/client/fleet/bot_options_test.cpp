@@ -33,6 +33,33 @@ TEST_CASE("the speed of a play is a number or max", "[client_app][play]") {
   CHECK(parse({"--speed", "2"}).exit_code == 2);
 }
 
+TEST_CASE("bots connect to a server or to the WebSocket of a gateway", "[client_app]") {
+  const auto options = [](const char* address, std::vector<const char*> more = {}) {
+    more.insert(more.begin(), {"--connect", address});
+    return parse(more).options;
+  };
+  const auto server = options("play.example.org");
+  REQUIRE(server.has_value());
+  CHECK(server->web_path.empty());
+  const auto secure = options("wss://play.example.org/play");
+  REQUIRE(secure.has_value());
+  CHECK(secure->server == HostPort{"play.example.org", 443});
+  CHECK(secure->web_path == "/play");
+  CHECK(secure->tls.has_value());
+  const auto plain = options("ws://[::1]:8080/world/valley/play");
+  REQUIRE(plain.has_value());
+  CHECK(plain->server == HostPort{"::1", 8080});
+  CHECK(plain->web_path == "/world/valley/play");
+  CHECK_FALSE(plain->tls.has_value());
+  CHECK(options("ws://localhost/play", {"--insecure"}).has_value());
+  CHECK_FALSE(options("wss://localhost/play", {"--insecure"}).has_value());
+  for (const char* wrong : {"wss://localhost", "wss://localhost/", "ws:///play",
+                            "wss://localhost/play x", "wss://localhost/play?a=b"}) {
+    CAPTURE(wrong);
+    CHECK_FALSE(options(wrong).has_value());
+  }
+}
+
 TEST_CASE("the option --play excludes the options of behaviours", "[client_app][play]") {
   for (const char* other :
        {"--count", "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {

@@ -1,6 +1,8 @@
 #include "server/web/http_answer.hpp"
 
 #include <catch2/catch.hpp>
+#include <memory>
+#include <vector>
 
 #include "server/web/web_pages.hpp"
 
@@ -43,7 +45,7 @@ TEST_CASE("the page of the world names it, its players and the way in", "[web]")
   CHECK(has(answer, "<h1>Valley &amp; town</h1>"));
   CHECK(has(answer, "<li>ana</li>"));
   CHECK(has(answer, "href=\"runstone://play.example.org:4747\""));
-  CHECK(has(answer, "href=\"/status\""));
+  CHECK(has(answer, "href=\"status\""));
   CHECK(has(answer, "no client for the browser"));
 }
 
@@ -64,7 +66,7 @@ TEST_CASE("the pages load nothing from elsewhere and need no script", "[web]") {
     CHECK_FALSE(has(answer, "http://"));
     CHECK_FALSE(has(answer, "https://"));
     CHECK_FALSE(has(answer, "style="));  // the policy forbids styles within tags
-    CHECK(has(answer, "href=\"/style.css\""));
+    CHECK(has(answer, "href=\"style.css\""));
   }
   CHECK(get("/style.css").body.find("url(") == std::string::npos);
   CHECK(get("/style.css").caching == HttpCaching::an_hour);
@@ -152,4 +154,51 @@ TEST_CASE("other methods than GET and HEAD are refused with words", "[web]") {
   CHECK(posted.allow == "GET, HEAD");
   CHECK(answer({"HEAD", "/"}).status == 200);
   CHECK(get("/play").status == 426);
+}
+
+TEST_CASE("a gateway with several servers lists their worlds", "[web]") {
+  WebConfig config;
+  config.title = "Our worlds";
+  const auto up = std::make_shared<const ServerStatus>(running_server());
+  const auto down = std::make_shared<const ServerStatus>();
+  const std::vector<WorldStatus> worlds = {{"valley", "The <valley>", up},
+                                           {"hills", "Hills", down}};
+  const WebCounters web;
+  const auto ask = [&](const std::string& target) {
+    return answer_gateway_request({"GET", target}, {config, worlds, web});
+  };
+  const HttpAnswer list = ask("/");
+  CHECK(list.status == 200);
+  CHECK(has(list, "<h1>Our worlds</h1>"));
+  CHECK(has(list, "<a href=\"world/valley/\">The &lt;valley&gt;</a>: 2 players"));
+  CHECK(has(list, "<a href=\"world/hills/\">Hills</a>: not running now"));
+  const HttpAnswer status = ask("/status");
+  CHECK(has(status, "href=\"world/valley/status\""));
+  CHECK(has(status, "This gateway"));
+  const HttpAnswer metrics = ask("/metrics");
+  CHECK(has(metrics, "runstone_up{world=\"valley\"} 1\n"));
+  CHECK(has(metrics, "runstone_up{world=\"hills\"} 0\n"));
+  CHECK(has(metrics, "runstone_seq{world=\"valley\"} 9120\n"));
+  CHECK(has(metrics, "\nrunstone_web_frames_in 0\n"));
+  CHECK(ask("/world/valley").location == "valley/");
+  CHECK(ask("/style.css").status == 200);
+  for (const char* target : {"/play", "/client/", "/map"}) {
+    CHECK(ask(target).status == 404);
+    CHECK(has(ask(target), "choose one at /"));
+  }
+  for (const char* target : {"/world/", "/world/nowhere", "/world/val", "/map/state.json"})
+    CHECK(has(ask(target), "there is no such page"));
+}
+
+TEST_CASE("the state of one of several worlds leads to that of the gateway", "[web]") {
+  const WebConfig config;
+  const ClientFiles client;
+  const WebCounters web;
+  const ServerStatus server = running_server();
+  PageContents contents{config, client, server, web};
+  contents.world_name = "valley";
+  const HttpAnswer status = answer_request({"GET", "/status"}, contents);
+  CHECK(has(status, "href=\"../../status\""));
+  CHECK_FALSE(has(status, "This gateway"));
+  CHECK(answer_request({"GET", "/metrics"}, contents).status == 404);
 }

@@ -17,6 +17,45 @@ TEST_CASE("the settings of the gateway survive being printed and read", "[web]")
   CHECK(read == config);
 }
 
+TEST_CASE("several servers are sections of the file", "[web]") {
+  const std::string toml =
+      "title = \"Our worlds\"\n[server.valley]\ngateway_socket = \"valley/web.sock\"\n"
+      "title = \"Our valley\"\nworld = \"valley\"\n"
+      "[server.hills-2]\ngateway_socket = \"hills/web.sock\"\n";
+  WebConfig config;
+  REQUIRE(read_web_toml(config, toml, "web.toml").has_value());
+  REQUIRE(config.servers.size() == 2);
+  CHECK(config.servers[0] == WebServer{"hills-2", "hills/web.sock", "", "", ""});
+  CHECK(config.servers[1] == WebServer{"valley", "valley/web.sock", "Our valley", "", "valley"});
+  CHECK(config_for(config, config.servers[0]).title == "hills-2");
+  CHECK(config_for(config, config.servers[1]).world == "valley");
+  WebConfig again;
+  REQUIRE(read_web_toml(again, to_web_toml(config), "web.toml").has_value());
+  CHECK(again == config);
+}
+
+TEST_CASE("a wrong section names its line", "[web]") {
+  const auto error_of = [](const std::string& toml) {
+    WebConfig config;
+    const auto read = read_web_toml(config, toml, "web.toml");
+    REQUIRE_FALSE(read.has_value());
+    CHECK(config == WebConfig());
+    return read.error().message();
+  };
+  CHECK(error_of("[server.a]\ntitle = \"A\"") == "web.toml:1: server.a: gateway_socket is missing");
+  CHECK(error_of("[server.\"../a\"]\ngateway_socket = \"a\"").find("1 to 32 characters") !=
+        std::string::npos);
+  CHECK(error_of("[server.a]\ngateway_socket = \"a\"\nlisten = \"b\"").find("no such setting") !=
+        std::string::npos);
+  CHECK(error_of("[server.a]\ngateway_socket = \"x\"\n[server.b]\ngateway_socket = \"x\"")
+            .find("is that of the server a") != std::string::npos);
+  CHECK(error_of("world = \"w\"\n[server.a]\ngateway_socket = \"a\"")
+            .find("belong into the sections") != std::string::npos);
+  CHECK(error_of("server = 3").find("must be a section: [server.NAME]") != std::string::npos);
+  CHECK(error_of("[servers.a]\ngateway_socket = \"a\"").find("no such setting") !=
+        std::string::npos);
+}
+
 TEST_CASE("a wrong setting of the gateway names its line and changes nothing", "[web]") {
   const auto error_of = [](const std::string& toml) {
     WebConfig config;

@@ -81,3 +81,16 @@ TEST_CASE("a stream with a header that no frame has is broken", "[web]") {
     CHECK(cutter.broken());
   }
 }
+
+TEST_CASE("the header of a message to a browser has its length in the shortest form", "[web]") {
+  const auto header = [](std::size_t bytes) {
+    Bytes out;
+    append_web_header(out, bytes);
+    return out;
+  };
+  CHECK(header(0) == Bytes{0x82, 0});
+  CHECK(header(125) == Bytes{0x82, 125});
+  CHECK(header(126) == Bytes{0x82, 126, 0, 126});
+  CHECK(header(65'535) == Bytes{0x82, 126, 0xff, 0xff});
+  CHECK(header(65'536) == Bytes{0x82, 127, 0, 0, 0, 0, 0, 1, 0, 0});
+}

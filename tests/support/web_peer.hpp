@@ -45,12 +45,13 @@ class WebPeer {
  public:
   /// Connects to a gateway on this machine from the IPv4 address `from` (host order).
   explicit WebPeer(std::uint16_t port, std::uint32_t from = INADDR_LOOPBACK,
-                   bool is_encrypted = false)
+                   bool is_encrypted = false, const TlsContext& context = TlsContext::client(),
+                   const std::string& tls_host = "127.0.0.1")
       : socket_(::socket(AF_INET, SOCK_STREAM, 0)), port_(port) {
     const sockaddr_in here = ipv4_endpoint(from, 0), there = ipv4_endpoint(INADDR_LOOPBACK, port);
     is_open_ = ::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 &&
                ::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
-    if (is_open_ && is_encrypted) is_open_ = secure();
+    if (is_open_ && is_encrypted) is_open_ = secure(context, tls_host);
   }
   ~WebPeer() { ::close(socket_); }
   WebPeer(const WebPeer&) = delete;
@@ -155,9 +156,9 @@ class WebPeer {
   }
 
  private:
-  bool secure() {
+  bool secure(const TlsContext& context, const std::string& host) {
     source_ = SocketSource(socket_);
-    TlsChannel channel = TlsChannel::connect(TlsContext::client(), source_, "127.0.0.1");
+    TlsChannel channel = TlsChannel::connect(context, source_, host);
     tls_.emplace(std::move(channel));
     for (;;) {
       const TlsChannel::Status status = tls_->handshake();

@@ -1,4 +1,4 @@
-// WebPlayer: a player behind a gateway: messages of the protocol over a WebSocket, one frame each.
+// WebPlayer: a player behind a gateway: messages of the protocol over a WebSocket.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -10,7 +10,7 @@
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
-#include "tests/integration/server/web/web_peer.hpp"
+#include "tests/support/web_peer.hpp"
 
 namespace runstone::test {
 
@@ -18,9 +18,9 @@ class WebPlayer {
  public:
   /// Connects and opens the WebSocket.
   explicit WebPlayer(std::uint16_t port, std::uint32_t from = INADDR_LOOPBACK,
-                     bool is_encrypted = false)
+                     bool is_encrypted = false, const std::string& path = "/play")
       : peer(port, from, is_encrypted) {
-    is_open_ = peer.upgrade().status == 101;
+    is_open_ = peer.upgrade(path).status == 101;
   }
   bool is_open() const { return is_open_; }
 
@@ -38,9 +38,10 @@ class WebPlayer {
   }
   /// Returns the next message, or nullopt if the WebSocket ends or the deadline passes. `closed` is
   /// then the close frame, if there was one.
-  std::optional<Message> next() {
+  std::optional<Message> next() { return next_within(10'000); }
+  std::optional<Message> next_within(int deadline_ms) {
     while (arrived_.empty()) {
-      auto got = peer.next();
+      auto got = peer.next(deadline_ms);
       if (!got) return std::nullopt;
       if (got->kind == WebMessage::close) {
         closed = *std::move(got);
@@ -50,7 +51,8 @@ class WebPlayer {
       const std::uint64_t before = frames_read();
       const auto fed = reader_.feed(
           got->bytes, [this](MessageKind kind, ByteView body) { return decode(kind, body); });
-      RUNSTONE_ASSERT(fed.has_value() && frames_read() == before + 1);  // exactly one frame
+      RUNSTONE_ASSERT(fed.has_value() && frames_read() > before);  // whole frames
+      ++web_messages_;
     }
     Message message = std::move(arrived_.front());
     arrived_.pop_front();
@@ -90,6 +92,7 @@ class WebPlayer {
            reader_.frames(FrameClass::chunks);
   }
   std::uint64_t messages_read() const { return messages_; }
+  std::uint64_t web_messages_read() const { return web_messages_; }
 
   WebPeer peer;
   std::string refusal;
@@ -106,7 +109,7 @@ class WebPlayer {
   }
 
   bool is_open_ = false;
-  std::uint64_t messages_ = 0;
+  std::uint64_t messages_ = 0, web_messages_ = 0;
   std::uint16_t chunk_edge_ = 0;
   FrameWriter frames_;
   FrameReader reader_{Sender::server};
