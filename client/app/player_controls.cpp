@@ -7,6 +7,7 @@
 #include <string>
 
 #include "client/play/tool_actions.hpp"
+#include "client/play/wheel_actions.hpp"
 
 namespace runstone {
 namespace {
@@ -39,16 +40,7 @@ void PlayerControls::take(const WindowInput& input, double seconds, const Client
   shows_players_ = input.shows_players;
   if (driver_ == Driver::person) move(input, seconds, settings);
   edit(input, now_us);
-  if (input.scroll != 0) {
-    if (input.resizes) {
-      tool_.box().change_size(input.scroll);
-    } else if (input.fast && !player_.is_walking()) {
-      player_.change_flying_speed(input.scroll);
-      hud_.notify(fmt::format("flying speed: {} voxels a second", player_.flying_speed()));
-    } else {
-      hud_.scroll(input.scroll);
-    }
-  }
+  if (const auto line = act_on_wheel(input, tool_, player_, hud_.hotbar())) hud_.notify(*line);
   for (const Action action : input.actions) act(action, now_us);
   if (!input.actions.empty() || input.scroll != 0) pipeline_.moved();
 }
@@ -64,7 +56,7 @@ void PlayerControls::edit(const WindowInput& input, TimeUs now_us) {
   for (const std::string& why : clicks_.step(input, driver_ != Driver::script, now_us))
     hud_.notify(why, NoticeKind::warning);
   if (input.pick_clicks == 0) return;
-  if (const auto hit = tool_.pick()) hud_.hold(hit->material);
+  if (const auto hit = tool_.pick()) hud_.hotbar().hold(hit->material);
 }
 
 void PlayerControls::act(Action action, TimeUs now_us) {

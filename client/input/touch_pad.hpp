@@ -14,7 +14,7 @@
 
 namespace runstone {
 
-/// What a tap does.
+/// The edit that a tap makes.
 enum class TapMode : std::uint8_t { place, remove };
 
 class TouchPad {
@@ -22,7 +22,6 @@ class TouchPad {
   /// Sets the size of the screen. Lengths are those of the page (CSS pixels), about 0.26 mm.
   void set_size(double width, double height) { width_ = width, height_ = height; }
   void set_mode(TapMode mode) { mode_ = mode; }
-  TapMode mode() const { return mode_; }
 
   void begin(std::int64_t id, double x, double y, TimeUs now_us);
   void move(std::int64_t id, double x, double y);

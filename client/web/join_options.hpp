@@ -4,8 +4,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/render/frame_look.hpp"
+#include "client/replica/cache_lookup.hpp"
 #include "protocol/codec/handshake.hpp"
 
 namespace runstone {
@@ -21,6 +23,9 @@ struct JoinOptions {
   std::uint8_t far_levels = 3;
   std::size_t memory_mib = 512;
   std::optional<Quality> quality;  // nullopt: automatic
+  bool has_cache = false;          // the page keeps chunks
+  /// The worlds of which the page has chunks, as their servers described them last.
+  std::vector<CachedWorld> cached_worlds;
 };
 
 }  // namespace runstone

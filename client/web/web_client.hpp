@@ -11,7 +11,6 @@
 #include "client/display/draw_queue.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/display/smooth_players.hpp"
-#include "client/far/far_budget.hpp"
 #include "client/input/input_router.hpp"
 #include "client/input/touch_pad.hpp"
 #include "client/play/click_edits.hpp"
@@ -21,8 +20,8 @@
 #include "client/play/player.hpp"
 #include "client/play/player_motion.hpp"
 #include "client/play/view_follower.hpp"
+#include "client/play/view_limits.hpp"
 #include "client/report/report.hpp"
-#include "client/schedule/memory_budget.hpp"
 #include "client/tools/tool_box.hpp"
 #include "client/web/join_options.hpp"
 #include "client/web/web_hud.hpp"
@@ -46,16 +45,19 @@ class WebClient {
   /// Captures the mouse, or frees it.
   void capture(bool is_captured);
   void set_size(int width, int height) { size_ = {width, height}; }
-  void set_quality(std::optional<Quality> quality);
   void act(Action action);
   WebHud& hud() { return hud_; }
+  /// Returns null without a cache.
+  WebCache* cache() { return network_.cache(); }
 
-  /// For pictures that depend on world and camera only: moves the eye, and draws frames without
-  /// what follows the clock.
+  /// Moves the eye. `is_exact`: frames then depend on the world and the camera only, for comparisons;
+  /// nothing in them follows the clock.
   void set_camera(const WorldPos& eye, double yaw, double pitch, bool is_exact);
 
   /// Returns true if the view is complete, meshed and on the screen.
   bool is_complete() const;
+  /// Returns the number of the player's edits that are not on the server's disk yet.
+  std::size_t unconfirmed() const { return session_.replica().local_edits().all().size(); }
   const Player& player() const { return player_; }
   const WebSession& network() const { return network_; }
   const MeshPipeline& pipeline() const { return pipeline_; }
@@ -67,19 +69,20 @@ class WebClient {
  private:
   void on_world_opened();
   void take_new_materials();
+  void set_tool_materials(const MaterialTable& materials);
   void drain_changes();
-  MemoryUse memory_use() const;
   void limit_memory(TimeUs now_us);
   void handle_input(TimeUs now_us);
   void follow_player(TimeUs now_us);
   /// Sends what is queued, and meshes until this time, one chunk at least.
   void mesh_until(TimeUs until_us);
   void draw(TimeUs now_us);
-  /// Shows how far joining is, or what is to be known while playing.
+  /// Shows how far joining is, or the state while playing.
   void show_state(TimeUs now_us);
+  /// Returns a line about the state while playing.
+  std::string playing_text() const;
   void keep_server_key();
 
-  const JoinOptions options_;
   Screen& screen_;
   const TimeUs started_us_;
   WebSession network_;
@@ -93,9 +96,8 @@ class WebClient {
   ClickEdits clicks_;
   InputRouter input_;
   TouchPad touch_;
-  FarBudget far_budget_;
-  MemoryBudget budget_;
   ViewFollower view_;
+  ViewLimits limits_;
   SmoothPlayers players_;
   FrameScene scene_;
   DisplayPace pace_;

@@ -19,6 +19,9 @@ namespace runstone {
 class WebLink {
  public:
   static constexpr std::size_t kReceivedBytesMax = std::size_t{64} << 20;
+  /// The bytes that may wait in the WebSocket. Further messages stay in the queue of the stream, which
+  /// has a bound of its own (kSendBytesMax).
+  static constexpr std::size_t kBufferedBytesMax = std::size_t{1} << 20;
   static constexpr TimeUs kConnectUsMax = 10'000'000;
   /// The pause between attempts starts with `first` and doubles up to `max`. A random quarter is
   /// added or subtracted.
@@ -32,8 +35,6 @@ class WebLink {
 
   /// Handles received messages until this time, one at least.
   void read(TimeUs until_us);
-  /// Returns true if read() left messages for the next call.
-  bool has_received() const { return !received_.empty(); }
   /// Sends what is queued, acknowledges, and connects when it is time. Call it about every 10 ms.
   void step(TimeUs now_us);
   /// Queues a message. Does nothing if the connection has ended.
@@ -49,8 +50,9 @@ class WebLink {
   void connect(TimeUs now_us);
   void disconnect(std::string why);
   void flush();
-  /// Returns false if the WebSocket is about to close; its event follows.
-  bool takes_bytes() const;
+  /// Returns how many bytes the WebSocket takes now. It takes none if it is about to close; its event
+  /// follows.
+  std::size_t room() const;
 
   static int on_open(int type, const EmscriptenWebSocketOpenEvent* event, void* link);
   static int on_message(int type, const EmscriptenWebSocketMessageEvent* event, void* link);
