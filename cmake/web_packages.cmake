@@ -33,7 +33,7 @@ find_program(FLATC flatc REQUIRED)
 add_executable(flatbuffers::flatc IMPORTED GLOBAL)
 set_target_properties(flatbuffers::flatc PROPERTIES IMPORTED_LOCATION ${FLATC})
 
-set(web_sources ${PROJECT_BINARY_DIR}/debian-sources)
+set(web_sources ${PROJECT_BINARY_DIR}/library-sources)
 execute_process(COMMAND ${PROJECT_SOURCE_DIR}/scripts/web-sources ${web_sources} RESULT_VARIABLE failed)
 if(failed)
   message(FATAL_ERROR "scripts/web-sources could not fetch the sources of libsodium, zstd and utf8proc")

@@ -1,7 +1,5 @@
 #include "client/app/client.hpp"
 
-#include <fmt/chrono.h>
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -14,6 +12,7 @@
 
 #include "client/app/connection_words.hpp"
 #include "client/app/player_defaults.hpp"
+#include "client/play/time_travel.hpp"
 #include "client/report/exit_code.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/steady_clock.hpp"
@@ -37,13 +36,6 @@ constexpr TimeUs kGroundWaitUs = 3'000'000;
 std::optional<int> terminal_of(const Script* script) {
   if (script != nullptr || ::isatty(STDIN_FILENO) != 1) return std::nullopt;
   return STDIN_FILENO;
-}
-
-std::string moment_text(const std::optional<PastMoment>& past) {
-  if (!past) return {};
-  const std::time_t seconds = past->utc_us / 1'000'000;
-  return fmt::format("the past: after edit {} ({:%Y-%m-%d %H:%M:%S} UTC)", past->seq,
-                     fmt::gmtime(seconds));
 }
 
 Driver driver_of(const ClientOptions& options, const Script* script) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/play/time_travel.hpp"
 #include "client/render/projection.hpp"
 #include "client/replica/ray_pick.hpp"
 #include "common/core/text.hpp"
@@ -177,11 +178,12 @@ double ClientHud::plate_alpha(const WorldPos& head, double distance) const {
 TimelineState ClientHud::timeline() const {
   TimelineState out;
   const Replica& replica = session_.replica();
-  out.newest = out.shown = std::min(replica.newest(), kSequenceShownMax);
+  const ShownSequence now = shown_sequence(session_);
+  out.newest = now.newest;
+  out.shown = now.shown;
   out.is_loading = session_.loading_history();
   if (const auto& past = replica.past()) {
     out.is_past = true;
-    out.shown = std::min(past->seq, kSequenceShownMax);
     const std::time_t seconds = past->utc_us / 1'000'000;
     if (past->utc_us != 0)
       out.moment = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(seconds));
@@ -263,12 +265,7 @@ void ClientHud::add_traffic(const NetCounts& net, TimeUs now_us, StatisticsState
 
 void ClientHud::carry_out(const UiAction& action, TimeUs now_us) {
   if (const auto* moment = std::get_if<ShowMoment>(&action)) {
-    HistoryRequest request;  // the live world
-    if (!moment->is_live) {
-      request.to = HistoryTarget::sequence;
-      request.seq = moment->seq;
-    }
-    static_cast<void>(session_.request_history(request));
+    show_after(session_, moment->is_live ? kSequenceShownMax : moment->seq);
   }
   if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
   if (const auto* held = std::get_if<HoldMaterial>(&action)) hotbar_.hold(held->material);

@@ -1,5 +1,5 @@
-// CacheDrops: which rows of a world a cache drops when the server of the world describes it in another
-// way than before. Pure.
+// CacheDrops: which rows of a world a cache drops when the server of the world describes it in
+// another way than before. Pure.
 #pragma once
 #include "client/replica/cache_lookup.hpp"
 #include "client/replica/shared_history.hpp"

@@ -1,5 +1,5 @@
-// Rows of a chunk cache: what a store keeps of a chunk or tile besides its key, and the checks that a
-// row passes before it is used. The store on disk has a column for each field, and the store in a
+// Rows of a chunk cache: what a store keeps of a chunk or tile besides its key, and the checks that
+// a row passes before it is used. The store on disk has a column for each field, and the store in a
 // browser has the whole row as one record of bytes. Pure.
 #pragma once
 #include <cstdint>

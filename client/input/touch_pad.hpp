@@ -1,6 +1,6 @@
 // TouchPad: makes the input of a player from the touches of a screen.
-//   - A touch that begins in the lower left part of the screen is a stick, by which the player moves.
-//     Its middle is where the touch began.
+//   - A touch that begins in the lower left part of the screen is a stick, by which the player
+//     moves. Its middle is where the touch began.
 //   - Any other touch turns the player while it moves. A short one that does not move is a click in
 //     the middle of the screen. One that rests is a button that is held down.
 // Pure: times are arguments. Thread: one.

@@ -1,5 +1,6 @@
-// ServerNotices: makes the short texts by which a player learns what the server sent about edits, the
-// past and its disk. Characters that with_unseen_replaced() replaces are question marks. One thread.
+// ServerNotices: makes the short texts by which a player learns what the server sent about edits,
+// the past and its disk. Characters that with_unseen_replaced() replaces are question marks. One
+// thread.
 #pragma once
 #include <string>
 #include <vector>

@@ -48,7 +48,8 @@ class ViewLimits {
   void add_to(ClientReport& report, const View& view, double reach) const;
 
  private:
-  /// Returns true if all chunks of the view have been here for so long that they are taken as meshed.
+  /// Returns true if all chunks of the view have been here for so long that they are taken as
+  /// meshed.
   bool is_meshed(TimeUs now_us) const;
 
   const ViewWishes wishes_;

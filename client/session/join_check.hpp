@@ -12,8 +12,8 @@ namespace runstone {
 /// is_plain_name().
 Result<void, std::string> check_player_name(std::string_view name);
 
-/// Fails with words for the player unless the ticket is empty, which means that there is none, or has
-/// kTicketBytesMax bytes at most and is printable.
+/// Fails with words for the player unless the ticket is empty, which means that there is none, or
+/// has kTicketBytesMax bytes at most and is printable.
 Result<void, std::string> check_ticket(std::string_view ticket);
 
 }  // namespace runstone

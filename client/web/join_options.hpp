@@ -1,4 +1,4 @@
-// JoinOptions: what the page gives to the browser client when the player joins.
+// JoinOptions: the options that the page gives to the browser client when the player joins.
 #pragma once
 #include <cstdint>
 #include <map>

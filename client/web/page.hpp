@@ -1,6 +1,6 @@
-// The functions by which the browser client writes to its page. page/bridge.js implements them. Texts
-// are UTF-8 and may come from the server, so the page shows them as text, never as HTML. Thread: the
-// page's only one.
+// The functions by which the browser client writes to its page. page/bridge.js implements them.
+// Texts are UTF-8 and may come from the server, so the page shows them as text, never as HTML.
+// Thread: the page's only one.
 #pragma once
 #include <cstdint>
 
@@ -34,6 +34,12 @@ void page_players(int count, const char* names);
 void page_walking(int is_walking);
 /// Keeps the key of a world's server for later visits. Both are in hex.
 void page_keep_server(const char* world, const char* key);
+
+/// Opens or closes the timeline.
+void page_toggle_timeline(void);
+/// Shows the newest edit, and the edit after which the world is shown. `is_past`: it is not the live
+/// world.
+void page_time(double newest, double shown, int is_past);
 
 // The chunk cache, see WebCache. `world` is in hex. The page carries out the calls later, in their
 // order.

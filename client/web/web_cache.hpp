@@ -1,10 +1,10 @@
 // WebCache: the chunk cache of the browser client. The page keeps the rows in IndexedDB
 // (page/chunks.js); this object makes and checks them. It has the same rules as ChunkCache
-// (client/cache), but no chunks of its own: a row that was found goes to the session, one at a time,
-// and a chunk to keep becomes bytes.
+// (client/cache), but no chunks of its own: a row that was found goes to the session, one at a
+// time, and a chunk to keep becomes bytes.
 //   - Each lookup has one result, in order. Rows that fail a check are dropped.
-//   - If IndexedDB fails, for example because the browser has no more room, the cache ends: it finds
-//     and keeps nothing any more.
+//   - If IndexedDB fails, for example because the browser has no more room, the cache ends: it
+//     finds and keeps nothing any more.
 // Bound: kBatchesMax batches of rows wait to be written. Further chunks stay with the replica.
 // Thread: the page's only one. Calls return at once; the page calls found(), looked_up() and kept()
 // later.
@@ -42,8 +42,8 @@ class WebCache {
   const CacheCounters& counters() const { return counters_; }
 
   // Calls of the page.
-  /// Takes the row of a key of the oldest lookup. `index`: the place of the key in the lookup. Returns
-  /// false if the memory of the lookup is used up: the page then reads no more rows for it.
+  /// Takes the row of a key of the oldest lookup. `index`: the place of the key in the lookup.
+  /// Returns false if the memory of the lookup is used up: the page then reads no more rows for it.
   bool found(std::size_t index, ByteView record);
   /// Ends the oldest lookup.
   void looked_up();
@@ -74,8 +74,8 @@ class WebCache {
   CacheCounters counters_;
 };
 
-/// Reads worlds from lines "WORLD EDGE EPOCH DURABLE HEAD RULES", the first in hex. Lines of another
-/// form are left out.
+/// Reads worlds from lines "WORLD EDGE EPOCH DURABLE HEAD RULES", the first in hex. Lines of
+/// another form are left out.
 std::vector<CachedWorld> read_cached_worlds(const std::string& text);
 
 }  // namespace runstone

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/play/time_travel.hpp"
 #include "client/play/tool_actions.hpp"
 #include "client/play/wheel_actions.hpp"
 #include "client/web/page.hpp"
@@ -13,23 +14,23 @@
 namespace runstone {
 namespace {
 
-/// The times that a turn gives to what was received and to meshes. Frames of 60 a second take 16 ms,
-/// and drawing needs some of them.
+/// The times that a turn gives to what was received and to meshes. Frames of 60 a second take 16
+/// ms, and drawing needs some of them.
 constexpr TimeUs kReceiveUs = 4'000, kMeshUs = 6'000;
-/// While there is no ground to see, no frame is waited for.
+/// The same while the player joins. The page shows no world then, so long frames disturb nobody.
 constexpr TimeUs kJoinReceiveUs = 12'000, kJoinMeshUs = 24'000;
 /// Joining ends with this many meshed chunks, or this long after the world opened.
 constexpr std::uint64_t kGroundChunks = 27;
 constexpr TimeUs kGroundWaitUs = 5'000'000;
-/// A frame that follows the one before within this time has kept pace with a display of 60 Hz. Shorter
-/// times cannot be measured, because the browser waits for the display.
+/// A frame that follows the one before within this time has kept pace with a display of 60 Hz.
+/// Shorter times cannot be measured, because the browser waits for the display.
 constexpr TimeUs kPaceUs = 20'000;
 /// The frame time that LookControl gets for a frame that kept pace.
 constexpr TimeUs kPaceTookUs = 8'000;
 constexpr double kFieldOfView = 69;  // degrees, vertical
 
-/// Returns the default keys, but V for flying faster: browsers close their tab for ctrl+W, and a page
-/// cannot prevent it.
+/// Returns the default keys, but V for flying faster: browsers close their tab for ctrl+W, and a
+/// page cannot prevent it.
 KeyMap browser_keys() {
   KeyMap keys;
   keys.bind(Action::move_fast, {{Key::v}});
@@ -193,6 +194,15 @@ void WebClient::act(Action action) {
     case Action::palette:
       input_.release();
       return page_toggle_palette();
+    case Action::timeline:
+      input_.release();
+      return page_toggle_timeline();
+    case Action::earlier:
+      return step_in_time(session_, -1);
+    case Action::later:
+      return step_in_time(session_, 1);
+    case Action::live:
+      return show_after(session_, kSequenceShownMax);
     default:
       return;
   }
@@ -280,6 +290,7 @@ std::string WebClient::playing_text() const {
       out += " (" + words.headline + ": " + with_unseen_replaced(words.detail) + ")";
     return out;
   }
+  if (const auto& past = session_.replica().past()) return moment_text(past);
   if (player_.is_waiting_for_ground()) return "the ground here has not arrived yet";
   const std::string shortage = limits_.text();
   return shortage.empty() ? tool_.text() : shortage;

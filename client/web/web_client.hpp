@@ -1,6 +1,6 @@
-// WebClient: the browser client while it plays on a server. It is the browser's counterpart of Client
-// (client/app), from the same parts, on one thread: turn() runs once a frame and does what the other
-// client does on several threads, in slices. Thread: the page's only one.
+// WebClient: the browser client while it plays on a server. It is the counterpart of Client
+// (client/app) and is made of the same parts, but runs on one thread: turn() runs once a frame and
+// does in slices what the desktop client does on several threads. Thread: the page's only one.
 #pragma once
 #include <array>
 #include <memory>
@@ -34,9 +34,10 @@ class WebClient {
   /// `screen` must outlive the client.
   WebClient(const JoinOptions& options, Screen& screen);
 
-  /// Handles what has arrived, and draws a frame if one is due. `draws`: the page is visible.
+  /// Handles what was received, and draws a frame if one is due. `draws` is true if the page is
+  /// visible.
   void turn(TimeUs now_us, bool draws);
-  /// Says goodbye to the server and ends the play.
+  /// Sends a goodbye to the server and ends the play.
   void leave();
 
   /// Queues input for the next turn.
@@ -46,12 +47,14 @@ class WebClient {
   void capture(bool is_captured);
   void set_size(int width, int height) { size_ = {width, height}; }
   void act(Action action);
+  /// Requests the world after an edit, as show_after() does.
+  void show_moment(Sequence seq) { show_after(session_, seq); }
   WebHud& hud() { return hud_; }
   /// Returns null without a cache.
   WebCache* cache() { return network_.cache(); }
 
-  /// Moves the eye. `is_exact`: frames then depend on the world and the camera only, for comparisons;
-  /// nothing in them follows the clock.
+  /// Moves the eye. `is_exact`: frames then depend on the world and the camera only, for
+  /// comparisons; nothing in them follows the clock.
   void set_camera(const WorldPos& eye, double yaw, double pitch, bool is_exact);
 
   /// Returns true if the view is complete, meshed and on the screen.

@@ -64,6 +64,16 @@ void WebHud::step() {
       page_chat(with_unseen_replaced(line).c_str());
   }
   show_players();
+  show_time();
+}
+
+void WebHud::show_time() {
+  const ShownSequence now = shown_sequence(session_);
+  const bool is_past = session_.replica().past().has_value();
+  if (time_ == now && is_past_ == is_past) return;
+  time_ = now;
+  is_past_ = is_past;
+  page_time(static_cast<double>(now.newest), static_cast<double>(now.shown), is_past ? 1 : 0);
 }
 
 void WebHud::show_players() {

@@ -1,5 +1,6 @@
-// WebHud: the heads-up display of the browser client: the hotbar, notices, chat and players. The page
-// shows them beside the canvas; this object sends it what changed. Thread: the page's only one.
+// WebHud: the heads-up display of the browser client: the hotbar, notices, chat and players. The
+// page shows them beside the canvas; this object sends it what changed. Thread: the page's only
+// one.
 #pragma once
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "client/play/player_hotbar.hpp"
 #include "client/play/server_notices.hpp"
+#include "client/play/time_travel.hpp"
 #include "client/replica/replica_changes.hpp"
 #include "client/session/client_session.hpp"
 #include "common/materials/material_table.hpp"
@@ -26,11 +28,11 @@ class WebHud {
   PlayerHotbar& hotbar() { return hotbar_; }
 
   void notify(std::string_view text, bool is_warning);
-  /// Shows what the server sent about edits and its disk.
+  /// Shows the notices about rejected edits, the past and the disk of the server.
   void take(const ReplicaChanges& changes);
   /// Sends a line: a command if it begins with "/", otherwise chat.
   void say(const std::string& line);
-  /// Shows what has changed of the hotbar, chat, answers and players. Call it every turn.
+  /// Shows the changes of the hotbar, chat, answers and players. Call it every turn.
   void step();
   /// Shows a line about the state while playing.
   void set_state(const std::string& text);
@@ -38,6 +40,7 @@ class WebHud {
  private:
   void show_slots();
   void show_players();
+  void show_time();
 
   ClientSession& session_;
   PlayerHotbar hotbar_;
@@ -46,6 +49,8 @@ class WebHud {
   // That the page shows.
   std::optional<Hotbar> slots_;
   std::string players_ = "?", state_;
+  std::optional<ShownSequence> time_;
+  bool is_past_ = false;
   bool is_answer_due_ = false;  // a command was sent, and its output is not shown
 };
 

@@ -1,6 +1,6 @@
-// runstone-web-client: the client in a browser. The page (page/client.js) calls the functions below.
-// The browser calls turn() once a frame. A hidden page has no frames, so a worker (page/ticker.js)
-// calls it there, and the connection lives.
+// runstone-web-client: the client in a browser. The page (page/client.js) calls the functions
+// below. The browser calls turn() once a frame. A hidden page has no frames, so a worker
+// (page/ticker.js) calls it there, and the connection lives.
 #include <emscripten.h>
 #include <emscripten/html5.h>
 
@@ -75,8 +75,8 @@ using namespace runstone;
 
 extern "C" {
 
-/// Makes the context of WebGL 2. Ends the program if the browser gives none, so the page asks for one
-/// before.
+/// Makes the context of WebGL 2. Ends the program if the browser gives none, so the page asks for
+/// one before.
 EMSCRIPTEN_KEEPALIVE void web_prepare() {
   screen = make_screen(make_canvas_context(kCanvas));
   emscripten_set_webglcontextlost_callback(kCanvas, nullptr, false, on_context_lost);
@@ -84,8 +84,8 @@ EMSCRIPTEN_KEEPALIVE void web_prepare() {
 }
 
 /// Joins the server. `seed` is the secret key of the player in hex, and `pins` has the known server
-/// keys. `quality` is -1 for automatic. `has_cache`: the page keeps chunks; `cached_worlds` is as for
-/// read_cached_worlds(). Returns why the player cannot join like this, or an empty text.
+/// keys. `quality` is -1 for automatic. `has_cache`: the page keeps chunks; `cached_worlds` is as
+/// for read_cached_worlds(). Returns why the player cannot join like this, or an empty text.
 EMSCRIPTEN_KEEPALIVE const char* web_join(const char* url, const char* name, const char* ticket,
                                           const char* seed, int is_key_kept, const char* pins,
                                           int view_radius, int far_levels, int quality,
@@ -199,6 +199,12 @@ EMSCRIPTEN_KEEPALIVE void web_walk_or_fly() {
 
 EMSCRIPTEN_KEEPALIVE void web_say(const char* line) {
   if (client) client->hud().say(line);
+}
+
+/// Shows the world after an edit, or the live world for the newest edit and beyond.
+EMSCRIPTEN_KEEPALIVE void web_show_moment(double seq) {
+  if (client && seq >= 0 && seq <= static_cast<double>(kSequenceShownMax))
+    client->show_moment(static_cast<Sequence>(seq));
 }
 
 // The chunk cache, see WebCache.

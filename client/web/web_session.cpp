@@ -11,6 +11,10 @@
 namespace runstone {
 namespace {
 
+/// The time for which a view waits for the cache. IndexedDB answers between frames, so it needs
+/// longer than a disk. A cache without rows of the world answers at once.
+constexpr TimeUs kCacheWaitUs = 1'000'000;
+
 SessionConfig config_of(const JoinOptions& options) {
   SessionConfig config;
   config.keys = key_pair_of(options.seed);
@@ -18,6 +22,7 @@ SessionConfig config_of(const JoinOptions& options) {
   config.ticket = options.ticket;
   config.pinned = options.pinned;
   config.has_cache = options.has_cache;
+  config.cache_wait_us = kCacheWaitUs;
   if (options.is_key_kept) config.features |= kFeatureNames;
   config.instance = 0;
   while (config.instance == 0) randombytes_buf(&config.instance, sizeof config.instance);

@@ -32,11 +32,11 @@ class WebSession final : private LinkCallbacks {
   WebCache* cache() { return cache_ ? &*cache_ : nullptr; }
   /// Returns true if a world was opened, for the first time or again, since the last call.
   bool take_world_opened();
-  /// Says goodbye to the server. Nothing is sent or received afterwards.
+  /// Sends a goodbye to the server. Afterwards the session sends and receives no messages.
   void leave();
 
   bool is_connected() const { return session_.is_open(); }
-  /// Returns true if the server has refused this client for good.
+  /// Returns true if the server has refused this client and another attempt is pointless.
   bool is_refused() const { return session_.end() && session_.end()->final; }
   /// Returns in words why there is no connection, or what happened to the last attempt.
   FailureWords failure_words() const;

@@ -7,11 +7,13 @@ const $ = (id) => document.getElementById(id);
 const NOTICE_MS = 6000;
 const LINES_MAX = 12;
 const CACHE_BYTES_MAX = 256 * 1024 * 1024;
+const MOMENT_MS = 150; // from the last movement of the slider to the request
 const WHEEL_STEP = 60; // pixels; the notch of a mouse wheel has about 100
 
 let runstone = null; // the program, once it has been loaded
 let isPlaying = false;
 let cache = null; // the promise of openCache(), once it was called
+let momentTimer = 0; // runs while the player moves the slider of the timeline
 const early = []; // notices that came before there was a place to show them
 const materials = new Map();
 
@@ -102,6 +104,17 @@ const page = {
   players(count, names) {
     $("players").textContent = count === 0 ? "" : names;
   },
+  toggleTimeline() {
+    $("timeline").hidden = !$("timeline").hidden;
+    if (!$("timeline").hidden) document.exitPointerLock?.();
+  },
+  time(newest, shown, isPast) {
+    $("moment").max = newest;
+    // A player who holds the slider decides where it is.
+    if (momentTimer === 0) $("moment").value = shown;
+    $("shown").textContent = `${shown} of ${newest}`;
+    $("live").disabled = !isPast;
+  },
   walking(isWalking) {
     $("walk").textContent = isWalking ? "fly" : "walk";
   },
@@ -188,10 +201,9 @@ async function join(event) {
   if (document.body.classList.contains("failed")) return location.reload();
   $("enter").disabled = true;
   $("detail").textContent = "";
-  const keys = await Keys.load();
-  if (!keys.isKept) page.notice("this browser keeps no keys: you are somebody else at your next visit", true);
   cache ??= openCache();
-  const worlds = await cache;
+  const [keys, worlds] = await Promise.all([Keys.load(), cache]);
+  if (!keys.isKept) page.notice("this browser keeps no keys: you are somebody else at your next visit", true);
   const url = new URL("/play", location.href);
   url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
   // An invite stands behind the '#', which browsers send to nobody.
@@ -214,7 +226,8 @@ async function join(event) {
 
 // Input.
 
-const isTyping = (target) => target instanceof HTMLInputElement || target instanceof HTMLSelectElement;
+const isTyping = (target) => (target instanceof HTMLInputElement && target.type !== "range") ||
+  target instanceof HTMLSelectElement;
 const modifiers = (event) => (event.ctrlKey ? 1 : 0) | (event.shiftKey ? 2 : 0) | (event.altKey ? 4 : 0);
 
 function onKey(event) {
@@ -321,6 +334,21 @@ function listen() {
   $("walk").onclick = () => runstone._web_walk_or_fly();
   $("talk").onclick = page.openChat;
   $("all").onclick = page.togglePalette;
+  $("past").onclick = page.toggleTimeline;
+  $("moment").addEventListener("input", () => {
+    clearTimeout(momentTimer);
+    momentTimer = setTimeout(() => {
+      momentTimer = 0;
+      runstone._web_show_moment(Number($("moment").value));
+    }, MOMENT_MS);
+  });
+  const step = (steps) => () => {
+    const [shown, newest] = [Number($("moment").value), Number($("moment").max)];
+    runstone._web_show_moment(Math.max(0, shown + steps * Math.max(1, Math.floor(newest / 100))));
+  };
+  $("earlier").onclick = step(-1);
+  $("later").onclick = step(1);
+  $("live").onclick = () => runstone._web_show_moment(Number($("moment").max));
   if (window.matchMedia("(pointer: coarse)").matches) document.body.classList.add("touch");
 }
 
