@@ -5,8 +5,8 @@
 #include <cstdint>
 
 extern "C" {
-/// Shows how far joining is. `share` is 0 to 1, or negative if it is not known. `detail` may be
-/// empty.
+/// Shows the progress of joining. `share` is 0 to 1, or negative if it is not known. `detail` may
+/// be empty.
 void page_progress(const char* text, double share, const char* detail);
 /// Hides the progress of joining and shows the world.
 void page_joined(void);
@@ -37,8 +37,8 @@ void page_keep_server(const char* world, const char* key);
 
 /// Opens or closes the timeline.
 void page_toggle_timeline(void);
-/// Shows the newest edit, and the edit after which the world is shown. `is_past`: it is not the live
-/// world.
+/// Shows the newest edit, and the edit after which the world is shown. `is_past`: it is not the
+/// live world.
 void page_time(double newest, double shown, int is_past);
 
 // The chunk cache, see WebCache. `world` is in hex. The page carries out the calls later, in their

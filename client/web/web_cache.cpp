@@ -57,6 +57,7 @@ void WebCache::look_up(CacheLookup lookup) {
 }
 
 bool WebCache::found(std::size_t index, ByteView record) {
+  if (lookups_.empty()) return false;  // the cache has ended
   OpenLookup& open = lookups_.front();
   if (open.bytes >= open.lookup.bytes_max) return false;
   const ChunkKey& key = open.lookup.keys[index];

@@ -47,9 +47,9 @@ class WebCache {
   bool found(std::size_t index, ByteView record);
   /// Ends the oldest lookup.
   void looked_up();
-  /// A batch was written, and `evicted` rows were dropped for the size bound.
+  /// Ends the oldest batch: it was written, and `evicted` rows were dropped for the size bound.
   void kept(std::size_t rows, std::size_t evicted);
-  /// Rows were dropped because they are outside of the common history.
+  /// Counts rows that the page has dropped because they are outside of the common history.
   void dropped(std::size_t rows) { counters_.not_common += rows; }
   /// Ends the cache.
   void fail();
@@ -60,7 +60,8 @@ class WebCache {
     std::vector<KeyedChunk> found;
     std::size_t bytes = 0;  // of found, in memory
   };
-  /// Tells the page how the world is described now, and what to drop for that.
+  /// Gives the page the new description of the world, and orders it to drop rows that are outside
+  /// of the common history.
   void enter(const CachedWorld& world);
 
   std::map<WorldId, CachedWorld> worlds_;

@@ -80,7 +80,7 @@ class WebClient {
   /// Sends what is queued, and meshes until this time, one chunk at least.
   void mesh_until(TimeUs until_us);
   void draw(TimeUs now_us);
-  /// Shows how far joining is, or the state while playing.
+  /// Shows the progress of joining, or the state while playing.
   void show_state(TimeUs now_us);
   /// Returns a line about the state while playing.
   std::string playing_text() const;

@@ -23,7 +23,7 @@ class WebHud {
 
   /// Takes the materials of a world that opens, and fills the hotbar.
   void enter(const MaterialTable& materials);
-  /// Adds the materials that came since. Cost: O(new materials).
+  /// Adds the materials that the page does not have yet. Cost: O(new materials).
   void add_materials(const MaterialTable& materials);
   PlayerHotbar& hotbar() { return hotbar_; }
 

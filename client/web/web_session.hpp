@@ -19,7 +19,7 @@ class WebSession final : private LinkCallbacks {
   ClientSession& session() { return session_; }
   const ClientSession& session() const { return session_; }
 
-  /// Handles what was received until this time, and connects when it is time.
+  /// Handles received messages until this time, and connects when it is time.
   void step(TimeUs now_us, TimeUs until_us);
   /// Sends the session's outgoing messages.
   void flush(TimeUs now_us);

@@ -208,7 +208,7 @@ const Chunks = (() => {
       });
       let hasRoom = true;
       const give = (name, stored) => {
-        if (!hasRoom || !wanted.has(name)) return;
+        if (database === null || !hasRoom || !wanted.has(name)) return;
         touched.add(name);
         const row = stored instanceof Uint8Array ? stored : new Uint8Array();
         const at = runstone._web_cache_buffer(row.length); // the memory may grow in this call

@@ -6,7 +6,7 @@
 const $ = (id) => document.getElementById(id);
 const NOTICE_MS = 6000;
 const LINES_MAX = 12;
-const CACHE_BYTES_MAX = 256 * 1024 * 1024;
+const CACHE_BYTES_MAX = 64 * 1024 * 1024;
 const MOMENT_MS = 150; // from the last movement of the slider to the request
 const WHEEL_STEP = 60; // pixels; the notch of a mouse wheel has about 100
 
@@ -186,7 +186,7 @@ async function openCache() {
 
 function resize() {
   const canvas = $("canvas");
-  // More pixels than these cost more than they show.
+  // More pixels cost time, and few players see them.
   const scale = Math.min(window.devicePixelRatio || 1, 2);
   canvas.width = Math.max(1, Math.round(canvas.clientWidth * scale));
   canvas.height = Math.max(1, Math.round(canvas.clientHeight * scale));
@@ -206,7 +206,7 @@ async function join(event) {
   if (!keys.isKept) page.notice("this browser keeps no keys: you are somebody else at your next visit", true);
   const url = new URL("/play", location.href);
   url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
-  // An invite stands behind the '#', which browsers send to nobody.
+  // An invite is the part after '#', which browsers do not send.
   const invite = new URLSearchParams(location.hash.slice(1)).get("invite") ?? "";
   const why = runstone.ccall("web_join", "string",
     ["string", "string", "string", "string", "number", "string", "number", "number", "number", "number", "string"],
@@ -220,7 +220,7 @@ async function join(event) {
   }
   $("join").hidden = true;
   resize();
-  // A browser that is short of disk space deletes what is not persistent.
+  // A browser that is short of disk space deletes data that is not persistent.
   navigator.storage?.persist?.().catch(() => {});
 }
 
@@ -249,7 +249,7 @@ function onButton(event) {
   const isPressed = event.type === "mousedown";
   if (isPressed) {
     $("canvas").focus();
-    // Without a lock, as in some frames, the mouse turns the player while it is over the canvas.
+    // If the browser refuses the capture, the mouse turns the player while it is over the canvas.
     if (document.pointerLockElement === null) $("canvas").requestPointerLock?.()?.catch?.(() => {});
   }
   runstone._web_button(event.button, isPressed ? 1 : 0);
@@ -295,7 +295,7 @@ function listen() {
   canvas.addEventListener("wheel", onWheel, { passive: false });
   for (const type of ["touchstart", "touchmove", "touchend", "touchcancel"])
     canvas.addEventListener(type, onTouch, { passive: false });
-  // The button that was pressed has captured the mouse already.
+  // The press of the button has captured the mouse in the program already.
   document.addEventListener("pointerlockchange", () =>
     isPlaying && document.pointerLockElement === null && runstone._web_capture_lost());
   window.addEventListener("blur", () => runstone?._web_focus_lost());
@@ -304,7 +304,7 @@ function listen() {
     if (isPlaying && runstone._web_unconfirmed() > 0) event.preventDefault();
   });
   window.addEventListener("pagehide", () => runstone?._web_leave());
-  // A page that comes back from the browser's history has said goodbye.
+  // A page that the browser shows again from its history has sent a goodbye.
   window.addEventListener("pageshow", (event) => event.persisted && location.reload());
   $("say").addEventListener("keydown", (event) => {
     if (event.isComposing || (event.key !== "Enter" && event.key !== "Escape")) return;

@@ -23,13 +23,13 @@ const Keys = (() => {
     return answered(request);
   }
 
-  // Returns the identity of this browser, made at the first visit, and the servers it knows. Without
-  // IndexedDB, as in some private windows, the identity is for this visit alone.
+  // Returns the identity of this browser and the keys of the servers that it has joined. The first
+  // visit makes the identity. Without IndexedDB, as in some private windows, each visit makes one.
   async function load() {
     const fresh = crypto.getRandomValues(new Uint8Array(SEED_BYTES));
     try {
       const database = await open();
-      // Two tabs may come here at once. Both get the seed that the first one has written.
+      // Two tabs may run this at the same time. Both get the seed that the first one has written.
       const change = database.transaction("identity", "readwrite").objectStore("identity");
       let seed = await answered(change.get("seed"));
       if (!(seed instanceof Uint8Array) || seed.length !== SEED_BYTES) {
