@@ -235,6 +235,7 @@ test("a click is meshed without meshing whole chunks, and its latency is measure
   await player.complete();
   await player.capture();
   await lookDown(player);
+  await player.complete(); // the player has moved, so chunks may have come
   const CLICKS = 20;
   const before = await player.report();
   for (let i = 0; i < CLICKS; ++i) {
