@@ -1,9 +1,8 @@
 // ChangeNotices: shows to the player, and writes to the log, what the server sent about chunks,
 // edits, the past and its disk. Thread: the main thread.
 #pragma once
-#include <string>
-
 #include "client/app/client_hud.hpp"
+#include "client/play/server_notices.hpp"
 #include "client/replica/replica_changes.hpp"
 #include "client/session/client_session.hpp"
 
@@ -12,19 +11,16 @@ namespace runstone {
 class ChangeNotices {
  public:
   /// Both must outlive this object.
-  ChangeNotices(const ClientSession& session, ClientHud& hud) : session_(session), hud_(hud) {}
+  ChangeNotices(const ClientSession& session, ClientHud& hud) : notices_(session), hud_(hud) {}
 
   /// Call it with all changes of the replica, in their order.
   void take(const ReplicaChanges& changes);
 
  private:
-  /// Logs the text as a warning and shows it.
-  void warn(const std::string& text);
+  void show(const ServerNotice& notice);
 
-  const ClientSession& session_;
+  ServerNotices notices_;
   ClientHud& hud_;
-  std::string told_refusal_;     // of the newest request to see the past
-  bool told_read_only_ = false;  // the state of the server that was shown last
 };
 
 }  // namespace runstone

@@ -1,7 +1,5 @@
 #include "client/app/client.hpp"
 
-#include <fmt/chrono.h>
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -14,6 +12,7 @@
 
 #include "client/app/connection_words.hpp"
 #include "client/app/player_defaults.hpp"
+#include "client/play/time_travel.hpp"
 #include "client/report/exit_code.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/steady_clock.hpp"
@@ -28,8 +27,6 @@ constexpr TimeUs kRestUs = 10'000;
 constexpr TimeUs kRestUsWindow = 2'000;
 /// The longest pause of the loop with a window that has no focus.
 constexpr TimeUs kRestUsBackground = 10'000;
-/// A view whose chunks have been here for this long is taken as meshed.
-constexpr TimeUs kMeshedUs = 2'000'000;
 constexpr TimeUs kHorizonLookUs = 20'000;  // between two looks at the distant ground
 constexpr TimeUs kPlayerLogUs = 1'000'000;
 /// The connecting screen ends with this many meshed chunks, or this long after the world opened.
@@ -39,29 +36,6 @@ constexpr TimeUs kGroundWaitUs = 3'000'000;
 std::optional<int> terminal_of(const Script* script) {
   if (script != nullptr || ::isatty(STDIN_FILENO) != 1) return std::nullopt;
   return STDIN_FILENO;
-}
-
-std::string moment_text(const std::optional<PastMoment>& past) {
-  if (!past) return {};
-  const std::time_t seconds = past->utc_us / 1'000'000;
-  return fmt::format("the past: after edit {} ({:%Y-%m-%d %H:%M:%S} UTC)", past->seq,
-                     fmt::gmtime(seconds));
-}
-
-std::string memory_text(const MemoryBudget& budget, const FarBudget& far) {
-  if (budget.binds())
-    return fmt::format("view {} of {} chunks, because memory is short", budget.radii().h,
-                       budget.wanted().h);
-  if (far.binds())
-    return fmt::format("far ground: {} of {} levels, because memory is short", far.levels(),
-                       far.wanted());
-  return {};
-}
-
-/// Returns the share of the memory that tiles and their meshes may take: an eighth, if there are
-/// tiles.
-std::size_t far_bytes_max(const ClientOptions& options) {
-  return options.far_levels == 0 ? 0 : (options.memory_mib << 20) / 8;
 }
 
 Driver driver_of(const ClientOptions& options, const Script* script) {
@@ -92,10 +66,11 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
             [](const std::string& why) { spdlog::warn("edit refused: {}", why); }),
       previews_(session_, tool_),
       input_(router_of(options_.settings)),
-      far_budget_(far_bytes_max(options_), options_.far_levels),
-      budget_((options_.memory_mib << 20) - far_bytes_max(options_),
-              {options_.view_radius, options_.view_radius_v}),
-      view_(session_, player_, budget_.radii(), options_.far_levels),
+      view_(session_, player_, {options_.view_radius, options_.view_radius_v}, options_.far_levels),
+      limits_({options_.memory_mib,
+               {options_.view_radius, options_.view_radius_v},
+               options_.far_levels},
+              session_.replica(), pipeline_, view_),
       chat_(session_, terminal_of(script)),
       panels_(session_, player_, tool_.box()),
       hud_(session_, player_, pipeline_, chat_, panels_, tool_, options_.name, input_.keys(),
@@ -159,7 +134,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     flush();  // local edits go first, because following the player may take long
     follow_player(now_us);
     session_.tick(now_us);
-    network_.step_cache(now_us, budget_.room(memory_use()));
+    network_.step_cache(now_us, limits_.room());
     flush();
     if (tool_.step_preview()) pipeline_.moved();
     if (previews_.step(settings(), now_us)) pipeline_.moved();
@@ -182,11 +157,7 @@ void Client::on_world_opened() {
   controls_.set_materials(welcome.materials);
   if (std::exchange(world_, welcome.world_id) != welcome.world_id) hud_.enter(welcome.materials);
   set_tool_materials(welcome.materials);
-  budget_.set_wanted({std::min(options_.view_radius, welcome.view_radius_max),
-                      std::min(options_.view_radius_v, welcome.view_radius_max)});
-  // The levels that help depend on the edge of the chunks, which is known from now on.
-  if (view_.radii() != budget_.radii() || options_.far_levels != 0)
-    view_.set_radii(budget_.radii());
+  limits_.open_world(welcome.view_radius_max);
 }
 
 void Client::take_new_materials() {
@@ -266,45 +237,31 @@ void Client::follow_player(TimeUs now_us) {
   pipeline_.set_eye(player_.chunk(session_.replica().chunk_edge()));
 }
 
-MemoryUse Client::memory_use() const {
-  return {session_.replica().chunk_bytes(), session_.replica().local_edits().bytes(),
-          pipeline_.mesh_bytes(), pipeline_.gpu_bytes()};
-}
-
 void Client::limit_memory(TimeUs now_us) {
-  const MemoryUse use = memory_use();
-  const ViewRadii before = budget_.radii();
-  const auto complete_since_us = view_.complete_since_us();
-  const bool is_meshed = complete_since_us && now_us - *complete_since_us >= kMeshedUs;
-  if (budget_.step(use, is_meshed, now_us)) {
-    const ViewRadii radii = budget_.radii();
+  const MemoryUse use = limits_.use();
+  const ViewRadii before = limits_.budget().radii();
+  if (limits_.limit_view(now_us)) {
+    const ViewRadii radii = limits_.budget().radii(), wanted = limits_.budget().wanted();
     const bool has_shrunk = radii.h + radii.v < before.h + before.v;
     spdlog::log(has_shrunk ? spdlog::level::warn : spdlog::level::info,
                 "memory: {} of {} MiB in use; the view {} to radius {} of {} chunks, {} of {} "
                 "vertically",
-                use.total() >> 20, budget_.bytes_max() >> 20, has_shrunk ? "shrinks" : "grows",
-                radii.h, budget_.wanted().h, radii.v, budget_.wanted().v);
-    view_.set_radii(radii);
-    pipeline_.view_changed();
+                use.total() >> 20, limits_.budget().bytes_max() >> 20,
+                has_shrunk ? "shrinks" : "grows", radii.h, wanted.h, radii.v, wanted.v);
     drain_changes();
   }
-  const MemoryUse kept = memory_use();
-  pipeline_.set_mesh_bytes_max(budget_.room(kept) + kept.meshes + kept.gpu);
+  limits_.limit_meshes();
 }
 
 void Client::limit_far_memory(TimeUs now_us) {
   const std::size_t bytes = pipeline_.far_bytes();
-  const std::uint8_t before = far_budget_.levels();
-  const auto complete_since_us = view_.complete_since_us();
-  const bool is_complete =
-      complete_since_us && now_us - *complete_since_us >= kMeshedUs && pipeline_.is_far_meshed();
-  if (!far_budget_.step(bytes, is_complete, now_us)) return;
-  const bool has_shrunk = far_budget_.levels() < before;
+  const std::uint8_t before = limits_.far().levels();
+  if (!limits_.limit_far(now_us)) return;
+  const FarBudget& far = limits_.far();
+  const bool has_shrunk = far.levels() < before;
   spdlog::log(has_shrunk ? spdlog::level::warn : spdlog::level::info,
               "memory: {} of {} MiB in use by far ground, which {} to {} of {} levels", bytes >> 20,
-              far_budget_.bytes_max() >> 20, has_shrunk ? "shrinks" : "grows", far_budget_.levels(),
-              far_budget_.wanted());
-  view_.set_far_levels(far_budget_.levels());
+              far.bytes_max() >> 20, has_shrunk ? "shrinks" : "grows", far.levels(), far.wanted());
   drain_changes();
 }
 
@@ -358,15 +315,15 @@ HudScene Client::hud_scene() const {
   scene.state = moment_text(session_.replica().past());
   const std::string lost = opened_us_ ? lost_text(network_, steady_now_us()) : std::string();
   if (!lost.empty()) scene.state = lost;
-  if (scene.state.empty()) scene.state = memory_text(budget_, far_budget_);
+  if (scene.state.empty()) scene.state = limits_.text();
   if (scene.state.empty() && player_.is_waiting_for_ground())
     scene.state = "the ground here has not arrived yet";
   scene.tool = tool_.text();
   if (hud_.shows_statistics()) {
     scene.net = network_.net_counts();
-    scene.memory = memory_use();
-    scene.memory_max = budget_.bytes_max();
-    scene.far_bytes_max = far_budget_.bytes_max();
+    scene.memory = limits_.use();
+    scene.memory_max = limits_.budget().bytes_max();
+    scene.far_bytes_max = limits_.far().bytes_max();
     scene.reach = scene_.reach();
   }
   scene.camera = camera();
@@ -450,12 +407,7 @@ ClientReport Client::report() const {
   ClientReport out;
   out.seconds = static_cast<double>(steady_now_us() - started_us_) / 1e6;
   out.edits_refused = tool_.refused();
-  out.memory = memory_use();
-  out.budget = report_of(budget_);
-  out.far.bytes_max = far_budget_.bytes_max();
-  out.far.levels = session_.view().levels;
-  out.far.wanted = far_budget_.wanted();
-  out.far.reach = scene_.reach();
+  limits_.add_to(out, session_.view(), scene_.reach());
   out.far.horizon = horizon_.report();
   network_.add_to(out);
   pipeline_.add_to(out);

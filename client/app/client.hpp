@@ -24,15 +24,14 @@
 #include "client/app/threaded_session.hpp"
 #include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
-#include "client/far/far_budget.hpp"
 #include "client/input/input_router.hpp"
 #include "client/play/display_pace.hpp"
 #include "client/play/edit_tool.hpp"
 #include "client/play/frame_scene.hpp"
 #include "client/play/player.hpp"
 #include "client/play/view_follower.hpp"
+#include "client/play/view_limits.hpp"
 #include "client/report/report.hpp"
-#include "client/schedule/memory_budget.hpp"
 #include "client/script/script_runner.hpp"
 
 namespace runstone {
@@ -63,7 +62,6 @@ class Client {
   /// Opens the pause menu. Requires menu_.
   void pause();
   void follow_player(TimeUs now_us);
-  MemoryUse memory_use() const;
   /// Keeps the memory within the budget: shrinks the view, or lets it grow again, and bounds the
   /// meshes.
   void limit_memory(TimeUs now_us);
@@ -110,11 +108,10 @@ class Client {
   EditTool tool_;
   PreviewExchange previews_;
   InputRouter input_;
-  FarBudget far_budget_;
   HorizonRecorder horizon_;
   TimeUs horizon_due_us_ = 0;  // when it looks again
-  MemoryBudget budget_;        // of all but the tiles
   ViewFollower view_;
+  ViewLimits limits_;
   TerminalChat chat_;
   WorldPanels panels_;
   ClientHud hud_;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/play/time_travel.hpp"
 #include "client/render/projection.hpp"
 #include "client/replica/ray_pick.hpp"
 #include "common/core/text.hpp"
@@ -53,20 +54,11 @@ ClientHud::ClientHud(ClientSession& session, Player& player, MeshPipeline& pipel
       panels_(panels),
       tool_(tool),
       name_(std::move(name)),
-      hud_(keys, scale) {}
-
-void ClientHud::enter(const MaterialTable& materials) {
-  hotbar_.fill(materials);
-  if (hotbar_.held() != kEmpty) player_.hold(hotbar_.held());
-}
+      hud_(keys, scale),
+      hotbar_(player) {}
 
 bool ClientHud::act(Action action) {
-  if (action >= Action::hold_slot_1 && action <= Action::hold_slot_9) {
-    hotbar_.choose(static_cast<std::size_t>(action) -
-                   static_cast<std::size_t>(Action::hold_slot_1));
-    player_.hold(hotbar_.held());
-    return true;
-  }
+  if (hotbar_.act(action)) return true;
   if (action == Action::interface) {
     is_shown_ = !is_shown_;
     return true;
@@ -87,16 +79,6 @@ bool ClientHud::take_chat() {
   return has_lines;
 }
 
-void ClientHud::scroll(int steps) {
-  hotbar_.scroll(steps);
-  player_.hold(hotbar_.held());
-}
-
-void ClientHud::hold(Material material) {
-  hotbar_.hold(material);
-  player_.hold(material);
-}
-
 std::shared_ptr<const OverlayFrame> ClientHud::make_frame(const HudScene& scene, TimeUs now_us) {
   const double seconds = static_cast<double>(now_us - std::exchange(made_us_, now_us)) / 1e6;
   HudState shown = state(scene);
@@ -110,8 +92,8 @@ std::shared_ptr<const OverlayFrame> ClientHud::make_frame(const HudScene& scene,
 HudState ClientHud::state(const HudScene& scene) const {
   HudState out;
   out.materials = &pipeline_.materials();
-  out.slots = hotbar_.slots();
-  out.slot = hotbar_.slot();
+  out.slots = hotbar_.slots().slots();
+  out.slot = hotbar_.slots().slot();
   out.is_captured = scene.is_captured;
   out.is_connected = scene.is_connected;
   const WorldPos eye = player_.eye();
@@ -196,11 +178,12 @@ double ClientHud::plate_alpha(const WorldPos& head, double distance) const {
 TimelineState ClientHud::timeline() const {
   TimelineState out;
   const Replica& replica = session_.replica();
-  out.newest = out.shown = std::min(replica.newest(), kSequenceShownMax);
+  const ShownSequence now = shown_sequence(session_);
+  out.newest = now.newest;
+  out.shown = now.shown;
   out.is_loading = session_.loading_history();
   if (const auto& past = replica.past()) {
     out.is_past = true;
-    out.shown = std::min(past->seq, kSequenceShownMax);
     const std::time_t seconds = past->utc_us / 1'000'000;
     if (past->utc_us != 0)
       out.moment = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(seconds));
@@ -282,15 +265,10 @@ void ClientHud::add_traffic(const NetCounts& net, TimeUs now_us, StatisticsState
 
 void ClientHud::carry_out(const UiAction& action, TimeUs now_us) {
   if (const auto* moment = std::get_if<ShowMoment>(&action)) {
-    HistoryRequest request;  // the live world
-    if (!moment->is_live) {
-      request.to = HistoryTarget::sequence;
-      request.seq = moment->seq;
-    }
-    static_cast<void>(session_.request_history(request));
+    show_after(session_, moment->is_live ? kSequenceShownMax : moment->seq);
   }
   if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
-  if (const auto* held = std::get_if<HoldMaterial>(&action)) hold(held->material);
+  if (const auto* held = std::get_if<HoldMaterial>(&action)) hotbar_.hold(held->material);
   if (const auto* chosen = std::get_if<SetInspection>(&action)) pipeline_.inspect(chosen->modes);
   if (const auto* order = std::get_if<RollbackOrder>(&action))
     static_cast<void>(panels_.carry_out(*order));  // the window says why not

@@ -10,8 +10,8 @@
 #include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/play/edit_tool.hpp"
-#include "client/play/hotbar.hpp"
 #include "client/play/player.hpp"
+#include "client/play/player_hotbar.hpp"
 #include "client/report/report.hpp"
 #include "client/session/client_session.hpp"
 #include "client/ui/hud.hpp"
@@ -41,15 +41,12 @@ class ClientHud {
             double scale);
 
   /// Fills the hotbar for a world. Call it when a world opens for the first time, or another one.
-  void enter(const MaterialTable& materials);
+  void enter(const MaterialTable& materials) { hotbar_.fill(materials); }
   /// Takes the lines of chat that were printed. Returns true if there were any.
   bool take_chat();
   /// Carries out an action of a key. Returns false if it is no action of the display.
   bool act(Action action);
-  /// Chooses another slot by the wheel.
-  void scroll(int steps);
-  /// Puts a material into the player's hand.
-  void hold(Material material);
+  PlayerHotbar& hotbar() { return hotbar_; }
   void notify(std::string text, NoticeKind kind = NoticeKind::information) {
     hud_.notify(std::move(text), kind);
   }
@@ -88,7 +85,7 @@ class ClientHud {
   EditTool& tool_;
   const std::string name_;
   Hud hud_;
-  Hotbar hotbar_;
+  PlayerHotbar hotbar_;
   bool is_shown_ = true;
   NetCounts net_before_;           // at net_us_
   std::array<double, 4> rates_{};  // bytes a second by class, in the interval before net_us_

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "client/display/look_control.hpp"
+#include "client/session/join_check.hpp"
 #include "common/core/day_time.hpp"
-#include "common/core/text.hpp"
 #include "common/core/tile_keys.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/passphrase.hpp"
@@ -65,8 +65,8 @@ void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
       ->excludes(insecure);
   app.add_option("--name", out.name, "name shown to others, 1 to 32 bytes")
       ->check([](const std::string& name) {
-        if (name.empty() || name.size() > kPlayerNameBytesMax) return "a name has 1 to 32 bytes";
-        return is_plain_name(name) ? "" : "a name has no quotes, backslashes or unseen characters";
+        const auto checked = check_player_name(name);
+        return checked ? std::string() : checked.error();
       });
   app.add_option(
       "--key", out.key_file,

@@ -6,16 +6,11 @@
 #include <algorithm>
 #include <string>
 
+#include "client/play/time_travel.hpp"
 #include "client/play/tool_actions.hpp"
+#include "client/play/wheel_actions.hpp"
 
 namespace runstone {
-namespace {
-
-/// The log is divided into this many steps of `[` and `]`.
-constexpr Sequence kScrubSteps = 100;
-
-}  // namespace
-
 PlayerControls::PlayerControls(ClientSession& session, Player& player, EditTool& tool,
                                MeshPipeline& pipeline, ClientHud& hud, TerminalChat& chat,
                                ScriptActions& actions, Driver driver)
@@ -39,16 +34,7 @@ void PlayerControls::take(const WindowInput& input, double seconds, const Client
   shows_players_ = input.shows_players;
   if (driver_ == Driver::person) move(input, seconds, settings);
   edit(input, now_us);
-  if (input.scroll != 0) {
-    if (input.resizes) {
-      tool_.box().change_size(input.scroll);
-    } else if (input.fast && !player_.is_walking()) {
-      player_.change_flying_speed(input.scroll);
-      hud_.notify(fmt::format("flying speed: {} voxels a second", player_.flying_speed()));
-    } else {
-      hud_.scroll(input.scroll);
-    }
-  }
+  if (const auto line = act_on_wheel(input, tool_, player_, hud_.hotbar())) hud_.notify(*line);
   for (const Action action : input.actions) act(action, now_us);
   if (!input.actions.empty() || input.scroll != 0) pipeline_.moved();
 }
@@ -64,7 +50,7 @@ void PlayerControls::edit(const WindowInput& input, TimeUs now_us) {
   for (const std::string& why : clicks_.step(input, driver_ != Driver::script, now_us))
     hud_.notify(why, NoticeKind::warning);
   if (input.pick_clicks == 0) return;
-  if (const auto hit = tool_.pick()) hud_.hold(hit->material);
+  if (const auto hit = tool_.pick()) hud_.hotbar().hold(hit->material);
 }
 
 void PlayerControls::act(Action action, TimeUs now_us) {
@@ -85,9 +71,9 @@ void PlayerControls::act(Action action, TimeUs now_us) {
     case Action::redo:
       return chat_.send("/redo");
     case Action::earlier:
-      return scrub(-1);
+      return step_in_time(session_, -1);
     case Action::later:
-      return scrub(1);
+      return step_in_time(session_, 1);
     case Action::live:
       return static_cast<void>(session_.request_history({}));
     case Action::screenshot:
@@ -105,26 +91,6 @@ void PlayerControls::take_picture() {
   const std::string file = fmt::format("runstone-{:%Y-%m-%d-%H%M%S}-{:03}.png",
                                        fmt::gmtime(utc_us / 1'000'000), utc_us / 1'000 % 1'000);
   if (actions_.screenshot(file)) hud_.notify("picture: " + actions_.screenshot_path(file));
-}
-
-void PlayerControls::scrub(int steps) {
-  const Sequence newest = std::min(session_.replica().newest(), kSequenceShownMax);
-  Sequence from = newest;
-  if (session_.loading_history()) {
-    const HistoryRequest& under_way = session_.history_request();
-    if (under_way.to == HistoryTarget::sequence) from = under_way.seq;
-  } else if (session_.replica().past()) {
-    from = session_.replica().past()->seq;
-  }
-  const auto step = static_cast<std::int64_t>(std::max<Sequence>(1, newest / kScrubSteps));
-  const auto to = static_cast<Sequence>(
-      std::max<std::int64_t>(0, static_cast<std::int64_t>(std::min(from, newest)) + steps * step));
-  HistoryRequest request;  // the live world
-  if (to < newest) {
-    request.to = HistoryTarget::sequence;
-    request.seq = to;
-  }
-  static_cast<void>(session_.request_history(request));
 }
 
 }  // namespace runstone

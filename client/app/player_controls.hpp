@@ -49,8 +49,6 @@ class PlayerControls {
   /// Carries out an action of a key.
   void act(Action action, TimeUs now_us);
   void take_picture();
-  /// Moves the view by `steps` in time. The step after the newest edit is the live world.
-  void scrub(int steps);
 
   ClientSession& session_;
   Player& player_;

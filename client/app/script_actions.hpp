@@ -44,7 +44,7 @@ class ScriptActions final : public ScriptHost {
   const Replica& replica() const override { return session_.replica(); }
   Aim aim() const override { return tool_.aim(); }
   void fix_aim(std::optional<FixedAim> aim) override { tool_.fix_aim(aim); }
-  void hold(Material material) override { hud_.hold(material); }
+  void hold(Material material) override { hud_.hotbar().hold(material); }
   void finish_preview() override;
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {

@@ -14,12 +14,11 @@
 #include "client/app/player_defaults.hpp"
 #include "client/local/local_worlds.hpp"
 #include "client/net/key_file.hpp"
+#include "client/session/join_check.hpp"
 #include "client/settings/recent_servers.hpp"
-#include "common/core/text.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "protocol/codec/server_link.hpp"
-#include "protocol/limits.hpp"
 
 namespace runstone {
 namespace {
@@ -176,9 +175,8 @@ void Shell::use_settings(const ClientSettings& settings) {
 }
 
 bool Shell::take_name(const std::string& name) {
-  if (name.size() > kPlayerNameBytesMax || !is_plain_name(name)) {
-    title_.failure = {"This cannot be your name",
-                      "a name has 1 to 32 bytes, no quotes, backslashes or unseen characters"};
+  if (const auto checked = check_player_name(name); !checked) {
+    title_.failure = {"This cannot be your name", checked.error()};
     return false;
   }
   if (name == options_.name) return true;

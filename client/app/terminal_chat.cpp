@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "client/play/printed_line.hpp"
 #include "common/core/text.hpp"
 
 namespace runstone {
@@ -27,26 +28,6 @@ ChatTone tone_of(ChatLineKind kind) {
 }
 
 }  // namespace
-
-std::string printed_line(const ChatLine& line) {
-  const std::string text = with_unseen_replaced(line.text);
-  switch (line.kind) {
-    case ChatLineKind::player: {
-      // The name "ana> hello <bea" would read as a line of Ana.
-      std::string name = line.name;
-      std::replace(name.begin(), name.end(), '<', '(');
-      std::replace(name.begin(), name.end(), '>', ')');
-      return "<" + name + "> " + text;
-    }
-    case ChatLineKind::server:
-      return "[server] " + text;
-    case ChatLineKind::message_of_the_day:
-      return "[today] " + text;
-    case ChatLineKind::refused:
-      return "[not sent] " + text;
-  }
-  return "[chat] " + text;  // a kind that this client does not know
-}
 
 TerminalChat::TerminalChat(ClientSession& session, std::optional<int> input) : session_(session) {
   if (input) input_.emplace(*input);

@@ -1,12 +1,12 @@
 #include "client/cache/chunk_cache.hpp"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
+#include "client/cache/cache_drops.hpp"
+#include "client/cache/cache_row.hpp"
 #include "common/os/user_folders.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 
@@ -33,29 +33,6 @@ constexpr const char* kSchema =
     "CREATE INDEX IF NOT EXISTS chunk_used ON chunk (used, bytes);"
     "CREATE INDEX IF NOT EXISTS chunk_version ON chunk (world, seq, epoch);";
 constexpr std::int64_t kLayout = 2;
-
-Bytes digest_bytes(const Digest& digest) {
-  Bytes bytes;
-  ByteWriter out(bytes);
-  for (const std::uint64_t lane : digest.lane) out.u64(lane);
-  return bytes;
-}
-
-/// Returns the checksum over the other columns of a row.
-std::int64_t checksum_of(const WorldId& world, const ChunkKey& key, const Version& version,
-                         ByteView digest, ByteView data) {
-  Bytes bytes;
-  ByteWriter out(bytes);
-  out.bytes(world);
-  out.u8(key.lod);
-  for (const std::int32_t c : {key.at.x, key.at.y, key.at.z})
-    out.u32(static_cast<std::uint32_t>(c));
-  out.u32(version.epoch);
-  out.u64(version.seq);
-  out.bytes(digest);
-  out.bytes(data);
-  return static_cast<std::int64_t>(XXH3_64bits(bytes.data(), bytes.size()));
-}
 
 void remove_database(const std::string& file) {
   std::error_code ignored;
@@ -176,19 +153,18 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
   };
   Tables& t = *tables_;
   std::optional<std::int64_t> id;
-  bool is_other_size = false, has_other_rules = false;
   std::int64_t rules = world.tile_rules;
-  std::optional<ServerMark> before;
+  CachedWorld before;
   t.find_world.bind(1, world.id);
   if (database_->step(t.find_world)) {
     id = t.find_world.integer(0);
-    is_other_size = t.find_world.integer(1) != world.chunk_edge;
-    before = ServerMark{static_cast<Epoch>(t.find_world.integer(2)),
-                        static_cast<Sequence>(t.find_world.integer(3)),
-                        static_cast<Sequence>(t.find_world.integer(4))};
+    before.chunk_edge = static_cast<std::uint16_t>(t.find_world.integer(1));
+    before.mark = {static_cast<Epoch>(t.find_world.integer(2)),
+                   static_cast<Sequence>(t.find_world.integer(3)),
+                   static_cast<Sequence>(t.find_world.integer(4))};
+    before.tile_rules = static_cast<std::uint32_t>(t.find_world.integer(5));
     // 0: this connection has no tiles, so it says nothing about those that are kept.
-    if (rules == 0) rules = t.find_world.integer(5);
-    has_other_rules = t.find_world.integer(5) != rules;
+    if (rules == 0) rules = before.tile_rules;
   }
   t.find_world.reset();
   if (!id) {
@@ -200,8 +176,8 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
                        .bind(6, rules));
     return database_->ok() ? database_->integer("SELECT last_insert_rowid()") : 0;
   }
-  if (before == world.mark && !is_other_size && !has_other_rules) return *id;
-  const SharedHistory kept(before, world.mark);
+  const CacheDrops drops = drops_of(before, world);
+  if (before.mark == world.mark && !drops.any()) return *id;
   const auto count = [&](sql::Statement& drop) {
     database_->run(drop);
     const std::int64_t dropped = database_->ok() ? database_->changes() : 0;
@@ -209,16 +185,13 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
     if (dropped != 0)
       bytes_ = static_cast<std::uint64_t>(database_->integer("SELECT TOTAL(bytes) FROM chunk"));
   };
-  if (is_other_size) {
-    count(t.drop_all.bind(1, *id));
-  } else if (kept.went_back()) {
-    count(t.drop_edited.bind(1, *id));
-  } else if (before->epoch != world.mark.epoch) {
-    count(t.drop_lost.bind(1, *id)
-              .bind(2, number(kept.common()))
-              .bind(3, std::int64_t{world.mark.epoch}));
+  if (drops.all) count(t.drop_all.bind(1, *id));
+  if (drops.edited) count(t.drop_edited.bind(1, *id));
+  if (drops.lost) {
+    count(
+        t.drop_lost.bind(1, *id).bind(2, number(drops.common)).bind(3, std::int64_t{drops.epoch}));
   }
-  if (has_other_rules) count(t.drop_tiles.bind(1, *id));
+  if (drops.tiles) count(t.drop_tiles.bind(1, *id));
   database_->run(t.mark_world.bind(1, *id)
                      .bind(2, std::int64_t{world.chunk_edge})
                      .bind(3, std::int64_t{world.mark.epoch})
@@ -241,26 +214,17 @@ std::optional<KeyedChunk> ChunkCache::read(const CachedWorld& world, std::int64_
     ++counters_.misses;
     return std::nullopt;
   }
-  auto chunk = std::make_shared<Chunk>();
-  chunk->version = {static_cast<Epoch>(t.find.integer(0)),
-                    static_cast<Sequence>(t.find.integer(1))};
+  const CacheRow stored{
+      {static_cast<Epoch>(t.find.integer(0)), static_cast<Sequence>(t.find.integer(1))},
+      static_cast<std::uint64_t>(t.find.integer(3)),
+      t.find.blob(4),
+      t.find.blob(5)};
   const bool is_old = t.find.integer(2) != stamp_;
   const std::int64_t id = t.find.integer(6);
-  const ByteView digest = t.find.blob(4), data = t.find.blob(5);
-  bool is_intact = t.find.integer(3) == checksum_of(world.id, key, chunk->version, digest, data);
-  const auto size = static_cast<std::uint64_t>(data.size()) + kRowOverheadBytes;
-  if (is_intact) {
-    auto voxels = decode_chunk(data, Extent::cube(world.chunk_edge));
-    is_intact = voxels.has_value();
-    if (is_intact) {
-      chunk->voxels = *std::move(voxels);
-      chunk->digest = digest_of(chunk->voxels);
-      const Bytes found = digest_bytes(chunk->digest);
-      is_intact = std::equal(found.begin(), found.end(), digest.begin(), digest.end());
-    }
-  }
+  const std::uint64_t size = stored.data.size() + kRowOverheadBytes;
+  ChunkPtr chunk = chunk_of(world, key, stored);
   t.find.reset();
-  if (!is_intact) {
+  if (!chunk) {
     ++counters_.corrupt;
     database_->run(t.drop.bind(1, id));
     bytes_ -= std::min(bytes_, size);
@@ -326,7 +290,8 @@ void ChunkCache::keep(const CachedWorld& world, std::span<const KeyedChunk> chun
                        .bind(7, static_cast<std::int64_t>(chunk->version.seq))
                        .bind(8, stamp_)
                        .bind(9, static_cast<std::int64_t>(size))
-                       .bind(10, checksum_of(world.id, key, chunk->version, digest, data))
+                       .bind(10, static_cast<std::int64_t>(
+                                     checksum_of(world.id, key, {chunk->version, 0, digest, data})))
                        .bind(11, ByteView(digest))
                        .bind(12, ByteView(data)));
     bytes_ += size;

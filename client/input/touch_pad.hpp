@@ -1,6 +1,6 @@
 // TouchPad: makes the input of a player from the touches of a screen.
-//   - A touch that begins in the lower left part of the screen is a stick, by which the player moves.
-//     Its middle is where the touch began.
+//   - A touch that begins in the lower left part of the screen is a stick, by which the player
+//     moves. Its middle is where the touch began.
 //   - Any other touch turns the player while it moves. A short one that does not move is a click in
 //     the middle of the screen. One that rests is a button that is held down.
 // Pure: times are arguments. Thread: one.
@@ -14,7 +14,7 @@
 
 namespace runstone {
 
-/// What a tap does.
+/// The edit that a tap makes.
 enum class TapMode : std::uint8_t { place, remove };
 
 class TouchPad {
@@ -22,7 +22,6 @@ class TouchPad {
   /// Sets the size of the screen. Lengths are those of the page (CSS pixels), about 0.26 mm.
   void set_size(double width, double height) { width_ = width, height_ = height; }
   void set_mode(TapMode mode) { mode_ = mode; }
-  TapMode mode() const { return mode_; }
 
   void begin(std::int64_t id, double x, double y, TimeUs now_us);
   void move(std::int64_t id, double x, double y);

@@ -1,7 +1,7 @@
 // GlContext: a current OpenGL context. Off screen it is made by EGL without a surface or, if that
 // fails, by OSMesa, or by EGL for OpenGL ES 3.0. None of them needs an X server.
-// client/platform/window.hpp makes the context of a window. Thread: the context is current on the thread that makes it, and is used and destroyed
-// there.
+// client/platform/window.hpp makes the context of a window. Thread: the context is current on the
+// thread that makes it, and is used and destroyed there.
 #pragma once
 #include <memory>
 #include <string>
@@ -17,8 +17,8 @@ class GlContext {
   /// Returns the address of a GL function by its name.
   using Loader = void (*(*)(const char*))();
   virtual Loader loader() const = 0;
-  /// Returns "EGL surfaceless", "EGL surfaceless, OpenGL ES", "OSMesa", "GLFW", "GLFW, OpenGL ES" or
-  /// "WebGL 2".
+  /// Returns "EGL surfaceless", "EGL surfaceless, OpenGL ES", "OSMesa", "GLFW", "GLFW, OpenGL ES"
+  /// or "WebGL 2".
   virtual const char* name() const = 0;
   /// Returns true if the default framebuffer is that of a window.
   virtual bool is_window() const { return false; }

@@ -1,4 +1,4 @@
-// ClickEdits: works the tool of the player by the buttons of the mouse. One thread.
+// ClickEdits: passes the buttons of the mouse to the tool of the player. One thread.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,9 +15,9 @@ class ClickEdits {
   /// `tool` must outlive the object.
   explicit ClickEdits(EditTool& tool) : tool_(tool) {}
 
-  /// Carries out the buttons of the left and the right side. `releases`: a button that is not held
-  /// counts as released, so the tool acts that waits for it. Returns the reasons of what was
-  /// refused, in words for the player.
+  /// Carries out presses of the left and the right button. `releases`: a button that is not held
+  /// counts as released, so a tool that waits for the release acts. Returns for each refused edit
+  /// the reason, in words for the player.
   std::vector<std::string> step(const WindowInput& input, bool releases, TimeUs now_us);
 
  private:

@@ -1,4 +1,4 @@
-// DisplayPace: lets a window draw often while something moves, and seldom otherwise. A window
+// DisplayPace: makes a window draw often while something moves, and seldom otherwise. A window
 // without focus draws at most every kBackgroundFrameUs, so that the window in use has the
 // processor. Thread: the main thread.
 #pragma once

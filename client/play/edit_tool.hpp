@@ -45,15 +45,16 @@ class EditTool {
   /// Aims at a face of a voxel, wherever the player looks; nullopt follows the look again.
   void fix_aim(std::optional<FixedAim> aim) { fixed_aim_ = aim; }
 
-  /// Presses, holds and releases a mouse button, as ToolBox does. The edits are submitted. A single
-  /// voxel is never placed where the player is. Each fails with words for the player.
+  /// Pass a press, a held button and a release to the tool box, and submit the edits that it
+  /// returns. They never place a single voxel where the player is. They fail with words for the
+  /// player.
   Result<void, std::string> press(ToolButton button, TimeUs now_us);
   void drag();
   Result<void, std::string> release(TimeUs now_us);
   /// Returns true if the tool acts again and again while the button is held.
   bool repeats() const { return &box_.tool() == box_.tools().front().get(); }
   /// Submits the edits in their order, as one action. Fails with the first refusal; the edits after
-  /// it are not submitted. Passes on the failure of a tool.
+  /// it are not submitted. If `edits` is a failure, fails with it.
   Result<void, std::string> submit(const ToolEdits& edits, TimeUs now_us);
 
   /// Carries out a command of the tool window, and submits its edits. Fails with words for the
@@ -73,9 +74,9 @@ class EditTool {
   std::string text() const;
 
   /// Submits an edit that was due at `due_us`. Fails with the reason, which `on_refused` gets as
-  /// well, if the client does not accept it. If the client had no room for it, the edit counts as infinitely
-  /// late. Any other refusal, such as that of an edit while the view shows the past, counts in
-  /// refused() only.
+  /// well, if the client does not accept it. If the client had no room for it, the edit counts as
+  /// infinitely late. Any other refusal, such as that of an edit while the view shows the past,
+  /// counts in refused() only.
   Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
                                    ActionPart part = ActionPart::alone);
 
@@ -91,7 +92,7 @@ class EditTool {
   ToolBox& box_;
   const OnRefused on_refused_;
   std::optional<FixedAim> fixed_aim_;
-  ClientSequence action_ = 0;  // the first edit of the action under way; 0: none was accepted yet
+  ClientSequence action_ = 0;  // first edit of the current action; 0: none was accepted yet
   std::uint64_t refused_ = 0;
 };
 

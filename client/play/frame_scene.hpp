@@ -21,13 +21,15 @@ class FrameScene {
              const ViewFollower& view)
       : session_(session), player_(player), tool_(tool), view_(view) {}
 
-  /// `field_of_view` is vertical, in degrees; nullopt: that of screenshots of scripts.
+  /// Returns the camera. `field_of_view` is vertical, in degrees; nullopt means the field of view
+  /// of the screenshots of scripts.
   Camera camera(std::optional<double> field_of_view) const;
-  /// Returns the distance up to which ground is seen, in voxels: that of the tiles if some have
-  /// arrived, otherwise that of the chunks.
+  /// Returns the distance up to which ground is seen, in voxels: the reach of the tiles if some
+  /// have arrived, otherwise the reach of the chunks.
   double reach() const;
-  /// `poses`: where the other players are shown. `outlines_aim`: the voxel in sight is outlined.
-  /// `shows_ground`: protected boxes are outlined. The ghosts are those of the tool.
+  /// Returns the contents, with the ghosts of the tool. `poses` has the poses in which the other
+  /// players are shown. `outlines_aim`: the voxel in sight is outlined. `shows_ground`: protected
+  /// boxes are outlined.
   FrameContents contents(const std::map<AuthorId, Pose>& poses, bool outlines_aim,
                          bool shows_ground) const;
 

@@ -13,8 +13,8 @@
 
 namespace runstone {
 
-/// A walking player who has fallen this far, in voxels, without meeting anything is moved to the
-/// spawn: the ground has a hole, or the world has no ground.
+/// A walking player who has fallen this far, in voxels, without touching a voxel is moved to the
+/// spawn. The reason of such a fall is a hole in the ground, or a world without ground.
 inline constexpr double kFallMax = 600;
 inline constexpr double kReach = 64;  // voxels from the eye to the voxel that a click changes
 

@@ -9,7 +9,7 @@
 
 namespace runstone {
 
-/// Carries out an action of a key. Returns nullopt if it is no action of the tools. Otherwise
+/// Carries out an action of a key. Returns nullopt if the tools do not have this action. Otherwise
 /// returns a line for the player, as the value or as the failure.
 std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Action action,
                                                             TimeUs now_us);

@@ -32,8 +32,8 @@ class ViewFollower {
   bool is_complete() const { return has_followed() && session_.loaded(); }
   /// Updates complete_since_us(). Call it once per turn of the main loop.
   void update_completeness(TimeUs now_us);
-  /// Returns the time of the first update since which is_complete() held at every update, or
-  /// nullopt if it did not hold at the last one.
+  /// Returns the time of the first update since which every update has found the view complete, or
+  /// nullopt if the last update did not.
   std::optional<TimeUs> complete_since_us() const { return complete_since_us_; }
 
  private:

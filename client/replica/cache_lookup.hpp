@@ -1,5 +1,5 @@
-// CacheLookup: chunks and tiles that a session wants to look up in a cache before it asks the server for
-// them.
+// CacheLookup: chunks and tiles that a session wants to look up in a cache before it asks the
+// server for them.
 #pragma once
 #include <cstdint>
 #include <limits>

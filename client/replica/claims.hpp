@@ -1,5 +1,6 @@
-// Claims: which chunks and tiles this connection has claimed to hold, so that the server sends nothing
-// or the missing edits in place of a snapshot. Bound: kClaimsMax claims without an answer. One thread.
+// Claims: which chunks and tiles this connection has claimed to hold, so that the server sends
+// nothing or the missing edits in place of a snapshot. Bound: kClaimsMax claims without an answer.
+// One thread.
 #pragma once
 #include <cstddef>
 #include <set>
@@ -20,8 +21,8 @@ class Claims {
   /// Returns the chunks to claim now, ascending: those with a confirmed chunk that are `expected`
   /// and were not claimed on this connection, while fewer than kClaimsMax claims wait for an
   /// answer. The digests are computed from the runs, so that a copy that has drifted is found.
-  /// Tiles follow; one that has drifted is not claimed. Cost: O(runs of the claimed chunks and tiles +
-  /// chunks + tiles).
+  /// Tiles follow; one that has drifted is not claimed. Cost: O(runs of the claimed chunks and
+  /// tiles + chunks + tiles).
   std::vector<CachedChunk> take(const ReplicaChunks& chunks, const FarTiles& tiles);
   /// Call it when the server has answered for the chunk, with any message.
   void answer(const ChunkKey& key) { waiting_.erase(key); }

@@ -138,8 +138,8 @@ class Replica {
   /// Takes a chunk or tile from a cache: it is shown at once, and claimed. Ignored if one is held, in
   /// the past, and outside of the view. Requires a version that SharedHistory trusts.
   void adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us);
-  /// Returns the chunks and tiles to claim before the next view is sent, see Claims::take(). Empty in the
-  /// past.
+  /// Returns the chunks and tiles to claim before the next view is sent, see Claims::take(). Empty in
+  /// the past.
   std::vector<CachedChunk> take_claims();
   /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may
   /// have them.

@@ -191,6 +191,11 @@ BudgetReport report_of(const MemoryBudget& budget) {
           budget.growths(),   budget.radii(),      budget.wanted()};
 }
 
+void set_far_budget(FarReport& report, const FarBudget& budget) {
+  report.bytes_max = budget.bytes_max();
+  report.wanted = budget.wanted();
+}
+
 std::string to_json(const ClientReport& report, const ClientSession& session) {
   Json out;
   out["world_id"] = session.welcome() ? Json(to_hex(session.welcome()->world_id)) : Json(nullptr);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "client/cache/cache_counters.hpp"
+#include "client/far/far_budget.hpp"
 #include "client/far/horizon_recorder.hpp"
 #include "client/schedule/histogram.hpp"
 #include "client/schedule/join_recorder.hpp"
@@ -65,6 +66,8 @@ struct BudgetReport {
 
 /// Returns what the budget did up to now.
 BudgetReport report_of(const MemoryBudget& budget);
+/// Sets the fields of the report that come from the budget of distant ground.
+void set_far_budget(FarReport& report, const FarBudget& budget);
 
 struct ClientReport {
   std::string renderer;  // name of the OpenGL context, or "none"

@@ -26,6 +26,7 @@ struct SessionConfig {
   std::string ticket;                      // an invite token, sent with the signature; empty: none
   std::shared_ptr<PasswordKeys> password;  // sent to worlds that have one; null: none
   bool has_cache = false;                  // a ClientSession looks chunks up in a cache
+  TimeUs cache_wait_us = 250'000;          // the time for which a view waits for the cache
 };
 
 /// Returns the hello. `nonce` must be fresh and random, so that old welcomes cannot be replayed.

@@ -146,7 +146,8 @@ void ClientSession::tick(TimeUs now_us) {
   const bool is_offset_wanted = pongs() < kPingsFirst || !clock().known();
   if (!connection_.tick(now_us, is_offset_wanted ? kPingEveryFirstUs : kPingEveryUs)) return;
   now_us_ = now_us;
-  if (view_waiting_since_us_ && now_us - *view_waiting_since_us_ >= kCacheWaitUsMax) send_view();
+  const TimeUs cache_wait_us = connection_.config().cache_wait_us;
+  if (view_waiting_since_us_ && now_us - *view_waiting_since_us_ >= cache_wait_us) send_view();
   replica_->tick(now_us);
   previews_.expire(now_us);
   connection_.request_chunks(replica_->take_requests());

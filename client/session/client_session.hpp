@@ -39,8 +39,6 @@ inline constexpr TimeUs kOffsetWaitUsMax = 1'000'000;
 /// edits, so messages of other classes may overtake it. Chunks are not among them, because they
 /// answer a view, which is sent later.
 inline constexpr std::size_t kEarlyMessagesMax = 64;
-/// The time for which a view waits for the cache.
-inline constexpr TimeUs kCacheWaitUsMax = 250'000;
 /// Lines kept of the output of one command.
 inline constexpr std::size_t kCommandLinesKept = 4096;
 /// An edit without an answer is sent again after this.
@@ -142,7 +140,8 @@ class ClientSession {
   }
 
   /// Returns the chunks to look up in the cache before the next view is sent, or nullopt if there
-  /// are none. The view waits for receive_cache_result(), at most kCacheWaitUsMax.
+  /// are none. The view waits for receive_cache_result(), at most
+  /// SessionConfig::cache_wait_us.
   std::optional<CacheLookup> take_cache_lookup();
   /// Takes the result of the oldest lookup that is open: the chunks that the cache found. It may be
   /// late, or of an earlier connection.

@@ -1,5 +1,5 @@
-// LinkCallbacks: what a link to the server reports. A link is a connection that is made again after a
-// loss. Thread: that of the link.
+// LinkCallbacks: what a link to the server reports. A link is a connection that is made again after
+// a loss. Thread: that of the link.
 #pragma once
 #include <optional>
 #include <string>

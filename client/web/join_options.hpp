@@ -1,11 +1,13 @@
-// JoinOptions: what the page gives to the browser client when the player joins.
+// JoinOptions: the options that the page gives to the browser client when the player joins.
 #pragma once
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/render/frame_look.hpp"
+#include "client/replica/cache_lookup.hpp"
 #include "protocol/codec/handshake.hpp"
 
 namespace runstone {
@@ -21,6 +23,9 @@ struct JoinOptions {
   std::uint8_t far_levels = 3;
   std::size_t memory_mib = 512;
   std::optional<Quality> quality;  // nullopt: automatic
+  bool has_cache = false;          // the page keeps chunks
+  /// The worlds of which the page has chunks, as their servers described them last.
+  std::vector<CachedWorld> cached_worlds;
 };
 
 }  // namespace runstone

@@ -1,27 +1,28 @@
-// The functions by which the browser client writes to its page. page/bridge.js implements them. Texts
-// are UTF-8 and may come from the server, so the page shows them as text, never as HTML. Thread: the
-// page's only one.
+// The functions by which the browser client writes to its page. page/bridge.js implements them.
+// Texts are UTF-8 and may come from the server, so the page shows them as text, never as HTML.
+// Thread: the page's only one.
 #pragma once
 #include <cstdint>
 
 extern "C" {
-/// Shows how far joining is. `share` is 0 to 1, or negative if it is not known. `detail` may be
-/// empty.
+/// Shows the progress of joining. `share` is 0 to 1, or negative if it is not known. `detail` may
+/// be empty.
 void page_progress(const char* text, double share, const char* detail);
-/// Takes the picture of joining away: there is ground to see.
+/// Hides the progress of joining and shows the world.
 void page_joined(void);
 /// Shows a line about the state while playing, such as a lost connection. Empty: none.
 void page_state(const char* text);
-/// Ends the play, with a headline and the exact reason.
+/// Ends the play, and shows a headline and the exact reason.
 void page_failed(const char* headline, const char* detail);
 /// Shows a text for some seconds.
 void page_notice(const char* text, int is_warning);
-/// Adds a line to the chat. `name` is empty unless a player wrote it.
-void page_chat(const char* name, const char* text);
+/// Adds a line to the chat.
+void page_chat(const char* text);
 /// Opens the line in which the player types.
 void page_open_chat(void);
-/// Begins a new list of materials, and adds one. `colour` is 0xRRGGBB.
+/// Empties the list of materials.
 void page_clear_materials(void);
+/// Adds a material to the list. `colour` is 0xRRGGBB.
 void page_material(int id, const char* name, std::uint32_t colour);
 /// Opens or closes the list of materials.
 void page_toggle_palette(void);
@@ -29,8 +30,30 @@ void page_toggle_palette(void);
 void page_slot(int slot, int material, int is_chosen);
 /// Sets the number of other players, and their names, separated by line ends.
 void page_players(int count, const char* names);
-/// The player flies or walks.
+/// Shows whether the player flies or walks.
 void page_walking(int is_walking);
 /// Keeps the key of a world's server for later visits. Both are in hex.
 void page_keep_server(const char* world, const char* key);
+
+/// Opens or closes the timeline.
+void page_toggle_timeline(void);
+/// Shows the newest edit, and the edit after which the world is shown. `is_past`: it is not the
+/// live world.
+void page_time(double newest, double shown, int is_past);
+
+// The chunk cache, see WebCache. `world` is in hex. The page carries out the calls later, in their
+// order.
+/// Keeps the description of a world, a text.
+void page_cache_enter(const char* world, const char* text);
+/// Drops the rows of a world that CacheDrops names.
+void page_cache_drop_rows(const char* world, int all, int edited, int lost, int tiles,
+                          double common, std::uint32_t epoch);
+/// Drops the row of a chunk or tile.
+void page_cache_drop_row(const char* world, int level, int x, int y, int z);
+/// Reads rows. `keys` has level, x, y and z of each. The page calls web_cache_found() for each row
+/// that it has, and then web_cache_looked_up().
+void page_cache_find(const char* world, const std::int32_t* keys, int count);
+/// Writes rows. Each is a head, little-endian, and the bytes of the record:
+///   u32 size of the record | i32 level, x, y, z | u32 epoch | f64 sequence
+void page_cache_keep(const char* world, const std::uint8_t* rows, int bytes);
 }

@@ -3,42 +3,48 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/play/time_travel.hpp"
 #include "client/play/tool_actions.hpp"
+#include "client/play/wheel_actions.hpp"
 #include "client/web/page.hpp"
 #include "common/core/hex.hpp"
+#include "common/core/text.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
 namespace {
 
-/// The times that a turn gives to what was received and to meshes. Frames of 60 a second take 16 ms,
-/// and drawing needs some of them.
+/// The times that a turn gives to what was received and to meshes. Frames of 60 a second take 16
+/// ms, and drawing needs some of them.
 constexpr TimeUs kReceiveUs = 4'000, kMeshUs = 6'000;
-/// While there is no ground to see, no frame is waited for.
+/// The same while the player joins. The page shows no world then, so long frames disturb nobody.
 constexpr TimeUs kJoinReceiveUs = 12'000, kJoinMeshUs = 24'000;
-/// A view whose chunks have been here for this long is taken as meshed.
-constexpr TimeUs kMeshedUs = 2'000'000;
 /// Joining ends with this many meshed chunks, or this long after the world opened.
 constexpr std::uint64_t kGroundChunks = 27;
 constexpr TimeUs kGroundWaitUs = 5'000'000;
-/// A frame that follows the one before within this time has kept pace with a display of 60 Hz. Shorter
-/// times cannot be measured, because the browser waits for the display.
+/// A frame that follows the one before within this time has kept pace with a display of 60 Hz.
+/// Shorter times cannot be measured, because the browser waits for the display.
 constexpr TimeUs kPaceUs = 20'000;
-/// What the automatic quality is given for such a frame.
+/// The frame time that LookControl gets for a frame that kept pace.
 constexpr TimeUs kPaceTookUs = 8'000;
 constexpr double kFieldOfView = 69;  // degrees, vertical
 
-/// Returns the share of the memory that tiles and their meshes may take: an eighth, if there are
-/// tiles.
-std::size_t far_bytes_max(const JoinOptions& options) {
-  return options.far_levels == 0 ? 0 : (options.memory_mib << 20) / 8;
+/// Returns the default keys, but V for flying faster: browsers close their tab for ctrl+W, and a
+/// page cannot prevent it.
+KeyMap browser_keys() {
+  KeyMap keys;
+  keys.bind(Action::move_fast, {{Key::v}});
+  return keys;
+}
+
+ViewRadii radii_of(const JoinOptions& options) {
+  return {options.view_radius, options.view_radius_v};
 }
 
 }  // namespace
 
 WebClient::WebClient(const JoinOptions& options, Screen& screen)
-    : options_(options),
-      screen_(screen),
+    : screen_(screen),
       started_us_(steady_now_us()),
       network_(options),
       session_(network_.session()),
@@ -46,14 +52,14 @@ WebClient::WebClient(const JoinOptions& options, Screen& screen)
       tool_(session_, player_, pipeline_.recorder(), tools_),
       motion_(session_.replica(), player_),
       clicks_(tool_),
-      far_budget_(far_bytes_max(options), options.far_levels),
-      budget_((options.memory_mib << 20) - far_bytes_max(options),
-              {options.view_radius, options.view_radius_v}),
-      view_(session_, player_, budget_.radii(), options.far_levels),
+      view_(session_, player_, radii_of(options), options.far_levels),
+      limits_({options.memory_mib, radii_of(options), options.far_levels}, session_.replica(),
+              pipeline_, view_),
       scene_(session_, player_, tool_, view_),
       hud_(session_, player_),
       pins_kept_(options.pinned.size()),
       input_us_(started_us_) {
+  input_.set_keys(browser_keys());
   queue_.set_drawing(screen.name());
   pipeline_.set_measures_frames(false);
   pipeline_.look().set_quality(options.quality);
@@ -74,6 +80,8 @@ void WebClient::turn(TimeUs now_us, bool draws) {
   network_.flush(now_us);  // local edits go first
   follow_player(now_us);
   session_.tick(now_us);
+  network_.step_cache(limits_.room(), now_us);
+  if (is_joined_) network_.keep_chunks(now_us);
   network_.flush(now_us);
   drain_changes();
   if (tool_.step_preview()) pipeline_.moved();
@@ -92,13 +100,13 @@ void WebClient::on_world_opened() {
   player_.enter(welcome.world_id, welcome.spawn);
   pipeline_.set_materials(welcome.materials);
   motion_.set_materials(welcome.materials);
-  static_cast<void>(tools_.set_materials(welcome.materials));
-  const bool is_new = std::exchange(world_, welcome.world_id) != welcome.world_id;
-  hud_.set_materials(welcome.materials, is_new);
-  budget_.set_wanted({std::min(options_.view_radius, welcome.view_radius_max),
-                      std::min(options_.view_radius_v, welcome.view_radius_max)});
-  if (view_.radii() != budget_.radii() || options_.far_levels != 0)
-    view_.set_radii(budget_.radii());
+  set_tool_materials(welcome.materials);
+  if (std::exchange(world_, welcome.world_id) != welcome.world_id) {
+    hud_.enter(welcome.materials);
+  } else {
+    hud_.add_materials(welcome.materials);
+  }
+  limits_.open_world(welcome.view_radius_max);
   keep_server_key();
 }
 
@@ -116,8 +124,13 @@ void WebClient::take_new_materials() {
   if (materials.size() <= pipeline_.materials().size()) return;
   pipeline_.set_materials(materials);
   motion_.set_materials(materials);
-  static_cast<void>(tools_.set_materials(materials));
-  hud_.set_materials(materials, false);
+  set_tool_materials(materials);
+  hud_.add_materials(materials);
+}
+
+void WebClient::set_tool_materials(const MaterialTable& materials) {
+  const std::string lost = tools_.set_materials(materials);
+  if (!lost.empty()) hud_.notify(with_unseen_replaced(lost), true);
 }
 
 void WebClient::drain_changes() {
@@ -126,25 +139,10 @@ void WebClient::drain_changes() {
   hud_.take(changes);
 }
 
-MemoryUse WebClient::memory_use() const {
-  return {session_.replica().chunk_bytes(), session_.replica().local_edits().bytes(),
-          pipeline_.mesh_bytes(), pipeline_.gpu_bytes()};
-}
-
 void WebClient::limit_memory(TimeUs now_us) {
-  const auto complete_since_us = view_.complete_since_us();
-  const bool is_meshed = complete_since_us && now_us - *complete_since_us >= kMeshedUs;
-  if (budget_.step(memory_use(), is_meshed, now_us)) {
-    view_.set_radii(budget_.radii());
-    pipeline_.view_changed();
-    drain_changes();
-  }
-  const MemoryUse kept = memory_use();
-  pipeline_.set_mesh_bytes_max(budget_.room(kept) + kept.meshes + kept.gpu);
-  const bool is_far_complete = is_meshed && pipeline_.is_far_meshed();
-  if (!far_budget_.step(pipeline_.far_bytes(), is_far_complete, now_us)) return;
-  view_.set_far_levels(far_budget_.levels());
-  drain_changes();
+  if (limits_.limit_view(now_us)) drain_changes();
+  limits_.limit_meshes();
+  if (limits_.limit_far(now_us)) drain_changes();
 }
 
 void WebClient::capture(bool is_captured) {
@@ -162,25 +160,25 @@ void WebClient::handle_input(TimeUs now_us) {
   const RoutedInput routed = input_.route({});
   const bool was_waiting = player_.is_waiting_for_ground();
   motion_.step(routed.player, std::min(seconds, 0.1), {});
-  if (player_.take_fallen_out())
+  if (player_.take_fallen_out()) {
     hud_.notify("you fell out of the world: you are at its spawn, and fly", true);
+    page_walking(0);
+  }
   if (was_waiting != player_.is_waiting_for_ground()) pipeline_.moved();
   for (const std::string& why : clicks_.step(routed.player, true, now_us)) hud_.notify(why, true);
   if (routed.player.pick_clicks != 0) {
-    if (const auto hit = tool_.pick()) hud_.hold(hit->material);
+    if (const auto hit = tool_.pick()) hud_.hotbar().hold(hit->material);
   }
-  if (routed.player.scroll != 0) hud_.scroll(routed.player.scroll);
+  if (const auto line = act_on_wheel(routed.player, tool_, player_, hud_.hotbar()))
+    hud_.notify(*line, false);
   for (const Action action : routed.player.actions) act(action);
-  if (!routed.player.actions.empty()) pipeline_.moved();
+  if (!routed.player.actions.empty() || routed.player.scroll != 0) pipeline_.moved();
 }
 
 void WebClient::act(Action action) {
   if (const auto done = act_on_tool(tool_, action, steady_now_us()))
     return hud_.notify(*done ? **done : done->error(), !*done);
-  if (action >= Action::hold_slot_1 && action <= Action::hold_slot_9) {
-    return hud_.choose(static_cast<std::size_t>(action) -
-                       static_cast<std::size_t>(Action::hold_slot_1));
-  }
+  if (hud_.hotbar().act(action)) return;
   switch (action) {
     case Action::walk_or_fly:
       player_.set_walking(!player_.is_walking());
@@ -196,6 +194,15 @@ void WebClient::act(Action action) {
     case Action::palette:
       input_.release();
       return page_toggle_palette();
+    case Action::timeline:
+      input_.release();
+      return page_toggle_timeline();
+    case Action::earlier:
+      return step_in_time(session_, -1);
+    case Action::later:
+      return step_in_time(session_, 1);
+    case Action::live:
+      return show_after(session_, kSequenceShownMax);
     default:
       return;
   }
@@ -246,7 +253,8 @@ void WebClient::draw(TimeUs now_us) {
 }
 
 void WebClient::show_state(TimeUs now_us) {
-  const FailureWords words = network_.failure_words();
+  FailureWords words = network_.failure_words();
+  words.detail = with_unseen_replaced(words.detail);
   if (network_.is_refused()) {
     is_over_ = true;
     network_.leave();
@@ -269,31 +277,28 @@ void WebClient::show_state(TimeUs now_us) {
     const double share = static_cast<double>(pipeline_.meshed_count()) / kGroundChunks;
     return page_progress("receiving the world", std::min(share, 1.0), "");
   }
-  std::string state;
+  hud_.set_state(playing_text());
+}
+
+std::string WebClient::playing_text() const {
   if (!network_.is_connected()) {
-    state = "the server is gone: connecting again";
-    const std::size_t waiting = session_.replica().local_edits().all().size();
-    if (waiting != 0) state += "; edits that wait for it: " + std::to_string(waiting);
-    if (!words.headline.empty()) state += " (" + words.headline + ": " + words.detail + ")";
-  } else if (player_.is_waiting_for_ground()) {
-    state = "the ground here has not arrived yet";
-  } else if (budget_.binds()) {
-    state = "view " + std::to_string(budget_.radii().h) + " of " +
-            std::to_string(budget_.wanted().h) + " chunks, because memory is short";
-  } else {
-    state = tool_.text();
+    std::string out = "the server is gone: connecting again";
+    const std::size_t waiting = session_.replica().local_edits().pending_count();
+    if (waiting != 0) out += "; edits that wait for it: " + std::to_string(waiting);
+    const FailureWords words = network_.failure_words();
+    if (!words.headline.empty())
+      out += " (" + words.headline + ": " + with_unseen_replaced(words.detail) + ")";
+    return out;
   }
-  hud_.set_state(state);
+  if (const auto& past = session_.replica().past()) return moment_text(past);
+  if (player_.is_waiting_for_ground()) return "the ground here has not arrived yet";
+  const std::string shortage = limits_.text();
+  return shortage.empty() ? tool_.text() : shortage;
 }
 
 void WebClient::leave() {
   is_over_ = true;
   network_.leave();
-}
-
-void WebClient::set_quality(std::optional<Quality> quality) {
-  pipeline_.look().set_quality(quality);
-  pipeline_.moved();
 }
 
 void WebClient::set_camera(const WorldPos& eye, double yaw, double pitch, bool is_exact) {
@@ -312,14 +317,8 @@ std::string WebClient::report_json() const {
   ClientReport out;
   out.seconds = static_cast<double>(steady_now_us() - started_us_) / 1e6;
   out.edits_refused = tool_.refused();
-  out.memory = memory_use();
-  out.budget = report_of(budget_);
-  out.far.bytes_max = far_budget_.bytes_max();
-  out.far.levels = session_.view().levels;
-  out.far.wanted = far_budget_.wanted();
-  out.far.reach = scene_.reach();
-  out.net = network_.net_counts();
-  out.snapshots = network_.snapshots();
+  limits_.add_to(out, session_.view(), scene_.reach());
+  network_.add_to(out);
   pipeline_.add_to(out);
   return to_json(out, session_);
 }

@@ -1,6 +1,6 @@
-// WebClient: the browser client while it plays on a server. It is the browser's counterpart of Client
-// (client/app), from the same parts, on one thread: turn() runs once a frame and does what the other
-// client does on several threads, in slices. Thread: the page's only one.
+// WebClient: the browser client while it plays on a server. It is the counterpart of Client
+// (client/app) and is made of the same parts, but runs on one thread: turn() runs once a frame and
+// does in slices what the desktop client does on several threads. Thread: the page's only one.
 #pragma once
 #include <array>
 #include <memory>
@@ -11,7 +11,6 @@
 #include "client/display/draw_queue.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/display/smooth_players.hpp"
-#include "client/far/far_budget.hpp"
 #include "client/input/input_router.hpp"
 #include "client/input/touch_pad.hpp"
 #include "client/play/click_edits.hpp"
@@ -21,8 +20,8 @@
 #include "client/play/player.hpp"
 #include "client/play/player_motion.hpp"
 #include "client/play/view_follower.hpp"
+#include "client/play/view_limits.hpp"
 #include "client/report/report.hpp"
-#include "client/schedule/memory_budget.hpp"
 #include "client/tools/tool_box.hpp"
 #include "client/web/join_options.hpp"
 #include "client/web/web_hud.hpp"
@@ -35,9 +34,10 @@ class WebClient {
   /// `screen` must outlive the client.
   WebClient(const JoinOptions& options, Screen& screen);
 
-  /// Handles what has arrived, and draws a frame if one is due. `draws`: the page is visible.
+  /// Handles what was received, and draws a frame if one is due. `draws` is true if the page is
+  /// visible.
   void turn(TimeUs now_us, bool draws);
-  /// Says goodbye to the server and ends the play.
+  /// Sends a goodbye to the server and ends the play.
   void leave();
 
   /// Queues input for the next turn.
@@ -46,16 +46,21 @@ class WebClient {
   /// Captures the mouse, or frees it.
   void capture(bool is_captured);
   void set_size(int width, int height) { size_ = {width, height}; }
-  void set_quality(std::optional<Quality> quality);
   void act(Action action);
+  /// Requests the world after an edit, as show_after() does.
+  void show_moment(Sequence seq) { show_after(session_, seq); }
   WebHud& hud() { return hud_; }
+  /// Returns null without a cache.
+  WebCache* cache() { return network_.cache(); }
 
-  /// For pictures that depend on world and camera only: moves the eye, and draws frames without
-  /// what follows the clock.
+  /// Moves the eye. `is_exact`: frames then depend on the world and the camera only, for
+  /// comparisons; nothing in them follows the clock.
   void set_camera(const WorldPos& eye, double yaw, double pitch, bool is_exact);
 
   /// Returns true if the view is complete, meshed and on the screen.
   bool is_complete() const;
+  /// Returns the number of the player's edits that are not on the server's disk yet.
+  std::size_t unconfirmed() const { return session_.replica().local_edits().all().size(); }
   const Player& player() const { return player_; }
   const WebSession& network() const { return network_; }
   const MeshPipeline& pipeline() const { return pipeline_; }
@@ -67,19 +72,20 @@ class WebClient {
  private:
   void on_world_opened();
   void take_new_materials();
+  void set_tool_materials(const MaterialTable& materials);
   void drain_changes();
-  MemoryUse memory_use() const;
   void limit_memory(TimeUs now_us);
   void handle_input(TimeUs now_us);
   void follow_player(TimeUs now_us);
   /// Sends what is queued, and meshes until this time, one chunk at least.
   void mesh_until(TimeUs until_us);
   void draw(TimeUs now_us);
-  /// Shows how far joining is, or what is to be known while playing.
+  /// Shows the progress of joining, or the state while playing.
   void show_state(TimeUs now_us);
+  /// Returns a line about the state while playing.
+  std::string playing_text() const;
   void keep_server_key();
 
-  const JoinOptions options_;
   Screen& screen_;
   const TimeUs started_us_;
   WebSession network_;
@@ -93,9 +99,8 @@ class WebClient {
   ClickEdits clicks_;
   InputRouter input_;
   TouchPad touch_;
-  FarBudget far_budget_;
-  MemoryBudget budget_;
   ViewFollower view_;
+  ViewLimits limits_;
   SmoothPlayers players_;
   FrameScene scene_;
   DisplayPace pace_;

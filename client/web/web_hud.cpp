@@ -2,48 +2,37 @@
 
 #include <utility>
 
+#include "client/play/printed_line.hpp"
 #include "client/web/page.hpp"
+#include "common/core/text.hpp"
 #include "common/materials/readable_name.hpp"
 
 namespace runstone {
 
-void WebHud::set_materials(const MaterialTable& materials, bool fills) {
+void WebHud::enter(const MaterialTable& materials) {
   page_clear_materials();
-  for (std::size_t i = 1; i < materials.size(); ++i) {
-    const MaterialInfo& info = materials[static_cast<Material>(i)];
+  materials_ = 1;
+  add_materials(materials);
+  hotbar_.fill(materials);
+  slots_.reset();  // their colours may be others
+}
+
+void WebHud::add_materials(const MaterialTable& materials) {
+  for (; materials_ < materials.size(); ++materials_) {
+    const MaterialInfo& info = materials[static_cast<Material>(materials_)];
     const std::uint32_t colour =
         std::uint32_t{info.colour[0]} << 16 | std::uint32_t{info.colour[1]} << 8 | info.colour[2];
-    page_material(static_cast<int>(i), readable_name(info.name).c_str(), colour);
+    page_material(static_cast<int>(materials_),
+                  with_unseen_replaced(readable_name(info.name)).c_str(), colour);
   }
-  if (fills) {
-    hotbar_.fill(materials);
-    player_.hold(hotbar_.held());
-  }
-  show_slots();
 }
 
 void WebHud::show_slots() {
+  const Hotbar& slots = hotbar_.slots();
+  if (slots_ && slots_->slots() == slots.slots() && slots_->slot() == slots.slot()) return;
+  slots_ = slots;
   for (std::size_t i = 0; i < kSlotCount; ++i)
-    page_slot(static_cast<int>(i), hotbar_.slots()[i], i == hotbar_.slot() ? 1 : 0);
-}
-
-void WebHud::choose(std::size_t slot) {
-  if (slot >= kSlotCount) return;
-  hotbar_.choose(slot);
-  player_.hold(hotbar_.held());
-  show_slots();
-}
-
-void WebHud::scroll(int steps) {
-  hotbar_.scroll(steps);
-  player_.hold(hotbar_.held());
-  show_slots();
-}
-
-void WebHud::hold(Material material) {
-  hotbar_.hold(material);
-  player_.hold(material);
-  show_slots();
+    page_slot(static_cast<int>(i), slots.slots()[i], i == slots.slot() ? 1 : 0);
 }
 
 void WebHud::notify(std::string_view text, bool is_warning) {
@@ -51,17 +40,8 @@ void WebHud::notify(std::string_view text, bool is_warning) {
 }
 
 void WebHud::take(const ReplicaChanges& changes) {
-  const bool is_read_only = session_.is_server_read_only();
-  if (std::exchange(told_read_only_, is_read_only) != is_read_only) {
-    notify(is_read_only ? "the server is read-only: its disk is full"
-                        : "the server accepts edits again",
-           is_read_only);
-  }
-  for (const RejectedEdit& reject : changes.rejects) {
-    notify(std::string("the server refused an edit: ") + to_string(reject.reason) + ' ' +
-               reject.detail,
-           true);
-  }
+  for (const ServerNotice& notice : notices_.take_state()) notify(notice.text, notice.is_warning);
+  for (const RejectedEdit& reject : changes.rejects) notify(notice_of(reject).text, true);
 }
 
 void WebHud::say(const std::string& line) {
@@ -76,17 +56,32 @@ void WebHud::say(const std::string& line) {
 }
 
 void WebHud::step() {
-  for (const ChatLine& line : session_.drain_chat())
-    page_chat(line.name.c_str(), line.text.c_str());
+  show_slots();
+  for (const ChatLine& line : session_.drain_chat()) page_chat(printed_line(line).c_str());
   if (is_answer_due_ && !session_.commanding()) {
     is_answer_due_ = false;
-    for (const std::string& line : session_.command_lines()) page_chat("", line.c_str());
+    for (const std::string& line : session_.command_lines())
+      page_chat(with_unseen_replaced(line).c_str());
   }
+  show_players();
+  show_time();
+}
+
+void WebHud::show_time() {
+  const ShownSequence now = shown_sequence(session_);
+  const bool is_past = session_.replica().past().has_value();
+  if (time_ == now && is_past_ == is_past) return;
+  time_ = now;
+  is_past_ = is_past;
+  page_time(static_cast<double>(now.newest), static_cast<double>(now.shown), is_past ? 1 : 0);
+}
+
+void WebHud::show_players() {
   std::string names;
   int count = 0;
   for (const auto& [author, other] : session_.others()) {
     if (other.name.empty()) continue;  // the pose of a player whose name has not come yet
-    names += (names.empty() ? "" : "\n") + other.name;
+    names += (names.empty() ? "" : "\n") + with_unseen_replaced(other.name);
     ++count;
   }
   if (names == players_) return;

@@ -5,20 +5,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/core/text.hpp"
 #include "common/os/steady_clock.hpp"
+#include "protocol/codec/frame_bytes.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr unsigned short kNormalClosure = 1000;
 
-/// Returns the size of the frame at the beginning of these bytes.
-std::size_t frame_bytes(ByteView bytes) {
-  return kFrameHeaderBytes + bytes[0] + (std::size_t{bytes[1]} << 8);
-}
-
 std::string words_of_close(const EmscriptenWebSocketCloseEvent& event) {
-  if (event.reason[0] != '\0') return event.reason;
+  // A long reason is cut, which may damage its last character.
+  if (event.reason[0] != '\0' && is_printable_utf8(event.reason)) return event.reason;
   return "the WebSocket was closed (code " + std::to_string(event.code) + ")";
 }
 
@@ -70,7 +68,7 @@ int WebLink::on_message(int /*type*/, const EmscriptenWebSocketMessageEvent* eve
   self.received_.push_back({Bytes(event->data, event->data + event->numBytes), steady_now_us()});
   if (self.received_bytes_ > kReceivedBytesMax) {
     self.is_lost_ = true;
-    self.lost_ = "this browser is too slow for what the server sends";
+    self.lost_ = "this browser handles the messages of the server too slowly";
   }
   return 0;
 }
@@ -111,17 +109,23 @@ void WebLink::read(TimeUs until_us) {
   }
 }
 
-bool WebLink::takes_bytes() const {
+std::size_t WebLink::room() const {
   constexpr unsigned short kOpen = 1;  // of WebSocket.readyState
   unsigned short state = 0;
-  return emscripten_websocket_get_ready_state(socket_, &state) == EMSCRIPTEN_RESULT_SUCCESS &&
-         state == kOpen;
+  unsigned long long buffered = 0;
+  if (emscripten_websocket_get_ready_state(socket_, &state) != EMSCRIPTEN_RESULT_SUCCESS ||
+      state != kOpen ||
+      emscripten_websocket_get_buffered_amount(socket_, &buffered) != EMSCRIPTEN_RESULT_SUCCESS)
+    return 0;
+  return kBufferedBytesMax -
+         static_cast<std::size_t>(std::min<unsigned long long>(buffered, kBufferedBytesMax));
 }
 
 void WebLink::flush() {
-  if (!is_open_ || !takes_bytes()) return;
+  const std::size_t bytes_max = is_open_ ? room() : 0;
+  if (bytes_max == 0) return;
   Bytes out;
-  stream_->write(out, kSendBytesMax);
+  stream_->write(out, bytes_max);
   for (ByteView left(out); !left.empty();) {
     const std::size_t bytes = frame_bytes(left);
     emscripten_websocket_send_binary(socket_, const_cast<std::uint8_t*>(left.data()),
@@ -143,7 +147,7 @@ void WebLink::step(TimeUs now_us) {
   }
   static_cast<void>(stream_->acknowledge(now_us));
   flush();
-  if (is_closing_) disconnect("closed by this client");
+  if (is_closing_ && !stream_->has_output()) disconnect("closed by this client");
 }
 
 void WebLink::send(ConnectionNumber connection, const EncodedMessage& message) {

@@ -1,8 +1,8 @@
-// WebLink: a link to the server over a WebSocket of the browser, which is made again after a loss. A
-// binary message is one frame (docs/protocol.md). A page cannot hold a WebSocket back, so what was
-// received waits here until read(); the server sends chunks only as fast as they are acknowledged,
-// that is, read.
-// Full: if kReceivedBytesMax wait, the connection is closed, and the session resumes.
+// WebLink: a link to the server over a WebSocket of the browser. After a loss it connects again. A
+// binary message is one frame (docs/protocol.md). A page cannot stop a WebSocket from receiving, so
+// received messages wait here until read(). The server sends chunks only as fast as they are
+// acknowledged, and they are acknowledged when they are read. If kReceivedBytesMax bytes wait, the
+// connection is closed, and the session resumes on the next one.
 // Thread: the page's only one. Callbacks come from read() and step().
 #pragma once
 #include <emscripten/websocket.h>
@@ -19,6 +19,9 @@ namespace runstone {
 class WebLink {
  public:
   static constexpr std::size_t kReceivedBytesMax = std::size_t{64} << 20;
+  /// The bytes that may wait in the WebSocket. Further messages stay in the queue of the stream,
+  /// which has a bound of its own (kSendBytesMax).
+  static constexpr std::size_t kBufferedBytesMax = std::size_t{1} << 20;
   static constexpr TimeUs kConnectUsMax = 10'000'000;
   /// The pause between attempts starts with `first` and doubles up to `max`. A random quarter is
   /// added or subtracted.
@@ -32,8 +35,6 @@ class WebLink {
 
   /// Handles received messages until this time, one at least.
   void read(TimeUs until_us);
-  /// Returns true if read() left messages for the next call.
-  bool has_received() const { return !received_.empty(); }
   /// Sends what is queued, acknowledges, and connects when it is time. Call it about every 10 ms.
   void step(TimeUs now_us);
   /// Queues a message. Does nothing if the connection has ended.
@@ -49,8 +50,9 @@ class WebLink {
   void connect(TimeUs now_us);
   void disconnect(std::string why);
   void flush();
-  /// Returns false if the WebSocket is about to close; its event follows.
-  bool takes_bytes() const;
+  /// Returns how many bytes the WebSocket takes now. It takes none if it is about to close; its
+  /// event follows.
+  std::size_t room() const;
 
   static int on_open(int type, const EmscriptenWebSocketOpenEvent* event, void* link);
   static int on_message(int type, const EmscriptenWebSocketMessageEvent* event, void* link);

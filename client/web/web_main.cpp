@@ -1,18 +1,18 @@
-// runstone-web-client: the client in a browser. The page (page/client.js) calls the functions below.
-// The browser calls turn() once a frame, and a timer calls it while the page is hidden, so that the
-// connection lives.
+// runstone-web-client: the client in a browser. The page (page/client.js) calls the functions
+// below. The browser calls turn() once a frame. A hidden page has no frames, so a worker
+// (page/ticker.js) calls it there, and the connection lives.
 #include <emscripten.h>
 #include <emscripten/html5.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <sstream>
 #include <string>
 
 #include "client/input/dom_key.hpp"
 #include "client/platform/canvas_context.hpp"
+#include "client/session/join_check.hpp"
 #include "client/web/page.hpp"
 #include "client/web/web_client.hpp"
 #include "common/core/hex.hpp"
@@ -22,23 +22,18 @@ namespace runstone {
 namespace {
 
 constexpr const char* kCanvas = "#canvas";
-constexpr double kHiddenTurnMs = 500;
 /// A page that is shown has frames at least this often.
 constexpr TimeUs kShownUs = 250'000;
 
 std::unique_ptr<Screen> screen;
 std::unique_ptr<WebClient> client;  // null: nobody plays
 TimeUs frame_us = 0;                // when the last frame began
+ByteView cache_record;              // in the buffer of web_cache_buffer()
 
 EM_BOOL on_frame(double /*time_ms*/, void* /*unused*/) {
   frame_us = steady_now_us();
   if (client) client->turn(frame_us, true);
   return EM_TRUE;
-}
-
-void on_timer(void* /*unused*/) {
-  const TimeUs now_us = steady_now_us();
-  if (client && now_us - frame_us > kShownUs) client->turn(now_us, false);
 }
 
 EM_BOOL on_context_lost(int /*type*/, const void* /*reserved*/, void* /*unused*/) {
@@ -80,22 +75,25 @@ using namespace runstone;
 
 extern "C" {
 
-/// Makes the context of WebGL 2. Ends the program if the browser gives none, so the page asks for one
-/// before.
+/// Makes the context of WebGL 2. Ends the program if the browser gives none, so the page asks for
+/// one before.
 EMSCRIPTEN_KEEPALIVE void web_prepare() {
   screen = make_screen(make_canvas_context(kCanvas));
   emscripten_set_webglcontextlost_callback(kCanvas, nullptr, false, on_context_lost);
   emscripten_request_animation_frame_loop(on_frame, nullptr);
-  emscripten_set_interval(on_timer, kHiddenTurnMs, nullptr);
 }
 
 /// Joins the server. `seed` is the secret key of the player in hex, and `pins` has the known server
-/// keys. `quality` is -1 for automatic. Returns 0 if the seed has another form.
-EMSCRIPTEN_KEEPALIVE int web_join(const char* url, const char* name, const char* ticket,
-                                  const char* seed, int is_key_kept, const char* pins,
-                                  int view_radius, int far_levels, int quality) {
+/// keys. `quality` is -1 for automatic. `has_cache`: the page keeps chunks; `cached_worlds` is as
+/// for read_cached_worlds(). Returns why the player cannot join like this, or an empty text.
+EMSCRIPTEN_KEEPALIVE const char* web_join(const char* url, const char* name, const char* ticket,
+                                          const char* seed, int is_key_kept, const char* pins,
+                                          int view_radius, int far_levels, int quality,
+                                          int has_cache, const char* cached_worlds) {
+  if (const auto checked = check_player_name(name); !checked) return kept(checked.error());
+  if (const auto checked = check_ticket(ticket); !checked) return kept(checked.error());
   JoinOptions options;
-  if (!read_hex(seed, options.seed)) return 0;
+  if (!read_hex(seed, options.seed)) return kept("the key that this browser keeps is damaged");
   options.url = url;
   options.name = name;
   options.ticket = ticket;
@@ -105,8 +103,21 @@ EMSCRIPTEN_KEEPALIVE int web_join(const char* url, const char* name, const char*
   options.view_radius_v = static_cast<std::uint8_t>((options.view_radius + 1) / 2);
   options.far_levels = static_cast<std::uint8_t>(std::clamp(far_levels, 0, 5));
   options.quality = quality_of(quality);
+  options.has_cache = has_cache != 0;
+  options.cached_worlds = read_cached_worlds(cached_worlds);
   client = std::make_unique<WebClient>(options, *screen);
-  return 1;
+  return kept("");
+}
+
+/// The page calls it while it is hidden. Does nothing if the page has frames.
+EMSCRIPTEN_KEEPALIVE void web_tick() {
+  const TimeUs now_us = steady_now_us();
+  if (client && now_us - frame_us > kShownUs) client->turn(now_us, false);
+}
+
+/// Returns the number of the player's edits that are not on the server's disk yet.
+EMSCRIPTEN_KEEPALIVE int web_unconfirmed() {
+  return client ? static_cast<int>(client->unconfirmed()) : 0;
 }
 
 EMSCRIPTEN_KEEPALIVE void web_leave() {
@@ -149,8 +160,9 @@ EMSCRIPTEN_KEEPALIVE void web_wheel(double steps) {
   if (client) client->push(WheelEvent{steps});
 }
 
-EMSCRIPTEN_KEEPALIVE void web_capture(int is_captured) {
-  if (client) client->capture(is_captured != 0);
+/// The browser has freed the mouse.
+EMSCRIPTEN_KEEPALIVE void web_capture_lost() {
+  if (client) client->capture(false);
 }
 
 EMSCRIPTEN_KEEPALIVE void web_focus_lost() {
@@ -173,12 +185,12 @@ EMSCRIPTEN_KEEPALIVE void web_tap_mode(int removes) {
 }
 
 EMSCRIPTEN_KEEPALIVE void web_choose_slot(int slot) {
-  if (client && slot >= 0) client->hud().choose(static_cast<std::size_t>(slot));
+  if (client && slot >= 0) client->hud().hotbar().choose(static_cast<std::size_t>(slot));
 }
 
 EMSCRIPTEN_KEEPALIVE void web_hold(int material) {
   if (client && material > 0 && static_cast<std::size_t>(material) < kMaterialCountMax)
-    client->hud().hold(static_cast<Material>(material));
+    client->hud().hotbar().hold(static_cast<Material>(material));
 }
 
 EMSCRIPTEN_KEEPALIVE void web_walk_or_fly() {
@@ -189,8 +201,44 @@ EMSCRIPTEN_KEEPALIVE void web_say(const char* line) {
   if (client) client->hud().say(line);
 }
 
-EMSCRIPTEN_KEEPALIVE void web_quality(int level) {
-  if (client) client->set_quality(quality_of(level));
+/// Shows the world after an edit, or the live world for the newest edit and beyond.
+EMSCRIPTEN_KEEPALIVE void web_show_moment(double seq) {
+  if (client && seq >= 0 && seq <= static_cast<double>(kSequenceShownMax))
+    client->show_moment(static_cast<Sequence>(seq));
+}
+
+// The chunk cache, see WebCache.
+
+/// Returns the address of so many bytes. They live until the next call.
+EMSCRIPTEN_KEEPALIVE std::uint8_t* web_cache_buffer(int bytes) {
+  static Bytes buffer;
+  buffer.resize(static_cast<std::size_t>(std::max(bytes, 1)));
+  cache_record = ByteView(buffer).first(static_cast<std::size_t>(std::max(bytes, 0)));
+  return buffer.data();
+}
+
+/// Gives the record in the buffer to the oldest lookup. Returns 0 if the lookup takes no more.
+EMSCRIPTEN_KEEPALIVE int web_cache_found(int index) {
+  WebCache* const cache = client ? client->cache() : nullptr;
+  return cache != nullptr && cache->found(static_cast<std::size_t>(index), cache_record) ? 1 : 0;
+}
+
+EMSCRIPTEN_KEEPALIVE void web_cache_looked_up() {
+  if (client && client->cache() != nullptr) client->cache()->looked_up();
+}
+
+EMSCRIPTEN_KEEPALIVE void web_cache_kept(int rows, int evicted) {
+  if (client && client->cache() != nullptr)
+    client->cache()->kept(static_cast<std::size_t>(rows), static_cast<std::size_t>(evicted));
+}
+
+EMSCRIPTEN_KEEPALIVE void web_cache_dropped(int rows) {
+  if (client && client->cache() != nullptr)
+    client->cache()->dropped(static_cast<std::size_t>(rows));
+}
+
+EMSCRIPTEN_KEEPALIVE void web_cache_failed() {
+  if (client && client->cache() != nullptr) client->cache()->fail();
 }
 
 // For tests and measurements.

@@ -2,6 +2,7 @@
 
 #include <sodium.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "client/report/link_counts.hpp"
@@ -10,12 +11,18 @@
 namespace runstone {
 namespace {
 
+/// The time for which a view waits for the cache. IndexedDB answers between frames, so it needs
+/// longer than a disk. A cache without rows of the world answers at once.
+constexpr TimeUs kCacheWaitUs = 1'000'000;
+
 SessionConfig config_of(const JoinOptions& options) {
   SessionConfig config;
   config.keys = key_pair_of(options.seed);
   config.name = options.name;
   config.ticket = options.ticket;
   config.pinned = options.pinned;
+  config.has_cache = options.has_cache;
+  config.cache_wait_us = kCacheWaitUs;
   if (options.is_key_kept) config.features |= kFeatureNames;
   config.instance = 0;
   while (config.instance == 0) randombytes_buf(&config.instance, sizeof config.instance);
@@ -35,7 +42,9 @@ std::string host_of(const std::string& url) {
 }  // namespace
 
 WebSession::WebSession(const JoinOptions& options)
-    : host_(host_of(options.url)), session_(config_of(options)), link_(options.url, *this) {}
+    : host_(host_of(options.url)), session_(config_of(options)), link_(options.url, *this) {
+  if (options.has_cache) cache_.emplace(options.cached_worlds);
+}
 
 void WebSession::step(TimeUs now_us, TimeUs until_us) {
   if (has_left_) return;
@@ -49,6 +58,28 @@ void WebSession::flush(TimeUs now_us) {
     link_.send(connection_, encode_message(message));
   if (session_.wants_close() && connection_ != 0) link_.close(connection_);
   if (connection_ != 0) link_.step(now_us);
+}
+
+void WebSession::step_cache(std::size_t room_bytes, TimeUs now_us) {
+  if (!cache_) return;
+  for (auto& found : cache_->drain_results())
+    session_.receive_cache_result(std::move(found), now_us);
+  while (auto lookup = session_.take_cache_lookup()) {
+    lookup->bytes_max = room_bytes;
+    cache_->look_up(*std::move(lookup));
+  }
+}
+
+void WebSession::keep_chunks(TimeUs now_us) {
+  if (!cache_ || now_us < keep_us_) return;
+  const auto world = session_.cached_world();
+  const std::size_t room = std::min(cache_->room(), kKeepChunks);
+  if (!world || room == 0) return;
+  const std::vector<KeyedChunk> chunks = session_.replica().take_for_cache(room);
+  cache_->keep(*world, chunks);
+  if (chunks.size() == room) return;
+  cache_->flush();
+  keep_us_ = now_us + kKeepUs;
 }
 
 bool WebSession::take_world_opened() { return std::exchange(world_opened_, false); }
@@ -92,6 +123,10 @@ FailureWords WebSession::failure_words() const {
   return is_refused() ? words_of(*session_.end()) : last_words_;
 }
 
-NetCounts WebSession::net_counts() const { return runstone::net_counts(link_.stats()); }
+void WebSession::add_to(ClientReport& report) const {
+  report.snapshots = snapshots_;
+  report.net = net_counts(link_.stats());
+  if (cache_) report.cache = cache_->counters();
+}
 
 }  // namespace runstone

@@ -7,6 +7,7 @@
 #include "client/session/client_session.hpp"
 #include "client/session/failure_words.hpp"
 #include "client/web/join_options.hpp"
+#include "client/web/web_cache.hpp"
 #include "client/web/web_link.hpp"
 
 namespace runstone {
@@ -18,22 +19,32 @@ class WebSession final : private LinkCallbacks {
   ClientSession& session() { return session_; }
   const ClientSession& session() const { return session_; }
 
-  /// Handles what was received until this time, and connects when it is time.
+  /// Handles received messages until this time, and connects when it is time.
   void step(TimeUs now_us, TimeUs until_us);
   /// Sends the session's outgoing messages.
   void flush(TimeUs now_us);
+  /// Passes lookups and their results between session and cache. A lookup finds chunks that take
+  /// `room_bytes` at most.
+  void step_cache(std::size_t room_bytes, TimeUs now_us);
+  /// Gives the cache some chunks that changed or left the view, if it is time.
+  void keep_chunks(TimeUs now_us);
+  /// Returns null without a cache.
+  WebCache* cache() { return cache_ ? &*cache_ : nullptr; }
   /// Returns true if a world was opened, for the first time or again, since the last call.
   bool take_world_opened();
-  /// Says goodbye to the server. Nothing is sent or received afterwards.
+  /// Sends a goodbye to the server. Afterwards the session sends and receives no messages.
   void leave();
 
   bool is_connected() const { return session_.is_open(); }
-  /// Returns true if the server has refused this client for good.
+  /// Returns true if the server has refused this client and another attempt is pointless.
   bool is_refused() const { return session_.end() && session_.end()->final; }
   /// Returns in words why there is no connection, or what happened to the last attempt.
   FailureWords failure_words() const;
-  NetCounts net_counts() const;
-  const SnapshotStats& snapshots() const { return snapshots_; }
+  /// Sets the counts of link, snapshots and cache.
+  void add_to(ClientReport& report) const;
+
+  static constexpr TimeUs kKeepUs = 2'000'000;    // between two rounds of keep_chunks()
+  static constexpr std::size_t kKeepChunks = 16;  // of one call
 
  private:
   void on_connected(ConnectionNumber connection,
@@ -49,6 +60,8 @@ class WebSession final : private LinkCallbacks {
   bool has_left_ = false;
   FailureWords last_words_;
   SnapshotStats snapshots_;
+  std::optional<WebCache> cache_;
+  TimeUs keep_us_ = 0;  // when the next round begins, or the one under way began
   WebLink link_;
 };
 

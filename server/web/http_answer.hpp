@@ -60,7 +60,8 @@ std::string_view path_of(std::string_view target);
 bool shows_status(std::string_view target);
 /// The path of the page that shows the state of the server.
 inline constexpr std::string_view kStatusPath = "/status";
-/// What the pages show. `server` is used only if shows_status().
+/// The data that the pages show. `server` is read only for a path for which shows_status() returns
+/// true.
 struct PageContents {
   const WebConfig& config;
   const ClientFiles& client;

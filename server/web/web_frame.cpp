@@ -2,22 +2,15 @@
 
 #include <algorithm>
 
+#include "protocol/codec/frame_bytes.hpp"
+
 namespace runstone {
-namespace {
-
-/// Returns the bytes of the body that a header names.
-std::size_t body_bytes_of(ByteView header) {
-  return static_cast<std::size_t>(header[0] | header[1] << 8);
-}
-
-}  // namespace
 
 const char* fault_of_web_message(ByteView message) {
   if (message.size() <= kFrameHeaderBytes)
     return "a message must be one frame, and this is shorter";
   if (message.size() > kFrameBytesMax) return "a frame has at most 16392 bytes";
-  if (body_bytes_of(message) != message.size() - kFrameHeaderBytes)
-    return "a message must be exactly one frame";
+  if (frame_bytes(message) != message.size()) return "a message must be exactly one frame";
   return nullptr;
 }
 
@@ -35,11 +28,11 @@ void append_web_header(Bytes& out, std::size_t bytes) {
 std::optional<ByteView> FrameCutter::next() {
   const ByteView left = ByteView(bytes_).subspan(begin_, end_ - begin_);
   if (broken_ || left.size() < kFrameHeaderBytes) return std::nullopt;
-  const std::size_t body = body_bytes_of(left);
-  broken_ = body == 0 || body > kFragmentBytesMax;
-  if (broken_ || left.size() < kFrameHeaderBytes + body) return std::nullopt;
-  begin_ += kFrameHeaderBytes + body;
-  return left.first(kFrameHeaderBytes + body);
+  const std::size_t bytes = frame_bytes(left);
+  broken_ = bytes == kFrameHeaderBytes || bytes > kFrameBytesMax;
+  if (broken_ || left.size() < bytes) return std::nullopt;
+  begin_ += bytes;
+  return left.first(bytes);
 }
 
 void FrameCutter::drop_taken() {

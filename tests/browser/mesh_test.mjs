@@ -31,7 +31,9 @@ for (const [name, { mesh, us }] of onMachine) {
   }
 }
 if (!failed) {
-  console.log(`ok      the meshes of ${onMachine.size} worlds are equal; WebAssembly takes ` +
-    `${Math.exp(logs / onMachine.size).toFixed(2)} times as long for a chunk (geometric mean)`);
+  console.log(`ok      the meshes of ${onMachine.size} worlds are equal`);
+  // Times depend on the machine: they are measured and printed, not checked.
+  console.log(`measured  WebAssembly takes ${Math.exp(logs / onMachine.size).toFixed(2)} times as long for a chunk ` +
+    "(geometric mean)");
 }
 process.exit(failed ? 1 : 0);

@@ -24,13 +24,17 @@ export class Player {
       if (line.type() === "error") out.errors.push(line.text());
     });
     await out.page.setViewport({ width, height, deviceScaleFactor: 1, hasTouch: touch, isMobile: touch });
+    out.page.on("dialog", (dialog) => dialog.accept());
     if (inject) await out.page.evaluateOnNewDocument(inject);
     await out.page.goto(`${address}/client/${hash}`);
     return out;
   }
 
+  loaded() {
+    return until("the program is loaded", () => this.page.$eval("#enter", (button) => !button.disabled));
+  }
   async join(name, { quality = "0", sight = "4" } = {}) {
-    await until("the program is loaded", () => this.page.$eval("#enter", (button) => !button.disabled));
+    await this.loaded();
     await this.page.$eval("#name", (input, text) => (input.value = text), name);
     await this.page.select("#quality", quality);
     await this.page.select("#sight", sight);
@@ -39,6 +43,15 @@ export class Player {
   async joined(name, options) {
     await this.join(name, options);
     await until(`${name} has joined`, () => this.page.$eval("#hud", (hud) => !hud.hidden));
+  }
+  // Fails to join, and returns what the page then shows.
+  async refused(name) {
+    await this.join(name);
+    return until(`${name} is refused`, () => this.page.evaluate(() => {
+      const [step, detail, enter] = ["step", "detail", "enter"].map((id) => document.getElementById(id));
+      return enter.disabled || !enter.checkVisibility() ? null :
+        { step: step.textContent, detail: detail.textContent, button: enter.textContent };
+    }));
   }
   // Waits until the view has arrived, is meshed, and is on the screen.
   async complete() {

@@ -17,8 +17,8 @@ mergeInto(LibraryManager.library, {
   page_notice: function (text, isWarning) {
     Module.page.notice(UTF8ToString(text), isWarning !== 0);
   },
-  page_chat: function (name, text) {
-    Module.page.chat(UTF8ToString(name), UTF8ToString(text));
+  page_chat: function (text) {
+    Module.page.chat(UTF8ToString(text));
   },
   page_open_chat: function () {
     Module.page.openChat();
@@ -43,5 +43,29 @@ mergeInto(LibraryManager.library, {
   },
   page_keep_server: function (world, key) {
     Module.page.keepServer(UTF8ToString(world), UTF8ToString(key));
+  },
+  page_toggle_timeline: function () {
+    Module.page.toggleTimeline();
+  },
+  page_time: function (newest, shown, isPast) {
+    Module.page.time(newest, shown, isPast !== 0);
+  },
+  page_cache_enter: function (world, text) {
+    Module.chunks.enter(UTF8ToString(world), UTF8ToString(text));
+  },
+  page_cache_drop_rows: function (world, all, edited, lost, tiles, common, epoch) {
+    Module.chunks.dropRows(UTF8ToString(world), all !== 0, edited !== 0, lost !== 0, tiles !== 0, common, epoch >>> 0);
+  },
+  page_cache_drop_row: function (world, level, x, y, z) {
+    Module.chunks.dropRow(UTF8ToString(world), level, x, y, z);
+  },
+  page_cache_find: function (world, keys, count) {
+    var list = [];
+    for (var i = keys >> 2; i < (keys >> 2) + 4 * count; i += 4)
+      list.push([HEAP32[i], HEAP32[i + 1], HEAP32[i + 2], HEAP32[i + 3]]);
+    Module.chunks.find(UTF8ToString(world), list);
+  },
+  page_cache_keep: function (world, rows, bytes) {
+    Module.chunks.keep(UTF8ToString(world), HEAPU8.slice(rows, rows + bytes));
   },
 });

@@ -1,13 +1,20 @@
-// The page of the browser client: the door, what lies over the canvas, and input. The world itself is
-// the program in runstone-web-client.wasm, which calls the functions of `page` (client/web/page.hpp).
+// The page of the browser client: the form for joining, the display over the canvas, and input. The
+// world itself is the program in runstone-web-client.wasm, which calls the functions of `page`
+// (client/web/page.hpp).
 "use strict";
 
 const $ = (id) => document.getElementById(id);
 const NOTICE_MS = 6000;
 const LINES_MAX = 12;
+const CACHE_BYTES_MAX = 64 * 1024 * 1024;
+const MOMENT_MS = 150; // from the last movement of the slider to the request
+const WHEEL_STEP = 60; // pixels; the notch of a mouse wheel has about 100
 
 let runstone = null; // the program, once it has been loaded
 let isPlaying = false;
+let cache = null; // the promise of openCache(), once it was called
+let momentTimer = 0; // runs while the player moves the slider of the timeline
+const early = []; // notices that came before there was a place to show them
 const materials = new Map();
 
 function fail(headline, detail) {
@@ -17,14 +24,12 @@ function fail(headline, detail) {
   $("hud").hidden = true;
   $("door").hidden = false;
   $("share").hidden = true;
+  $("join").hidden = false;
   $("step").textContent = headline;
   $("detail").textContent = detail;
   $("enter").textContent = "Try again";
   $("enter").disabled = false;
-  $("enter").onclick = (event) => {
-    event.preventDefault();
-    location.reload();
-  };
+  $("join").noValidate = true; // "Try again" needs no name
 }
 
 function colourOf(material) {
@@ -44,12 +49,14 @@ const page = {
     $("door").hidden = true;
     $("hud").hidden = false;
     $("canvas").focus();
+    for (const notice of early.splice(0)) page.notice(...notice);
   },
   state(text) {
     $("state").textContent = text;
   },
   failed: fail,
   notice(text, isWarning) {
+    if (!isPlaying) return void early.push([text, isWarning]);
     const line = document.createElement("div");
     line.textContent = text;
     if (isWarning) line.className = "warning";
@@ -57,9 +64,9 @@ const page = {
     while ($("notices").children.length > 4) $("notices").firstChild.remove();
     setTimeout(() => line.remove(), NOTICE_MS);
   },
-  chat(name, text) {
+  chat(text) {
     const line = document.createElement("div");
-    line.textContent = name ? `${name}: ${text}` : text;
+    line.textContent = text;
     $("lines").append(line);
     while ($("lines").children.length > LINES_MAX) $("lines").firstChild.remove();
   },
@@ -97,6 +104,17 @@ const page = {
   players(count, names) {
     $("players").textContent = count === 0 ? "" : names;
   },
+  toggleTimeline() {
+    $("timeline").hidden = !$("timeline").hidden;
+    if (!$("timeline").hidden) document.exitPointerLock?.();
+  },
+  time(newest, shown, isPast) {
+    $("moment").max = newest;
+    // A player who holds the slider decides where it is.
+    if (momentTimer === 0) $("moment").value = shown;
+    $("shown").textContent = `${shown} of ${newest}`;
+    $("live").disabled = !isPast;
+  },
   walking(isWalking) {
     $("walk").textContent = isWalking ? "fly" : "walk";
   },
@@ -132,15 +150,43 @@ async function loadProgram() {
   });
   runstone = await makeRunstone({
     page,
-    onAbort: (why) => fail("The client has failed", `${why}\nLoad the page again. Your edits are on the server.`),
+    chunks: Chunks,
+    onAbort: (why) => fail("The client has failed", `${why}\nLoad the page again. Edits that the server has not confirmed are lost.`),
     printErr: (text) => console.warn(text),
   });
   runstone._web_prepare();
+  new Worker("ticker.js").onmessage = () => runstone._web_tick();
+}
+
+// Settings of the form. A browser may forbid to keep them.
+function kept(name) {
+  try {
+    return localStorage.getItem(name);
+  } catch {
+    return null;
+  }
+}
+function keep(name, value) {
+  try {
+    localStorage.setItem(name, value);
+  } catch (error) {
+    console.warn(`${name} is not kept:`, error);
+  }
+}
+
+// Returns the lines of the worlds of which this browser keeps chunks, or null if it keeps none.
+async function openCache() {
+  try {
+    return await Chunks.open(CACHE_BYTES_MAX);
+  } catch (error) {
+    page.notice(`this browser keeps no chunks, so a reload takes longer: ${error?.message || error}`, true);
+    return null;
+  }
 }
 
 function resize() {
   const canvas = $("canvas");
-  // More pixels than these cost more than they show.
+  // More pixels cost time, and few players see them.
   const scale = Math.min(window.devicePixelRatio || 1, 2);
   canvas.width = Math.max(1, Math.round(canvas.clientWidth * scale));
   canvas.height = Math.max(1, Math.round(canvas.clientHeight * scale));
@@ -149,50 +195,75 @@ function resize() {
 
 async function join(event) {
   event.preventDefault();
+  const name = $("name").value.trim();
+  keep("name", name);
+  for (const id of ["quality", "sight"]) keep(id, $(id).value);
+  if (document.body.classList.contains("failed")) return location.reload();
   $("enter").disabled = true;
   $("detail").textContent = "";
-  const name = $("name").value.trim();
-  localStorage.setItem("name", name);
-  localStorage.setItem("quality", $("quality").value);
-  localStorage.setItem("sight", $("sight").value);
-  const keys = await Keys.load();
+  cache ??= openCache();
+  const [keys, worlds] = await Promise.all([Keys.load(), cache]);
   if (!keys.isKept) page.notice("this browser keeps no keys: you are somebody else at your next visit", true);
   const url = new URL("../play", location.href);
   url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
-  // An invite stands behind the '#', which browsers send to nobody.
+  // An invite is the part after '#', which browsers do not send.
   const invite = new URLSearchParams(location.hash.slice(1)).get("invite") ?? "";
-  runstone.ccall("web_join", "number",
-    ["string", "string", "string", "string", "number", "string", "number", "number", "number"],
+  const why = runstone.ccall("web_join", "string",
+    ["string", "string", "string", "string", "number", "string", "number", "number", "number", "number", "string"],
     [url.href, name, invite, keys.seed, keys.isKept ? 1 : 0, keys.servers, Number($("sight").value), 3,
-      Number($("quality").value)]);
+      Number($("quality").value), worlds === null ? 0 : 1, worlds ?? ""]);
+  if (why !== "") {
+    $("step").textContent = "You cannot join like this";
+    $("detail").textContent = why;
+    $("enter").disabled = false;
+    return;
+  }
   $("join").hidden = true;
   resize();
+  // A browser that is short of disk space deletes data that is not persistent.
+  navigator.storage?.persist?.().catch(() => {});
 }
 
 // Input.
 
-const isTyping = (target) => target instanceof HTMLInputElement || target instanceof HTMLSelectElement;
+const isTyping = (target) => (target instanceof HTMLInputElement && target.type !== "range") ||
+  target instanceof HTMLSelectElement;
 const modifiers = (event) => (event.ctrlKey ? 1 : 0) | (event.shiftKey ? 2 : 0) | (event.altKey ? 4 : 0);
 
 function onKey(event) {
-  if (!isPlaying || isTyping(event.target) || event.metaKey) return;
-  // The browser keeps its own keys.
+  if (!isPlaying || isTyping(event.target) || event.isComposing) return;
+  // With the key of the system held, as on a Mac, the releases of other keys are not reported.
+  if (event.metaKey || event.key === "Meta") return runstone._web_focus_lost();
+  // The browser keeps these keys.
   if (event.code === "F5" || event.code === "F11" || event.code === "F12") return;
   event.preventDefault();
   runstone.ccall("web_key", null, ["string", "string", "number", "number", "number"],
     [event.code, event.key, event.type === "keydown" ? 1 : 0, event.repeat ? 1 : 0, modifiers(event)]);
 }
 
+// Events of the mouse, because a pointer event does not report a second button that is pressed while
+// one is held.
 function onButton(event) {
-  if (!isPlaying || event.pointerType === "touch") return;
+  if (!isPlaying) return;
   event.preventDefault();
-  const isPressed = event.type === "pointerdown";
+  const isPressed = event.type === "mousedown";
   if (isPressed) {
     $("canvas").focus();
-    // Without a lock, as in some frames, the mouse turns the player while it is over the canvas.
+    // If the browser refuses the capture, the mouse turns the player while it is over the canvas.
     if (document.pointerLockElement === null) $("canvas").requestPointerLock?.()?.catch?.(() => {});
   }
   runstone._web_button(event.button, isPressed ? 1 : 0);
+}
+
+let wheelPixels = 0; // since the last step
+function onWheel(event) {
+  event.preventDefault();
+  if (!isPlaying) return;
+  const delta = event.deltaY || event.deltaX; // some systems turn the wheel while shift is held
+  wheelPixels += event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? delta : Math.sign(delta) * WHEEL_STEP;
+  if (Math.abs(wheelPixels) < WHEEL_STEP) return;
+  runstone._web_wheel(-Math.sign(wheelPixels));
+  wheelPixels = 0;
 }
 
 function onTouch(event) {
@@ -217,25 +288,26 @@ function listen() {
   const canvas = $("canvas");
   window.addEventListener("keydown", onKey);
   window.addEventListener("keyup", onKey);
-  canvas.addEventListener("pointerdown", onButton);
-  window.addEventListener("pointerup", onButton);
+  canvas.addEventListener("mousedown", onButton);
+  window.addEventListener("mouseup", onButton);
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("mousemove", (event) => isPlaying && runstone._web_mouse(event.movementX, event.movementY));
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    if (isPlaying) runstone._web_wheel(-Math.sign(event.deltaY));
-  }, { passive: false });
+  canvas.addEventListener("wheel", onWheel, { passive: false });
   for (const type of ["touchstart", "touchmove", "touchend", "touchcancel"])
     canvas.addEventListener(type, onTouch, { passive: false });
+  // The press of the button has captured the mouse in the program already.
   document.addEventListener("pointerlockchange", () =>
-    isPlaying && runstone._web_capture(document.pointerLockElement === canvas ? 1 : 0));
+    isPlaying && document.pointerLockElement === null && runstone._web_capture_lost());
   window.addEventListener("blur", () => runstone?._web_focus_lost());
   window.addEventListener("resize", resize);
+  window.addEventListener("beforeunload", (event) => {
+    if (isPlaying && runstone._web_unconfirmed() > 0) event.preventDefault();
+  });
   window.addEventListener("pagehide", () => runstone?._web_leave());
-  // A page that comes back from the browser's history has said goodbye.
+  // A page that the browser shows again from its history has sent a goodbye.
   window.addEventListener("pageshow", (event) => event.persisted && location.reload());
   $("say").addEventListener("keydown", (event) => {
-    if (event.key !== "Enter" && event.key !== "Escape") return;
+    if (event.isComposing || (event.key !== "Enter" && event.key !== "Escape")) return;
     if (event.key === "Enter") runstone.ccall("web_say", null, ["string"], [$("say").value]);
     $("say").value = "";
     $("say").hidden = true;
@@ -262,13 +334,29 @@ function listen() {
   $("walk").onclick = () => runstone._web_walk_or_fly();
   $("talk").onclick = page.openChat;
   $("all").onclick = page.togglePalette;
+  $("past").onclick = page.toggleTimeline;
+  $("moment").addEventListener("input", () => {
+    clearTimeout(momentTimer);
+    momentTimer = setTimeout(() => {
+      momentTimer = 0;
+      runstone._web_show_moment(Number($("moment").value));
+    }, MOMENT_MS);
+  });
+  const step = (steps) => () => {
+    const [shown, newest] = [Number($("moment").value), Number($("moment").max)];
+    runstone._web_show_moment(Math.max(0, shown + steps * Math.max(1, Math.floor(newest / 100))));
+  };
+  $("earlier").onclick = step(-1);
+  $("later").onclick = step(1);
+  $("live").onclick = () => runstone._web_show_moment(Number($("moment").max));
   if (window.matchMedia("(pointer: coarse)").matches) document.body.classList.add("touch");
 }
 
 async function begin() {
-  $("name").value = localStorage.getItem("name") ?? "";
-  $("quality").value = localStorage.getItem("quality") ?? "-1";
-  $("sight").value = localStorage.getItem("sight") ?? "6";
+  $("name").value = kept("name") ?? "";
+  $("quality").value = kept("quality") ?? "-1";
+  $("sight").value = kept("sight") ?? "6";
+  $("join").addEventListener("submit", join);
   const lack = missing();
   if (lack) return fail(...lack);
   listen();
@@ -280,7 +368,6 @@ async function begin() {
   }
   $("step").textContent = "";
   $("enter").disabled = false;
-  $("join").addEventListener("submit", join);
   if ($("name").value === "") $("name").focus();
 }
 

@@ -1,5 +1,5 @@
-// The keys that this browser keeps: the player's identity, and the keys of the servers it has met.
-// They lie in IndexedDB, which other sites cannot read. Nothing of them is ever in an address.
+// The keys that this browser keeps: the player's identity, and the keys of the servers that it has
+// joined. They are in IndexedDB, which other sites cannot read. No address contains a key.
 "use strict";
 
 const Keys = (() => {
@@ -7,7 +7,7 @@ const Keys = (() => {
 
   const toHex = (bytes) => Array.from(bytes, (b) => b.toString(16).padStart(2, "0")).join("");
 
-  function settled(request) {
+  function answered(request) {
     return new Promise((resolve, reject) => {
       request.onsuccess = () => resolve(request.result);
       request.onerror = () => reject(request.error);
@@ -20,24 +20,24 @@ const Keys = (() => {
       request.result.createObjectStore("identity");
       request.result.createObjectStore("servers");
     };
-    return settled(request);
+    return answered(request);
   }
 
-  // Returns the identity of this browser, made at the first visit, and the servers it knows. Without
-  // IndexedDB, as in some private windows, the identity is for this visit alone.
+  // Returns the identity of this browser and the keys of the servers that it has joined. The first
+  // visit makes the identity. Without IndexedDB, as in some private windows, each visit makes one.
   async function load() {
     const fresh = crypto.getRandomValues(new Uint8Array(SEED_BYTES));
     try {
       const database = await open();
-      // Two tabs may come here at once. Both get the seed that the first one has written.
+      // Two tabs may run this at the same time. Both get the seed that the first one has written.
       const change = database.transaction("identity", "readwrite").objectStore("identity");
-      let seed = await settled(change.get("seed"));
+      let seed = await answered(change.get("seed"));
       if (!(seed instanceof Uint8Array) || seed.length !== SEED_BYTES) {
-        await settled(change.put(fresh, "seed"));
+        await answered(change.put(fresh, "seed"));
         seed = fresh;
       }
       const servers = database.transaction("servers").objectStore("servers");
-      const [worlds, keys] = await Promise.all([settled(servers.getAllKeys()), settled(servers.getAll())]);
+      const [worlds, keys] = await Promise.all([answered(servers.getAllKeys()), answered(servers.getAll())]);
       return { seed: toHex(seed), isKept: true, servers: worlds.map((world, i) => `${world} ${keys[i]}`).join("\n") };
     } catch (error) {
       console.warn("this browser keeps no keys:", error);
@@ -48,9 +48,9 @@ const Keys = (() => {
   async function keepServer(world, key) {
     try {
       const database = await open();
-      await settled(database.transaction("servers", "readwrite").objectStore("servers").put(key, world));
+      await answered(database.transaction("servers", "readwrite").objectStore("servers").put(key, world));
     } catch (error) {
-      console.warn("the key of this server is not kept:", error);
+      page.notice(`the key of this server is not kept: ${error?.message || error}`, true);
     }
   }
 

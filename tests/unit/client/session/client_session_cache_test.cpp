@@ -98,7 +98,7 @@ TEST_CASE_METHOD(SessionBench, "the view waits for the cache, but not for long",
   }
   SECTION(
       "without an answer the view goes out after a while, and a late answer counts all the same") {
-    now += kCacheWaitUsMax;
+    now += SessionConfig().cache_wait_us;
     receive(Pong{0, 0});
     session.tick(now);
     out = sent();
@@ -146,7 +146,7 @@ TEST_CASE_METHOD(SessionBench,
   session.set_view({1, {5, 0, 0}, 1, 1});
   out = sent();
   CHECK(take<View>(out) == std::vector{View{2, {9, 0, 0}, 1, 1}});
-  now += kCacheWaitUsMax;
+  now += SessionConfig().cache_wait_us;
   session.tick(now);
   out = sent();
   CHECK(take<View>(out) == std::vector{View{3, {5, 0, 0}, 1, 1}});

@@ -1,0 +1,290 @@
+// The chunks that this browser keeps between visits, in IndexedDB. The program makes and checks the
+// rows (client/web/web_cache.hpp); this file stores them, in five stores of one database:
+//   chunks   name -> the row, bytes
+//   entries  name -> { epoch, seq, bytes }: what is needed to drop a row without reading it
+//   used     name -> { stamp }: when the row was last used; lower stamps were used longer ago
+//   worlds   world -> how its server described it last, a text
+//   state    "bytes" -> the size of all rows, "stamp" -> the newest stamp, "world" -> the last world
+// A name is "WORLD/LEVEL" and y, x and z in fixed width, so that the chunks of a line along z follow
+// each other and are read by one request. One tab of the browser uses the database at a time.
+// Operations are carried out one after the other, in their order.
+"use strict";
+
+const Chunks = (() => {
+  const DATABASE = "runstone-chunks";
+  const LAYOUT = 1;
+  const STORES = ["chunks", "entries", "used", "worlds", "state"];
+  const LOCK_MS = 2000; // the page before may need a moment to end
+  const ROW_OVERHEAD = 160; // bytes of a row and its entries, about
+  const RANGES_AT_A_TIME = 4, EVICTED_AT_A_TIME = 64;
+  const TOUCH_MS = 2000;
+
+  let database = null;
+  let bytesMax = 0;
+  let bytes = 0, stamp = 1;
+  let world = "", lines = new Map(); // of this world: the names without z -> the names of the rows
+  let touched = new Set(); // names of rows that were used, which `used` does not show yet
+  let last = Promise.resolve(); // the newest operation
+
+  function answered(request) {
+    return new Promise((resolve, reject) => {
+      request.onsuccess = () => resolve(request.result);
+      request.onerror = () => reject(request.error);
+    });
+  }
+  function completed(transaction) {
+    return new Promise((resolve, reject) => {
+      transaction.oncomplete = () => resolve();
+      transaction.onabort = () => reject(transaction.error ?? new Error("the transaction was aborted"));
+    });
+  }
+  const rangeOf = (id) => IDBKeyRange.bound(`${id}/`, `${id}0`, false, true); // '0' follows '/'
+
+  const digits = (c) => (c + 2 ** 31).toString(16).padStart(8, "0");
+  const nameOf = (id, level, x, y, z) => `${id}/${level}${digits(y)}${digits(x)}${digits(z)}`;
+  const lineOf = (name) => name.slice(0, -8);
+  const has = (name) => lines.get(lineOf(name))?.has(name) ?? false;
+  function add(name) {
+    const line = lineOf(name);
+    if (!lines.has(line)) lines.set(line, new Set());
+    lines.get(line).add(name);
+  }
+  const remove = (name) => lines.get(lineOf(name))?.delete(name);
+
+  function openDatabase() {
+    const request = indexedDB.open(DATABASE, LAYOUT);
+    request.onupgradeneeded = () => {
+      const made = request.result;
+      for (const name of made.objectStoreNames) made.deleteObjectStore(name);
+      for (const name of STORES) made.createObjectStore(name);
+      request.transaction.objectStore("used").createIndex("stamp", "stamp");
+    };
+    return answered(request);
+  }
+
+  // Takes the lock of the database for as long as the page lives.
+  function lock() {
+    return new Promise((resolve, reject) => {
+      if (!navigator.locks) return reject(new Error("this page was not loaded over https"));
+      const timeout = new AbortController();
+      const timer = setTimeout(() => timeout.abort(), LOCK_MS);
+      navigator.locks.request(DATABASE, { signal: timeout.signal }, () => {
+        clearTimeout(timer);
+        resolve();
+        return new Promise(() => {});
+      }).catch(() => reject(new Error("another tab keeps them")));
+    });
+  }
+
+  async function load() {
+    const transaction = database.transaction(["worlds", "state"]);
+    const worlds = transaction.objectStore("worlds"), state = transaction.objectStore("state");
+    const [ids, texts, size, newest, lastWorld] = await Promise.all([worlds.getAllKeys(), worlds.getAll(),
+      ...["bytes", "stamp", "world"].map((key) => state.get(key))].map(answered));
+    bytes = size ?? 0;
+    stamp = (newest ?? 0) + 1;
+    if (lastWorld) await use(lastWorld);
+    return ids.map((id, i) => `${id} ${texts[i]}`).join("\n");
+  }
+
+  // Opens the database. Returns the known worlds as lines of text, and throws with words if there is
+  // no cache. A damaged database is replaced by a new one.
+  async function open(sizeMax) {
+    bytesMax = sizeMax;
+    await lock();
+    try {
+      database = await openDatabase();
+      return await load();
+    } catch (error) {
+      console.warn("the kept chunks cannot be read; they are deleted:", error);
+      database?.close();
+      await answered(indexedDB.deleteDatabase(DATABASE));
+      database = await openDatabase();
+      return await load();
+    }
+  }
+
+  // Ends the cache.
+  function fail(error) {
+    if (database === null) return;
+    console.warn("no chunks are kept any more:", error);
+    database.close();
+    database = null;
+    runstone._web_cache_failed();
+    const isFull = error?.name === "QuotaExceededError";
+    page.notice(`no chunks are kept any more: ${isFull ? "this browser has no more room for them" :
+      error?.message || error}`, true);
+  }
+
+  // Carries out an operation after all others. The first failure ends the cache.
+  function queue(operation) {
+    last = last.then(() => (database === null ? null : operation())).catch(fail);
+  }
+
+  async function use(id) {
+    if (world === id) return;
+    const names = await answered(database.transaction("entries").objectStore("entries").getAllKeys(rangeOf(id)));
+    world = id;
+    lines = new Map();
+    names.forEach(add);
+  }
+
+  function enter(id, text) {
+    queue(() => {
+      const transaction = database.transaction(["worlds", "state"], "readwrite");
+      transaction.objectStore("worlds").put(text, id);
+      transaction.objectStore("state").put(id, "world");
+      completed(transaction).catch(fail); // no operation waits for it
+    });
+  }
+
+  // Drops the rows of these names.
+  async function drop(wrong) {
+    const transaction = database.transaction(["chunks", "entries", "used", "state"], "readwrite");
+    const done = completed(transaction);
+    const entries = transaction.objectStore("entries");
+    const dropped = await Promise.all(wrong.map((name) => answered(entries.get(name))));
+    let left = bytes;
+    wrong.forEach((name, i) => {
+      left -= dropped[i]?.bytes ?? 0;
+      for (const store of ["chunks", "entries", "used"]) transaction.objectStore(store).delete(name);
+    });
+    transaction.objectStore("state").put(left, "bytes");
+    await done;
+    bytes = left;
+    wrong.forEach(remove);
+  }
+
+  // Drops the rows of a world that CacheDrops names (client/cache/cache_drops.hpp).
+  function dropRows(id, all, edited, lost, tiles, common, epoch) {
+    const isWrong = (name, entry) => all || (edited && entry.seq > 0) ||
+      (lost && entry.seq > common && entry.epoch < epoch) || (tiles && !name.startsWith(`${id}/0`));
+    queue(async () => {
+      await use(id);
+      const entries = database.transaction("entries").objectStore("entries");
+      const [keys, values] = await Promise.all([answered(entries.getAllKeys(rangeOf(id))),
+        answered(entries.getAll(rangeOf(id)))]);
+      const wrong = keys.filter((name, i) => isWrong(name, values[i]));
+      await drop(wrong);
+      runstone._web_cache_dropped(wrong.length);
+    });
+  }
+  function dropRow(id, ...key) {
+    queue(async () => {
+      await use(id);
+      await drop([nameOf(id, ...key)]);
+    });
+  }
+
+  // Returns ranges of names that contain the wanted ones, and few others. `wanted` is sorted.
+  function rangesOf(wanted) {
+    const out = [];
+    let range = null;
+    for (const name of wanted) {
+      const line = lineOf(name);
+      if (range !== null && range.line !== line) {
+        // The line beside it continues the range, unless other rows are in between.
+        const stored = range.stored + lines.get(line).size;
+        const isBeside = line.slice(0, -8) === range.line.slice(0, -8) &&
+          parseInt(line.slice(-8), 16) === parseInt(range.line.slice(-8), 16) + 1;
+        if (isBeside && 2 * stored <= 3 * (range.count + lines.get(line).size)) Object.assign(range, { line, stored });
+        else range = null;
+      }
+      if (range === null) out.push(range = { from: name, line, count: 0, stored: lines.get(line).size });
+      range.to = name;
+      ++range.count;
+    }
+    return out.map(({ from, to }) => IDBKeyRange.bound(from, to));
+  }
+
+  // Reads the rows of these keys, each [level, x, y, z], and gives each to the program.
+  function find(id, keys) {
+    queue(async () => {
+      await use(id);
+      const wanted = new Map(); // name -> index of the key
+      keys.forEach((key, index) => {
+        const name = nameOf(id, ...key);
+        if (has(name)) wanted.set(name, index);
+      });
+      let hasRoom = true;
+      const give = (name, stored) => {
+        if (database === null || !hasRoom || !wanted.has(name)) return;
+        touched.add(name);
+        const row = stored instanceof Uint8Array ? stored : new Uint8Array();
+        const at = runstone._web_cache_buffer(row.length); // the memory may grow in this call
+        runstone.HEAPU8.set(row, at);
+        hasRoom = runstone._web_cache_found(wanted.get(name)) !== 0;
+      };
+      const ranges = rangesOf([...wanted.keys()].sort());
+      const chunks = ranges.length === 0 ? null : database.transaction("chunks").objectStore("chunks");
+      for (let i = 0; i < ranges.length && hasRoom; i += RANGES_AT_A_TIME) {
+        await Promise.all(ranges.slice(i, i + RANGES_AT_A_TIME).map(async (range) => {
+          const [names, rows] = await Promise.all([answered(chunks.getAllKeys(range)), answered(chunks.getAll(range))]);
+          names.forEach((name, j) => give(name, rows[j]));
+        }));
+      }
+      runstone._web_cache_looked_up();
+    });
+    setTimeout(() => queue(touch), TOUCH_MS);
+  }
+
+  // Notes which rows were used.
+  async function touch() {
+    if (touched.size === 0) return;
+    const transaction = database.transaction("used", "readwrite");
+    const used = transaction.objectStore("used");
+    for (const name of touched) if (has(name)) used.put({ stamp }, name);
+    touched = new Set();
+    await completed(transaction);
+  }
+
+  // Writes rows. Each is a head of 32 bytes, see WebCache::keep(), and its bytes.
+  function keep(id, batch) {
+    queue(async () => {
+      await use(id);
+      const rows = [];
+      const view = new DataView(batch.buffer, batch.byteOffset, batch.byteLength);
+      for (let at = 0; at < batch.length;) {
+        const size = view.getUint32(at, true);
+        const [level, x, y, z] = [4, 8, 12, 16].map((offset) => view.getInt32(at + offset, true));
+        const epoch = view.getUint32(at + 20, true), seq = view.getFloat64(at + 24, true);
+        rows.push({ name: nameOf(id, level, x, y, z), row: batch.slice(at + 32, at + 32 + size),
+          entry: { epoch, seq, bytes: size + ROW_OVERHEAD } });
+        at += 32 + size;
+      }
+      const transaction = database.transaction(STORES, "readwrite");
+      const done = completed(transaction);
+      const [chunks, entries, used, , state] = STORES.map((store) => transaction.objectStore(store));
+      const before = await Promise.all(rows.map(({ name }) => (has(name) ? answered(entries.get(name)) : null)));
+      let size = bytes;
+      rows.forEach(({ name, row, entry }, i) => {
+        size += entry.bytes - (before[i]?.bytes ?? 0);
+        chunks.put(row, name);
+        entries.put(entry, name);
+        used.put({ stamp }, name);
+      });
+      // The rows that were unused for longest are evicted.
+      const evicted = [];
+      while (size > bytesMax) {
+        const oldest = await answered(used.index("stamp").getAllKeys(null, EVICTED_AT_A_TIME));
+        if (oldest.length === 0) break;
+        for (const name of oldest) {
+          if (size <= bytesMax) break;
+          size -= (await answered(entries.get(name))).bytes;
+          for (const store of [chunks, entries, used]) store.delete(name);
+          evicted.push(name);
+        }
+      }
+      state.put(size, "bytes");
+      state.put(stamp, "stamp");
+      await done;
+      bytes = size;
+      ++stamp;
+      for (const { name } of rows) add(name);
+      evicted.forEach(remove);
+      runstone._web_cache_kept(rows.length, evicted.length);
+    });
+  }
+
+  return { open, enter, dropRows, dropRow, find, keep };
+})();
