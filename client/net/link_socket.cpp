@@ -83,6 +83,7 @@ asio::awaitable<LinkSocket::Read> LinkSocket::read_some(asio::mutable_buffer int
     co_return plain;
   }
   while (contents_read_ == contents_.size()) {
+    if (is_ended_) co_return Read{asio::error::eof, 0};
     contents_.clear();
     contents_read_ = 0;
     const Read got = co_await read_below(asio::buffer(received_));
@@ -90,7 +91,7 @@ asio::awaitable<LinkSocket::Read> LinkSocket::read_some(asio::mutable_buffer int
     const auto read = web_->read(ByteView(received_).first(got.bytes), contents_);
     if (read) continue;
     closing_words_ = read.error();
-    co_return Read{asio::error::eof, 0};
+    is_ended_ = true;  // messages that came before the end are read first
   }
   const std::size_t bytes = std::min(into.size(), contents_.size() - contents_read_);
   std::copy_n(contents_.begin() + static_cast<std::ptrdiff_t>(contents_read_), bytes,

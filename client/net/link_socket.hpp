@@ -70,7 +70,8 @@ class LinkSocket {
   Bytes received_;                     // by the WebSocket
   Bytes contents_;                     // of its messages, and how much of them was read
   std::size_t contents_read_ = 0;
-  Bytes messages_;  // to be sent
+  Bytes messages_;         // to be sent
+  bool is_ended_ = false;  // the WebSocket has ended
   std::string closing_words_;
 };
 

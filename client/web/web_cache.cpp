@@ -34,6 +34,8 @@ void WebCache::enter(const CachedWorld& world) {
     const CacheDrops drops = drops_of(known->second, world);
     if (next.tile_rules == 0) next.tile_rules = known->second.tile_rules;
     if (drops.any()) {
+      // Chunks that wait to be written may be among the dropped ones.
+      if (batch_world_ == world.id) discard_batch();
       page_cache_drop_rows(to_hex(world.id).c_str(), drops.all ? 1 : 0, drops.edited ? 1 : 0,
                            drops.lost ? 1 : 0, drops.tiles ? 1 : 0,
                            static_cast<double>(drops.common), drops.epoch);
@@ -74,6 +76,7 @@ bool WebCache::found(std::size_t index, ByteView record) {
 }
 
 void WebCache::looked_up() {
+  if (lookups_.empty()) return;  // the cache has ended
   OpenLookup done = std::move(lookups_.front());
   lookups_.pop_front();
   counters_.hits += done.found.size();
@@ -114,6 +117,10 @@ void WebCache::flush() {
   if (batch_chunks_ == 0) return;
   ++batches_waiting_;
   page_cache_keep(to_hex(batch_world_).c_str(), batch_.data(), static_cast<int>(batch_.size()));
+  discard_batch();
+}
+
+void WebCache::discard_batch() {
   batch_.clear();
   batch_chunks_ = 0;
 }

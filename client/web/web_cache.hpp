@@ -39,6 +39,7 @@ class WebCache {
   void keep(const CachedWorld& world, const std::vector<KeyedChunk>& chunks);
   /// Writes the rows that were made.
   void flush();
+  void discard_batch();
   const CacheCounters& counters() const { return counters_; }
 
   // Calls of the page.

@@ -167,14 +167,18 @@ void TileInterest::set_behind(const ChunkKey& key) {
 }
 
 bool TileInterest::is_hidden(const ChunkKey& key) const {
+  RUNSTONE_ASSERT(key.lod >= 1 && key.lod <= kTileLevelMax);
   const std::int32_t margin = view_->radius_h < kHiddenMarginRadius ? 0 : kHiddenMargin;
   const std::int64_t radius_h = view_->radius_h - margin;
   const std::int32_t radius_v = (key.lod == 1 ? view_->radius_v : kTileRadiusV) - margin;
   const ChunkCoord centre = tile_at(view_->centre, static_cast<std::uint8_t>(key.lod - 1));
   for (unsigned i = 0; i < kTileChildren; ++i) {
-    const ChunkCoord child = tile_child(key, i).at;
+    const ChunkKey child_key = tile_child(key, i);
+    const ChunkCoord child = child_key.at;
     const std::int64_t dx = std::int64_t{child.x} - centre.x, dz = std::int64_t{child.z} - centre.z;
     if (dx * dx + dz * dz > radius_h * radius_h || std::abs(child.y - centre.y) > radius_v)
+      return false;
+    if (child_key.lod > 0 && has_place(limit_, child_key) && !client_has(status(child_key)))
       return false;
   }
   return true;

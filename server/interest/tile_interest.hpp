@@ -68,7 +68,8 @@ class TileInterest {
   void want_again(const ChunkKey& key);
   /// Makes a sent tile behind. Requires that it is hidden.
   void set_behind(const ChunkKey& key);
-  /// Returns true if the client draws the children of the tile in its place: all of them are in the view.
+  /// Returns true if the client draws the children of the tile in its place: all of them are in the view,
+  /// and it has those that are tiles. The caller knows whether it has those that are chunks.
   bool is_hidden(const ChunkKey& key) const;
   /// Reports that a waiting or sent tile was sent. If it is not empty, its children in the view become
   /// wanted unless they are known. If it is empty, everything below it becomes unknown; returns those

@@ -20,6 +20,12 @@ struct ReadCertificate {
   std::int64_t ends_s;
 };
 
+/// Returns true if the time from which on the certificate is valid has come.
+bool has_begun(SSL_CTX* context) {
+  const X509* const certificate = SSL_CTX_get0_certificate(context);
+  return certificate != nullptr && X509_cmp_current_time(X509_get0_notBefore(certificate)) < 0;
+}
+
 std::int64_t end_of(SSL_CTX* context) {
   const X509* const certificate = SSL_CTX_get0_certificate(context);
   tm end{};
@@ -81,6 +87,8 @@ Result<void, std::string> Certificate::reload() {
   if (!files) return failure(files.error());
   if (files->ends_s < static_cast<std::int64_t>(std::time(nullptr)))
     return failure("tls_certificate = \"" + chain_file_ + "\": the certificate has ended");
+  if (!has_begun(files->context.get()))
+    return failure("tls_certificate = \"" + chain_file_ + "\": the certificate is not valid yet");
   context_ = std::move(files->context);
   ends_s_ = files->ends_s;
   return {};
@@ -96,11 +104,12 @@ bool Certificate::has_changed(TimeUs now_us) {
   return now != read_ && now_us - seen_since_us_ >= kQuietUs;
 }
 
+// The time of the last change of the file or of its rights: both can mend a file that was refused.
 Certificate::Stamp Certificate::stamp_of(const std::string& file) {
   struct stat about{};
   if (::stat(file.c_str(), &about) != 0) return {};
   return {static_cast<std::uint64_t>(about.st_dev), static_cast<std::uint64_t>(about.st_ino),
-          static_cast<std::uint64_t>(about.st_size), about.st_mtim.tv_sec, about.st_mtim.tv_nsec};
+          static_cast<std::uint64_t>(about.st_size), about.st_ctim.tv_sec, about.st_ctim.tv_nsec};
 }
 
 }  // namespace runstone

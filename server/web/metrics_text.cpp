@@ -64,7 +64,7 @@ std::string metrics_text(std::span<const WorldStatus> worlds, const WebCounters&
     add_number(families, std::string("web_") + name, help, static_cast<double>(value));
   };
   add("connections", "connections accepted since the start", web.connections);
-  add("refused", "connections closed at once because of a limit", web.refused);
+  add("refused", "connections closed because of a limit, or to make room", web.refused);
   add("accepts_failed", "times that the system gave no socket to a connection", web.accepts_failed);
   add("certificate_ends_seconds", "end of the certificate, UTC since 1970; 0: there is none",
       web.certificate_ends_s);

@@ -28,8 +28,7 @@ StatusSource::StatusSource(net::io_context& io, std::string path)
   answered_.expires_at(net::steady_timer::time_point::max());
 }
 
-net::awaitable<std::shared_ptr<const ServerStatus>> StatusSource::newest() {
-  const TimeUs called_us = steady_now_us();
+net::awaitable<std::shared_ptr<const ServerStatus>> StatusSource::newest(TimeUs called_us) {
   while (newest_ == nullptr || asked_us_ + kStatusAgeUsMax < called_us) {
     if (is_asking_) {
       boost::system::error_code woken;

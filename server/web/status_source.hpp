@@ -22,7 +22,7 @@ class StatusSource {
 
   /// Returns a status that is at most a second older than the call. A server that gives no answer
   /// is reported as not up, with the reason.
-  boost::asio::awaitable<std::shared_ptr<const ServerStatus>> newest();
+  boost::asio::awaitable<std::shared_ptr<const ServerStatus>> newest(TimeUs called_us);
 
  private:
   boost::asio::awaitable<ServerStatus> ask();

@@ -48,7 +48,8 @@ bool is_server_name(std::string_view name) {
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string_view::npos;
 }
 
-/// Returns what is wrong with the sections of a configuration, or nullopt.
+}  // namespace
+
 std::optional<std::string> fault_of_servers(const WebConfig& config) {
   if (config.servers.empty()) return std::nullopt;
   if (config.servers.size() > kWebServersMax)
@@ -59,8 +60,6 @@ std::optional<std::string> fault_of_servers(const WebConfig& config) {
     return "gateway_socket, world and public_address belong into the sections of the servers";
   return std::nullopt;
 }
-
-}  // namespace
 
 Result<void, TextError> read_web_toml(WebConfig& config, std::string_view toml,
                                       std::string_view file) {

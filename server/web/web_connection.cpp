@@ -199,7 +199,7 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
     if (recent.status == 200 && recent.body != nullptr) recent_edits = *recent.body;
   }
   if (shows_status(place.target)) {
-    status = co_await world.status.newest();
+    status = co_await world.status.newest(steady_now_us());
     measure(self->state_);
   }
   const PageContents contents{world.config,          self->state_.client, *status,
@@ -212,11 +212,13 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_of_gateway(
   WebState& state = self->state_;
   std::vector<WorldStatus> worlds;
   if (shows_status(view_of(request.target()))) {
-    // They are asked all at once, so that one that does not answer delays the page only once.
+    // They are asked all at once, and an answer to this call counts although it is older than the next
+    // one. So servers that do not answer delay the page for the time of one question.
+    const TimeUs called_us = steady_now_us();
     for (const auto& world : state.worlds)
-      boost::asio::co_spawn(state.io, world->status.newest(), boost::asio::detached);
+      boost::asio::co_spawn(state.io, world->status.newest(called_us), boost::asio::detached);
     for (const auto& world : state.worlds) {
-      const std::shared_ptr<const ServerStatus> status = co_await world->status.newest();
+      const std::shared_ptr<const ServerStatus> status = co_await world->status.newest(called_us);
       worlds.push_back({world->name, world->config.title, status});
     }
     measure(state);

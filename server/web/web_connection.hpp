@@ -28,14 +28,20 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   bool is_websocket() const { return websocket_ != nullptr; }
   /// Returns true for a WebSocket that has not sent anything.
   bool is_silent_websocket() const { return is_websocket() && !websocket_->has_sent(); }
-  /// Returns true if close() was called. The object lives until its coroutine has ended.
+  /// Returns true once the connection is closed. The object lives until its coroutine has ended.
   bool is_closed() const { return is_closed_; }
   /// Closes the connection without a word.
   void close() {
     is_closed_ = true;
     stream_.close();
+    // It may wait for a server that does not read.
+    if (websocket_) websocket_->close_link();
   }
-  void close_if_due(TimeUs now_us) { stream_.close_if_due(now_us); }
+  /// Closes the connection if its time is over. The gateway calls it about once a second.
+  void close_if_due(TimeUs now_us) {
+    stream_.close_if_due(now_us);
+    if (!is_closed_ && !stream_.has_socket()) close();
+  }
   /// Closes a WebSocket with words, and any other connection at once.
   void end_because_of_stop();
 

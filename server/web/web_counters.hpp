@@ -6,7 +6,7 @@ namespace runstone {
 
 struct WebCounters {
   std::uint64_t connections = 0;       // accepted since the start
-  std::uint64_t refused = 0;           // closed at once because of a limit
+  std::uint64_t refused = 0;           // closed because of a limit, or to make room
   std::uint64_t connections_open = 0;  // now, in any state
   std::uint64_t accepts_failed = 0;    // the system gave no socket to a connection
   std::uint64_t requests = 0;          // answered, without those that became WebSockets

@@ -39,6 +39,8 @@ class WebStream {
 
   executor_type get_executor() { return socket_.get_executor(); }
   Socket& next_layer() { return socket_; }
+  /// Returns false after close(), and after Beast has closed a WebSocket that was silent for too long.
+  bool has_socket() const { return socket_.is_open(); }
 
   /// Performs the TLS handshake, if the stream has TLS. Returns false if it failed.
   static boost::asio::awaitable<bool> handshake(WebStream& stream);

@@ -116,6 +116,9 @@ boost::asio::awaitable<void> WebSocketSession::browser_to_server(
       bytes += co_await self->websocket_.async_read_some(
           room, boost::asio::redirect_error(boost::asio::use_awaitable, error));
     } while (!error && !self->websocket_.is_message_done() && bytes <= kFrameBytesMax);
+    // Beast has ended the WebSocket already.
+    if (error == boost::beast::websocket::condition::protocol_violation && !self->is_ending_)
+      self->charge_fault();
     if (error || self->is_ending_) break;  // the browser has closed, or the close is under way
     if (!self->websocket_.got_binary()) {
       self->broke_rule(CloseCode::unknown_data, "only binary messages are read here");
@@ -166,7 +169,7 @@ void WebSocketSession::on_link(const boost::system::error_code& error, std::size
   state_.counters.frames_out += frame_count;
   state_.counters.bytes_out += frames.size();
   if (!stream_.has_unsent()) return go_on();
-  // A browser that reads nothing for so long is closed, even if it sends.
+  // A browser that does not take this within so long is closed, even if it sends.
   stream_.allow_s(state_.config.idle_s);
   wait_until_sent();
 }
@@ -223,9 +226,13 @@ void WebSocketSession::on_control_frame() {
 
 void WebSocketSession::broke_rule(CloseCode code, const char* words) {
   if (is_ending_) return;
+  charge_fault();
+  end(code, words);
+}
+
+void WebSocketSession::charge_fault() {
   ++state_.counters.rules_broken;
   state_.limits.broke_rule(from_, steady_now_us());
-  end(code, words);
 }
 
 void WebSocketSession::close_link() {

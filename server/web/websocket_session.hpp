@@ -42,6 +42,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   /// Closes the WebSocket with a code and words of at most 123 bytes. Later calls do nothing. Requires
   /// is_open().
   void end(CloseCode code, const char* words);
+  /// Closes the connection to the server. What waits for it fails.
+  void close_link();
 
  private:
   /// Connects to the server, and sends the address of the browser. Returns false if that failed.
@@ -62,7 +64,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   void on_control_frame();
   /// Ends the WebSocket because of what the browser sent.
   void broke_rule(CloseCode code, const char* words);
-  void close_link();
+  /// Counts and charges what the browser sent.
+  void charge_fault();
   void task_ended();
 
   WebState& state_;

@@ -1,6 +1,7 @@
 #include "server/world/tile_handlers.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -49,17 +50,23 @@ void resend_changed(WorldState& world, const ChunkKey& key, const MadeTile& made
         mine.tiles->want_again(key);
         leave_tiles(world, session, {&key, 1});
       }
-    } else if (status == TileStatus::sent && mine.tiles->is_hidden(key) &&
-               !is_empty(made.tile->voxels)) {
+    } else if (status == TileStatus::sent && !is_empty(made.tile->voxels) &&
+               mine.tiles->is_hidden(key) &&
+               (key.lod > 1 || !world.interest.nearest_wanted(session))) {
       mine.tiles->set_behind(key);
       leave_tiles(world, session, {&key, 1});
     } else {
       receivers.push_back(session);
     }
   }
-  world.tiles.queue.charge_changed(now.steady_us,
-                                   kTileResendUs * static_cast<TimeUs>(receivers.size()));
-  world.tiles.resends.add(key, made.tile, std::move(receivers));
+  // Those who did not get the state before come first, and were paid for then.
+  const auto waits = [&lagging](SessionId session) {
+    return std::ranges::find(lagging, session) != lagging.end();
+  };
+  const auto waiting = std::ranges::stable_partition(receivers, std::not_fn(waits));
+  const std::size_t unpaid = receivers.size() - waiting.size();
+  world.tiles.queue.charge_changed(now.steady_us, kTileResendUs * static_cast<TimeUs>(unpaid));
+  world.tiles.resends.add(key, made.tile, std::move(receivers), !waiting.empty());
 }
 
 }  // namespace

@@ -4,8 +4,11 @@
 
 namespace runstone {
 
-void TileResends::add(const ChunkKey& key, ChunkPtr tile, std::vector<SessionId> sessions) {
-  if (!sessions.empty()) tiles_.push_back({key, std::move(tile), std::move(sessions)});
+void TileResends::add(const ChunkKey& key, ChunkPtr tile, std::vector<SessionId> sessions,
+                      bool is_first) {
+  if (sessions.empty()) return;
+  tiles_.insert(is_first ? tiles_.begin() : tiles_.end(),
+                {key, std::move(tile), std::move(sessions)});
 }
 
 std::vector<SessionId> TileResends::cancel(const ChunkKey& key) {

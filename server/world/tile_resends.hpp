@@ -24,8 +24,10 @@ class TileResends {
     ChunkKey key;
     ChunkPtr tile;
   };
-  /// Adds a tile for some sessions. Requires that the tile does not wait in another state.
-  void add(const ChunkKey& key, ChunkPtr tile, std::vector<SessionId> sessions);
+  /// Adds a tile for some sessions, the next one last. `is_first`: before the other tiles. Requires that
+  /// the tile does not wait in another state.
+  void add(const ChunkKey& key, ChunkPtr tile, std::vector<SessionId> sessions,
+           bool is_first = false);
   /// Removes a tile. Returns the sessions that did not get it.
   std::vector<SessionId> cancel(const ChunkKey& key);
   bool empty() const { return tiles_.empty(); }

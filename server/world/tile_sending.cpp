@@ -42,7 +42,7 @@ void save_tiles(WorldState& world, const std::vector<MadeTile>& made) {
   for (const MadeTile& one : made) {
     if (!one.is_worth_storing() || one.tile->voxels.is_uniform()) continue;
     if (world.environment.newest_tile_edit(one.key) > one.through) continue;
-    // The store refuses it, and it is made again after the edits that come meanwhile.
+    // The store refuses it. It is saved when it is made once more.
     if (one.tile->version.seq > world.durable) continue;
     tiles.emplace_back(one.key, one.tile);
   }

@@ -242,16 +242,18 @@ const Chunks = (() => {
   function keep(id, batch) {
     queue(async () => {
       await use(id);
-      const rows = [];
+      const byName = new Map(); // a chunk that was kept twice meanwhile has one row, the last one
       const view = new DataView(batch.buffer, batch.byteOffset, batch.byteLength);
       for (let at = 0; at < batch.length;) {
         const size = view.getUint32(at, true);
         const [level, x, y, z] = [4, 8, 12, 16].map((offset) => view.getInt32(at + offset, true));
         const epoch = view.getUint32(at + 20, true), seq = view.getFloat64(at + 24, true);
-        rows.push({ name: nameOf(id, level, x, y, z), row: batch.slice(at + 32, at + 32 + size),
+        const name = nameOf(id, level, x, y, z);
+        byName.set(name, { name, row: batch.slice(at + 32, at + 32 + size),
           entry: { epoch, seq, bytes: size + ROW_OVERHEAD } });
         at += 32 + size;
       }
+      const rows = [...byName.values()];
       const transaction = database.transaction(STORES, "readwrite");
       const done = completed(transaction);
       const [chunks, entries, used, , state] = STORES.map((store) => transaction.objectStore(store));

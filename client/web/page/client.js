@@ -11,6 +11,7 @@ const MOMENT_MS = 150; // from the last movement of the slider to the request
 const WHEEL_STEP = 60; // pixels; the notch of a mouse wheel has about 100
 
 let runstone = null; // the program, once it has been loaded
+let ticker = null; // a worker that calls the program while the page is hidden
 let isPlaying = false;
 let cache = null; // the promise of openCache(), once it was called
 let momentTimer = 0; // runs while the player moves the slider of the timeline
@@ -151,11 +152,15 @@ async function loadProgram() {
   runstone = await makeRunstone({
     page,
     chunks: Chunks,
-    onAbort: (why) => fail("The client has failed", `${why}\nLoad the page again. Edits that the server has not confirmed are lost.`),
+    onAbort: (why) => {
+      ticker?.terminate();
+      fail("The client has failed", `${why}\nLoad the page again. Edits that the server has not confirmed are lost.`);
+    },
     printErr: (text) => console.warn(text),
   });
   runstone._web_prepare();
-  new Worker("ticker.js").onmessage = () => runstone._web_tick();
+  ticker = new Worker("ticker.js");
+  ticker.onmessage = () => runstone._web_tick();
 }
 
 // Settings of the form. A browser may forbid to keep them.
