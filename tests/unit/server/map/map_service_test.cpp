@@ -24,8 +24,7 @@ TEST_CASE("a full queue refuses at once, and a stop answers each request that wa
       CHECK(answer.status == 503);
       ++answers;
     };
-    for (std::size_t i = 0; i < MapService::kQueueMax; ++i)
-      service.ask(RightsRequest{}, "", count);
+    for (std::size_t i = 0; i < MapService::kQueueMax; ++i) service.ask(RightsRequest{}, "", count);
     CHECK(answers == 0);
     service.ask(RightsRequest{}, "", [&](const MapAnswer& answer) {
       CHECK(answer.status == 503);
