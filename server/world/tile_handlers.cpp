@@ -63,7 +63,7 @@ void resend_changed(WorldState& world, const ChunkKey& key, const MadeTile& made
   const auto waits = [&lagging](SessionId session) {
     return std::ranges::find(lagging, session) != lagging.end();
   };
-  const auto waiting = std::ranges::stable_partition(receivers, std::not_fn(waits));
+  const auto waiting = std::ranges::partition(receivers, std::not_fn(waits));
   const std::size_t unpaid = receivers.size() - waiting.size();
   world.tiles.queue.charge_changed(now.steady_us, kTileResendUs * static_cast<TimeUs>(unpaid));
   world.tiles.resends.add(key, made.tile, std::move(receivers), !waiting.empty());
