@@ -14,7 +14,7 @@
 
 namespace runstone {
 
-/// What a player wants to see, and the memory for it.
+/// How far a player wants to see, and how much memory the client may use for that.
 struct ViewWishes {
   std::size_t memory_mib = 0;
   ViewRadii radii;

@@ -37,7 +37,7 @@ struct MapMomentRequest {
 /// The newest edits of the whole world.
 struct RecentEditsRequest {};
 
-/// Whether strangers may see the world now: 200 if they may.
+/// Asks if a visitor without a key may see the world now. The answer has status 200 if so, and 403 if not.
 struct RightsRequest {};
 
 using MapRequest = std::variant<TilePictureRequest, MapStateRequest, BuildersRequest,

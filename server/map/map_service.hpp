@@ -1,7 +1,7 @@
 // MapService: draws the map of a world on request, on one thread of low priority. Requests wait in a
 // queue with a bound. Drawing that takes long is done in turns, and other requests are served between
-// them: what a turn made is kept in the caches, and the next turn begins there. All caches together have a bound, and
-// nothing is written to the disk.
+// them: what a turn made is kept in the caches, and the next turn begins there. All caches together have a
+// bound, and nothing is written to the disk.
 // Threads: ask() by any. Replies are called on the service's thread, or by ask().
 #pragma once
 #include <atomic>

@@ -73,7 +73,7 @@ StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us,
         {StoreError::Kind::not_a_world, world_->reader->file(), "meta", generator.error()}};
   }
   world_->generator = *std::move(generator);
-  // What is read after the present is as new as it, or newer.
+  // Rights, names and materials are read after the present was opened, so they are at least as new.
   const auto last = world_->reader->last_sequence();
   if (!last) return Unexpected<StoreError>{last.error()};
   if (auto opened = open_present(*last, progress); !opened) return opened;

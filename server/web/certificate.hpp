@@ -33,7 +33,7 @@ class Certificate {
   bool has_changed(TimeUs now_us);
 
  private:
-  /// What tells that a file is another one than before.
+  /// Two stamps of a file are equal if neither the file nor its rights changed between them.
   struct Stamp {
     std::uint64_t device = 0, number = 0, bytes = 0;
     std::int64_t changed_s = 0, changed_ns = 0;

@@ -69,12 +69,13 @@ struct PageContents {
   const WebCounters& web;
   /// JSON of the newest edits for the page of the state; empty: they are not shown.
   std::string_view recent_edits = {};
-  /// Of the world among several ones; empty: there is one.
+  /// The name of the world if the gateway has several servers, otherwise empty.
   std::string_view world_name = {};
 };
 /// Returns the answer to a request.
 HttpAnswer answer_request(const HttpRequest& request, const PageContents& contents);
-/// What the pages of a gateway with several servers show outside of the folders of the worlds.
+/// The contents of the pages that belong to no single world: the list of the worlds, the status of all of
+/// them, and the metrics. Only a gateway with several servers has them.
 struct GatewayContents {
   const WebConfig& config;
   std::span<const WorldStatus> worlds;  // each has a status if shows_status()

@@ -18,7 +18,7 @@
 
 namespace runstone {
 
-/// What each address may ask of the maps of a gateway together.
+/// Limits how much each address may request of the maps. All maps of a gateway share them.
 struct MapBudgets {
   explicit MapBudgets(const WebConfig& config);
   AddressLedger requests, work_us;

@@ -45,7 +45,7 @@ void resend_changed(WorldState& world, const ChunkKey& key, const MadeTile& made
     WorldSession& mine = *world.find(session);
     const TileStatus status = mine.tiles->status(key);
     if (is_past_tile(world, mine, key)) {
-      // What it has may lack edits before its moment.
+      // The state that the session has may lack edits that came before its moment.
       if (through < mine.history->seq || std::ranges::find(lagging, session) != lagging.end()) {
         mine.tiles->want_again(key);
         leave_tiles(world, session, {&key, 1});

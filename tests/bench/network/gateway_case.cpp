@@ -77,9 +77,10 @@ constexpr std::array<RoundTrip, 2> kRoundTrips = {{
      [](const runstone::Message& message) { return std::holds_alternative<Pong>(message); }},
     {"edit and commit",
      [](std::uint64_t number) -> runstone::Message {
+       // Sixteen edits in turn change sixteen voxels, the next sixteen change them back.
        const auto at = static_cast<std::int32_t>(number % 16);
-       return EditRequest{
-           number, 0, {SetVoxel{{at, 90, at}}, {}, static_cast<Material>(1 + number % 2)}};
+       const auto material = static_cast<Material>(1 + number / 16 % 2);
+       return EditRequest{number, 0, {SetVoxel{{at, 90, at}}, {}, material}};
      },
      [](const runstone::Message& message) { return std::holds_alternative<Commit>(message); }},
 }};
@@ -135,7 +136,9 @@ Done measure_round_trips(Testbed& testbed, const test::PemFiles& pem, NetFinding
         while (browser.next_within(1)) {
         }
         const std::size_t way = (i + turn) % 2;
-        const auto ms = way == 0 ? round_trip(direct, kind, i) : round_trip(browser, kind, i);
+        const std::uint64_t number = 2 * i + turn;
+        const auto ms =
+            way == 0 ? round_trip(direct, kind, number) : round_trip(browser, kind, number);
         if (!ms) return Unexpected<std::string>{"gateway: a frame has no answer"};
         times[way].push_back(*ms);
       }

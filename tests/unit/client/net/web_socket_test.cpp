@@ -4,17 +4,12 @@
 #include <string>
 
 #include "protocol/codec/frame.hpp"
+#include "tests/support/sample_frame.hpp"
 
 using namespace runstone;
+using runstone::test::frame_of;
 
 namespace {
-
-Bytes frame_of(FrameWriter& writer, std::size_t body_bytes) {
-  const FrameHeader header = writer.next(0, body_bytes, false);
-  Bytes out(header.begin(), header.end());
-  out.resize(kFrameHeaderBytes + body_bytes, static_cast<std::uint8_t>(body_bytes));
-  return out;
-}
 
 /// Returns a frame of a gateway, with these first two bytes.
 Bytes from_gateway(std::uint8_t first, std::uint8_t second, const std::string& contents = "") {

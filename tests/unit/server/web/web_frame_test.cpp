@@ -6,19 +6,10 @@
 
 #include "common/core/hash.hpp"
 #include "protocol/codec/frame.hpp"
+#include "tests/support/sample_frame.hpp"
 
 using namespace runstone;
-
-namespace {
-
-Bytes frame_of(FrameWriter& writer, std::size_t body_bytes) {
-  const FrameHeader header = writer.next(0, body_bytes, false);
-  Bytes out(header.begin(), header.end());
-  out.resize(kFrameHeaderBytes + body_bytes, static_cast<std::uint8_t>(body_bytes));
-  return out;
-}
-
-}  // namespace
+using runstone::test::frame_of;
 
 TEST_CASE("a message of a WebSocket is exactly one frame", "[web]") {
   FrameWriter writer;
