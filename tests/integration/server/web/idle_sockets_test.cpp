@@ -18,6 +18,9 @@ namespace {
 
 constexpr std::size_t kIdle = 2'000;
 constexpr std::size_t kPerAddress = 50;
+#ifndef RUNSTONE_SANITIZED
+constexpr std::uint64_t kIdleBytesMax = 200'000'000;
+#endif
 constexpr std::uint32_t kFirstAddress = 0x7f010001;  // 127.1.0.1
 
 /// The first bytes of a TLS handshake: the header of a record and a part of a ClientHello.
@@ -79,7 +82,9 @@ TEST_CASE("2,000 idle sockets disturb neither a player nor one who joins", "[int
   const WebBench bench(server_config_of(folder), config);
   WebPlayer player(bench.port(), INADDR_LOOPBACK, true);
   REQUIRE(player.join(1).has_value());
+#ifndef RUNSTONE_SANITIZED
   const std::uint64_t before = process_memory_bytes();
+#endif
   const auto idle = make_all_idle(bench.port());
   CHECK(answers(player));
   WebPlayer newcomer(bench.port(), INADDR_LOOPBACK, true);
@@ -87,9 +92,12 @@ TEST_CASE("2,000 idle sockets disturb neither a player nor one who joins", "[int
   CHECK(newcomer.join(2).has_value());
   CHECK(answers(newcomer));
   CHECK(answers(player));
-  // The sockets of the test and of the server are in this process, too.
+  // The sockets of the test and of the server are in this process, too. AddressSanitizer keeps freed
+  // memory for a while, so with it the memory says nothing.
+#ifndef RUNSTONE_SANITIZED
   const std::uint64_t now = process_memory_bytes();
-  CHECK((now < before || now - before < 400'000'000));
+  CHECK(now < before + kIdleBytesMax);
+#endif
   CHECK(metric(bench.port(), "connections_open") <= config.sockets_max);
   // There are more sockets than the gateway holds.
   CHECK(metric(bench.port(), "refused") > 0);
