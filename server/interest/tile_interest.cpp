@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <numeric>
 #include <utility>
 
 #include "common/core/assert.hpp"
@@ -29,6 +30,10 @@ TileStatus TileInterest::status(const ChunkKey& key) const {
   return view_ && has_key(*view_, limit_, key) ? tiles_.at(key) : TileStatus::unknown;
 }
 
+std::size_t TileInterest::known_below(unsigned level) const {
+  return std::accumulate(known_.begin(), known_.begin() + level, std::size_t{0});
+}
+
 std::vector<ChunkKey> TileInterest::roots() const {
   std::vector<ChunkKey> out;
   if (view_ && tile_levels(*view_) != 0) {
@@ -41,7 +46,7 @@ std::vector<ChunkKey> TileInterest::roots() const {
 std::vector<ChunkKey> TileInterest::known() const {
   std::vector<ChunkKey> out;
   if (!view_) return out;
-  out.reserve(known_);
+  out.reserve(known_count());
   for (std::uint8_t level = 1; level <= tile_levels(*view_); ++level) {
     for_each_tile(*view_, limit_, level, [&](const ChunkKey& key) {
       if (tiles_.at(key) != TileStatus::unknown) out.push_back(key);
@@ -65,8 +70,8 @@ void TileInterest::set(const ChunkKey& key, TileStatus now) {
   if (now == TileStatus::waiting) ++waiting_;
   if (was == TileStatus::behind) behind_.erase(key);
   if (now == TileStatus::behind) behind_.insert(key);
-  if (was == TileStatus::unknown) ++known_;
-  if (now == TileStatus::unknown) --known_;
+  if (was == TileStatus::unknown) ++known_[key.lod];
+  if (now == TileStatus::unknown) --known_[key.lod];
   tiles_.set(key, now);
 }
 
@@ -76,10 +81,12 @@ void TileInterest::drop(const ChunkKey& key, std::vector<ChunkKey>& left) {
 }
 
 void TileInterest::drop_below(const ChunkKey& key, std::vector<ChunkKey>& left) {
-  if (key.lod <= 1) return;
+  if (known_below(key.lod) == 0) return;
   for (unsigned i = 0; i < kTileChildren; ++i) {
     const ChunkKey child = tile_child(key, i);
-    if (status(child) == TileStatus::unknown) continue;
+    // The view has the parents of all its tiles, so nothing below a child outside of it is known. Tiles
+    // below an unknown child may be known: the view had fewer levels when they were sent.
+    if (!has_key(*view_, limit_, child)) continue;
     drop_below(child, left);
     drop(child, left);
   }
@@ -207,7 +214,8 @@ std::vector<ChunkKey> TileInterest::clear() {
   tiles_.reset(0);
   queue_.clear();
   behind_.clear();
-  waiting_ = known_ = 0;
+  waiting_ = 0;
+  known_ = {};
   view_.reset();
   return left;
 }

@@ -11,6 +11,7 @@
 // Memory: a byte for each tile of the view, and an entry of a set for each one that is wanted or behind.
 // One thread.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -27,8 +28,8 @@ namespace runstone {
 
 enum class TileStatus : std::uint8_t { unknown, wanted, waiting, sent, sent_empty, behind };
 
-/// A tile is hidden only if its children lie so far inside the view that a move by this many of them does
-/// not show it. Views of a smaller radius than kHiddenMarginRadius have no margin.
+/// A tile is hidden only if its children lie so far inside the view that a move by this many of them
+/// does not show it. Views of a smaller radius than kHiddenMarginRadius have no margin.
 inline constexpr std::int32_t kHiddenMargin = 1;
 inline constexpr std::uint8_t kHiddenMarginRadius = 4;
 
@@ -43,16 +44,17 @@ class TileInterest {
   explicit TileInterest(CoordLimit limit) : limit_(limit) {}
 
   struct Moved {
-    std::vector<ChunkKey> left;  // tiles that were waiting or with the client, and are unknown now
+    std::vector<ChunkKey> left;  // tiles that were waiting, sent or behind, and are unknown now
     std::size_t steps = 0;       // tiles visited: the cost of the call
   };
   /// Sets the view. `skipped`: views that the client had in between; tiles outside of one of them are
-  /// sent again. Cost: O(wanted tiles * log) and O(discs of the levels whose centre or size changes);
-  /// O(tiles of the view) if there are skipped views or the radius changes.
+  /// sent again. A tile that is behind and no longer hidden becomes wanted. Cost: O((wanted tiles +
+  /// tiles behind) * log) and O(discs of the levels whose centre or size changes); O(tiles of the view)
+  /// if there are skipped views or the radius changes.
   Moved set_view(const View& view, std::span<const View> skipped = {});
 
-  /// Returns the first of the next `count_max` wanted tiles for which accepts(key) is true, or nullopt. It
-  /// stays wanted.
+  /// Returns the first of the next `count_max` wanted tiles for which accepts(key) is true, or nullopt.
+  /// It stays wanted.
   template <class Accepts>
   std::optional<ChunkKey> next_wanted(std::size_t count_max, const Accepts& accepts) const {
     for (const Place& place : queue_) {
@@ -64,29 +66,32 @@ class TileInterest {
   TileStatus status(const ChunkKey& key) const;
   /// Makes a wanted tile waiting.
   void set_waiting(const ChunkKey& key);
-  /// Makes a waiting or sent tile wanted again.
+  /// Makes a tile wanted again that is waiting, sent or behind.
   void want_again(const ChunkKey& key);
   /// Makes a sent tile behind. Requires that it is hidden.
   void set_behind(const ChunkKey& key);
-  /// Returns true if the client draws the children of the tile in its place: all of them are in the view,
-  /// and it has those that are tiles. The caller knows whether it has those that are chunks.
+  /// Returns true if the client draws the children of the tile in its place: all of them are in the
+  /// view, and it has those that are tiles. The caller knows whether it has those that are chunks.
   bool is_hidden(const ChunkKey& key) const;
-  /// Reports that a waiting or sent tile was sent. If it is not empty, its children in the view become
-  /// wanted unless they are known. If it is empty, everything below it becomes unknown; returns those
-  /// of them that were waiting or sent.
+  /// Reports that a tile was sent which is waiting, sent or behind. If it is not empty, its children in
+  /// the view become wanted unless they are known. If it is empty, everything below it becomes unknown;
+  /// returns those of them that were waiting, sent or behind. Cost: O(log wanted tiles); for an empty
+  /// tile O(tiles of the view below it) if any tile of a lower level is known.
   std::vector<ChunkKey> set_sent(const ChunkKey& key, bool is_empty);
-  /// Makes all tiles unknown. Returns those that were waiting or sent.
+  /// Makes all tiles unknown. Returns those that were waiting, sent or behind.
   std::vector<ChunkKey> clear();
 
   /// Returns the tiles of the view's highest level.
   std::vector<ChunkKey> roots() const;
   std::size_t waiting_count() const { return waiting_; }
-  /// Returns the number of tiles that are wanted, waiting or sent.
-  std::size_t known_count() const { return known_; }
+  /// Returns the number of tiles that are not unknown.
+  std::size_t known_count() const { return known_below(kTileLevelMax + 1U); }
 
  private:
   using Place = std::tuple<int, std::int64_t, ChunkKey>;
   Place place_of(const ChunkKey& key) const;
+  /// Returns the number of known tiles of the levels below this one.
+  std::size_t known_below(unsigned level) const;
   /// Returns the known tiles, level by level.
   std::vector<ChunkKey> known() const;
   /// Returns true if the session is to get this tile of the view.
@@ -104,7 +109,8 @@ class TileInterest {
   TileGrid<TileStatus> tiles_;  // of view_
   std::set<Place> queue_;       // the wanted tiles
   std::set<ChunkKey> behind_;   // the tiles that are behind
-  std::size_t waiting_ = 0, known_ = 0;
+  std::size_t waiting_ = 0;
+  std::array<std::size_t, kTileLevelMax + 1> known_{};  // the number of known tiles of each level
 };
 
 }  // namespace runstone

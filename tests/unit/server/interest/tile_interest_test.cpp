@@ -6,15 +6,10 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
+#include "tests/unit/server/interest/tile_ground.hpp"
 
 namespace runstone::test {
 namespace {
-
-std::optional<ChunkKey> next_of(const TileInterest& tiles) {
-  return tiles.next_wanted(1, [](const ChunkKey& /*key*/) { return true; });
-}
-
-constexpr CoordLimit kWorld{1 << 20};
 
 View view_at(ChunkCoord centre, std::uint8_t radius = 3, std::uint8_t levels = 3) {
   View view;
@@ -25,22 +20,8 @@ View view_at(ChunkCoord centre, std::uint8_t radius = 3, std::uint8_t levels = 3
   return view;
 }
 
-/// A world in which some tiles have ground. All tiles above one of them have ground, too.
-struct Ground {
-  std::set<ChunkKey> solid;  // tiles that are not empty
-  Ground() {
-    SplitMix64 rng(7);
-    for (int n = 0; n < 400; ++n) {
-      const ChunkCoord at{rng.between(-40, 40), rng.between(-6, 6), rng.between(-40, 40)};
-      for (std::uint8_t level = 1; level <= kTileLevelMax; ++level)
-        solid.insert(tile_of(at, level));
-    }
-  }
-  bool is_empty(const ChunkKey& key) const { return !solid.contains(key); }
-};
-
 /// Sends all wanted tiles. Returns them in their order, without those that an empty one took along.
-std::vector<ChunkKey> send_all(TileInterest& tiles, const Ground& ground) {
+std::vector<ChunkKey> send_all(TileInterest& tiles, const TileGround& ground) {
   std::vector<ChunkKey> sent;
   while (const auto key = next_of(tiles)) {
     tiles.set_waiting(*key);
@@ -51,7 +32,7 @@ std::vector<ChunkKey> send_all(TileInterest& tiles, const Ground& ground) {
 }
 
 /// Returns the tiles that a session with this view has when nothing is wanted any more.
-std::set<ChunkKey> expected(const View& view, const Ground& ground) {
+std::set<ChunkKey> expected(const View& view, const TileGround& ground) {
   std::set<ChunkKey> all;
   const std::uint8_t levels = tile_levels(view);
   for (std::uint8_t level = levels; level >= 1; --level) {
@@ -64,7 +45,7 @@ std::set<ChunkKey> expected(const View& view, const Ground& ground) {
           const bool is_root = level == levels;
           const bool is_below_ground =
               !is_root && all.contains(tile_parent(key)) && !ground.is_empty(tile_parent(key));
-          if (has_key(view, kWorld, key) && (is_root || is_below_ground)) all.insert(key);
+          if (has_key(view, kTileWorld, key) && (is_root || is_below_ground)) all.insert(key);
         }
       }
     }
@@ -79,8 +60,8 @@ bool has(const TileInterest& tiles, const ChunkKey& key) {
 }  // namespace
 
 TEST_CASE("tiles are wanted from the coarsest level down, the nearest first") {
-  const Ground ground;
-  TileInterest tiles(kWorld);
+  const TileGround ground;
+  TileInterest tiles(kTileWorld);
   const View view = view_at({0, 0, 0});
   tiles.set_view(view);
   const std::vector<ChunkKey> sent = send_all(tiles, ground);
@@ -93,8 +74,8 @@ TEST_CASE("tiles are wanted from the coarsest level down, the nearest first") {
 }
 
 TEST_CASE("views that move, grow and lose levels have the tiles of a new session") {
-  const Ground ground;
-  TileInterest tiles(kWorld);
+  const TileGround ground;
+  TileInterest tiles(kTileWorld);
   SplitMix64 rng(3);
   std::set<ChunkKey> held;
   ChunkCoord centre{0, 0, 0};
@@ -108,13 +89,13 @@ TEST_CASE("views that move, grow and lose levels have the tiles of a new session
     for (const ChunkKey& key : send_all(tiles, ground)) CHECK(held.insert(key).second);
     // A higher level may have come that is empty where tiles were held.
     std::erase_if(held, [&](const ChunkKey& key) {
-      return tiles.status(key) == TileStatus::unknown && has_key(view, kWorld, key) &&
+      return tiles.status(key) == TileStatus::unknown && has_key(view, kTileWorld, key) &&
              ground.is_empty(key);
     });
     // A level that became coarser keeps the tiles that it had; they are in the view.
     for (const ChunkKey& key : expected(view, ground)) CHECK(held.contains(key));
     for (const ChunkKey& key : held) {
-      CHECK(has_key(view, kWorld, key));
+      CHECK(has_key(view, kTileWorld, key));
       CHECK(has(tiles, key));
     }
     CHECK(tiles.known_count() == held.size());
@@ -122,8 +103,8 @@ TEST_CASE("views that move, grow and lose levels have the tiles of a new session
 }
 
 TEST_CASE("tiles outside of a skipped view are sent again") {
-  const Ground ground;
-  TileInterest tiles(kWorld);
+  const TileGround ground;
+  TileInterest tiles(kTileWorld);
   const View here = view_at({0, 0, 0});
   tiles.set_view(here);
   send_all(tiles, ground);
@@ -133,20 +114,20 @@ TEST_CASE("tiles outside of a skipped view are sent again") {
   const std::vector<ChunkKey> again = send_all(tiles, ground);
   std::set<ChunkKey> outside;
   for (const ChunkKey& key : expected(here, ground)) {
-    if (!has_key(away, kWorld, key)) outside.insert(key);
+    if (!has_key(away, kTileWorld, key)) outside.insert(key);
   }
   CHECK(std::set<ChunkKey>(again.begin(), again.end()) == outside);
 }
 
 TEST_CASE("a tile that becomes empty takes those below it along, and brings them back") {
-  const Ground ground;
-  TileInterest tiles(kWorld);
+  const TileGround ground;
+  TileInterest tiles(kTileWorld);
   const View view = view_at({0, 0, 0});
   tiles.set_view(view);
   send_all(tiles, ground);
   const std::set<ChunkKey> all = expected(view, ground);
   const auto is_root = [&](const ChunkKey& key) {
-    return key.lod == 3 && has_key(view, kWorld, key) &&
+    return key.lod == 3 && has_key(view, kTileWorld, key) &&
            std::any_of(all.begin(), all.end(), [&](const ChunkKey& other) {
              return other.lod == 2 && tile_parent(other) == key;
            });
@@ -169,7 +150,7 @@ TEST_CASE("a tile that becomes empty takes those below it along, and brings them
 }
 
 TEST_CASE("a tile that was not sent after all is wanted again") {
-  TileInterest tiles(kWorld);
+  TileInterest tiles(kTileWorld);
   tiles.set_view(view_at({0, 0, 0}));
   const ChunkKey key = *next_of(tiles);
   tiles.set_waiting(key);
@@ -185,7 +166,7 @@ TEST_CASE("a tile that was not sent after all is wanted again") {
 }
 
 TEST_CASE("a view without levels or with a small radius has no tiles") {
-  TileInterest tiles(kWorld);
+  TileInterest tiles(kTileWorld);
   tiles.set_view(view_at({0, 0, 0}, 3, 0));
   CHECK_FALSE(next_of(tiles).has_value());
   tiles.set_view(view_at({0, 0, 0}, 1, 8));
