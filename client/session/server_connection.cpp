@@ -182,7 +182,8 @@ View ServerConnection::view() const {
   const std::uint8_t limit = welcome_ ? welcome_->view_radius_max : std::uint8_t{kViewRadiusMax};
   view.radius_h = std::min(view.radius_h, limit);
   view.radius_v = std::min(view.radius_v, limit);
-  if (!welcome_ || (welcome_->features & kFeatureTiles) == 0) view.levels = 0;
+  const bool has_tiles = welcome_ && (welcome_->features & kFeatureTiles) != 0;
+  view.levels = has_tiles ? std::min(view.levels, welcome_->tile_levels_max) : std::uint8_t{0};
   view.number = view_sent_ ? view_sent_->number : 0;
   if (view != view_sent_) ++view.number;
   return view;

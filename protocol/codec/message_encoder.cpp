@@ -55,7 +55,7 @@ struct BodyBuilder {
                                m.heights.y_min, m.heights.y_max, &spawn, materials, server_key,
                                challenge, signature, static_cast<std::uint8_t>(m.encoding),
                                m.edit_volume_max, m.edit_budget.per_second, m.edit_budget.burst,
-                               m.view_radius_max, m.features, salt);
+                               m.view_radius_max, m.features, salt, m.tile_levels_max);
   }
   Offset<wire::ClientAuth> operator()(const ClientAuth& m) {
     const auto signature = bytes_of(b, m.signature);

@@ -83,6 +83,7 @@ struct Welcome {
   std::uint8_t view_radius_max = 0;
   std::uint64_t features = 0;                 // in force for this session; a subset of Hello's
   std::optional<PasswordSalt> password_salt;  // nullopt: the world has no password
+  std::uint8_t tile_levels_max = kTileLevelMax;
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 struct ClientAuth {

@@ -41,6 +41,7 @@ Welcome welcome_of(const WorldState& world, const PublicKey& key) {
   welcome.edit_volume_max = config.edit_volume_max;
   welcome.edit_budget = edit_budget_of(world, key);
   welcome.view_radius_max = view_radius_max_of(world, key);
+  welcome.tile_levels_max = config.tile_levels_max;
   return welcome;
 }
 

@@ -119,6 +119,16 @@ TEST_CASE_METHOD(FollowerBench,
   CHECK(session.view().levels < 8);
 }
 
+TEST_CASE_METHOD(FollowerBench, "the view has no more levels of tiles than the server makes",
+                 "[client_app]") {
+  server.features = kFeatureTiles;
+  server.tile_levels_max = 3;
+  static_cast<void>(open());
+  follower.set_far_levels(5);
+  CHECK(session.view().levels == 3);
+  CHECK(session.replica().view()->levels == 3);
+}
+
 TEST_CASE_METHOD(FollowerBench, "a server without tiles gets a view without levels",
                  "[client_app]") {
   static_cast<void>(open());

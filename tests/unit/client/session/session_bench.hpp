@@ -32,6 +32,7 @@ struct Server {
   ClientSequence resolved = 0;
   EditBudget edit_budget;
   std::uint64_t features = 0;
+  std::uint8_t tile_levels_max = kTileLevelMax;
   AuthorityModel world{kEdge, 3};
 
   Welcome make_welcome() {
@@ -47,6 +48,7 @@ struct Server {
     welcome.edit_volume_max = 1000;
     welcome.edit_budget = edit_budget;
     welcome.features = features;
+    welcome.tile_levels_max = tile_levels_max;
     welcome.signature = sign(keys_of_server, server_transcript(hello, welcome, std::nullopt));
     return welcome;
   }

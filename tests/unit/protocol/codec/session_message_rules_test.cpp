@@ -27,7 +27,7 @@ struct WelcomeFields {
   std::uint16_t edge = 32;
   std::int32_t y_min = -10, y_max = 10;
   WorldPos spawn;
-  std::uint8_t encoding = 1, view_radius = 8;
+  std::uint8_t encoding = 1, view_radius = 8, tile_levels = 8;
   std::uint64_t edits_per_second = 100, edit_burst = 4'000;
   struct Row {
     std::string name;
@@ -50,7 +50,7 @@ struct WelcomeFields {
     const wire::Position at(spawn.x, spawn.y, spawn.z);
     return wire::CreateWelcome(b, kProtocolVersion, w, epoch, durable, head, edge, y_min, y_max,
                                has_spawn ? &at : nullptr, materials, k, c, s, encoding, 1000,
-                               edits_per_second, edit_burst, view_radius);
+                               edits_per_second, edit_burst, view_radius, 0, 0, tile_levels);
   }
 };
 
@@ -108,6 +108,7 @@ TEST_CASE("welcome is refused with a field of the wrong size or range", "[protoc
                                    [](auto& w) { w.encoding = 0; },
                                    [](auto& w) { w.encoding = 4; },
                                    [](auto& w) { w.view_radius = 65; },
+                                   [](auto& w) { w.tile_levels = 9; },
                                    [](auto& w) { w.edits_per_second = 0; },
                                    [](auto& w) { w.edit_burst = 0; },
                                    [](auto& w) { w.rows.clear(); },

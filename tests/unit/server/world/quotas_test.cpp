@@ -79,6 +79,7 @@ TEST_CASE("a role may see less far than the settings allow, and never farther", 
   bench.join(2, 2);
   CHECK(bench.welcome(1).view_radius_max == 1);
   CHECK(bench.welcome(2).view_radius_max == config().view_radius_max);
+  CHECK(bench.welcome(2).tile_levels_max == config().tile_levels_max);
   bench.view(1, View{1, {0, 0, 0}, 4, 0});
   CHECK(bench.environment.snapshots.size() == 5);
 }
