@@ -2,7 +2,8 @@
 // time ago. Meanwhile both bodies are drawn. The finer one is drawn in full, because the meshes beside
 // it count on it. The octant, which is in front of it nearly everywhere, loses or gains one pixel after
 // another in a fixed pattern (client/render/terrain_glsl.hpp). So at least one body is drawn in full
-// at every time, and no gap opens.
+// at every time, and no gap opens. Transparent faces would be blended twice, so the finer body draws
+// them only in the pixels that the octant lacks.
 //
 // Pure. One thread. Bound: kFadesMax; further changes happen at once.
 #pragma once
@@ -30,6 +31,7 @@ class FarFades {
 
   bool empty() const { return fades_.empty(); }
   std::vector<ChunkKey> keys() const;
+  bool has(const ChunkKey& key) const { return fades_.contains(key); }
   /// Returns true if the chunk or tile was replaced by its octant, which appears.
   bool is_leaving(const ChunkKey& key) const;
   /// Returns true if the chunk or tile has replaced its octant, which dissolves.

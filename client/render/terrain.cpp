@@ -258,7 +258,7 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigne
     out.origin = glGetUniformLocation(out.gl.get(), "origin");
     out.pattern = glGetUniformLocation(out.gl.get(), "pattern");
     out.scale = glGetUniformLocation(out.gl.get(), "scale");
-    out.gone = glGetUniformLocation(out.gl.get(), "gone");
+    out.drawn = glGetUniformLocation(out.gl.get(), "drawn");
   }
   return out;
 }
@@ -321,6 +321,23 @@ bool Terrain::draw_depth(ShadowPass& pass, std::size_t quads_max) {
   return next == chunks_.end();
 }
 
+void Terrain::add_visible(Visible body, unsigned variant, float gone) {
+  const bool has_transparent = body.chunk->transparent.count != 0;
+  body.variants = {variant, variant};
+  if (gone > 0) {
+    body.variants = {variant | kFade, variant | kFade};
+    body.drawn = {gone, 1};
+  } else if (has_transparent && fades_.has(body.key)) {
+    // Water that is blended twice is too dark. So the finer one has the pixels that the octant lacks.
+    body.variants[1] |= kFade;
+    body.drawn = {0, fades_.octant_gone(body.key)};
+  }
+  has_variant_[0][body.variants[0]] = true;
+  if (has_transparent) has_variant_[1][body.variants[1]] = true;
+  has_transparent_ = has_transparent_ || has_transparent;
+  visible_.push_back(body);
+}
+
 void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
   step_fades(view);
   visible_.clear();
@@ -338,23 +355,16 @@ void Terrain::find_visible(const FrameView& view, TerrainStats& stats) {
       return;
     }
     const glm::vec3 centre = at + 0.5F * edge;
-    has_transparent_ = has_transparent_ || chunk.transparent.count != 0;
     unsigned variant = 0;
     if (view.look.quality != Quality::low &&
         !intersect(box_of(key.at, chunk.edge), field_.box()).empty())
       variant |= kInField;
     if (nearest_of(origin, chunk.edge) < fine_distance) variant |= kFine;
     if (farthest_of(origin, chunk.edge) > double{view.light.fog_start}) variant |= kInFog;
-    has_variant_[variant] = true;
-    visible_.push_back({&chunk,
-                        at,
-                        pattern_of(key, chunk.edge),
-                        {-origin.x, -origin.y, -origin.z},
-                        glm::dot(centre, centre),
-                        1,
-                        variant,
-                        0,
-                        key});
+    Visible body{&chunk, at, pattern_of(key, chunk.edge), {}, glm::dot(centre, centre)};
+    body.eye = {-origin.x, -origin.y, -origin.z};
+    body.key = key;
+    add_visible(body, variant, 0);
   };
   for (const auto& [key, chunk] : chunks_) {
     if (tiles_.empty() || cover_.shows(key)) add(key, chunk);
@@ -399,23 +409,15 @@ void Terrain::find_visible_tiles(const FrameView& view, const Frustum& frustum,
       return;
     }
     const glm::vec3 centre(at + 0.5 * width);
-    has_transparent_ = has_transparent_ || part.transparent.count != 0;
     unsigned variant = kTile;
     if (farthest_of(at, width) > double{view.light.fog_start}) variant |= kInFog;
-    if (gone > 0) variant |= kFade;
-    has_variant_[variant] = true;
     ++stats.tile_parts_drawn;
     const glm::dvec3 eye = -at / scale;
-    visible_.push_back({&part,
-                        glm::vec3(at),
-                        pattern,
-                        {eye.x, eye.y, eye.z},
-                        glm::dot(centre, centre),
-                        static_cast<float>(scale),
-                        variant,
-                        part.transparent.count == 0 ? std::uint8_t{0} : joined_sides(key, octants),
-                        key,
-                        gone});
+    Visible body{&part, glm::vec3(at), pattern, {eye.x, eye.y, eye.z}, glm::dot(centre, centre)};
+    body.scale = static_cast<float>(scale);
+    if (part.transparent.count != 0) body.joined_sides = joined_sides(key, octants);
+    body.key = key;
+    add_visible(body, variant, gone);
   };
   const auto corner_of = [&](const ChunkKey& key, std::int32_t edge) {
     // The limits of the world hold for its voxels, so the origin in voxels of the tile is exact.
@@ -452,7 +454,7 @@ void Terrain::begin_pass(const FrameView& view, bool is_transparent,
                          const std::function<void(const GlProgram& program)>& set) {
   const bool is_low = view.look.quality == Quality::low;
   for (unsigned variant = 0; variant < kVariants; ++variant) {
-    if (!has_variant_[variant]) continue;
+    if (!has_variant_[is_transparent ? 1 : 0][variant]) continue;
     Program& of_pass = program(view.look.quality, is_transparent, variant);
     of_pass.cascade = -1;
     glUseProgram(of_pass.gl.get());
@@ -469,7 +471,8 @@ void Terrain::begin_pass(const FrameView& view, bool is_transparent,
 }
 
 void Terrain::use_for(const Visible& chunk, const FrameView& view, bool is_transparent) {
-  Program& of_chunk = program(view.look.quality, is_transparent, chunk.variant);
+  const unsigned variant = chunk.variants[is_transparent ? 1 : 0];
+  Program& of_chunk = program(view.look.quality, is_transparent, variant);
   if (in_use_ != &of_chunk) {
     glUseProgram(of_chunk.gl.get());
     in_use_ = &of_chunk;
@@ -477,8 +480,8 @@ void Terrain::use_for(const Visible& chunk, const FrameView& view, bool is_trans
   glUniform3fv(of_chunk.origin, 1, glm::value_ptr(chunk.origin));
   glUniform3fv(of_chunk.pattern, 1, glm::value_ptr(chunk.pattern));
   glUniform1f(of_chunk.scale, chunk.scale);
-  if ((chunk.variant & kFade) != 0) glUniform1f(of_chunk.gone, chunk.gone);
-  if (view.look.quality == Quality::low || (chunk.variant & kTile) != 0) return;
+  if ((variant & kFade) != 0) glUniform2fv(of_chunk.drawn, 1, glm::value_ptr(chunk.drawn));
+  if (view.look.quality == Quality::low || (variant & kTile) != 0) return;
   const double half = 0.5 * chunk.chunk->edge;
   const glm::dvec3 middle = view.eye + glm::dvec3(chunk.origin) + half;
   const int cascade = shadows_.cascade_of(middle, half * std::sqrt(3.0));

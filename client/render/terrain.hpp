@@ -101,11 +101,13 @@ class Terrain {
     glm::vec3 origin, pattern;    // origin minus eye; origin in voxels modulo kPattern
     std::array<double, 3> eye{};  // relative to the origin, in voxels of its level
     float distance2;
-    float scale = 1;                // the side of a voxel
-    unsigned variant = 0;           // of the programs
+    float scale = 1;  // the side of a voxel
+    /// Variants of the programs of both passes, opaque first, and the pixels that the variants with
+    /// kFade draw (RUNSTONE_FADE_GLSL).
+    std::array<unsigned, 2> variants{};
+    glm::vec2 drawn{0, 1};
     std::uint8_t joined_sides = 0;  // of a part of a tile, see joined_sides()
-    ChunkKey key;
-    float gone = 0;  // the share of its pixels that are not drawn, see FarFades
+    ChunkKey key{};
   };
   /// The quads of a ghost's mesh, kept as long as frames show it.
   struct GhostQuads {
@@ -130,6 +132,8 @@ class Terrain {
   bool has_octants(const ChunkKey& tile) const;
   /// Returns true if a child of the tile is being replaced by its octant.
   bool has_appearing_octant(const ChunkKey& key, const Tile& tile) const;
+  /// Adds a body to those of this frame. `variant` has no kFade; `gone` is that of an octant.
+  void add_visible(Visible body, unsigned variant, float gone);
   void find_visible(const FrameView& view, TerrainStats& stats);
   /// Returns a bit for each lateral Direction in which ground of the same level continues the part.
   /// Water has no waterline there. `octants` are those that the part covers.
@@ -144,8 +148,8 @@ class Terrain {
   static constexpr std::size_t kVariants = 32;
   struct Program {
     GlProgram gl;
-    GLint origin = -1, pattern = -1, scale = -1, gone = -1;  // the uniforms of a chunk
-    GLint first_vertex = -1;                                 // as QuadBuffer::draw() takes it
+    GLint origin = -1, pattern = -1, scale = -1, drawn = -1;  // the uniforms of a chunk
+    GLint first_vertex = -1;                                  // as QuadBuffer::draw() takes it
     int cascade = -1;  // of the last chunk in this pass; -1: none
   };
   /// Sets the uniforms of a pass in its programs. `set` sets those that only this pass has.
@@ -175,7 +179,7 @@ class Terrain {
   std::map<const ChunkMesh*, GhostQuads> ghosts_;
   std::optional<InspectionPainter> inspection_;  // while a mode is on
   std::vector<Visible> visible_;                 // of the present frame, from near to far
-  std::array<bool, kVariants> has_variant_{};    // one of them is drawn by it
+  std::array<std::array<bool, kVariants>, 2> has_variant_{};  // by pass: one of them is drawn by it
   const Program* in_use_ = nullptr;
   std::vector<QuadSpan> spans_;  // scratch
   bool has_transparent_ = false;

@@ -12,15 +12,16 @@
 namespace runstone {
 
 /// The screen door of fades: the pixels of a body get thresholds in a pattern of 4 x 4 (Bayer), and
-/// those below the share `gone` are not drawn (FarFades).
+/// those from drawn.x to drawn.y are drawn (FarFades).
 #define RUNSTONE_FADE_GLSL                                                   \
   "#ifdef RUNSTONE_FADE\n"                                                   \
-  "uniform float gone;\n"                                                    \
+  "uniform vec2 drawn;\n"                                                    \
   "void fade() {\n"                                                          \
   "  ivec2 p = ivec2(gl_FragCoord.xy) & 3;\n"                                \
   "  int q = p.x ^ p.y;\n"                                                   \
   "  int rank = (q & 1) << 3 | (p.y & 1) << 2 | (q & 2) | (p.y & 2) >> 1;\n" \
-  "  if ((float(rank) + 0.5) / 16.0 < gone) discard;\n"                      \
+  "  float threshold = (float(rank) + 0.5) / 16.0;\n"                        \
+  "  if (threshold < drawn.x || threshold > drawn.y) discard;\n"             \
   "}\n"                                                                      \
   "#else\n"                                                                  \
   "void fade() {}\n"                                                         \

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -251,6 +252,57 @@ TEST_CASE("levels fade into each other, and no pixel shows the sky meanwhile", "
   take_half_away();
   const auto at_once = picture_at(30);
   CHECK(picture_at(31) == at_once);
+}
+
+TEST_CASE("transparent faces are blended once while levels fade into each other", "[render][far]") {
+  std::string tried;
+  const auto context = make_egl_surfaceless_context(tried);
+  if (!context) {
+    WARN("no context: " << tried);
+    return;
+  }
+  constexpr double kSea =
+      120;  // above all ground, and a border of voxels at each level of the view
+  // A second face of glass is seen well.
+  FarWorld world(16, default_material_table(), "sea_level = 120\nwater = \"glass\"\n");
+  Renderer renderer(context->loader());
+  FarScene scene(world, renderer);
+  Camera camera;
+  camera.y = kSea + 20;
+  camera.pitch = -1.2;
+  camera.far = 32'000;
+  View view;
+  view.centre = {0, 7, 0};
+  view.radius_h = 3;
+  view.radius_v = 4;
+  view.levels = 2;
+  scene.show(view);
+  FrameContents contents;
+  contents.look.time_of_day = 0.5;
+  contents.look.quality = Quality::medium;
+  contents.look.exact = false;
+  const auto brightness_at = [&](double seconds) {
+    contents.look.seconds = seconds;
+    renderer.draw(camera, kPlaceWidth, kPlaceHeight, contents);
+    const Image image = renderer.read_image();
+    return std::accumulate(image.rgb.begin(), image.rgb.end(), 0.0) /
+           static_cast<double>(image.rgb.size());
+  };
+  for (int frame = 0; frame < 30; ++frame)
+    brightness_at(0);  // until light and shadows are complete
+  const double fine = brightness_at(0);
+  for (std::int32_t x = -3; x <= 3; x += 2) {
+    for (std::int32_t y = 3; y <= 11; ++y) {
+      for (std::int32_t z = -3; z <= 3; ++z) scene.take_away({x, y, z});
+    }
+  }
+  brightness_at(10);
+  const double middle = brightness_at(10 + kFadeSeconds / 2);
+  const double coarse = brightness_at(11);
+  CAPTURE(fine, middle, coarse);
+  // A second face on all of the surface adds 2.7. The sides of the bodies, which both have, add 1.3.
+  CHECK(middle > std::min(fine, coarse) - 2);
+  CHECK(middle < std::max(fine, coarse) + 2);
 }
 
 TEST_CASE("pictures of distant ground", "[.pictures]") {
