@@ -40,13 +40,16 @@ class WebProgram {
     program.words = {RUNSTONE_WEB_PROGRAM, "--listen",         "127.0.0.1:0",      "--port-file",
                      folder / "port",      "--gateway-socket", folder / "web.sock"};
     program.errors = ::open(log_file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
-    const int log = program.errors;
+    const int errors = program.errors;
     const auto child = start_program(std::move(program));
-    ::close(log);
+    ::close(errors);
     REQUIRE(child.has_value());
     child_ = *child;
     port_ = port_in(folder / "port");
     REQUIRE(port_ != 0);
+    // The program writes this line when it has closed the file with the port.
+    for (int i = 0; i < 1'000 && log().find("listening port=") == std::string::npos; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   ~WebProgram() {
     ::kill(child_, SIGKILL);
