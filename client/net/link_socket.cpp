@@ -24,6 +24,7 @@ void LinkSocket::reset() {
   web_.reset();
   contents_.clear();
   contents_read_ = 0;
+  is_ended_ = false;
   closing_words_.clear();
   tcp_ = asio::ip::tcp::socket(tcp_.get_executor());
 }
@@ -71,7 +72,10 @@ asio::awaitable<std::string> LinkSocket::open_websocket(const std::string& host,
     if (!end) co_return end.error();
     if (*end == 0) continue;
     const Bytes rest(answer.begin() + static_cast<std::ptrdiff_t>(*end), answer.end());
-    if (const auto read = codec.read(rest, contents_); !read) co_return read.error();
+    const auto read = codec.read(rest, contents_);
+    // Messages that came before the close frame are read first.
+    if (!read && contents_.empty()) co_return read.error();
+    if (!read) end_reading(read.error());
     web_.emplace(std::move(codec));
     co_return std::string();
   }
@@ -89,15 +93,18 @@ asio::awaitable<LinkSocket::Read> LinkSocket::read_some(asio::mutable_buffer int
     const Read got = co_await read_below(asio::buffer(received_));
     if (got.error) co_return got;
     const auto read = web_->read(ByteView(received_).first(got.bytes), contents_);
-    if (read) continue;
-    closing_words_ = read.error();
-    is_ended_ = true;  // messages that came before the end are read first
+    if (!read) end_reading(read.error());
   }
   const std::size_t bytes = std::min(into.size(), contents_.size() - contents_read_);
   std::copy_n(contents_.begin() + static_cast<std::ptrdiff_t>(contents_read_), bytes,
               static_cast<std::uint8_t*>(into.data()));
   contents_read_ += bytes;
   co_return Read{{}, bytes};
+}
+
+void LinkSocket::end_reading(const std::string& words) {
+  closing_words_ = words;
+  is_ended_ = true;
 }
 
 asio::awaitable<LinkSocket::Read> LinkSocket::read_below(asio::mutable_buffer into) {

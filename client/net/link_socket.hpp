@@ -55,6 +55,8 @@ class LinkSocket {
     ByteView unread;
     std::size_t receive(std::span<std::uint8_t> into) override;
   };
+  /// Ends the WebSocket behind the messages that have come.
+  void end_reading(const std::string& words);
   asio::awaitable<Read> read_below(asio::mutable_buffer into);
   asio::awaitable<asio::error_code> write_below(ByteView bytes);
   asio::awaitable<asio::error_code> flush();

@@ -27,7 +27,7 @@ def _options(arguments):
     add_path("--out", "FOLDER", None, "folder of the page, its tables (csv/) and results (data/)")
     parser.add_argument("--quick", action="store_true", help="all figures with few repetitions: some five minutes")
     add_path("--luanti", "DIR", ROOT / "tests/data/luanti_v7_small", "folder of a Luanti world")
-    parser.add_argument("--steps", metavar="S,...", help="measure only these steps; all but siege by default")
+    parser.add_argument("--steps", metavar="S,...", help="measure only these steps; all but gateway and siege by default")
     parser.add_argument(
         "--page-only", action="store_true", help="measure nothing: write the page from the existing results"
     )

@@ -201,6 +201,17 @@ def _network_steps(quick):
             "--crowd-seconds",
             "3" if quick else "20",
         )
+    yield _net(
+        "gateway",
+        30 if quick else 300,
+        "gateway",
+        "--min-runs",
+        "1" if quick else "5",
+        "--crowd-seconds",
+        "3" if quick else "6",
+        *(("--edits", "100", "--gateway-bots", "20") if quick else ()),
+        is_default=False,
+    )
     yield _net("siege", 60 if quick else 660, "siege", *(("--siege-seconds", "30") if quick else ()), is_default=False)
 
 

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "common/core/hex.hpp"
-#include "common/os/low_priority.hpp"
 #include "common/os/steady_clock.hpp"
 #include "server/map/map_builders.hpp"
 #include "server/map/map_json.hpp"
@@ -51,65 +50,56 @@ MapAnswer map_words(unsigned status, const std::string& sentence) {
   return out;
 }
 
-MapService::MapService(std::string folder, std::size_t cache_bytes, Warn warn)
-    : warn_(std::move(warn)),
+MapService::MapService(MapThreads& threads, std::string folder, std::size_t cache_bytes, Warn warn)
+    : threads_(threads),
+      warn_(std::move(warn)),
       caches_(cache_bytes),
-      world_(std::move(folder), caches_),
-      thread_([this] { run(); }) {}
+      world_(std::move(folder), caches_) {}
 
 MapService::~MapService() {
   is_stopping_.store(true);
-  {
-    const std::lock_guard lock(mutex_);
-    changed_.notify_all();
-  }
-  thread_.join();
+  threads_.leave(*this);
+  for (const Job& job : queue_) job.reply(map_words(503, "the gateway stops"));
 }
 
 void MapService::ask(MapRequest request, std::string if_none_match, Reply reply) {
+  bool has_room = false;
   {
     const std::lock_guard lock(mutex_);
-    if (queue_.size() < kQueueMax) {
+    has_room = queue_.size() < kQueueMax;
+    if (has_room) {
       Job job{request, std::move(if_none_match), std::move(reply), steady_now_us()};
       queue_.push_back(std::move(job));
-      changed_.notify_one();
-      return;
     }
   }
+  if (has_room) return threads_.wake(*this);
   reply(map_words(503, "the map has much to do: ask again in a moment"));
 }
 
-void MapService::run() {
-  lower_priority();
-  lower_disk_priority();
-  for (;;) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return !queue_.empty() || is_stopping_.load(); });
-    if (queue_.empty()) return;
-    Job job = std::move(queue_.front());
-    queue_.pop_front();
-    lock.unlock();
-    if (is_stopping_.load()) {
-      job.reply(map_words(503, "the gateway stops"));
-      continue;
-    }
-    const TimeUs begun_us = steady_now_us();
-    turn_ends_us_ = begun_us + job.turn * kTurnUs;
-    std::optional<MapAnswer> answer;
-    if (begun_us - job.asked_us <= kAnswerUsMax) answer = serve(job);
-    const TimeUs now_us = steady_now_us();
-    job.work_us += static_cast<std::uint64_t>(now_us - begun_us);
-    if (!answer && now_us - job.asked_us > kAnswerUsMax)
-      answer = map_words(503, "this part of the map takes long to draw: ask again in a moment");
-    if (answer) {
-      answer->work_us = job.work_us;
-      job.reply(*std::move(answer));
-      continue;
-    }
+bool MapService::turn() {
+  std::unique_lock lock(mutex_);
+  if (queue_.empty()) return false;
+  Job job = std::move(queue_.front());
+  queue_.pop_front();
+  lock.unlock();
+  const TimeUs begun_us = steady_now_us();
+  turn_ends_us_ = begun_us + job.turn * kTurnUs;
+  std::optional<MapAnswer> answer;
+  if (begun_us - job.asked_us <= kAnswerUsMax) answer = serve(job);
+  const TimeUs now_us = steady_now_us();
+  job.work_us += static_cast<std::uint64_t>(now_us - begun_us);
+  if (!answer && now_us - job.asked_us > kAnswerUsMax)
+    answer = map_words(503, "this part of the map takes long to draw: ask again in a moment");
+  if (answer) {
+    answer->work_us = job.work_us;
+    job.reply(*std::move(answer));
+    lock.lock();
+  } else {
     ++job.turn;
     lock.lock();
     queue_.push_back(std::move(job));  // may exceed kQueueMax by this one
   }
+  return !queue_.empty();
 }
 
 bool MapService::should_continue() const {

@@ -1,27 +1,27 @@
-// MapService: draws the map of a world on request, on one thread of low priority. Requests wait in a
+// MapService: draws the map of a world on request, on threads that all maps share. Requests wait in a
 // queue with a bound. Drawing that takes long is done in turns, and other requests are served between
-// them: what a turn made is kept in the caches, and the next turn begins there. All caches together have a
-// bound, and nothing is written to the disk.
-// Threads: ask() by any. Replies are called on the service's thread, or by ask().
+// them: what a turn made is kept in the caches, and the next turn begins there. All caches together
+// have a bound, and nothing is written to the disk.
+// Threads: ask() by any. Replies are called on one of the shared threads, by ask(), or by the
+// destructor.
 #pragma once
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "server/map/map_answer.hpp"
 #include "server/map/map_caches.hpp"
 #include "server/map/map_request.hpp"
+#include "server/map/map_threads.hpp"
 #include "server/map/map_world.hpp"
 
 namespace runstone {
 
-class MapService {
+class MapService final : MapThreads::Map {
  public:
   static constexpr std::size_t kQueueMax = 256;
   /// The time of a first turn. The n-th one has n times as much.
@@ -33,9 +33,9 @@ class MapService {
   /// Reports a fault of the world's folder, for the host alone, at most once in ten seconds.
   using Warn = std::function<void(const std::string&)>;
 
-  /// `folder`: of the world, which need not exist yet. `cache_bytes` bounds all that is kept in
-  /// memory apart from the moments.
-  MapService(std::string folder, std::size_t cache_bytes, Warn warn);
+  /// `threads` must outlive the service. `folder`: of the world, which need not exist yet.
+  /// `cache_bytes` bounds all that is kept in memory apart from the moments.
+  MapService(MapThreads& threads, std::string folder, std::size_t cache_bytes, Warn warn);
   /// Ends the turn under way and answers the requests that wait.
   ~MapService();
   MapService(const MapService&) = delete;
@@ -57,7 +57,7 @@ class MapService {
     TimeUs turn = 1;
     std::uint64_t work_us = 0;
   };
-  void run();
+  bool turn() override;
   /// Returns the answer, or nullopt if the job needs another turn.
   std::optional<MapAnswer> serve(const Job& job);
   std::optional<MapAnswer> serve(const TilePictureRequest& request,
@@ -72,18 +72,17 @@ class MapService {
   std::optional<MapAnswer> answer_to(const StoreError& error);
   bool should_continue() const;
 
+  MapThreads& threads_;
   const Warn warn_;
   MapCaches caches_;
-  // These belong to the thread.
+  // These belong to the turns.
   MapWorld world_;
   TimeUs warned_us_ = 0;  // the time of the last warning; 0: none
   TimeUs turn_ends_us_ = 0;
 
   std::mutex mutex_;  // a leaf: guards the queue
-  std::condition_variable changed_;
   std::deque<Job> queue_;
   std::atomic<bool> is_stopping_{false};
-  std::thread thread_;
 };
 
 }  // namespace runstone

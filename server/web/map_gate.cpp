@@ -1,5 +1,6 @@
 #include "server/web/map_gate.hpp"
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -17,12 +18,21 @@ constexpr std::uint64_t kUsPerMs = 1'000;
 // An address may use the budgets of so many seconds at once. A first look at a world needs many tiles
 // that nobody drew yet.
 constexpr std::uint64_t kRequestsAtOnce = 10, kWorkAtOnce = 40;
+// While one map reads much of the disk in one turn, others are drawn.
+constexpr std::size_t kMapThreadsMax = 2;
 
-std::unique_ptr<MapService> make_service(const WebConfig& config) {
+std::unique_ptr<MapThreads> make_threads(const WebConfig& config) {
+  std::size_t maps = config.servers.empty() && !config.world.empty() ? 1 : 0;
+  for (const WebServer& server : config.servers) maps += server.world.empty() ? 0 : 1;
+  if (maps == 0) return nullptr;
+  return std::make_unique<MapThreads>(std::min(maps, kMapThreadsMax));
+}
+
+std::unique_ptr<MapService> make_service(const WebConfig& config, const MapShare& share) {
   if (config.world.empty()) return nullptr;
   constexpr std::size_t kMib = std::size_t{1} << 20;
   return std::make_unique<MapService>(
-      config.world, static_cast<std::size_t>(config.map_memory_mib) * kMib,
+      *share.threads, config.world, static_cast<std::size_t>(config.map_memory_mib) * kMib,
       // For the host alone: the pages do not name paths and errors of this machine.
       [](const std::string& fault) { std::cerr << "runstone-web: map: " << fault << std::endl; });
 }
@@ -42,13 +52,14 @@ struct MapGate::Waiting {
   std::optional<MapAnswer> answer;
 };
 
-MapBudgets::MapBudgets(const WebConfig& config)
+MapShare::MapShare(const WebConfig& config)
     : requests(budget_of(config.map_requests_per_second, kRequestsAtOnce)),
-      work_us(budget_of(config.map_ms_per_second * kUsPerMs, kWorkAtOnce)) {}
+      work_us(budget_of(config.map_ms_per_second * kUsPerMs, kWorkAtOnce)),
+      threads(make_threads(config)) {}
 
-MapGate::MapGate(boost::asio::io_context& io, const WebConfig& config, MapBudgets& budgets,
+MapGate::MapGate(boost::asio::io_context& io, const WebConfig& config, MapShare& share,
                  WebCounters& counters)
-    : io_(io), budgets_(budgets), counters_(counters), service_(make_service(config)) {}
+    : io_(io), share_(share), counters_(counters), service_(make_service(config, share)) {}
 
 boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string_view target,
                                                   std::string if_none_match) {
@@ -67,23 +78,14 @@ boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string
     ++counters_.map_refused;
     return map_words(429, words);
   };
-  if (!budgets_.work_us.has(from, 1, steady_now_us()))
+  if (!share_.work_us.has(from, 1, steady_now_us()))
     co_return refuse("the map has drawn much for this address: ask again in a moment");
-  const AddressBlock range = address_range_of(from);
-  const auto count_of = [](const auto& counts, AddressBlock of) {
-    const auto found = counts.find(of);
-    return found == counts.end() ? 0 : found->second;
-  };
-  if (count_of(waiting_, from) >= kWaitingMax ||
-      count_of(waiting_of_range_, range) >= kWaitingOfRangeMax)
+  if (!share_.waiting.add(from))
     co_return refuse("many requests of this address wait for the map: ask again in a moment");
-  ++waiting_[from];
-  ++waiting_of_range_[range];
   ++counters_.map_requests;
   MapAnswer out = co_await wait_for(*std::move(request), std::move(if_none_match));
-  if (--waiting_[from] == 0) waiting_.erase(from);
-  if (--waiting_of_range_[range] == 0) waiting_of_range_.erase(range);
-  budgets_.work_us.charge_range(from, out.work_us, steady_now_us());
+  share_.waiting.remove(from);
+  share_.work_us.charge_range(from, out.work_us, steady_now_us());
   counters_.map_work_us += out.work_us;
   counters_.map_not_modified += out.status == 304 ? 1 : 0;
   co_return out;

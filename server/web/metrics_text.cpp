@@ -64,7 +64,8 @@ std::string metrics_text(std::span<const WorldStatus> worlds, const WebCounters&
     add_number(families, std::string("web_") + name, help, static_cast<double>(value));
   };
   add("connections", "connections accepted since the start", web.connections);
-  add("refused", "connections closed because of a limit, or to make room", web.refused);
+  add("refused", "new connections closed because of a limit", web.refused);
+  add("evicted", "older connections closed to make room for newer ones", web.evicted);
   add("accepts_failed", "times that the system gave no socket to a connection", web.accepts_failed);
   add("certificate_ends_seconds", "end of the certificate, UTC since 1970; 0: there is none",
       web.certificate_ends_s);
@@ -74,6 +75,7 @@ std::string metrics_text(std::span<const WorldStatus> worlds, const WebCounters&
   add("requests", "requests answered since the start", web.requests);
   add("websockets", "WebSockets opened since the start", web.websockets);
   add("websockets_open", "WebSockets now", web.websockets_open);
+  add("links_failed", "WebSockets that got no connection to their server", web.links_failed);
   add("rules_broken", "WebSockets closed because of what they sent", web.rules_broken);
   add("frames_in", "frames from browsers", web.frames_in);
   add("frames_out", "frames to browsers", web.frames_out);

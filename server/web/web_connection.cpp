@@ -270,6 +270,12 @@ boost::asio::awaitable<void> WebConnection::finish(std::shared_ptr<WebConnection
   }
 }
 
+std::string WebConnection::address() const {
+  boost::system::error_code gone;
+  const auto end = stream_.next_layer().remote_endpoint(gone);
+  return gone ? "an unknown address" : end.address().to_string();
+}
+
 void WebConnection::end_because_of_stop() {
   if (!websocket_ || !websocket_->is_open()) return close();
   websocket_->end(WebSocketSession::CloseCode::going_away, "the gateway stops");

@@ -7,6 +7,7 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <memory>
+#include <string>
 
 #include "common/core/address_block.hpp"
 #include "server/web/http_answer.hpp"
@@ -29,7 +30,9 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   /// Returns true for a WebSocket that has not sent anything.
   bool is_silent_websocket() const { return is_websocket() && !websocket_->has_sent(); }
   /// Returns true once the connection is closed. The object lives until its coroutine has ended.
-  bool is_closed() const { return is_closed_; }
+  bool is_closed() const { return is_closed_ || !stream_.has_socket(); }
+  /// Returns the address of the browser for the log, or "an unknown address" if the browser has gone.
+  std::string address() const;
   /// Closes the connection without a word.
   void close() {
     is_closed_ = true;

@@ -2,6 +2,7 @@
 
 #include <sys/un.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 // Boost 1.74 uses std::exchange without its header, so <utility> comes first.
@@ -46,13 +47,11 @@ std::optional<std::string> fault_of_socket(const std::string& path) {
          " bytes, with \".status\": use a shorter or a relative one";
 }
 
-/// Returns true if an accept failed because the process or the system has no room for a socket.
-bool is_out_of_sockets(const boost::system::error_code& error) {
-  for (const int number : {EMFILE, ENFILE, ENOBUFS, ENOMEM}) {
-    if (error.value() == number && error.category() == boost::system::system_category())
-      return true;
-  }
-  return false;
+/// Returns true if an accept failed because this process may open no more files. A connection that is
+/// closed then makes room for another one. If the whole system is out of files or memory, that room
+/// may go to another program, so no connection is closed for it.
+bool is_out_of_files(const boost::system::error_code& error) {
+  return error.value() == EMFILE && error.category() == boost::system::system_category();
 }
 
 }  // namespace
@@ -72,10 +71,12 @@ struct WebGateway::Parts {
   boost::asio::awaitable<void> accept_loop();
   boost::asio::awaitable<void> sweep_loop();
   void admit(tcp::socket socket);
-  /// Makes room for one more connection by closing the oldest one that is no WebSocket, or else the
-  /// oldest WebSocket that has sent nothing. Returns false if there is none.
+  /// Makes room for one more connection, if there is none, with evict_oldest(). Returns false if that
+  /// failed.
   bool make_room();
-  bool close_oldest();
+  /// Closes the oldest connection that is no WebSocket, or else the oldest WebSocket that has sent
+  /// nothing. Returns false if there is none. `limit`: what the operator can change, for the log.
+  bool evict_oldest(const char* limit);
   void reload_certificate();
   void stop();
 
@@ -84,7 +85,7 @@ struct WebGateway::Parts {
   boost::asio::steady_timer pause, sweep;
   std::uint64_t next_id = 1;
   bool is_stopped = false;
-  RareLine refusal_line, accept_line;
+  RareLine refusal_line, eviction_line, accept_line;
   std::uint16_t port = 0;
   const bool is_encrypted = state.certificate.is_there();
   std::thread thread;
@@ -113,6 +114,7 @@ Result<void, std::string> WebGateway::Parts::listen() {
   if (!error) acceptor.set_option(boost::asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(end, error);
   if (!error) acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
+  if (!error) acceptor.non_blocking(true, error);
   if (error) return cannot(error.message());
   port = acceptor.local_endpoint(error).port();
   return {};
@@ -122,17 +124,20 @@ boost::asio::awaitable<void> WebGateway::Parts::accept_loop() {
   while (acceptor.is_open()) {
     tcp::socket socket(state.io);
     boost::system::error_code error;
-    co_await acceptor.async_accept(socket,
-                                   boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    // Linux fails for want of a file also if no connection is there, so the call waits for one first.
+    co_await acceptor.async_wait(tcp::acceptor::wait_read,
+                                 boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    if (!error) acceptor.accept(socket, error);
+    if (error == boost::asio::error::would_block) continue;  // the browser has gone
     if (!error) {
       if (!is_stopped) admit(std::move(socket));
     } else if (acceptor.is_open()) {
       ++state.counters.accepts_failed;
-      accept_line.print(steady_now_us(),
-                        "cannot take a connection: " + error.message() +
-                            (is_out_of_sockets(error) ? ": see ulimit -n and sockets_max" : ""));
-      // A connection that ends releases file descriptors. Until then the others wait in the kernel.
-      if (is_out_of_sockets(error)) close_oldest();
+      const bool is_full = is_out_of_files(error);
+      accept_line.print(steady_now_us(), "cannot take a connection: " + error.message() +
+                                             (is_full ? ": see ulimit -n and sockets_max" : ""));
+      // New connections wait in the kernel meanwhile.
+      if (is_full) evict_oldest("ulimit -n");
       pause.expires_after(std::chrono::milliseconds(100));
       co_await pause.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, error));
     }
@@ -180,10 +185,14 @@ void WebGateway::Parts::admit(tcp::socket socket) {
 }
 
 bool WebGateway::Parts::make_room() {
-  return state.connections.size() < state.config.sockets_max || close_oldest();
+  if (state.connections.size() < state.config.sockets_max) return true;
+  // Connections that are closed stay among the others until their coroutines have ended.
+  const auto open = std::ranges::count_if(
+      state.connections, [](const auto& each) { return !each.second->is_closed(); });
+  return static_cast<std::size_t>(open) < state.config.sockets_max || evict_oldest("sockets_max");
 }
 
-bool WebGateway::Parts::close_oldest() {
+bool WebGateway::Parts::evict_oldest(const char* limit) {
   WebConnection* silent = nullptr;
   WebConnection* oldest = nullptr;
   for (const auto& [id, connection] : state.connections) {
@@ -196,8 +205,10 @@ bool WebGateway::Parts::close_oldest() {
   }
   if (oldest == nullptr) oldest = silent;
   if (oldest == nullptr) return false;
+  eviction_line.print(steady_now_us(), "a connection from " + oldest->address() +
+                                           " is closed to make room for a newer one: see " + limit);
   oldest->close();
-  ++state.counters.refused;
+  ++state.counters.evicted;
   return true;
 }
 

@@ -14,6 +14,7 @@
 #include "server/web/client_files.hpp"
 #include "server/web/map_gate.hpp"
 #include "server/web/origin_check.hpp"
+#include "server/web/rare_line.hpp"
 #include "server/web/socket_limits.hpp"
 #include "server/web/web_config.hpp"
 #include "server/web/web_counters.hpp"
@@ -30,13 +31,13 @@ struct WebState {
         client(std::move(client_)),
         origin(std::move(origin_)),
         certificate(std::move(certificate_)),
-        map_budgets(config_),
+        map_share(config_),
         limits(config_.sockets_per_address, config_.connections_per_second) {
     if (config.servers.empty())
-      worlds.push_back(std::make_unique<WebWorld>(io, "", config, map_budgets, counters));
+      worlds.push_back(std::make_unique<WebWorld>(io, "", config, map_share, counters));
     for (const WebServer& server : config.servers) {
       worlds.push_back(std::make_unique<WebWorld>(io, server.name, config_for(config, server),
-                                                  map_budgets, counters));
+                                                  map_share, counters));
     }
   }
   bool has_several_worlds() const { return !config.servers.empty(); }
@@ -49,10 +50,11 @@ struct WebState {
   boost::asio::io_context io{BOOST_ASIO_CONCURRENCY_HINT_UNSAFE_IO};
   Certificate certificate;
   WebCounters counters;
-  MapBudgets map_budgets;
+  MapShare map_share;
   std::vector<std::unique_ptr<WebWorld>> worlds;  // one at least, in the order of the configuration
   SocketLimits limits;
-  Bytes message;  // to a browser, while it is written
+  RareLine link_line;  // a connection to a server failed
+  Bytes message;       // to a browser, while it is written
   /// All connections, oldest first. A connection removes itself when it is destroyed.
   std::map<std::uint64_t, WebConnection*> connections;
 };

@@ -39,6 +39,7 @@ class WebStream {
 
   executor_type get_executor() { return socket_.get_executor(); }
   Socket& next_layer() { return socket_; }
+  const Socket& next_layer() const { return socket_; }
   /// Returns false after close(), and after Beast has closed a WebSocket that was silent for too long.
   bool has_socket() const { return socket_.is_open(); }
 

@@ -19,11 +19,11 @@ inline constexpr std::string_view kWorldsPath = "/world/";
 
 struct WebWorld {
   WebWorld(boost::asio::io_context& io, std::string name_, const WebConfig& config_,
-           MapBudgets& budgets, WebCounters& counters)
+           MapShare& map_share, WebCounters& counters)
       : name(std::move(name_)),
         config(config_),
         status(io, config_.gateway_socket + ".status"),
-        map(io, config_, budgets, counters) {}
+        map(io, config_, map_share, counters) {}
 
   const std::string name;  // empty: the gateway has one server
   const WebConfig config;  // of the gateway, with the values of this server

@@ -11,6 +11,7 @@
 
 #include "protocol/codec/proxy_header.hpp"
 #include "server/web/http_answer.hpp"
+#include "server/web/link_error.hpp"
 
 namespace runstone {
 namespace {
@@ -55,7 +56,7 @@ WebSocketSession::WebSocketSession(WebState& state, WebStream& stream, AddressBl
 
 boost::asio::awaitable<void> WebSocketSession::run(std::shared_ptr<WebSocketSession> self,
                                                    Request request) {
-  const bool has_server = co_await open_link(self);
+  const boost::system::error_code link_error = co_await open_link(self);
   boost::system::error_code error;
   co_await self->websocket_.async_accept(
       request, boost::asio::redirect_error(boost::asio::use_awaitable, error));
@@ -64,13 +65,17 @@ boost::asio::awaitable<void> WebSocketSession::run(std::shared_ptr<WebSocketSess
   self->stream_.forget_due();  // from here on Beast's times hold
   ++self->state_.counters.websockets;
   ++self->state_.counters.websockets_open;
-  if (has_server) {
+  if (!link_error) {
     ++self->tasks_;
     self->read_link();
     co_await browser_to_server(self);
   } else {
-    self->end(CloseCode::try_again_later,
-              "the server of this world is not running, or it is restarting: try again soon");
+    ++self->state_.counters.links_failed;
+    const WebClose close = close_for_link_error(link_error);
+    self->state_.link_line.print(steady_now_us(), "a WebSocket has no connection to " +
+                                                      self->server_ + ": " + link_error.message() +
+                                                      " (" + close.words + ")");
+    self->end(close.code, close.words);
   }
   self->close_link();
   while (self->tasks_ > 0) {
@@ -89,20 +94,21 @@ void WebSocketSession::end(CloseCode code, const char* words) {
                         boost::asio::detached);
 }
 
-boost::asio::awaitable<bool> WebSocketSession::open_link(std::shared_ptr<WebSocketSession> self) {
+boost::asio::awaitable<boost::system::error_code> WebSocketSession::open_link(
+    std::shared_ptr<WebSocketSession> self) {
   boost::system::error_code error;
   const auto browser = self->stream_.next_layer().remote_endpoint(error);
-  if (error) co_return false;
+  if (error) co_return error;
   const auto here = self->stream_.next_layer().local_endpoint(error);
-  if (error) co_return false;
+  if (error) co_return error;
   const boost::asio::local::stream_protocol::endpoint server(self->server_);
   co_await self->link_.async_connect(
       server, boost::asio::redirect_error(boost::asio::use_awaitable, error));
-  if (error) co_return false;
+  if (error) co_return error;
   const Bytes header = write_proxy_header(peer_endpoint(browser), peer_endpoint(here));
   co_await boost::asio::async_write(self->link_, boost::asio::buffer(header),
                                     boost::asio::redirect_error(boost::asio::use_awaitable, error));
-  co_return !error;
+  co_return error;
 }
 
 boost::asio::awaitable<void> WebSocketSession::browser_to_server(

@@ -46,8 +46,9 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   void close_link();
 
  private:
-  /// Connects to the server, and sends the address of the browser. Returns false if that failed.
-  static boost::asio::awaitable<bool> open_link(std::shared_ptr<WebSocketSession> self);
+  /// Connects to the server, and sends the address of the browser. Returns the error if that failed.
+  static boost::asio::awaitable<boost::system::error_code> open_link(
+      std::shared_ptr<WebSocketSession> self);
   static boost::asio::awaitable<void> browser_to_server(std::shared_ptr<WebSocketSession> self);
   // Frames of the server take a shorter way than coroutines and Beast, because each edit of a player
   // is sent to all others: they are read, and written past Beast in the same turn.

@@ -16,7 +16,6 @@ namespace {
 
 using Certificate = OpensslPtr<X509, X509_free>;
 using Key = OpensslPtr<EVP_PKEY, EVP_PKEY_free>;
-constexpr long kDaySeconds = 86'400;
 
 Key make_key() { return Key(EVP_PKEY_Q_keygen(nullptr, nullptr, "EC", "P-256")); }
 
@@ -27,12 +26,13 @@ void add_extension(X509* certificate, int kind, const std::string& text) {
   RUNSTONE_ASSERT(X509_add_ext(certificate, extension.get(), -1) == 1);
 }
 
-Certificate make_certificate(const std::string& name, EVP_PKEY* key, long serial) {
+Certificate make_certificate(const std::string& name, EVP_PKEY* key, long serial, long begin_s,
+                             long end_s) {
   Certificate made(X509_new());
   RUNSTONE_ASSERT(made != nullptr && X509_set_version(made.get(), 2) == 1);
   ASN1_INTEGER_set(X509_get_serialNumber(made.get()), serial);
-  X509_gmtime_adj(X509_getm_notBefore(made.get()), -kDaySeconds);
-  X509_gmtime_adj(X509_getm_notAfter(made.get()), kDaySeconds);
+  X509_gmtime_adj(X509_getm_notBefore(made.get()), begin_s);
+  X509_gmtime_adj(X509_getm_notAfter(made.get()), end_s);
   X509_set_pubkey(made.get(), key);
   X509_NAME_add_entry_by_txt(X509_get_subject_name(made.get()), "CN", MBSTRING_UTF8,
                              reinterpret_cast<const unsigned char*>(name.c_str()), -1, -1, 0);
@@ -59,13 +59,14 @@ void write_file(const std::string& file, const std::string& text) {
 
 }  // namespace
 
-PemFiles::PemFiles(const std::string& host) {
+PemFiles::PemFiles(const std::string& host, long begin_s, long end_s) {
   const Key authority_key = make_key(), server_key = make_key();
-  const Certificate authority = make_certificate("authority", authority_key.get(), 1);
+  const Certificate authority =
+      make_certificate("authority", authority_key.get(), 1, -kDaySeconds, kDaySeconds);
   X509_set_issuer_name(authority.get(), X509_get_subject_name(authority.get()));
   add_extension(authority.get(), NID_basic_constraints, "critical,CA:TRUE");
   RUNSTONE_ASSERT(X509_sign(authority.get(), authority_key.get(), EVP_sha256()) > 0);
-  const Certificate server = make_certificate(host, server_key.get(), 2);
+  const Certificate server = make_certificate(host, server_key.get(), 2, begin_s, end_s);
   X509_set_issuer_name(server.get(), X509_get_subject_name(authority.get()));
   add_extension(server.get(), NID_subject_alt_name, "DNS:" + host);
   RUNSTONE_ASSERT(X509_sign(server.get(), authority_key.get(), EVP_sha256()) > 0);

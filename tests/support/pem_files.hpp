@@ -9,8 +9,11 @@ namespace runstone::test {
 
 class PemFiles {
  public:
-  /// Makes an authority and a server's certificate for this host name, valid for a day.
-  explicit PemFiles(const std::string& host);
+  static constexpr long kDaySeconds = 86'400;
+
+  /// Makes an authority and a server's certificate for this host name. It is valid between these
+  /// times, in seconds from now.
+  explicit PemFiles(const std::string& host, long begin_s = -kDaySeconds, long end_s = kDaySeconds);
 
   const std::string& chain() const { return chain_; }
   const std::string& key() const { return key_; }

@@ -28,6 +28,7 @@
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/password_key.hpp"
 #include "tests/support/ipv4_socket.hpp"
+#include "tests/support/tls_client.hpp"
 
 namespace runstone::test {
 
@@ -46,7 +47,10 @@ class RawClient {
                ::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
     const timeval deadline{kSendSeconds, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof deadline);
-    if (is_open_ && encryption == Encryption::tls) is_open_ = secure(context, host);
+    if (!is_open_ || encryption != Encryption::tls) return;
+    auto channel = connect_tls(socket_, source_, context, host);
+    is_open_ = channel.has_value();
+    if (channel) tls_.emplace(*std::move(channel));
   }
   ~RawClient() { ::close(socket_); }
   RawClient(const RawClient&) = delete;
@@ -72,14 +76,7 @@ class RawClient {
   }
   /// Sends bytes past TLS.
   void send_to_socket(ByteView bytes) {
-    while (!bytes.empty()) {
-      const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-      if (sent <= 0) {
-        is_open_ = false;
-        return;
-      }
-      bytes = bytes.subspan(static_cast<std::size_t>(sent));
-    }
+    if (!send_all(socket_, bytes)) is_open_ = false;
   }
   /// Sends a message. A view gets the number that follows the last one.
   void send(Message message) {
@@ -196,24 +193,7 @@ class RawClient {
 
  private:
   static constexpr time_t kSendSeconds = 60;
-  static constexpr int kHandshakeMs = 10'000;
 
-  void send_output() { send_to_socket(std::exchange(tls_->output(), {})); }
-  bool secure(const TlsContext& context, const std::string& host) {
-    source_ = SocketSource(socket_);
-    TlsChannel channel = TlsChannel::connect(context, source_, host);
-    tls_.emplace(std::move(channel));
-    for (;;) {
-      const TlsChannel::Status status = tls_->handshake();
-      send_output();
-      if (status == TlsChannel::Status::done) return true;
-      const bool is_over = source_.is_at_end() || source_.error();
-      if (status != TlsChannel::Status::wants_input || is_over) break;
-      if (!wait_input(socket_, kHandshakeMs)) break;
-    }
-    tls_.reset();
-    return false;
-  }
   TlsChannel::Status read_text(Bytes& buffer, std::size_t& bytes) {
     const std::lock_guard lock(tls_mutex_);
     return tls_->read(buffer, bytes);

@@ -17,6 +17,7 @@
 #include "common/tls/socket_source.hpp"
 #include "common/tls/tls_channel.hpp"
 #include "tests/support/ipv4_socket.hpp"
+#include "tests/support/tls_client.hpp"
 
 namespace runstone::test {
 
@@ -51,7 +52,10 @@ class WebPeer {
     const sockaddr_in here = ipv4_endpoint(from, 0), there = ipv4_endpoint(INADDR_LOOPBACK, port);
     is_open_ = ::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 &&
                ::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
-    if (is_open_ && is_encrypted) is_open_ = secure(context, tls_host);
+    if (!is_open_ || !is_encrypted) return;
+    auto channel = connect_tls(socket_, source_, context, tls_host);
+    is_open_ = channel.has_value();
+    if (channel) tls_.emplace(*std::move(channel));
   }
   ~WebPeer() { ::close(socket_); }
   WebPeer(const WebPeer&) = delete;
@@ -62,18 +66,12 @@ class WebPeer {
 
   void send(const std::string& text) { send(Bytes(text.begin(), text.end())); }
   void send(Bytes bytes) {
+    if (!is_open_) return;
     if (tls_) {
       if (!tls_->write(bytes)) return;
       bytes = std::exchange(tls_->output(), {});
     }
-    for (ByteView left = bytes; !left.empty();) {
-      const ssize_t sent = ::send(socket_, left.data(), left.size(), MSG_NOSIGNAL);
-      if (sent <= 0) {
-        is_open_ = false;
-        return;
-      }
-      left = left.subspan(static_cast<std::size_t>(sent));
-    }
+    if (!send_all(socket_, bytes)) is_open_ = false;
   }
 
   /// Sends a request and returns the reply. `more`: further header lines, each with its line end.
@@ -156,20 +154,6 @@ class WebPeer {
   }
 
  private:
-  bool secure(const TlsContext& context, const std::string& host) {
-    source_ = SocketSource(socket_);
-    TlsChannel channel = TlsChannel::connect(context, source_, host);
-    tls_.emplace(std::move(channel));
-    for (;;) {
-      const TlsChannel::Status status = tls_->handshake();
-      const Bytes out = std::exchange(tls_->output(), {});
-      if (!out.empty() && ::send(socket_, out.data(), out.size(), MSG_NOSIGNAL) < 0) return false;
-      if (status == TlsChannel::Status::done) return true;
-      if (status != TlsChannel::Status::wants_input || source_.is_at_end() || source_.error())
-        return false;
-      if (!wait_input(socket_, 10'000)) return false;
-    }
-  }
   bool read_more(int deadline_ms = 10'000) {
     if (!is_open_) return false;
     Bytes buffer(65'536);

@@ -52,7 +52,6 @@ class WebPlayer {
       const auto fed = reader_.feed(
           got->bytes, [this](MessageKind kind, ByteView body) { return decode(kind, body); });
       RUNSTONE_ASSERT(fed.has_value() && frames_read() > before);  // whole frames
-      ++web_messages_;
     }
     Message message = std::move(arrived_.front());
     arrived_.pop_front();
@@ -65,6 +64,11 @@ class WebPlayer {
       if (auto* goodbye = std::get_if<Goodbye>(&*message)) refusal = goodbye->text;
     }
     return std::nullopt;
+  }
+  /// Sends a ping. Returns true if the server answers it.
+  bool gets_pong() {
+    send(Ping{5});
+    return next_of<Pong>().has_value();
   }
   /// Does the whole handshake. Returns nullopt if the server refused; `refusal` then has its words.
   std::optional<SessionAccepted> join(std::uint8_t who) {
@@ -92,7 +96,6 @@ class WebPlayer {
            reader_.frames(FrameClass::chunks);
   }
   std::uint64_t messages_read() const { return messages_; }
-  std::uint64_t web_messages_read() const { return web_messages_; }
 
   WebPeer peer;
   std::string refusal;
@@ -109,7 +112,7 @@ class WebPlayer {
   }
 
   bool is_open_ = false;
-  std::uint64_t messages_ = 0, web_messages_ = 0;
+  std::uint64_t messages_ = 0;
   std::uint16_t chunk_edge_ = 0;
   FrameWriter frames_;
   FrameReader reader_{Sender::server};

@@ -1,6 +1,8 @@
-"""The same voxels under networked conditions: bytes, transfers, latency, crowds, a siege."""
+"""The same voxels under networked conditions: bytes, transfers, latency, crowds, a gateway, a siege."""
 import math
 from operator import truediv
+
+import numpy
 
 from ..charts import Axis, Bar, Series, Span, bars, dots, lines
 from ..figure import Figure, Section
@@ -262,6 +264,60 @@ def _crowds(evidence):
     )
 
 
+def _gateway(evidence):
+    rows = evidence.here.rows("gateway")
+    ways = (("TCP", "tcp", OTHER), ("gateway", "gateway", INK))
+
+    def round_trip(case, way):
+        p50, p99 = (rows.where(case=case, figure=f"{way}_{p}_ms").number("value") for p in ("p50", "p99"))
+        return Interval(p50, p50, p99)
+
+    def fleet(bots, name):
+        """Returns the medians of all runs."""
+        case = f"{bots} bots by {name}"
+        runs = (rows.where(case=case, figure=f"seen_{p}_ms").numbers("value") for p in ("p50", "p99"))
+        p50, p99 = (float(numpy.median(values)) if values else math.nan for values in runs)
+        return Interval(p50, p50, p99)
+
+    frames = ("ping and pong", "edit and commit")
+    fleets = [case.split(" ")[0] for case in rows.kinds("case") if case.endswith(" bots by TCP")]
+    series = [
+        Series(name, colour, [round_trip(f, way) for f in frames] + [fleet(n, name) for n in fleets])
+        for name, way, colour in ways
+    ]
+    added = max(
+        (after.high - before.high for before, after in zip(*(s.values[: len(frames)] for s in series))),
+        default=math.nan,
+    )
+    ratios = [truediv(*(fleet(n, name).high for name in ("gateway", "TCP"))) for n in fleets]
+    findings = []
+    if math.isfinite(added):
+        findings.append(f"A gateway for browsers adds {quantity_text(added, 'ms')} (p99) to a round trip.")
+    findings += [
+        f"{count_text(int(n))} bots that build through it see edits after {number_text(ratio)} times as long (p99)."
+        for n, ratio in zip(fleets, ratios)
+        if math.isfinite(ratio)
+    ]
+    return Figure(
+        "gateway",
+        "A gateway for browsers",
+        " ".join(findings) or "No gateway was measured.",
+        ("gateway",),
+        NET_COLUMNS,
+        _net_table(rows),
+        [
+            dots(
+                "gateway",
+                "latency through a gateway",
+                [*frames, *(f"{n} bots that build" for n in fleets)],
+                series,
+                Axis("ms until the answer, or until the others have an edit", True),
+            )
+        ],
+        notes=["The lines reach from the median (p50) to the 99th percentile. Fleets are medians of their runs."],
+    )
+
+
 def siege_charts(rows):
     """Returns the charts of a siege by name: latency, memory and disk over its windows."""
     windows = [case for case in rows.where(experiment="siege").kinds("case") if case.startswith("window ")]
@@ -330,6 +386,8 @@ def _siege(evidence):
 
 def network_section(evidence):
     figures = [_bytes(evidence), _transfers(evidence), _latency(evidence), _crowds(evidence)]
+    if evidence.here.has_any(("gateway",)):
+        figures.append(_gateway(evidence))
     if evidence.here.has_any(("siege",)):
         figures.append(_siege(evidence))
     return Section(

@@ -163,6 +163,19 @@ def _results():
                 for form, n in (("packed", 90), ("luanti", 180))
             ]
         },
+        "gateway": _net(
+            "loopback",
+            [
+                (case, f"{way}_{p}_ms", n)
+                for case in ("ping and pong", "edit and commit")
+                for way, p, n in (("tcp", "p50", 1), ("tcp", "p99", 2), ("gateway", "p50", 1.5), ("gateway", "p99", 2.5))
+            ]
+            + [
+                (f"200 bots by {way}", f"seen_{p}_ms", n * run)
+                for run in (1, 2, 9)
+                for way, p, n in (("TCP", "p50", 1), ("TCP", "p99", 2), ("gateway", "p50", 1), ("gateway", "p99", 3))
+            ],
+        ),
         "siege": _net("loopback", [("window 0 quiet", "p99_ms", 2.0)]),
     }
     for profile in PROFILES:

@@ -40,6 +40,7 @@ FIGURES = (
     "transfers",
     "latency",
     "crowds",
+    "gateway",
     "siege",
 )
 VOID = {"meta", "img", "br"}
@@ -112,6 +113,11 @@ class Page(unittest.TestCase):
                 rows = list(csv.reader(lines))
             self.assertGreater(len(rows), 1, figure)
             self.assertEqual({len(r) for r in rows}, {len(rows[0])}, figure)
+
+    def test_the_gateway_is_compared_with_tcp(self):
+        text = self.text[self.text.index('id="gateway"') :]
+        self.assertIn("A gateway for browsers adds 0.5 ms (p99) to a round trip.", text)
+        self.assertIn("200 bots that build through it see edits after 1.5 times as long (p99).", text)
 
     def test_ids_are_unique_and_links_have_targets(self):
         self.assertEqual(len(self.page.ids), len(set(self.page.ids)))

@@ -2,6 +2,7 @@
 
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <iterator>
@@ -69,12 +70,15 @@ View view_at_spawn() {
 struct RoundTrip {
   const char* what;
   runstone::Message (*frame)(std::uint64_t number);
-  bool (*is_answer)(const runstone::Message& message);
+  bool (*is_answer)(const runstone::Message& message, std::uint64_t number);
 };
 constexpr std::array<RoundTrip, 2> kRoundTrips = {{
     {"ping and pong",
      [](std::uint64_t number) -> runstone::Message { return Ping{static_cast<TimeUs>(number)}; },
-     [](const runstone::Message& message) { return std::holds_alternative<Pong>(message); }},
+     [](const runstone::Message& message, std::uint64_t number) {
+       const auto* pong = std::get_if<Pong>(&message);
+       return pong != nullptr && pong->sent_us == static_cast<TimeUs>(number);
+     }},
     {"edit and commit",
      [](std::uint64_t number) -> runstone::Message {
        // Sixteen edits in turn change sixteen voxels, the next sixteen change them back.
@@ -82,7 +86,13 @@ constexpr std::array<RoundTrip, 2> kRoundTrips = {{
        const auto material = static_cast<Material>(1 + number / 16 % 2);
        return EditRequest{number, 0, {SetVoxel{{at, 90, at}}, {}, material}};
      },
-     [](const runstone::Message& message) { return std::holds_alternative<Commit>(message); }},
+     // No two edits of the probes have the same number, so it tells this edit from the other probe's.
+     [](const runstone::Message& message, std::uint64_t number) {
+       const auto* commit = std::get_if<Commit>(&message);
+       return commit != nullptr && std::ranges::any_of(commit->edits, [&](const OrderedEdit& edit) {
+                return edit.op.seq == number;
+              });
+     }},
 }};
 
 /// Sends a frame and waits for its answer. Returns the time in ms, or nullopt if none comes.
@@ -92,7 +102,8 @@ std::optional<double> round_trip(Player& player, const RoundTrip& kind, std::uin
   const TimeUs sent_us = steady_now_us();
   player.send(frame);
   while (const auto message = player.next()) {
-    if (kind.is_answer(*message)) return static_cast<double>(steady_now_us() - sent_us) / 1e3;
+    if (kind.is_answer(*message, number))
+      return static_cast<double>(steady_now_us() - sent_us) / 1e3;
   }
   return std::nullopt;
 }

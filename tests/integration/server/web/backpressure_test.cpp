@@ -2,12 +2,16 @@
 
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <memory>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "protocol/codec/frame.hpp"
 #include "server/web/web_frame.hpp"
 #include "tests/integration/server/web/fake_server.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
+#include "tests/support/text_contains.hpp"
 
 namespace runstone::test {
 namespace {
@@ -95,6 +99,58 @@ TEST_CASE("the gateway reads no more of a browser than the server takes", "[inte
   }
   CHECK(sent < kOnTheWayMax);
   CHECK(server.read(frame.size()) == frame);
+}
+
+TEST_CASE("a browser for which the server has no place in its queue is closed with words",
+          "[integration]") {
+  const TempFolder folder;
+  FakeServer server(folder / "web.sock");  // it accepts no connection
+  const auto gateway = start_gateway(web_config_of(folder));
+  std::vector<std::unique_ptr<WebPeer>> waiting;
+  for (int i = 0; i <= FakeServer::kQueueMax; ++i) {
+    waiting.push_back(std::make_unique<WebPeer>(gateway->port()));
+    REQUIRE(waiting.back()->upgrade().status == 101);
+  }
+  WebPeer late(gateway->port());
+  REQUIRE(late.upgrade().status == 101);
+  const auto closed = late.next_close();
+  REQUIRE(closed.has_value());
+  CHECK(closed->close_code() == 1013);
+  CHECK(closed->close_words() == "many players join this world now: try again soon");
+  server.accept();
+  WebPeer next(gateway->port());
+  REQUIRE(next.upgrade().status == 101);
+  CHECK_FALSE(next.next(200).has_value());  // it waits for the server
+  CHECK(next.is_open());
+}
+
+TEST_CASE("frames of the server that come together are one message", "[integration]") {
+  const TempFolder folder;
+  FakeServer server(folder / "web.sock");
+  const auto gateway = start_gateway(web_config_of(folder));
+  WebPeer browser(gateway->port());
+  REQUIRE(browser.upgrade().status == 101);
+  server.accept();
+  constexpr int kFrames = 40;
+  Bytes together;
+  for (int i = 0; i < kFrames; ++i) {
+    const Bytes frame = frame_of(100, static_cast<std::uint8_t>(i));
+    together.insert(together.end(), frame.begin(), frame.end());
+  }
+  const Bytes last = frame_of(100, 200);
+  Bytes sent = together;
+  sent.insert(sent.end(), last.begin(), last.begin() + 50);  // a part of a frame waits for the rest
+  server.write(sent);
+  const auto first = browser.next();
+  REQUIRE(first.has_value());
+  CHECK(first->bytes == together);
+  server.write(ByteView(last).subspan(50));
+  const auto second = browser.next();
+  REQUIRE(second.has_value());
+  CHECK(second->bytes == last);
+  WebPeer page(gateway->port());
+  const std::string metrics = page.get("/metrics").body;
+  CHECK(contains(metrics, "\nrunstone_web_frames_out " + std::to_string(kFrames + 1) + "\n"));
 }
 
 TEST_CASE("a server that sends something else than frames ends the WebSocket, not the gateway",

@@ -105,6 +105,16 @@ TEST_CASE("a certificate that cannot be used is refused, and the old one stays",
   SECTION("no chain") { chain.clear(); }
   SECTION("the key of another certificate") { key = bench.first.key(); }
   SECTION("no key") { key = "secret\n"; }
+  SECTION("a certificate that has ended") {
+    const PemFiles ended("localhost", -2 * PemFiles::kDaySeconds, -60);
+    chain = ended.chain();
+    key = ended.key();
+  }
+  SECTION("a certificate that is not valid yet") {
+    const PemFiles early("localhost", PemFiles::kDaySeconds, 2 * PemFiles::kDaySeconds);
+    chain = early.chain();
+    key = early.key();
+  }
   CertificateFiles::write(bench.files.chain, chain);
   CertificateFiles::write(bench.files.key, key);
   bench.gateway->reload_certificate();
@@ -113,6 +123,19 @@ TEST_CASE("a certificate that cannot be used is refused, and the old one stays",
   player.send(Ping{5});
   CHECK(player.next_of<Pong>().has_value());
   bench.files.become(bench.second);  // the next try is a good one
+  CHECK(comes_to_have_certificate_of(port, bench.second));
+}
+
+TEST_CASE("a key that others can read is refused until its rights are mended", "[integration]") {
+  const TempFolder folder;
+  SecureBench bench(folder);
+  const std::uint16_t port = bench.gateway->port();
+  bench.files.become(bench.second);
+  REQUIRE(::chmod(bench.files.key.c_str(), 0644) == 0);
+  bench.gateway->reload_certificate();
+  CHECK(metrics_come_to_show(port, "\nrunstone_web_certificates_refused 1\n"));
+  CHECK(gets_certificate_of(port, bench.first));
+  REQUIRE(::chmod(bench.files.key.c_str(), 0600) == 0);
   CHECK(comes_to_have_certificate_of(port, bench.second));
 }
 

@@ -16,12 +16,15 @@ namespace runstone::test {
 
 class FakeServer {
  public:
+  /// One connection more than this waits for accept() before others are refused.
+  static constexpr int kQueueMax = 8;
+
   explicit FakeServer(const std::string& path) : listening_(::socket(AF_UNIX, SOCK_STREAM, 0)) {
     sockaddr_un here{};
     here.sun_family = AF_UNIX;
     std::strncpy(here.sun_path, path.c_str(), sizeof here.sun_path - 1);
     REQUIRE(::bind(listening_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0);
-    REQUIRE(::listen(listening_, 8) == 0);
+    REQUIRE(::listen(listening_, kQueueMax) == 0);
   }
   ~FakeServer() {
     hang_up();

@@ -168,7 +168,9 @@ TEST_CASE("an address has few sockets, and when all are taken the oldest idle on
   connect(0x7f000002);
   WebPeer& last = connect(0x7f000002);
   CHECK(oldest.sees_the_end());
-  CHECK(last.get("/").status == 200);
+  const std::string metrics = last.get("/metrics").body;
+  CHECK(metrics.find("\nrunstone_web_refused 1\n") != std::string::npos);
+  CHECK(metrics.find("\nrunstone_web_evicted 1\n") != std::string::npos);
   player.send(Ping{5});
   CHECK(player.next_of<Pong>().has_value());  // a WebSocket is never closed for a new socket
 }

@@ -100,7 +100,7 @@ TEST_CASE("2,000 idle sockets disturb neither a player nor one who joins", "[int
 #endif
   CHECK(metric(bench.port(), "connections_open") <= config.sockets_max);
   // There are more sockets than the gateway holds.
-  CHECK(metric(bench.port(), "refused") > 0);
+  CHECK(metric(bench.port(), "evicted") > 0);
 }
 
 TEST_CASE("when all sockets are silent WebSockets, the oldest of them makes room",

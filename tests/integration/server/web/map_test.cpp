@@ -2,9 +2,12 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
+#include "server/web/waiting_requests.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
@@ -230,6 +233,44 @@ TEST_CASE("an address that asks for too much is slowed down, and others are not"
   CHECK(refused == 1);
   WebPeer other(bench.port(), kCalmAddress);
   CHECK(other.get(kTile).status == 200);
+}
+
+TEST_CASE("the requests of an address that wait count for all maps together", "[integration]") {
+  const TempFolder folder;
+  WebConfig config = map_config_of(folder);
+  config.gateway_socket = WebConfig().gateway_socket;
+  config.world.clear();
+  std::vector<std::unique_ptr<Server>> servers;
+  for (const std::string name : {"valley", "hills"}) {
+    ServerConfig server = quiet_config(folder / name);
+    server.gateway_socket = folder / (name + ".sock");
+    config.servers.push_back({name, server.gateway_socket, "", "", folder / name});
+    servers.push_back(start_server(server, flat_creation()));
+  }
+  const auto gateway = start_gateway(config);
+  // One map alone would refuse none of them.
+  constexpr std::size_t kOfEachMap = WaitingRequests::kOfAddressMax - 1;
+  std::vector<std::unique_ptr<WebPeer>> peers;
+  for (std::size_t i = 0; i < 2 * kOfEachMap; ++i)
+    peers.push_back(std::make_unique<WebPeer>(gateway->port()));
+  // All are sent before half of them are drawn, unless this thread has to wait for a processor.
+  bool is_refused = false;
+  for (int round = 0; round < 10 && !is_refused; ++round) {
+    for (std::size_t i = 0; i < peers.size(); ++i) {
+      peers[i]->send("GET /world/" + std::string(i % 2 == 0 ? "valley" : "hills") + "/map/tile/0/" +
+                     std::to_string(i) + "/" + std::to_string(round) +
+                     ".png HTTP/1.1\r\nHost: x\r\n\r\n");
+    }
+    for (const auto& peer : peers) {
+      const HttpReply reply = peer->reply();
+      if (reply.status != 429) continue;
+      is_refused = true;
+      CHECK(reply.body.find("many requests of this address wait") == 0);
+    }
+  }
+  CHECK(is_refused);
+  WebPeer other(gateway->port(), kCalmAddress);
+  CHECK(other.get("/world/valley" + std::string(kTile)).status == 200);
 }
 
 TEST_CASE("the time of drawing is charged to the address that asked", "[integration]") {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/os/child_program.hpp"
+#include "tests/integration/server/web/web_program.hpp"
 #include "tests/support/shell_run.hpp"
 #include "tests/support/temp_folder.hpp"
 #include "tests/support/web_peer.hpp"
@@ -20,16 +21,6 @@ namespace runstone::test {
 namespace {
 
 const std::string kWeb = RUNSTONE_WEB_PROGRAM;
-
-/// Reads the port that a program writes, for at most a minute. Returns 0 if it wrote none.
-std::uint16_t port_in(const std::string& file) {
-  for (int i = 0; i < 6'000; ++i) {
-    int port = 0;
-    if (std::ifstream(file) >> port) return static_cast<std::uint16_t>(port);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return 0;
-}
 
 TEST_CASE("the gateway runs as a program, also without a server, until it is told to stop",
           "[integration]") {

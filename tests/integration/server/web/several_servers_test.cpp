@@ -1,7 +1,10 @@
 #include <catch2/catch.hpp>
-#include <fstream>
+#include <chrono>
+#include <memory>
 #include <string>
+#include <vector>
 
+#include "tests/integration/server/web/fake_server.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
 #include "tests/support/web_player.hpp"
 
@@ -86,6 +89,35 @@ TEST_CASE("one server that stops leaves the other one's players alone", "[integr
   CHECK(closed->close_code() == 1013);
   one.send(Ping{5});
   CHECK(one.next_of<Pong>().has_value());
+}
+
+TEST_CASE("servers that do not answer delay no other page, and their own only once",
+          "[integration]") {
+  const TempFolder folder;
+  ServerConfig valley = quiet_config(folder / "valley");
+  valley.gateway_socket = folder / "valley.sock";
+  const auto server = start_server(valley, flat_creation());
+  WebConfig config = web_config_of(folder);
+  config.gateway_socket = WebConfig().gateway_socket;
+  config.servers.push_back({"valley", valley.gateway_socket, "", "", ""});
+  std::vector<std::unique_ptr<FakeServer>> hung;
+  for (const std::string name : {"a", "b", "c"}) {
+    const std::string socket = folder / (name + ".sock");
+    config.servers.push_back({name, socket, "", "", ""});
+    hung.push_back(std::make_unique<FakeServer>(socket + ".status"));
+  }
+  const auto gateway = start_gateway(config);
+  const auto begin = std::chrono::steady_clock::now();
+  WebPeer all(gateway->port()), one(gateway->port());
+  all.send("GET /status HTTP/1.1\r\nHost: x\r\n\r\n");
+  CHECK(shows(one.get("/world/valley/status"), "The server is running."));
+  CHECK(one.get("/style.css").status == 200);
+  CHECK_FALSE(wait_input(all.native_handle(), 0));  // it still waits for the others
+  const HttpReply page = all.reply();
+  CHECK(shows(page, "valley</a></th><td>running"));
+  CHECK(shows(page, "a</a></th><td>not running"));
+  // The gateway waits two seconds for a status.
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(5));
 }
 
 TEST_CASE("the limits of an address hold for all worlds together", "[integration]") {

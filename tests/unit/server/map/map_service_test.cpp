@@ -13,7 +13,8 @@ TEST_CASE("a full queue refuses at once, and a stop answers each request that wa
   std::latch is_begun(1), may_end(1);
   std::atomic<std::size_t> answers{0}, refusals{0};
   {
-    MapService service(empty.path(), 1 << 20, [](const std::string&) {});
+    MapThreads threads(1);
+    MapService service(threads, empty.path(), 1 << 20, [](const std::string&) {});
     // This reply keeps the thread, so nothing leaves the queue.
     service.ask(RightsRequest{}, "", [&](const MapAnswer&) {
       is_begun.count_down();

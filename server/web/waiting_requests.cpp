@@ -1,0 +1,37 @@
+#include "server/web/waiting_requests.hpp"
+
+#include "common/core/assert.hpp"
+
+namespace runstone {
+namespace {
+
+using Counts = std::map<AddressBlock, std::size_t>;
+
+std::size_t count_of(const Counts& counts, AddressBlock of) {
+  const auto found = counts.find(of);
+  return found == counts.end() ? 0 : found->second;
+}
+
+void take_one(Counts& counts, AddressBlock of) {
+  const auto found = counts.find(of);
+  RUNSTONE_ASSERT(found != counts.end());
+  if (--found->second == 0) counts.erase(found);
+}
+
+}  // namespace
+
+bool WaitingRequests::add(AddressBlock from) {
+  const AddressBlock range = address_range_of(from);
+  if (count_of(of_address_, from) >= kOfAddressMax || count_of(of_range_, range) >= kOfRangeMax)
+    return false;
+  ++of_address_[from];
+  ++of_range_[range];
+  return true;
+}
+
+void WaitingRequests::remove(AddressBlock from) {
+  take_one(of_address_, from);
+  take_one(of_range_, address_range_of(from));
+}
+
+}  // namespace runstone
