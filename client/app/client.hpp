@@ -22,7 +22,7 @@
 #include "client/app/script_actions.hpp"
 #include "client/app/terminal_chat.hpp"
 #include "client/app/threaded_session.hpp"
-#include "client/app/world_panels.hpp"
+#include "client/panels/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/input/input_router.hpp"
 #include "client/play/display_pace.hpp"

@@ -17,7 +17,7 @@ struct KnownFile {
   const char* type;
 };
 constexpr std::string_view kPage = "client.html";
-constexpr std::array<KnownFile, 9> kFiles = {{
+constexpr std::array<KnownFile, 10> kFiles = {{
     {kPage, "text/html; charset=utf-8"},
     {"client.css", "text/css; charset=utf-8"},
     {"client.js", "text/javascript; charset=utf-8"},
@@ -27,6 +27,7 @@ constexpr std::array<KnownFile, 9> kFiles = {{
     {"ticker.js", "text/javascript; charset=utf-8"},
     {"runstone-web-client.js", "text/javascript; charset=utf-8"},
     {"runstone-web-client.wasm", "application/wasm"},
+    {"DejaVuSans.ttf", "font/ttf"},
 }};
 
 std::optional<std::string> read_file(const std::string& path) {

@@ -10,6 +10,7 @@ import { join } from "node:path";
 import { addCacheCases } from "./cache_cases.mjs";
 import { differenceOf, sideBySide } from "./pictures.mjs";
 import { ABOVE, Player, until } from "./player.mjs";
+import { addWindowCases } from "./window_cases.mjs";
 import { World } from "./world.mjs";
 
 const [bin, files, out = "browser-out"] = process.argv.slice(2);
@@ -412,7 +413,7 @@ test("a program that has failed is called no more", async () => {
   });
   await useAll();
   const before = await calls();
-  for (const name of ["_web_resize", "_web_key", "_web_button", "_web_focus_lost", "_web_leave", "_web_tick"])
+  for (const name of ["resize", "key", "button", "focus_lost", "leave", "tick"].map((one) => `_web_${one}`))
     assert(before.includes(name), `${name} was not called`);
   await player.page.evaluate(() => {
     runstone.onAbort("it failed on purpose");
@@ -426,6 +427,7 @@ test("a program that has failed is called no more", async () => {
   await player.page.close();
 });
 
+addWindowCases({ test, bin, files, out, somebody, world: () => world });
 addCacheCases({ test, bin, files, measured, somebody, world: () => world });
 
 test("the page is small", async () => {

@@ -64,6 +64,12 @@ export class Player {
   state() {
     return this.page.evaluate(() => JSON.parse(runstone.ccall("web_state", "string", [], [])));
   }
+  hasWindowAt(x, y) {
+    return this.page.evaluate((...at) => runstone._web_has_window_at(...at) !== 0, x, y);
+  }
+  windows() {
+    return this.page.evaluate(() => JSON.parse(runstone.ccall("web_windows", "string", [], [])));
+  }
   report() {
     return this.page.evaluate(() => JSON.parse(runstone.ccall("web_report", "string", [], [])));
   }

@@ -61,6 +61,10 @@ export class World {
   async stopServer() {
     await stop(this.server);
   }
+  // Gives a command to the server, such as "role default moderator".
+  control(command) {
+    execFileSync(join(this.bin, "runstone-server"), ["control", "--world", join(this.folder, "world"), ...command.split(" ")]);
+  }
   // Copies the world of a server that is stopped, and puts the copy back.
   backUp() {
     cpSync(join(this.folder, "world"), join(this.folder, "backup"), { recursive: true });

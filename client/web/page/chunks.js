@@ -249,7 +249,7 @@ const Chunks = (() => {
         if (database === null || !hasRoom || !wanted.has(name)) return;
         touched.add(name);
         const row = stored instanceof Uint8Array ? stored : new Uint8Array();
-        Program.write(Program.call("web_cache_buffer", row.length), row);
+        Program.buffer(row);
         hasRoom = Program.call("web_cache_found", wanted.get(name)) !== 0;
       };
       const ranges = rangesOf([...wanted.keys()].sort());
@@ -294,7 +294,8 @@ const Chunks = (() => {
       let size = bytes;
       const evicted = [];
       await change(["chunks", "entries", "used", "state"], async (chunks, entries, used, state) => {
-        const before = await Promise.all(rows.map(({ name }) => (has(name) ? answered(entries.get(name)) : null)));
+        const before = await Promise.all(rows.map(({ name }) =>
+          (has(name) ? answered(entries.get(name)) : null)));
         rows.forEach(({ name, row, entry }, i) => {
           size += entry.bytes - (before[i]?.bytes ?? 0);
           chunks.put(row, name);

@@ -118,6 +118,22 @@ const page = {
   walking(isWalking) {
     $("walk").textContent = isWalking ? "fly" : "walk";
   },
+  capture(isCaptured) {
+    if (!isCaptured) document.exitPointerLock?.();
+    else if (!document.body.classList.contains("touch")) capture();
+  },
+  async loadFont() {
+    let font = new ArrayBuffer(0);
+    try {
+      const answer = await fetch("DejaVuSans.ttf");
+      if (!answer.ok) throw new Error(`the gateway answers ${answer.status}`);
+      font = await answer.arrayBuffer();
+    } catch (error) {
+      page.notice(`the windows lack some letters: their font cannot be loaded: ${error?.message || error}`, true);
+    }
+    Program.buffer(new Uint8Array(font));
+    Program.call("web_font");
+  },
   keepServer: Keys.keepServer,
 };
 
@@ -143,7 +159,8 @@ async function loadProgram() {
   $("step").textContent = "loading the program";
   await Program.load({ page, chunks: Chunks }, (why) => {
     ticker?.terminate();
-    fail("The client has failed", `${why}\nLoad the page again. Edits that the server has not confirmed are lost.`);
+    fail("The client has failed",
+      `${why}\nLoad the page again. Edits that the server has not confirmed are lost.`);
   });
   ticker = new Worker("ticker.js");
   ticker.onmessage = () => Program.call("web_tick");
@@ -200,8 +217,10 @@ async function join(event) {
   url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
   // An invite is the part after '#', which browsers do not send.
   const invite = new URLSearchParams(location.hash.slice(1)).get("invite") ?? "";
-  const why = Program.text("web_join", url.href, name, invite, keys.seed, keys.isKept ? 1 : 0, keys.servers,
-    Number($("sight").value), 3, Number($("quality").value), worlds === null ? 0 : 1, worlds ?? "");
+  const [sight, quality] = ["sight", "quality"].map((id) => Number($(id).value));
+  const FAR_LEVELS = 3;
+  const why = Program.text("web_join", url.href, name, invite, keys.seed, keys.isKept ? 1 : 0,
+    keys.servers, sight, FAR_LEVELS, quality, worlds === null ? 0 : 1, worlds ?? "");
   if (why !== "") {
     $("step").textContent = "You cannot join like this";
     $("detail").textContent = why;
@@ -228,7 +247,14 @@ function onKey(event) {
   if (event.code === "F5" || event.code === "F11" || event.code === "F12") return;
   event.preventDefault();
   const isPressed = event.type === "keydown" ? 1 : 0;
-  Program.call("web_key", event.code, event.key, isPressed, event.repeat ? 1 : 0, modifiers(event));
+  const character = [...event.key].length === 1 ? event.key.codePointAt(0) : 0;
+  Program.call("web_key", event.code, event.key, isPressed, event.repeat ? 1 : 0, modifiers(event),
+    character);
+}
+
+// If the browser refuses the capture, the mouse turns the player while it is over the canvas.
+function capture() {
+  $("canvas").requestPointerLock?.()?.catch?.(() => {});
 }
 
 // Events of the mouse, because a pointer event does not report a second button that is pressed while
@@ -239,14 +265,15 @@ function onButton(event) {
   const isPressed = event.type === "mousedown";
   if (isPressed) {
     $("canvas").focus();
-    // If the browser refuses the capture, the mouse turns the player while it is over the canvas.
-    if (document.pointerLockElement === null) $("canvas").requestPointerLock?.()?.catch?.(() => {});
+    const isForWindow = Program.call("web_has_window_at", event.clientX, event.clientY) !== 0;
+    if (document.pointerLockElement === null && !isForWindow) capture();
   }
   Program.call("web_button", event.button, isPressed ? 1 : 0);
 }
 
 function onMove(event) {
-  if (isPlaying) Program.call("web_mouse", event.movementX, event.movementY);
+  const { clientX, clientY, movementX, movementY } = event;
+  if (isPlaying) Program.call("web_mouse", clientX, clientY, movementX, movementY);
 }
 
 let wheelPixels = 0; // since the last step
@@ -273,7 +300,7 @@ function onTouch(event) {
 function heldKey(id, code) {
   const send = (isPressed) => (event) => {
     event.preventDefault();
-    Program.call("web_key", code, "", isPressed, 0, 0);
+    Program.call("web_key", code, "", isPressed, 0, 0, 0);
   };
   $(id).addEventListener("pointerdown", send(1));
   for (const type of ["pointerup", "pointercancel", "pointerleave"]) $(id).addEventListener(type, send(0));
@@ -326,7 +353,8 @@ function listen() {
   };
   heldKey("up", "Space");
   heldKey("down", "ShiftLeft");
-  $("walk").onclick = () => Program.call("web_walk_or_fly");
+  $("walk").onclick = () => Program.call("web_act", "walk_or_fly");
+  for (const name of ["tools", "map", "rollback"]) $(name).onclick = () => Program.call("web_act", name);
   $("talk").onclick = page.openChat;
   $("all").onclick = page.togglePalette;
   $("past").onclick = page.toggleTimeline;

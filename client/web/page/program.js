@@ -18,8 +18,9 @@ const Program = (() => {
   const call = (name, ...args) => (runs() ? callAs("number", name, args) : 0);
   // Calls a function that returns a text. Returns an empty text if the program does not run.
   const text = (name, ...args) => (runs() ? callAs("string", name, args) : "");
-  // Copies bytes to an address that the program has returned. The memory may have moved since.
-  function write(address, bytes) {
+  // Copies bytes into the buffer from which functions that take bytes read them.
+  function buffer(bytes) {
+    const address = call("web_buffer", bytes.length); // the memory may grow in this call
     if (runs()) runstone.HEAPU8.set(bytes, address);
   }
 
@@ -40,9 +41,11 @@ const Program = (() => {
     }
     runstone = await makeRunstone({ ...parts, onAbort: end, printErr: (line) => console.warn(line) });
     // A trap of WebAssembly, such as an access beyond the memory, is no abort().
-    window.addEventListener("error", ({ error }) => error instanceof WebAssembly.RuntimeError && end(error));
+    window.addEventListener("error", ({ error }) => {
+      if (error instanceof WebAssembly.RuntimeError) end(error);
+    });
     call("web_prepare");
   }
 
-  return { load, runs, call, text, write };
+  return { load, call, text, buffer };
 })();
