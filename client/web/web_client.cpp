@@ -223,16 +223,21 @@ void WebClient::handle_input(TimeUs now_us) {
   if (const auto line = act_on_wheel(routed.player, tool_, player_, hud_.hotbar()))
     hud_.notify(*line, false);
   for (const Action action : routed.player.actions) act(action);
+  share_mouse();  // the tool window counts a captured mouse as a click beside it
   if (!routed.for_ui.empty() && windows_.is_any_open()) {
     windows_.feed(routed.for_ui);
     // The windows take the events now, so that they know before the next ones whether they type.
     static_cast<void>(make_windows(now_us));
     pipeline_.moved();
   }
+  share_mouse();
+  if (!routed.player.actions.empty() || routed.player.scroll != 0) pipeline_.moved();
+}
+
+void WebClient::share_mouse() {
   const bool was_captured = input_.is_captured();
   input_.set_windows(false, windows_.focus().panels);
   if (input_.is_captured() != was_captured) page_capture(input_.is_captured() ? 1 : 0);
-  if (!routed.player.actions.empty() || routed.player.scroll != 0) pipeline_.moved();
 }
 
 HudState WebClient::hud_state() const {

@@ -95,6 +95,8 @@ class WebClient {
   void drain_changes();
   void limit_memory(TimeUs now_us);
   void handle_input(TimeUs now_us);
+  /// Frees the mouse for windows that were opened, and captures it again when they are closed.
+  void share_mouse();
   void follow_player(TimeUs now_us);
   /// Sends what is queued, and meshes until this time, one chunk at least.
   void mesh_until(TimeUs until_us);

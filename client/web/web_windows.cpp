@@ -17,10 +17,10 @@ void WebWindows::set_font(ByteView font, double scale) {
 
 UiFocus WebWindows::focus() const {
   UiFocus out;
+  out.panels = windows_.count_with_mouse();
   if (!context_ || !windows_.is_any_open()) return out;
   out.types = windows_.has_fields() && context_->types();
   out.over_window = context_->over_window();
-  out.panels = windows_.count_with_mouse();
   return out;
 }
 

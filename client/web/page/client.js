@@ -13,13 +13,14 @@ const WHEEL_STEP = 60; // pixels; the notch of a mouse wheel has about 100
 let ticker = null; // a worker that calls the program while the page is hidden
 let isPlaying = false;
 let cache = null; // the promise of openCache(), once it was called
+let wantsMouse = false; // the player has captured the mouse, or a click has asked for it
 let momentTimer = 0; // runs while the player moves the slider of the timeline
 const early = []; // notices that came before there was a place to show them
 const materials = new Map();
 
 function fail(headline, detail) {
   isPlaying = false;
-  document.exitPointerLock?.();
+  release();
   document.body.classList.add("failed");
   $("hud").hidden = true;
   $("door").hidden = false;
@@ -71,7 +72,7 @@ const page = {
     while ($("lines").children.length > LINES_MAX) $("lines").firstChild.remove();
   },
   openChat() {
-    document.exitPointerLock?.();
+    release();
     $("say").hidden = false;
     $("say").focus();
   },
@@ -93,7 +94,7 @@ const page = {
   },
   togglePalette() {
     $("palette").hidden = !$("palette").hidden;
-    if (!$("palette").hidden) document.exitPointerLock?.();
+    if (!$("palette").hidden) release();
   },
   slot(slot, material, isChosen) {
     const button = $("slots").children[slot];
@@ -106,7 +107,7 @@ const page = {
   },
   toggleTimeline() {
     $("timeline").hidden = !$("timeline").hidden;
-    if (!$("timeline").hidden) document.exitPointerLock?.();
+    if (!$("timeline").hidden) release();
   },
   time(newest, shown, isPast) {
     $("moment").max = newest;
@@ -119,7 +120,7 @@ const page = {
     $("walk").textContent = isWalking ? "fly" : "walk";
   },
   capture(isCaptured) {
-    if (!isCaptured) document.exitPointerLock?.();
+    if (!isCaptured) release();
     else if (!document.body.classList.contains("touch")) capture();
   },
   async loadFont() {
@@ -254,7 +255,16 @@ function onKey(event) {
 
 // If the browser refuses the capture, the mouse turns the player while it is over the canvas.
 function capture() {
+  wantsMouse = true;
   $("canvas").requestPointerLock?.()?.catch?.(() => {});
+}
+function release() {
+  wantsMouse = false; // the browser may still be about to capture the mouse
+  document.exitPointerLock?.();
+}
+function onCapture() {
+  if (document.pointerLockElement === null) return void (isPlaying && Program.call("web_capture_lost"));
+  if (!wantsMouse) document.exitPointerLock();
 }
 
 // Events of the mouse, because a pointer event does not report a second button that is pressed while
@@ -318,8 +328,7 @@ function listen() {
   for (const type of ["touchstart", "touchmove", "touchend", "touchcancel"])
     canvas.addEventListener(type, onTouch, { passive: false });
   // The press of the button has captured the mouse in the program already.
-  document.addEventListener("pointerlockchange", () =>
-    isPlaying && document.pointerLockElement === null && Program.call("web_capture_lost"));
+  document.addEventListener("pointerlockchange", onCapture);
   window.addEventListener("blur", () => Program.call("web_focus_lost"));
   window.addEventListener("resize", resize);
   window.addEventListener("beforeunload", (event) => {
