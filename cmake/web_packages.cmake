@@ -36,10 +36,10 @@ set_target_properties(flatbuffers::flatc PROPERTIES IMPORTED_LOCATION ${FLATC})
 set(web_sources ${PROJECT_BINARY_DIR}/library-sources)
 execute_process(COMMAND ${PROJECT_SOURCE_DIR}/scripts/web-sources ${web_sources} RESULT_VARIABLE failed)
 if(failed)
-  message(FATAL_ERROR "scripts/web-sources could not fetch the sources of libsodium, zstd and utf8proc")
+  message(FATAL_ERROR "scripts/web-sources could not fetch the sources of Dear ImGui, libsodium, zstd and utf8proc")
 endif()
 
-# Makes NAME of C sources. HEADERS is the folder that its users include from.
+# Makes NAME of sources in C or C++. HEADERS is the folder that its users include from.
 function(web_library name alias)
   cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PRIVATE_HEADERS;DEFINITIONS" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
@@ -68,3 +68,9 @@ web_library(web_sodium PkgConfig::SODIUM SOURCES ${sodium_sources}
 web_library(web_utf8proc PkgConfig::UTF8PROC SOURCES ${web_sources}/utf8proc/utf8proc.c HEADERS ${web_sources}/utf8proc
             DEFINITIONS UTF8PROC_STATIC)
 target_compile_definitions(web_utf8proc PUBLIC UTF8PROC_STATIC)
+
+set(imgui ${web_sources}/imgui)
+web_library(web_imgui PkgConfig::IMGUI
+            SOURCES ${imgui}/imgui.cpp ${imgui}/imgui_draw.cpp ${imgui}/imgui_tables.cpp ${imgui}/imgui_widgets.cpp
+                    ${imgui}/misc/cpp/imgui_stdlib.cpp
+            HEADERS ${imgui} ${imgui}/misc/cpp DEFINITIONS IMGUI_DISABLE_DEMO_WINDOWS IMGUI_DISABLE_METRICS_WINDOW)

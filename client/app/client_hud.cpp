@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/panels/panel_actions.hpp"
 #include "client/play/time_travel.hpp"
 #include "client/render/projection.hpp"
 #include "client/replica/ray_pick.hpp"
@@ -116,11 +117,7 @@ HudState ClientHud::state(const HudScene& scene) const {
   return out;
 }
 
-ShownPanels ClientHud::shown_panels() const {
-  const MapWindow& map = hud_.map();
-  return {map.is_open(), hud_.shows_timeline(), hud_.shows_rollback(), map.centre_x(),
-          map.centre_z()};
-}
+ShownPanels ClientHud::shown_panels() const { return runstone::shown_panels(hud_.panels()); }
 
 void ClientHud::add_players(HudState& state) const {
   const auto& permissions = session_.replica().ground().permissions();
@@ -264,18 +261,11 @@ void ClientHud::add_traffic(const NetCounts& net, TimeUs now_us, StatisticsState
 }
 
 void ClientHud::carry_out(const UiAction& action, TimeUs now_us) {
-  if (const auto* moment = std::get_if<ShowMoment>(&action)) {
-    show_after(session_, moment->is_live ? kSequenceShownMax : moment->seq);
-  }
   if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
   if (const auto* held = std::get_if<HoldMaterial>(&action)) hotbar_.hold(held->material);
   if (const auto* chosen = std::get_if<SetInspection>(&action)) pipeline_.inspect(chosen->modes);
-  if (const auto* order = std::get_if<RollbackOrder>(&action))
-    static_cast<void>(panels_.carry_out(*order));  // the window says why not
-  if (const auto* command = std::get_if<ToolCommand>(&action)) {
-    if (const auto done = tool_.carry_out(*command, now_us); !done)
-      notify(done.error(), NoticeKind::warning);
-  }
+  if (const auto done = carry_out_panel(action, session_, panels_, tool_, now_us); !done)
+    notify(done.error(), NoticeKind::warning);
 }
 
 }  // namespace runstone

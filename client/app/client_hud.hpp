@@ -7,8 +7,8 @@
 #include <string>
 
 #include "client/app/terminal_chat.hpp"
-#include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
+#include "client/panels/world_panels.hpp"
 #include "client/play/edit_tool.hpp"
 #include "client/play/player.hpp"
 #include "client/play/player_hotbar.hpp"
@@ -62,8 +62,8 @@ class ClientHud {
   bool shows_statistics() const { return hud_.shows_statistics(); }
   /// Returns which windows of WorldPanels are open.
   ShownPanels shown_panels() const;
-  MapWindow& map() { return hud_.map(); }
-  void show_timeline(bool is_shown) { hud_.show_timeline(is_shown); }
+  MapWindow& map() { return hud_.panels().map(); }
+  void show_timeline(bool is_shown) { hud_.panels().timeline().set_open(is_shown); }
 
  private:
   HudState state(const HudScene& scene) const;

@@ -7,9 +7,9 @@
 
 #include "client/app/client_hud.hpp"
 #include "client/app/terminal_chat.hpp"
-#include "client/app/world_panels.hpp"
 #include "client/display/mesh_pipeline.hpp"
 #include "client/input/input_router.hpp"
+#include "client/panels/world_panels.hpp"
 #include "client/play/edit_tool.hpp"
 #include "client/play/player.hpp"
 #include "client/play/view_follower.hpp"

@@ -11,6 +11,7 @@
 
 #include "client/net/key_file.hpp"
 #include "client/report/link_counts.hpp"
+#include "client/session/cache_exchange.hpp"
 #include "client/settings/recent_servers.hpp"
 #include "common/core/hex.hpp"
 #include "common/os/passphrase.hpp"
@@ -187,12 +188,7 @@ void ThreadedSession::flush() {
 
 void ThreadedSession::step_cache(TimeUs now_us, std::size_t room_bytes) {
   if (!cache_) return;
-  for (auto& found : cache_->drain_results())
-    session_.receive_cache_result(std::move(found), now_us);
-  while (auto lookup = session_.take_cache_lookup()) {
-    lookup->bytes_max = room_bytes;
-    cache_->look_up(*std::move(lookup));
-  }
+  exchange_lookups(session_, *cache_, room_bytes, now_us);
   if (now_us - kept_us_ >= kKeepUs) {
     kept_us_ = now_us;
     static_cast<void>(keep_chunks(cache_->room()));

@@ -1,5 +1,6 @@
 #include "client/far/far_tiles.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/core/assert.hpp"
@@ -159,11 +160,16 @@ std::vector<std::pair<ChunkKey, ChunkPtr>> FarTiles::take_for_cache(std::size_t 
   std::vector<std::pair<ChunkKey, ChunkPtr>> out;
   for (auto& [key, tile] : tiles_) {
     if (out.size() >= count_max) break;
-    if (!tile.is_vouched || !tile.can_be_kept || tile.is_cached) continue;
+    if (!tile.is_for_cache()) continue;
     tile.is_cached = true;
     out.emplace_back(key, tile.source);
   }
   return out;
+}
+
+bool FarTiles::has_for_cache() const {
+  return std::any_of(tiles_.begin(), tiles_.end(),
+                     [](const auto& entry) { return entry.second.is_for_cache(); });
 }
 
 std::vector<ChunkKey> FarTiles::take_not_held() {

@@ -58,6 +58,8 @@ class FarTiles {
   /// Returns at most `count_max` tiles that a cache does not have yet, ascending. The server has
   /// vouched for them on this connection. Cost: O(tiles).
   std::vector<std::pair<ChunkKey, ChunkPtr>> take_for_cache(std::size_t count_max);
+  /// Returns true if take_for_cache() has tiles to return. Cost: O(tiles).
+  bool has_for_cache() const;
   /// Returns the keys of tiles of the view that a cache may have, ascending: those that are not held,
   /// and not below a held tile that is empty. Levels whose tiles are the same as in the call before, on
   /// the same connection, are left out. It is empty if the server takes no claims of tiles. Cost:
@@ -85,6 +87,8 @@ class FarTiles {
     bool is_vouched = false;   // the server has answered for it on this connection
     bool can_be_kept = false;  // for claims and the cache
     bool is_cached = false;
+
+    bool is_for_cache() const { return is_vouched && can_be_kept && !is_cached; }
   };
   using Tiles = std::map<ChunkKey, Held>;
 

@@ -20,21 +20,40 @@ void CacheOutbox::add(const TrackedChunk& chunk) {
 }
 
 std::vector<KeyedChunk> CacheOutbox::take(ReplicaChunks* chunks, std::size_t count_max) {
+  if (chunks == nullptr) next_.reset();
+  const bool is_continued = next_.has_value();
+  std::vector<KeyedChunk> out = take_left(count_max);
+  if (chunks == nullptr) return out;
+  take_changed(*chunks, count_max, out);
+  if (is_continued && out.empty()) take_changed(*chunks, count_max, out);
+  return out;
+}
+
+std::vector<KeyedChunk> CacheOutbox::take_left(std::size_t count_max) {
   const std::size_t count = std::min(count_max, left_.size());
   const auto end = left_.begin() + static_cast<std::ptrdiff_t>(count);
   std::vector<KeyedChunk> out(left_.begin(), end);
   left_.erase(left_.begin(), end);
   for (const auto& [key, chunk] : out) bytes_ -= outbox_bytes_of(*chunk);
-  if (chunks == nullptr) return out;
+  return out;
+}
+
+void CacheOutbox::take_changed(ReplicaChunks& chunks, std::size_t count_max,
+                               std::vector<KeyedChunk>& out) {
   std::size_t bytes = 0;
-  for (auto& [key, chunk] : *chunks) {
-    if (out.size() >= count_max || bytes >= kCacheBatchBytesMax) break;
+  auto at = next_ ? chunks.lower_bound(*next_) : chunks.begin();
+  next_.reset();
+  for (; at != chunks.end(); ++at) {
+    auto& [key, chunk] = *at;
     if (!chunk.is_for_cache()) continue;
+    if (out.size() >= count_max || bytes >= kCacheBatchBytesMax) {
+      next_ = key;
+      return;
+    }
     bytes += outbox_bytes_of(*chunk.confirmed());
     chunk.cached = chunk.confirmed()->version;
     out.emplace_back(key, chunk.confirmed());
   }
-  return out;
 }
 
 }  // namespace runstone

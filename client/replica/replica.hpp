@@ -151,6 +151,11 @@ class Replica {
   void collect_for_cache() { outbox_.enable(); }
   /// Returns at most `count_max` chunks to be cached, see CacheOutbox::take(). Tiles follow.
   std::vector<KeyedChunk> take_for_cache(std::size_t count_max);
+  /// Returns true if the last call of take_for_cache() ended a round over all chunks and tiles.
+  /// Cost: O(tiles).
+  bool is_cache_round_over() const {
+    return outbox_.is_round_over() && !far_tiles_.has_for_cache();
+  }
 
   /// Returns what changed since the last call.
   ReplicaChanges drain_changes();

@@ -63,6 +63,8 @@ class ReplicaChunks {
   // All chunks, ascending by key.
   Map::iterator begin() { return chunks_.begin(); }
   Map::iterator end() { return chunks_.end(); }
+  /// Returns the first chunk whose key is not below `key`.
+  Map::iterator lower_bound(const ChunkKey& key) { return chunks_.lower_bound(key); }
   Map::const_iterator begin() const { return chunks_.begin(); }
   Map::const_iterator end() const { return chunks_.end(); }
 

@@ -31,30 +31,18 @@ bool Hud::act(Action action) {
     case Action::statistics:
       shows_statistics_ = !shows_statistics_;
       return true;
-    case Action::tools:
-      tools_.toggle();
-      return true;
-    case Action::timeline:
-      timeline_.toggle();
-      return true;
-    case Action::map:
-      map_.toggle();
-      return true;
-    case Action::rollback:
-      rollback_.toggle();
-      return true;
     case Action::release:
       return close_top();
     default:
-      return false;
+      return panels_.act(action);
   }
 }
 
 bool Hud::close_top() {
   if (chat_.is_open()) return chat_.close(), true;
   if (palette_.is_open()) return palette_.close(), true;
-  return std::exchange(shows_help_, false) || tools_.close() || rollback_.close() ||
-         timeline_.close() || map_.close() || std::exchange(shows_statistics_, false);
+  return std::exchange(shows_help_, false) || panels_.close_one() ||
+         std::exchange(shows_statistics_, false);
 }
 
 bool Hud::takes_focus() const { return chat_.takes_focus() || palette_.takes_focus(); }
@@ -63,13 +51,10 @@ UiFocus Hud::focus() const {
   UiFocus out;
   out.has_window = chat_.is_open() || palette_.is_open();
   // ImGui still names a text field whose window was closed after the last frame.
-  const bool has_fields =
-      out.has_window || tools_.is_open() || rollback_.is_open() || timeline_.is_open();
+  const bool has_fields = out.has_window || panels_.has_fields();
   out.types = has_fields && (context_.types() || takes_focus());
   out.over_window = context_.over_window();
-  for (const bool is_open : {map_.is_open(), timeline_.is_open(), rollback_.is_open(),
-                             tools_.has_mouse(), shows_help_, shows_statistics_})
-    out.panels += is_open ? 1 : 0;
+  out.panels = panels_.count_with_mouse() + (shows_help_ ? 1U : 0U) + (shows_statistics_ ? 1U : 0U);
   return out;
 }
 
@@ -93,8 +78,7 @@ std::shared_ptr<const OverlayFrame> Hud::make_frame(const HudState& state, std::
   if (std::exchange(held_, held) != held) name_seconds_ = 0;
   const auto make = [&] { build(state); };
   // ImGui knows the height of a window only after it was made once.
-  const std::array<bool, 3> open = {timeline_.is_open(), map_.is_open(), rollback_.is_open()};
-  if (std::exchange(open_, open) != open) context_.make_hidden_frame(size, make);
+  if (panels_.take_changed()) context_.make_hidden_frame(size, make);
   for (int i = 0; i < UiContext::kFocusFrames && takes_focus(); ++i)
     context_.make_hidden_frame(size, make);
   return context_.make_frame(size, seconds, make);
@@ -119,12 +103,7 @@ void Hud::build(const HudState& state) {
     build_statistics(state.statistics, keys_, scale, modes, shows_statistics_);
     if (modes != state.inspection) actions_.emplace_back(SetInspection{modes});
   }
-  if (const auto moment = timeline_.build(state.timeline, scale)) actions_.emplace_back(*moment);
-  map_.build(state.map, *state.materials, context_);
-  if (auto order = rollback_.build(state.rollback, scale)) actions_.emplace_back(*std::move(order));
-  std::vector<ToolCommand> commands;
-  tools_.build(state, scale, commands);
-  for (ToolCommand& command : commands) actions_.emplace_back(std::move(command));
+  panels_.build(state, context_, actions_);
   if (shows_help_) build_help(key_rows(keys_), shows_help_);
   const Material held = state.slots[state.slot];
   if (const auto chosen = palette_.build(*state.materials, held, scale))

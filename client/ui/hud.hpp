@@ -12,12 +12,9 @@
 #include "client/input/input_router.hpp"
 #include "client/ui/chat_window.hpp"
 #include "client/ui/hud_state.hpp"
-#include "client/ui/map_window.hpp"
 #include "client/ui/notice_list.hpp"
 #include "client/ui/palette_window.hpp"
-#include "client/ui/rollback_window.hpp"
-#include "client/ui/timeline_window.hpp"
-#include "client/ui/tool_window.hpp"
+#include "client/ui/panel_windows.hpp"
 #include "client/ui/ui_action.hpp"
 #include "client/ui/ui_context.hpp"
 
@@ -46,11 +43,8 @@ class Hud {
   /// fades.
   bool is_moving() const;
   bool shows_statistics() const { return shows_statistics_; }
-  bool shows_timeline() const { return timeline_.is_open(); }
-  bool shows_rollback() const { return rollback_.is_open(); }
-  void show_timeline(bool is_shown) { timeline_.set_open(is_shown); }
-  MapWindow& map() { return map_; }
-  const MapWindow& map() const { return map_; }
+  PanelWindows& panels() { return panels_; }
+  const PanelWindows& panels() const { return panels_; }
 
  private:
   void build(const HudState& state);
@@ -64,12 +58,8 @@ class Hud {
   NoticeList notices_;
   ChatWindow chat_;
   PaletteWindow palette_;
-  TimelineWindow timeline_;
-  ToolWindow tools_{keys_};
-  MapWindow map_;
-  RollbackWindow rollback_;
-  std::array<bool, 3> open_{};  // which panels were in the last frame
-  bool has_news_ = false;       // since the last frame
+  PanelWindows panels_{keys_};
+  bool has_news_ = false;  // since the last frame
   bool shows_help_ = false, shows_statistics_ = false;
   std::vector<UiAction> actions_;
   double name_seconds_ = kLong;  // since the held material changed

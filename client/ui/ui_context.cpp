@@ -1,14 +1,13 @@
 #include "client/ui/ui_context.hpp"
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <iterator>
 #include <set>
-#include <system_error>
 #include <utility>
 
 namespace runstone {
@@ -64,12 +63,20 @@ void set_style(double scale) {
   style.ScaleAllSizes(static_cast<float>(scale));
 }
 
-void load_font(double scale) {
+void load_font(double scale, const std::optional<ByteView>& font) {
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-  std::error_code error;
   const auto pixels = static_cast<float>(kFontPixels * scale);
-  if (std::filesystem::is_regular_file(kFontFile, error)) {
-    fonts.AddFontFromFileTTF(kFontFile, pixels, nullptr, kGlyphRanges.data());
+  std::size_t bytes = 0;
+  void* file = nullptr;  // the atlas frees it
+  if (!font) {
+    file = ImFileLoadToMemory(kFontFile, "rb", &bytes);
+  } else if (!font->empty()) {
+    bytes = font->size();
+    file = ImGui::MemAlloc(bytes);
+    std::memcpy(file, font->data(), bytes);
+  }
+  if (file != nullptr) {
+    fonts.AddFontFromMemoryTTF(file, static_cast<int>(bytes), pixels, nullptr, kGlyphRanges.data());
   } else {
     ImFontConfig config;
     config.SizePixels = pixels;
@@ -159,7 +166,8 @@ void apply(const InputEvent& event) {
 
 void UiContext::Deleter::operator()(ImGuiContext* context) const { ImGui::DestroyContext(context); }
 
-UiContext::UiContext(double scale) : scale_(scale), context_(ImGui::CreateContext()) {
+UiContext::UiContext(double scale, std::optional<ByteView> font)
+    : scale_(scale), context_(ImGui::CreateContext()) {
   ImGui::SetCurrentContext(context_.get());
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
@@ -168,7 +176,7 @@ UiContext::UiContext(double scale) : scale_(scale), context_(ImGui::CreateContex
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   for (const KeyPair& pair : kKeyPairs) io.KeyMap[pair.imgui] = static_cast<int>(pair.key);
   set_style(scale);
-  load_font(scale);
+  load_font(scale, font);
   atlas_ = take_atlas();
 }
 
@@ -252,6 +260,16 @@ bool UiContext::types() const {
 bool UiContext::over_window() const {
   ImGui::SetCurrentContext(context_.get());
   return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool UiContext::has_window_at(double x, double y) const {
+  const ImVec2 at(static_cast<float>(x), static_cast<float>(y));
+  for (const ImGuiWindow* window : context_->Windows) {
+    const bool takes_mouse =
+        window->Active && !window->Hidden && (window->Flags & ImGuiWindowFlags_NoMouseInputs) == 0;
+    if (takes_mouse && window->Rect().Contains(at)) return true;
+  }
+  return false;
 }
 
 }  // namespace runstone

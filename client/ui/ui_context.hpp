@@ -6,10 +6,12 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "client/input/input_event.hpp"
 #include "client/render/overlay_frame.hpp"
+#include "common/core/bytes.hpp"
 
 struct ImGuiContext;
 
@@ -17,9 +19,10 @@ namespace runstone {
 
 class UiContext {
  public:
-  /// `scale` multiplies the size of text and of everything else; 1 is made for 1280x720. Loads the
-  /// font DejaVu Sans. If its file is missing, the text has only the letters of Western Europe.
-  explicit UiContext(double scale = 1);
+  /// `scale` multiplies the size of text and of everything else; 1 is made for 1280x720. `font` has
+  /// the bytes of a TrueType file, or none; nullopt reads the file of DejaVu Sans. Without a font the
+  /// text has only the letters of Western Europe.
+  explicit UiContext(double scale = 1, std::optional<ByteView> font = std::nullopt);
   ~UiContext();
   UiContext(const UiContext&) = delete;
   UiContext& operator=(const UiContext&) = delete;
@@ -51,6 +54,8 @@ class UiContext {
   bool types() const;
   /// Returns true if, after the last frame, the cursor was over a window.
   bool over_window() const;
+  /// Returns true if, after the last frame, a window that takes the mouse was at this pixel.
+  bool has_window_at(double x, double y) const;
   double scale() const { return scale_; }
 
  private:

@@ -32,6 +32,11 @@ void page_slot(int slot, int material, int is_chosen);
 void page_players(int count, const char* names);
 /// Shows whether the player flies or walks.
 void page_walking(int is_walking);
+/// Captures the mouse, or frees it.
+void page_capture(int is_captured);
+/// Loads the font of the windows. The page calls web_font() with its bytes, or with none if it has
+/// no font.
+void page_load_font(void);
 /// Keeps the key of a world's server for later visits. Both are in hex.
 void page_keep_server(const char* world, const char* key);
 

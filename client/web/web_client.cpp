@@ -1,8 +1,10 @@
 #include "client/web/web_client.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
+#include "client/panels/panel_actions.hpp"
 #include "client/play/time_travel.hpp"
 #include "client/play/tool_actions.hpp"
 #include "client/play/wheel_actions.hpp"
@@ -28,6 +30,8 @@ constexpr TimeUs kPaceUs = 20'000;
 /// The frame time that LookControl gets for a frame that kept pace.
 constexpr TimeUs kPaceTookUs = 8'000;
 constexpr double kFieldOfView = 69;  // degrees, vertical
+/// The windows have their full size on pages that are at least as wide, in pixels of the page.
+constexpr double kWindowsWidth = 480;
 
 /// Returns the default keys, but V for flying faster: browsers close their tab for ctrl+W, and a
 /// page cannot prevent it.
@@ -55,6 +59,8 @@ WebClient::WebClient(const JoinOptions& options, Screen& screen)
       view_(session_, player_, radii_of(options), options.far_levels),
       limits_({options.memory_mib, radii_of(options), options.far_levels}, session_.replica(),
               pipeline_, view_),
+      panels_(session_, player_, tools_),
+      windows_(input_.keys()),
       scene_(session_, player_, tool_, view_),
       hud_(session_, player_),
       pins_kept_(options.pinned.size()),
@@ -71,7 +77,7 @@ void WebClient::turn(TimeUs now_us, bool draws) {
   if (network_.take_world_opened()) on_world_opened();
   take_new_materials();
   drain_changes();
-  players_.update(session_.others(), now_us);
+  if (panels_.step(windows_.shown(), now_us)) pipeline_.moved();
   limit_memory(now_us);
   handle_input(now_us);
   pipeline_.take_drawn();
@@ -129,6 +135,7 @@ void WebClient::take_new_materials() {
 }
 
 void WebClient::set_tool_materials(const MaterialTable& materials) {
+  panels_.set_materials(materials);
   const std::string lost = tools_.set_materials(materials);
   if (!lost.empty()) hud_.notify(with_unseen_replaced(lost), true);
 }
@@ -136,6 +143,7 @@ void WebClient::set_tool_materials(const MaterialTable& materials) {
 void WebClient::drain_changes() {
   const ReplicaChanges changes = session_.replica().drain_changes();
   pipeline_.take(changes, session_.clock(), steady_now_us());
+  panels_.take(changes);
   hud_.take(changes);
 }
 
@@ -153,11 +161,54 @@ void WebClient::capture(bool is_captured) {
   }
 }
 
+void WebClient::set_size(std::array<int, 2> pixels, double page_width, double page_height) {
+  size_ = pixels;
+  page_width_ = std::max(page_width, 1.0);
+  touch_.set_size(page_width, page_height);
+  pipeline_.moved();
+}
+
+void WebClient::set_font(ByteView font) {
+  const double pixels = size_[0] / page_width_;  // for each pixel of the page
+  windows_.set_font(font, pixels * std::min(1.0, page_width_ / kWindowsWidth));
+  pipeline_.moved();
+}
+
+void WebClient::move_mouse(double x, double y, double dx, double dy) {
+  const double pixels = size_[0] / page_width_;
+  push(CursorEvent{x * pixels, y * pixels, dx, dy});
+}
+
+bool WebClient::has_window_at(double x, double y) const {
+  const double pixels = size_[0] / page_width_;
+  return windows_.has_window_at(x * pixels, y * pixels);
+}
+
+void WebClient::touch(int id, int phase, double x, double y) {
+  const bool begins = phase == 0, moves = phase == 1;
+  if (begins && !window_touch_ && has_window_at(x, y)) {
+    window_touch_ = id;
+    input_.release();
+  }
+  if (window_touch_ == id) {
+    if (begins || moves) move_mouse(x, y, 0, 0);
+    if (!moves) push(ButtonEvent{MouseButton::left, begins});
+    if (!begins && !moves) window_touch_.reset();
+    return;
+  }
+  capture(true);
+  const TimeUs now_us = steady_now_us();
+  if (phase == 0) touch_.begin(id, x, y, now_us);
+  if (phase == 1) touch_.move(id, x, y);
+  if (phase == 2) touch_.end(id, now_us);
+  if (phase == 3) touch_.cancel();
+}
+
 void WebClient::handle_input(TimeUs now_us) {
   const double seconds = static_cast<double>(now_us - std::exchange(input_us_, now_us)) / 1e6;
   touch_.step(now_us);
   input_.push(touch_.take_events());
-  const RoutedInput routed = input_.route({});
+  const RoutedInput routed = input_.route(windows_.focus());
   const bool was_waiting = player_.is_waiting_for_ground();
   motion_.step(routed.player, std::min(seconds, 0.1), {});
   if (player_.take_fallen_out()) {
@@ -172,13 +223,56 @@ void WebClient::handle_input(TimeUs now_us) {
   if (const auto line = act_on_wheel(routed.player, tool_, player_, hud_.hotbar()))
     hud_.notify(*line, false);
   for (const Action action : routed.player.actions) act(action);
+  share_mouse();  // the tool window counts a captured mouse as a click beside it
+  if (!routed.for_ui.empty() && windows_.is_any_open()) {
+    windows_.feed(routed.for_ui);
+    // The windows take the events now, so that they know before the next ones whether they type.
+    static_cast<void>(make_windows(now_us));
+    pipeline_.moved();
+  }
+  share_mouse();
   if (!routed.player.actions.empty() || routed.player.scroll != 0) pipeline_.moved();
+}
+
+void WebClient::share_mouse() {
+  const bool was_captured = input_.is_captured();
+  input_.set_windows(false, windows_.focus().panels);
+  if (input_.is_captured() != was_captured) page_capture(input_.is_captured() ? 1 : 0);
+}
+
+HudState WebClient::hud_state() const {
+  HudState out;
+  out.materials = &pipeline_.materials();
+  out.slots = hud_.hotbar().slots().slots();
+  out.slot = hud_.hotbar().slots().slot();
+  out.is_captured = input_.is_captured();
+  out.is_connected = network_.is_connected();
+  if (const auto sight = tool_.pick()) {
+    out.aimed_at = sight->material;
+    out.sight = sight->voxel;
+  }
+  out.tools = &tools_;
+  out.has_preview = tool_.has_preview();
+  panels_.fill(out, windows_.shown());
+  return out;
+}
+
+std::shared_ptr<const OverlayFrame> WebClient::make_windows(TimeUs now_us) {
+  const TimeUs before_us = std::exchange(windows_us_, now_us);
+  auto frame =
+      windows_.make_frame(hud_state(), size_, static_cast<double>(now_us - before_us) / 1e6);
+  for (const UiAction& action : windows_.take_actions()) {
+    if (const auto done = carry_out_panel(action, session_, panels_, tool_, now_us); !done)
+      hud_.notify(done.error(), true);
+  }
+  return frame;
 }
 
 void WebClient::act(Action action) {
   if (const auto done = act_on_tool(tool_, action, steady_now_us()))
     return hud_.notify(*done ? **done : done->error(), !*done);
   if (hud_.hotbar().act(action)) return;
+  if (action != Action::timeline && windows_.act(action)) return;
   switch (action) {
     case Action::walk_or_fly:
       player_.set_walking(!player_.is_walking());
@@ -229,7 +323,7 @@ void WebClient::mesh_until(TimeUs until_us) {
 }
 
 void WebClient::draw(TimeUs now_us) {
-  const bool is_moving = players_.take_moved(now_us);
+  const bool is_moving = panels_.take_moved(now_us);
   pace_.step(pipeline_, true, player_.pose(), is_moving, now_us);
   if (!pipeline_.is_frame_due(now_us)) {
     drawn_us_.reset();
@@ -246,7 +340,10 @@ void WebClient::draw(TimeUs now_us) {
   order.camera = scene_.camera(is_exact_ ? std::nullopt : std::optional<double>(kFieldOfView));
   order.width = size_[0];
   order.height = size_[1];
-  order.contents = scene_.contents(players_.at(now_us), !is_exact_, false);
+  order.contents = scene_.contents(panels_.poses(), !is_exact_, false);
+  const std::span<const GhostChunk> rollback = panels_.rollback().ghosts();
+  order.contents.ghosts.insert(order.contents.ghosts.end(), rollback.begin(), rollback.end());
+  if (windows_.is_any_open()) order.overlay = make_windows(now_us);
   pipeline_.draw(now_us, std::move(order));
   queue_.serve(screen_);
   pipeline_.take_drawn();

@@ -10,9 +10,9 @@
 
 #include "client/display/draw_queue.hpp"
 #include "client/display/mesh_pipeline.hpp"
-#include "client/display/smooth_players.hpp"
 #include "client/input/input_router.hpp"
 #include "client/input/touch_pad.hpp"
+#include "client/panels/world_panels.hpp"
 #include "client/play/click_edits.hpp"
 #include "client/play/display_pace.hpp"
 #include "client/play/edit_tool.hpp"
@@ -26,6 +26,7 @@
 #include "client/web/join_options.hpp"
 #include "client/web/web_hud.hpp"
 #include "client/web/web_session.hpp"
+#include "client/web/web_windows.hpp"
 
 namespace runstone {
 
@@ -42,10 +43,20 @@ class WebClient {
 
   /// Queues input for the next turn.
   void push(const InputEvent& event) { input_.push({event}); }
-  TouchPad& touch() { return touch_; }
+  /// Begins, moves, ends or cancels a touch (`phase` is 0 to 3), at a place of the page. A touch
+  /// that begins on a window is a mouse for this window.
+  void touch(int id, int phase, double x, double y);
+  void set_tap_mode(TapMode mode) { touch_.set_mode(mode); }
+  /// Queues a movement of the mouse to a place of the page.
+  void move_mouse(double x, double y, double dx, double dy);
+  /// Returns true if a window is at this place of the page.
+  bool has_window_at(double x, double y) const;
   /// Captures the mouse, or frees it.
   void capture(bool is_captured);
-  void set_size(int width, int height) { size_ = {width, height}; }
+  /// Sets the size of the canvas in pixels, and in those of the page.
+  void set_size(std::array<int, 2> pixels, double page_width, double page_height);
+  /// Takes the font of the windows.
+  void set_font(ByteView font);
   void act(Action action);
   /// Requests the world after an edit, as show_after() does.
   void show_moment(Sequence seq) { show_after(session_, seq); }
@@ -62,6 +73,10 @@ class WebClient {
   /// Returns the number of the player's edits that are not on the server's disk yet.
   std::size_t unconfirmed() const { return session_.replica().local_edits().all().size(); }
   const Player& player() const { return player_; }
+  const ToolBox& tools() const { return tools_; }
+  const WorldPanels& panels() const { return panels_; }
+  bool is_captured() const { return input_.is_captured(); }
+  ShownPanels shown_panels() const { return windows_.shown(); }
   const WebSession& network() const { return network_; }
   const MeshPipeline& pipeline() const { return pipeline_; }
   std::optional<Material> shown_at(VoxelPos at) const { return session_.replica().shown_at(at); }
@@ -70,12 +85,18 @@ class WebClient {
   std::string report_json() const;
 
  private:
+  /// Returns what the windows show of the world and the player.
+  HudState hud_state() const;
+  /// Makes the windows of a frame, and carries out what the user did in them.
+  std::shared_ptr<const OverlayFrame> make_windows(TimeUs now_us);
   void on_world_opened();
   void take_new_materials();
   void set_tool_materials(const MaterialTable& materials);
   void drain_changes();
   void limit_memory(TimeUs now_us);
   void handle_input(TimeUs now_us);
+  /// Frees the mouse for windows that were opened, and captures it again when they are closed.
+  void share_mouse();
   void follow_player(TimeUs now_us);
   /// Sends what is queued, and meshes until this time, one chunk at least.
   void mesh_until(TimeUs until_us);
@@ -101,12 +122,16 @@ class WebClient {
   TouchPad touch_;
   ViewFollower view_;
   ViewLimits limits_;
-  SmoothPlayers players_;
+  WorldPanels panels_;
+  WebWindows windows_;
   FrameScene scene_;
   DisplayPace pace_;
   WebHud hud_;
 
   std::array<int, 2> size_{640, 360};  // of the canvas, pixels
+  double page_width_ = 640;            // of the canvas, pixels of the page
+  std::optional<int> window_touch_;    // the touch that began on a window
+  TimeUs windows_us_ = 0;              // when the windows were made last
   std::optional<WorldId> world_;       // whose materials the hotbar has
   std::size_t pins_kept_ = 0;          // server keys that the page keeps
   std::optional<TimeUs> opened_us_;    // when the first world opened

@@ -26,6 +26,7 @@ class WebHud {
   /// Adds the materials that the page does not have yet. Cost: O(new materials).
   void add_materials(const MaterialTable& materials);
   PlayerHotbar& hotbar() { return hotbar_; }
+  const PlayerHotbar& hotbar() const { return hotbar_; }
 
   void notify(std::string_view text, bool is_warning);
   /// Shows the notices about rejected edits, the past and the disk of the server.

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "client/input/action.hpp"
 #include "client/input/dom_key.hpp"
 #include "client/platform/canvas_context.hpp"
 #include "client/session/join_check.hpp"
@@ -28,7 +29,7 @@ constexpr TimeUs kShownUs = 250'000;
 std::unique_ptr<Screen> screen;
 std::unique_ptr<WebClient> client;  // null: nobody plays
 TimeUs frame_us = 0;                // when the last frame began
-ByteView cache_record;              // in the buffer of web_cache_buffer()
+ByteView buffered;                  // the bytes in the buffer of web_buffer()
 
 EM_BOOL on_frame(double /*time_ms*/, void* /*unused*/) {
   frame_us = steady_now_us();
@@ -125,14 +126,12 @@ EMSCRIPTEN_KEEPALIVE void web_leave() {
 }
 
 EMSCRIPTEN_KEEPALIVE void web_resize(int width, int height, double page_width, double page_height) {
-  if (!client) return;
-  client->set_size(std::max(width, 1), std::max(height, 1));
-  client->touch().set_size(page_width, page_height);
+  if (client) client->set_size({std::max(width, 1), std::max(height, 1)}, page_width, page_height);
 }
 
-/// `modifiers`: 1 control, 2 shift, 4 alt.
+/// `modifiers`: 1 control, 2 shift, 4 alt. `character` is the one that the key types, or 0.
 EMSCRIPTEN_KEEPALIVE void web_key(const char* code, const char* text, int is_pressed, int is_repeat,
-                                  int modifiers) {
+                                  int modifiers, std::uint32_t character) {
   if (!client) return;
   KeyEvent event;
   event.place = key_of_code(code);
@@ -143,10 +142,31 @@ EMSCRIPTEN_KEEPALIVE void web_key(const char* code, const char* text, int is_pre
   event.shift = (modifiers & 2) != 0;
   event.alt = (modifiers & 4) != 0;
   client->push(event);
+  // Control and alt together are the key AltGr of some systems.
+  if (event.is_pressed && character != 0 && event.control == event.alt)
+    client->push(CharacterEvent{static_cast<char32_t>(character)});
 }
 
-EMSCRIPTEN_KEEPALIVE void web_mouse(double dx, double dy) {
-  if (client) client->push(CursorEvent{0, 0, dx, dy});
+/// `x` and `y` are a place of the page.
+EMSCRIPTEN_KEEPALIVE void web_mouse(double x, double y, double dx, double dy) {
+  if (client) client->move_mouse(x, y, dx, dy);
+}
+
+/// Returns 1 if a window is at this place of the page: the mouse is the window's there.
+EMSCRIPTEN_KEEPALIVE int web_has_window_at(double x, double y) {
+  return client && client->has_window_at(x, y) ? 1 : 0;
+}
+
+/// Takes the font of the windows: the bytes in the buffer of web_buffer().
+EMSCRIPTEN_KEEPALIVE void web_font() {
+  if (client) client->set_font(buffered);
+}
+
+/// Carries out an action by its name, see action_table().
+EMSCRIPTEN_KEEPALIVE void web_act(const char* name) {
+  for (const ActionInfo& info : action_table()) {
+    if (client && info.name == name) client->act(info.action);
+  }
 }
 
 /// `button` as in MouseEvent.button.
@@ -171,17 +191,11 @@ EMSCRIPTEN_KEEPALIVE void web_focus_lost() {
 
 /// `phase`: 0 begins, 1 moves, 2 ends, 3 all touches are cancelled.
 EMSCRIPTEN_KEEPALIVE void web_touch(int id, int phase, double x, double y) {
-  if (!client) return;
-  client->capture(true);
-  TouchPad& touch = client->touch();
-  if (phase == 0) touch.begin(id, x, y, steady_now_us());
-  if (phase == 1) touch.move(id, x, y);
-  if (phase == 2) touch.end(id, steady_now_us());
-  if (phase == 3) touch.cancel();
+  if (client) client->touch(id, phase, x, y);
 }
 
 EMSCRIPTEN_KEEPALIVE void web_tap_mode(int removes) {
-  if (client) client->touch().set_mode(removes != 0 ? TapMode::remove : TapMode::place);
+  if (client) client->set_tap_mode(removes != 0 ? TapMode::remove : TapMode::place);
 }
 
 EMSCRIPTEN_KEEPALIVE void web_choose_slot(int slot) {
@@ -191,10 +205,6 @@ EMSCRIPTEN_KEEPALIVE void web_choose_slot(int slot) {
 EMSCRIPTEN_KEEPALIVE void web_hold(int material) {
   if (client && material > 0 && static_cast<std::size_t>(material) < kMaterialCountMax)
     client->hud().hotbar().hold(static_cast<Material>(material));
-}
-
-EMSCRIPTEN_KEEPALIVE void web_walk_or_fly() {
-  if (client) client->act(Action::walk_or_fly);
 }
 
 EMSCRIPTEN_KEEPALIVE void web_say(const char* line) {
@@ -207,20 +217,21 @@ EMSCRIPTEN_KEEPALIVE void web_show_moment(double seq) {
     client->show_moment(static_cast<Sequence>(seq));
 }
 
-// The chunk cache, see WebCache.
-
-/// Returns the address of so many bytes. They live until the next call.
-EMSCRIPTEN_KEEPALIVE std::uint8_t* web_cache_buffer(int bytes) {
+/// Returns the address of so many bytes, for the functions that take bytes. They live until the next
+/// call.
+EMSCRIPTEN_KEEPALIVE std::uint8_t* web_buffer(int bytes) {
   static Bytes buffer;
   buffer.resize(static_cast<std::size_t>(std::max(bytes, 1)));
-  cache_record = ByteView(buffer).first(static_cast<std::size_t>(std::max(bytes, 0)));
+  buffered = ByteView(buffer).first(static_cast<std::size_t>(std::max(bytes, 0)));
   return buffer.data();
 }
+
+// The chunk cache, see WebCache.
 
 /// Gives the record in the buffer to the oldest lookup. Returns 0 if the lookup takes no more.
 EMSCRIPTEN_KEEPALIVE int web_cache_found(int index) {
   WebCache* const cache = client ? client->cache() : nullptr;
-  return cache != nullptr && cache->found(static_cast<std::size_t>(index), cache_record) ? 1 : 0;
+  return cache != nullptr && cache->found(static_cast<std::size_t>(index), buffered) ? 1 : 0;
 }
 
 EMSCRIPTEN_KEEPALIVE void web_cache_looked_up() {
@@ -274,6 +285,24 @@ EMSCRIPTEN_KEEPALIVE const char* web_state() {
            std::to_string(sight->voxel.z) + ", " + std::to_string(sight->material) + "]}";
   }
   return kept(std::move(out));
+}
+
+/// Returns what the windows show.
+EMSCRIPTEN_KEEPALIVE const char* web_windows() {
+  if (!client) return kept("{}");
+  const ShownPanels shown = client->shown_panels();
+  HudState state;
+  client->panels().fill(state, shown);
+  const auto word = [](bool is_true) {
+    return is_true ? std::string("true") : std::string("false");
+  };
+  return kept("{\"captured\": " + word(client->is_captured()) + ", \"map\": " + word(shown.map) +
+              ", \"rollback\": " + word(shown.rollback) + ", \"tools\": " + word(shown.tools) +
+              ", \"tool\": \"" + std::string(client->tools().tool().name()) + "\", \"tiles\": " +
+              std::to_string(state.map.map == nullptr ? 0 : state.map.map->tiles().size()) +
+              ", \"phase\": " + std::to_string(static_cast<int>(state.rollback.phase)) +
+              ", \"voxels\": " + std::to_string(state.rollback.voxels) +
+              ", \"ghosts\": " + std::to_string(client->panels().rollback().ghosts().size()) + "}");
 }
 
 EMSCRIPTEN_KEEPALIVE const char* web_report() {

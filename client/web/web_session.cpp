@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "client/report/link_counts.hpp"
+#include "client/session/cache_exchange.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
@@ -61,13 +62,7 @@ void WebSession::flush(TimeUs now_us) {
 }
 
 void WebSession::step_cache(std::size_t room_bytes, TimeUs now_us) {
-  if (!cache_) return;
-  for (auto& found : cache_->drain_results())
-    session_.receive_cache_result(std::move(found), now_us);
-  while (auto lookup = session_.take_cache_lookup()) {
-    lookup->bytes_max = room_bytes;
-    cache_->look_up(*std::move(lookup));
-  }
+  if (cache_) exchange_lookups(session_, *cache_, room_bytes, now_us);
 }
 
 void WebSession::keep_chunks(TimeUs now_us) {
@@ -77,7 +72,7 @@ void WebSession::keep_chunks(TimeUs now_us) {
   if (!world || room == 0) return;
   const std::vector<KeyedChunk> chunks = session_.replica().take_for_cache(room);
   cache_->keep(*world, chunks);
-  if (chunks.size() == room) return;
+  if (!session_.replica().is_cache_round_over()) return;
   cache_->flush();
   keep_us_ = now_us + kKeepUs;
 }

@@ -17,15 +17,17 @@ struct KnownFile {
   const char* type;
 };
 constexpr std::string_view kPage = "client.html";
-constexpr std::array<KnownFile, 8> kFiles = {{
+constexpr std::array<KnownFile, 10> kFiles = {{
     {kPage, "text/html; charset=utf-8"},
     {"client.css", "text/css; charset=utf-8"},
     {"client.js", "text/javascript; charset=utf-8"},
+    {"program.js", "text/javascript; charset=utf-8"},
     {"keys.js", "text/javascript; charset=utf-8"},
     {"chunks.js", "text/javascript; charset=utf-8"},
     {"ticker.js", "text/javascript; charset=utf-8"},
     {"runstone-web-client.js", "text/javascript; charset=utf-8"},
     {"runstone-web-client.wasm", "application/wasm"},
+    {"DejaVuSans.ttf", "font/ttf"},
 }};
 
 std::optional<std::string> read_file(const std::string& path) {

@@ -7,8 +7,10 @@ import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
+import { addCacheCases } from "./cache_cases.mjs";
 import { differenceOf, sideBySide } from "./pictures.mjs";
-import { Player, until } from "./player.mjs";
+import { ABOVE, Player, until } from "./player.mjs";
+import { addWindowCases } from "./window_cases.mjs";
 import { World } from "./world.mjs";
 
 const [bin, files, out = "browser-out"] = process.argv.slice(2);
@@ -20,8 +22,6 @@ mkdirSync(out, { recursive: true });
 
 const PAGE_BYTES_MAX = 1_500_000; // compressed
 const FLAT = ["--generator", "flat"];
-// Above the flat ground of the world, looking down at 45 degrees.
-const ABOVE = { yaw: 0.5, pitch: -0.8 };
 
 const browser = await puppeteer.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
@@ -34,25 +34,6 @@ const measured = {};
 // What all cases share: a world, and a way to open a browser of somebody who was never here.
 let world;
 const somebody = () => browser.createBrowserContext();
-
-// Looks from some voxels above a place of the ground that nobody has used yet.
-let places = 0;
-async function lookDown(player) {
-  const state = await player.state();
-  const x = 0.5 + 12 * places++;
-  await player.camera(x, state.y, 0.5, ABOVE.yaw, ABOVE.pitch);
-  return until("the ground is in sight", async () => (await player.state()).sight);
-}
-
-// Adds one voxel on top of the one in sight by a click. Returns its place.
-async function place(player) {
-  const [x, y, z] = (await player.state()).sight;
-  await player.click("right");
-  return until("the placed voxel is shown", async () => {
-    const { sight } = await player.state();
-    return sight && (sight[0] !== x || sight[1] !== y || sight[2] !== z) ? sight : null;
-  });
-}
 
 test("a browser joins, and shows the ground", async () => {
   const player = await Player.open(await somebody(), world.address);
@@ -101,7 +82,7 @@ test("buttons, wheel and keys reach the player", async () => {
   await player.joined("keys");
   await player.complete();
   await player.capture();
-  await lookDown(player);
+  await player.lookDown();
   const { held } = await player.state();
   await player.page.mouse.wheel({ deltaY: 100 });
   await until("the wheel chose another material", async () => (await player.state()).held !== held);
@@ -121,7 +102,7 @@ test("buttons, wheel and keys reach the player", async () => {
   for (const button of ["right", "left"]) await player.page.mouse.up({ button });
   assert.deepEqual(await player.page.evaluate(() => buttons), ["0,1", "2,1", "2,0", "0,0"]);
 
-  const placed = await place(player);
+  const placed = await player.place();
   await player.page.keyboard.down("Control");
   await player.page.keyboard.press("KeyZ");
   await player.page.keyboard.up("Control");
@@ -166,9 +147,9 @@ test("what one builds and digs, the other sees, and a reload finds", async () =>
 
   await bob.page.bringToFront();
   await bob.capture();
-  const ground = await lookDown(bob);
+  const ground = await bob.lookDown();
   await bob.page.keyboard.press("Digit3");
-  const placed = await place(bob);
+  const placed = await bob.place();
   assert.notDeepEqual(placed.slice(0, 3), ground.slice(0, 3));
   await until("eve sees what bob placed", async () => (await eve.voxel(...placed.slice(0, 3))) === placed[3]);
   await bob.click("left");
@@ -205,8 +186,8 @@ test("the timeline shows the past, in which nothing can be built, and leads back
   await player.joined("clio");
   await player.complete();
   await player.capture();
-  await lookDown(player);
-  const [x, y, z, material] = await place(player);
+  await player.lookDown();
+  const [x, y, z, material] = await player.place();
   const shown = () => player.voxel(x, y, z);
   await until("the edit is in the log", () => player.page.evaluate(() => runstone._web_unconfirmed() === 0));
   await player.page.keyboard.press("KeyH");
@@ -234,7 +215,7 @@ test("a click is meshed without meshing whole chunks, and its latency is measure
   await player.joined("click");
   await player.complete();
   await player.capture();
-  await lookDown(player);
+  await player.lookDown();
   await player.complete(); // the player has moved, so chunks may have come
   const CLICKS = 20;
   const before = await player.report();
@@ -264,11 +245,11 @@ test("the connection is made again after the server has restarted", async () => 
   await player.joined("rita");
   await player.complete();
   await player.capture();
-  await lookDown(player);
-  const before = await place(player);
+  await player.lookDown();
+  const before = await player.place();
   await world.stopServer();
   await until("the page says that the server is gone", async () => /server is gone/.test(await player.text("#state")));
-  const offline = await place(player); // it waits for the server
+  const offline = await player.place(); // it waits for the server
   await player.page.screenshot({ path: join(out, "server-gone.png") });
   await world.startServer();
   await until("the player is there again", async () => (await player.state()).connected);
@@ -348,7 +329,7 @@ test("on a phone, thumbs move, turn, place and remove", async () => {
   const player = await Player.open(await somebody(), world.address, { width: 390, height: 780, touch: true });
   await player.joined("thumb");
   await player.complete();
-  const ground = await lookDown(player);
+  const ground = await player.lookDown();
   const touch = player.page.touchscreen;
   const before = await player.state();
   await touch.touchStart(80, 640);
@@ -410,162 +391,44 @@ test("the picture is that of the desktop client", async () => {
   }
 });
 
-// The chunk cache.
-
-// Waits until the cache has all chunks of the player, and no rows come any more. Returns the report.
-function kept(player) {
-  return until("the chunks are kept", async () => {
-    const one = await player.report();
-    await new Promise((resolve) => setTimeout(resolve, 2500)); // longer than between two rounds of keeping
-    const other = await player.report();
-    const rows = (report) => report.cache.hits + report.cache.kept;
-    return rows(one) >= one.replica.confirmed_chunks && rows(one) === rows(other) ? other : null;
-  });
-}
-// Carries out a function with the database of the cache, in a page of the gateway that has no client.
-async function inDatabase(context, address, body) {
-  const page = await context.newPage();
-  await page.goto(`${address}/client/client.css`);
-  const out = await page.evaluate(`(async () => {
-    const database = await new Promise((resolve, reject) => {
-      const request = indexedDB.open("runstone-chunks");
-      request.onsuccess = () => resolve(request.result);
-      request.onerror = () => reject(request.error);
-    });
-    const answered = (request) => new Promise((resolve) => (request.onsuccess = () => resolve(request.result)));
-    const out = await (${body})(database, answered);
-    database.close();
-    return out;
-  })()`);
-  await page.close();
-  return out;
-}
-
-test("a reload continues from the kept chunks, and shows what was built meanwhile", async () => {
-  const hills = await World.open(bin, files, ["--generator", "terrain", "--seed", "7"]);
-  try {
-    const context = await somebody();
-    const visit = async () => {
-      const player = await Player.open(context, hills.address);
-      await player.joined("ada");
-      await player.complete();
-      return player;
-    };
-    const ada = await visit();
-    const first = await kept(ada);
-    assert.equal(first.cache.hits, 0);
-    assert(first.snapshots.count > 100, `${first.snapshots.count} snapshots`);
-    const eye = await ada.state();
-    await ada.page.close();
-
-    const eve = await Player.open(await somebody(), hills.address);
-    await eve.joined("eve");
-    await eve.complete();
-    await eve.capture();
-    await eve.camera(eye.x, eye.y, eye.z, ABOVE.yaw, ABOVE.pitch);
-    await until("the ground is in sight", async () => (await eve.state()).sight);
-    const built = await place(eve);
-    await until("what eve built is on the disk of the server", () =>
-      eve.page.evaluate(() => runstone._web_unconfirmed() === 0));
-    await eve.page.close();
-
-    const again = await visit();
-    const second = await kept(again);
-    assert.equal(await again.voxel(...built.slice(0, 3)), built[3]);
-    const { confirmed_chunks, adopted, claims_refuted, drifted, tiles_adopted } = second.replica;
-    console.log(`measured  after a reload ${adopted} of ${confirmed_chunks} chunks and ${tiles_adopted} of ` +
-      `${second.far_ground.tiles} tiles came from the cache; ${second.net.bytes_received} bytes were received, ` +
-      `${first.net.bytes_received} at the first visit`);
-    measured.cache = { first: { net: first.net, join: first.join, cache: first.cache },
-      second: { net: second.net, join: second.join, cache: second.cache } };
-    assert.equal(second.cache.corrupt, 0);
-    assert(adopted > 0.9 * confirmed_chunks, `${adopted} of ${confirmed_chunks} chunks`);
-    const tilesKept = first.cache.kept - first.replica.confirmed_chunks; // empty tiles are not kept
-    assert(tiles_adopted > 0.9 * tilesKept && tilesKept > 100, `${tiles_adopted} of ${tilesKept} tiles`);
-    assert(second.net.chunk_bytes < 0.2 * first.net.chunk_bytes, `${second.net.chunk_bytes} bytes of chunks`);
-    assert.equal(claims_refuted + drifted, 0);
-    assert.deepEqual(again.errors, []);
-    await again.page.close();
-
-    // After a restart the server has another epoch. What it had on its disk is still common.
-    await hills.stopServer();
-    await hills.startServer();
-    // Some rows are damaged: they are dropped, and the server sends these chunks.
-    const damaged = await inDatabase(context, hills.address, async (database, answered) => {
-      const chunks = database.transaction("chunks", "readwrite").objectStore("chunks");
-      const names = (await answered(chunks.getAllKeys())).filter((name) => /\/0[0-9a-f]{24}$/.test(name)).slice(0, 30);
-      for (const [i, name] of names.entries()) {
-        const row = await answered(chunks.get(name));
-        row[(7 * i + 5) % row.length] ^= 1 << (i % 8);
-        await answered(chunks.put(row, name));
-      }
-      return names.length;
-    });
-    assert.equal(damaged, 30);
-    const third = await visit();
-    const report = await kept(third);
-    assert.equal(report.cache.corrupt, damaged);
-    assert.equal(report.cache.not_common, 0);
-    assert(report.replica.adopted + damaged > 0.9 * confirmed_chunks, `${report.replica.adopted} chunks`);
-    assert.equal(report.replica.drifted, 0);
-    assert.equal(await third.voxel(...built.slice(0, 3)), built[3]);
-    await third.page.close();
-    const fourth = await visit();
-    assert.equal((await kept(fourth)).cache.corrupt, 0);
-    await fourth.page.close();
-  } finally {
-    await hills.close();
-  }
-});
-
-test("the kept chunks stay within their bound, and one tab keeps them", async () => {
-  const BYTES_MAX = 60_000;
-  const context = await somebody();
-  const player = await Player.open(context, world.address);
-  await player.loaded();
-  await player.page.evaluate((max) => {
-    const { open } = Chunks;
-    Chunks.open = () => open(max);
-  }, BYTES_MAX);
-  await player.joined("bound");
+test("a program that has failed is called no more", async () => {
+  const player = await Player.open(await somebody(), world.address);
+  await player.joined("unlucky");
   await player.complete();
-  const report = await until("rows are evicted", async () => {
-    const one = await player.report();
-    return one.cache.evicted > 0 && one.cache.kept >= one.replica.confirmed_chunks ? one : null;
+  const calls = () => player.page.evaluate(() => window.calls.splice(0));
+  const useAll = async () => {
+    await player.page.setViewport({ width: 600, height: 300 });
+    await player.page.keyboard.press("KeyF");
+    await player.click("left");
+    await player.page.evaluate(() => {
+      for (const type of ["blur", "resize", "pagehide"]) window.dispatchEvent(new Event(type));
+      ticker.onmessage();
+    });
+    await new Promise((resolve) => setTimeout(resolve, 3000)); // the cache has timers
+  };
+  await player.page.evaluate(() => {
+    window.calls = [];
+    for (const name of Object.keys(runstone).filter((one) => one.startsWith("_web_")))
+      runstone[name] = () => void calls.push(name);
   });
-  assert.equal(report.cache.corrupt, 0);
-  const other = await Player.open(context, world.address);
-  await other.joined("bound2");
-  await until("the other tab says that it keeps none", async () => /another tab keeps them/.test(await other.text("#notices")));
-  assert.equal((await other.report()).cache, null);
-  await other.page.close();
-  await player.page.close();
-  const { size, sum, rows, chunks } = await inDatabase(context, world.address, async (database, answered) => {
-    const transaction = database.transaction(["chunks", "entries", "state"]);
-    const entries = await answered(transaction.objectStore("entries").getAll());
-    return { size: await answered(transaction.objectStore("state").get("bytes")),
-      sum: entries.reduce((all, entry) => all + entry.bytes, 0), rows: entries.length,
-      chunks: await answered(transaction.objectStore("chunks").count()) };
+  await useAll();
+  const before = await calls();
+  for (const name of ["resize", "key", "button", "focus_lost", "leave", "tick"].map((one) => `_web_${one}`))
+    assert(before.includes(name), `${name} was not called`);
+  await player.page.evaluate(() => {
+    runstone.onAbort("it failed on purpose");
+    Chunks.dropRows("00".repeat(16), true, false, false, false, 0, 0);
   });
-  assert(size <= BYTES_MAX && size === sum, `${size} bytes, and ${sum} by the rows`);
-  assert(rows > 0 && rows === chunks, `${rows} entries, ${chunks} rows`);
-});
-
-test("a browser without room keeps no more chunks, and says so", async () => {
-  const player = await Player.open(await somebody(), world.address, { inject: () => {
-    const { put } = IDBObjectStore.prototype;
-    IDBObjectStore.prototype.put = function (...all) {
-      if (this.name === "chunks") throw new DOMException("no room", "QuotaExceededError");
-      return put.apply(this, all);
-    };
-  } });
-  await player.joined("full");
-  await until("words about the room", async () => /this browser has no more room for them/.test(await player.text("#notices")));
-  await player.complete();
-  assert.equal((await player.report()).cache.kept, 0);
+  await useAll();
+  assert.deepEqual(await calls(), []);
+  assert.match(await player.text("#step"), /The client has failed/);
+  assert.match(await player.text("#detail"), /it failed on purpose/);
   assert.deepEqual(player.errors, []);
   await player.page.close();
 });
+
+addWindowCases({ test, bin, files, out, somebody, world: () => world });
+addCacheCases({ test, bin, files, measured, somebody, world: () => world });
 
 test("the page is small", async () => {
   let bytes = 0;

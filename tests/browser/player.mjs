@@ -1,5 +1,8 @@
 // A player in a browser: a page of the gateway with the client for browsers.
 const STEP_MS = 60_000;
+// Above the flat ground of the world, looking down at 45 degrees.
+export const ABOVE = { yaw: 0.5, pitch: -0.8 };
+let places = 0; // of the ground that players have looked at
 
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -61,6 +64,12 @@ export class Player {
   state() {
     return this.page.evaluate(() => JSON.parse(runstone.ccall("web_state", "string", [], [])));
   }
+  hasWindowAt(x, y) {
+    return this.page.evaluate((...at) => runstone._web_has_window_at(...at) !== 0, x, y);
+  }
+  windows() {
+    return this.page.evaluate(() => JSON.parse(runstone.ccall("web_windows", "string", [], [])));
+  }
   report() {
     return this.page.evaluate(() => JSON.parse(runstone.ccall("web_report", "string", [], [])));
   }
@@ -72,6 +81,23 @@ export class Player {
   }
   text(id) {
     return this.page.$eval(id, (element) => element.textContent);
+  }
+
+  // Looks from some voxels above at a place of the ground that nobody has used yet. Returns the voxel in
+  // sight and its material.
+  async lookDown() {
+    const { y } = await this.state();
+    await this.camera(0.5 + 12 * places++, y, 0.5, ABOVE.yaw, ABOVE.pitch);
+    return until("the ground is in sight", async () => (await this.state()).sight);
+  }
+  // Adds one voxel on top of the one in sight by a click. Returns its place and its material.
+  async place() {
+    const [x, y, z] = (await this.state()).sight;
+    await this.click("right");
+    return until("the placed voxel is shown", async () => {
+      const { sight } = await this.state();
+      return sight && (sight[0] !== x || sight[1] !== y || sight[2] !== z) ? sight : null;
+    });
   }
 
   // The mouse is captured by the first click on the canvas.

@@ -1,6 +1,6 @@
 // A world with its server and its gateway, on free ports of this machine, in a folder of its own.
 import { execFileSync, spawn } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
@@ -60,6 +60,18 @@ export class World {
   }
   async stopServer() {
     await stop(this.server);
+  }
+  // Gives a command to the server, such as "role default moderator".
+  control(command) {
+    execFileSync(join(this.bin, "runstone-server"), ["control", "--world", join(this.folder, "world"), ...command.split(" ")]);
+  }
+  // Copies the world of a server that is stopped, and puts the copy back.
+  backUp() {
+    cpSync(join(this.folder, "world"), join(this.folder, "backup"), { recursive: true });
+  }
+  restore() {
+    rmSync(join(this.folder, "world"), { recursive: true });
+    cpSync(join(this.folder, "backup"), join(this.folder, "world"), { recursive: true });
   }
 
   // Returns the picture that the desktop client draws from this eye, as a PNG file. Angles are in

@@ -41,6 +41,12 @@ mergeInto(LibraryManager.library, {
   page_walking: function (isWalking) {
     Module.page.walking(isWalking !== 0);
   },
+  page_capture: function (isCaptured) {
+    Module.page.capture(isCaptured !== 0);
+  },
+  page_load_font: function () {
+    Module.page.loadFont();
+  },
   page_keep_server: function (world, key) {
     Module.page.keepServer(UTF8ToString(world), UTF8ToString(key));
   },

@@ -7,7 +7,8 @@
 //   state    "bytes" -> the size of all rows, "stamp" -> the newest stamp, "world" -> the last world
 // A name is "WORLD/LEVEL" and y, x and z in fixed width, so that the chunks of a line along z follow
 // each other and are read by one request. One tab of the browser uses the database at a time.
-// Operations are carried out one after the other, in their order.
+// Operations are carried out one after the other, in their order. One that fails changes nothing, and
+// ends the cache.
 "use strict";
 
 const Chunks = (() => {
@@ -15,11 +16,14 @@ const Chunks = (() => {
   const LAYOUT = 1;
   const STORES = ["chunks", "entries", "used", "worlds", "state"];
   const LOCK_MS = 2000; // the page before may need a moment to end
+  const OPEN_MS = 3000; // joining waits for the database no longer
   const ROW_OVERHEAD = 160; // bytes of a row and its entries, about
+  const RANGE_ROWS_MAX = 64; // the rows of one answer are checked in one task
   const RANGES_AT_A_TIME = 4, EVICTED_AT_A_TIME = 64;
   const TOUCH_MS = 2000;
 
   let database = null;
+  let unlock = () => {}; // gives the lock of the database back
   let bytesMax = 0;
   let bytes = 0, stamp = 1;
   let world = "", lines = new Map(); // of this world: the names without z -> the names of the rows
@@ -37,6 +41,20 @@ const Chunks = (() => {
       transaction.oncomplete = () => resolve();
       transaction.onabort = () => reject(transaction.error ?? new Error("the transaction was aborted"));
     });
+  }
+  // Calls `body` with these stores in a transaction. If the body or the transaction fails, nothing is
+  // changed.
+  async function change(stores, body) {
+    const transaction = database.transaction(stores, "readwrite");
+    const done = completed(transaction);
+    try {
+      await body(...stores.map((name) => transaction.objectStore(name)));
+    } catch (error) {
+      done.catch(() => {}); // this error is thrown instead
+      if (transaction.error === null) transaction.abort();
+      throw error;
+    }
+    await done;
   }
   const rangeOf = (id) => IDBKeyRange.bound(`${id}/`, `${id}0`, false, true); // '0' follows '/'
 
@@ -62,7 +80,7 @@ const Chunks = (() => {
     return answered(request);
   }
 
-  // Takes the lock of the database for as long as the page lives.
+  // Takes the lock of the database until unlock().
   function lock() {
     return new Promise((resolve, reject) => {
       if (!navigator.locks) return reject(new Error("this page was not loaded over https"));
@@ -71,7 +89,7 @@ const Chunks = (() => {
       navigator.locks.request(DATABASE, { signal: timeout.signal }, () => {
         clearTimeout(timer);
         resolve();
-        return new Promise(() => {});
+        return new Promise((release) => (unlock = release));
       }).catch(() => reject(new Error("another tab keeps them")));
     });
   }
@@ -87,11 +105,8 @@ const Chunks = (() => {
     return ids.map((id, i) => `${id} ${texts[i]}`).join("\n");
   }
 
-  // Opens the database. Returns the known worlds as lines of text, and throws with words if there is
-  // no cache. A damaged database is replaced by a new one.
-  async function open(sizeMax) {
-    bytesMax = sizeMax;
-    await lock();
+  // Opens the database. A damaged one is replaced by a new one.
+  async function openAndLoad() {
     try {
       database = await openDatabase();
       return await load();
@@ -104,13 +119,35 @@ const Chunks = (() => {
     }
   }
 
+  function close() {
+    database?.close();
+    database = null;
+    unlock();
+  }
+
+  // Begins the cache. Returns the known worlds as lines of text. Throws with words if there is no
+  // cache, or if the database does not answer within OPEN_MS.
+  async function open(sizeMax) {
+    bytesMax = sizeMax;
+    await lock();
+    const opened = openAndLoad();
+    const late = new Promise((resolve, reject) => {
+      setTimeout(() => reject(new Error("its database does not answer")), OPEN_MS);
+    });
+    try {
+      return await Promise.race([opened, late]);
+    } catch (error) {
+      opened.catch(() => {}).then(close); // it may still answer, and keeps the lock until then
+      throw error;
+    }
+  }
+
   // Ends the cache.
   function fail(error) {
     if (database === null) return;
     console.warn("no chunks are kept any more:", error);
-    database.close();
-    database = null;
-    runstone._web_cache_failed();
+    close();
+    Program.call("web_cache_failed");
     const isFull = error?.name === "QuotaExceededError";
     page.notice(`no chunks are kept any more: ${isFull ? "this browser has no more room for them" :
       error?.message || error}`, true);
@@ -140,17 +177,15 @@ const Chunks = (() => {
 
   // Drops the rows of these names.
   async function drop(wrong) {
-    const transaction = database.transaction(["chunks", "entries", "used", "state"], "readwrite");
-    const done = completed(transaction);
-    const entries = transaction.objectStore("entries");
-    const dropped = await Promise.all(wrong.map((name) => answered(entries.get(name))));
     let left = bytes;
-    wrong.forEach((name, i) => {
-      left -= dropped[i]?.bytes ?? 0;
-      for (const store of ["chunks", "entries", "used"]) transaction.objectStore(store).delete(name);
+    await change(["chunks", "entries", "used", "state"], async (chunks, entries, used, state) => {
+      const dropped = await Promise.all(wrong.map((name) => answered(entries.get(name))));
+      wrong.forEach((name, i) => {
+        left -= dropped[i]?.bytes ?? 0;
+        for (const store of [chunks, entries, used]) store.delete(name);
+      });
+      state.put(left, "bytes");
     });
-    transaction.objectStore("state").put(left, "bytes");
-    await done;
     bytes = left;
     wrong.forEach(remove);
   }
@@ -166,7 +201,7 @@ const Chunks = (() => {
         answered(entries.getAll(rangeOf(id)))]);
       const wrong = keys.filter((name, i) => isWrong(name, values[i]));
       await drop(wrong);
-      runstone._web_cache_dropped(wrong.length);
+      Program.call("web_cache_dropped", wrong.length);
     });
   }
   function dropRow(id, ...key) {
@@ -176,7 +211,8 @@ const Chunks = (() => {
     });
   }
 
-  // Returns ranges of names that contain the wanted ones, and few others. `wanted` is sorted.
+  // Returns ranges of names that contain the wanted ones, RANGE_ROWS_MAX at most in each, and few
+  // others. `wanted` is sorted.
   function rangesOf(wanted) {
     const out = [];
     let range = null;
@@ -187,9 +223,11 @@ const Chunks = (() => {
         const stored = range.stored + lines.get(line).size;
         const isBeside = line.slice(0, -8) === range.line.slice(0, -8) &&
           parseInt(line.slice(-8), 16) === parseInt(range.line.slice(-8), 16) + 1;
-        if (isBeside && 2 * stored <= 3 * (range.count + lines.get(line).size)) Object.assign(range, { line, stored });
+        const isDense = 2 * stored <= 3 * (range.count + lines.get(line).size);
+        if (isBeside && isDense && stored <= RANGE_ROWS_MAX) Object.assign(range, { line, stored });
         else range = null;
       }
+      if (range?.count === RANGE_ROWS_MAX) range = null;
       if (range === null) out.push(range = { from: name, line, count: 0, stored: lines.get(line).size });
       range.to = name;
       ++range.count;
@@ -211,9 +249,8 @@ const Chunks = (() => {
         if (database === null || !hasRoom || !wanted.has(name)) return;
         touched.add(name);
         const row = stored instanceof Uint8Array ? stored : new Uint8Array();
-        const at = runstone._web_cache_buffer(row.length); // the memory may grow in this call
-        runstone.HEAPU8.set(row, at);
-        hasRoom = runstone._web_cache_found(wanted.get(name)) !== 0;
+        Program.buffer(row);
+        hasRoom = Program.call("web_cache_found", wanted.get(name)) !== 0;
       };
       const ranges = rangesOf([...wanted.keys()].sort());
       const chunks = ranges.length === 0 ? null : database.transaction("chunks").objectStore("chunks");
@@ -223,7 +260,7 @@ const Chunks = (() => {
           names.forEach((name, j) => give(name, rows[j]));
         }));
       }
-      runstone._web_cache_looked_up();
+      Program.call("web_cache_looked_up");
     });
     setTimeout(() => queue(touch), TOUCH_MS);
   }
@@ -254,37 +291,36 @@ const Chunks = (() => {
         at += 32 + size;
       }
       const rows = [...byName.values()];
-      const transaction = database.transaction(STORES, "readwrite");
-      const done = completed(transaction);
-      const [chunks, entries, used, , state] = STORES.map((store) => transaction.objectStore(store));
-      const before = await Promise.all(rows.map(({ name }) => (has(name) ? answered(entries.get(name)) : null)));
       let size = bytes;
-      rows.forEach(({ name, row, entry }, i) => {
-        size += entry.bytes - (before[i]?.bytes ?? 0);
-        chunks.put(row, name);
-        entries.put(entry, name);
-        used.put({ stamp }, name);
-      });
-      // The rows that were unused for longest are evicted.
       const evicted = [];
-      while (size > bytesMax) {
-        const oldest = await answered(used.index("stamp").getAllKeys(null, EVICTED_AT_A_TIME));
-        if (oldest.length === 0) break;
-        for (const name of oldest) {
-          if (size <= bytesMax) break;
-          size -= (await answered(entries.get(name))).bytes;
-          for (const store of [chunks, entries, used]) store.delete(name);
-          evicted.push(name);
+      await change(["chunks", "entries", "used", "state"], async (chunks, entries, used, state) => {
+        const before = await Promise.all(rows.map(({ name }) =>
+          (has(name) ? answered(entries.get(name)) : null)));
+        rows.forEach(({ name, row, entry }, i) => {
+          size += entry.bytes - (before[i]?.bytes ?? 0);
+          chunks.put(row, name);
+          entries.put(entry, name);
+          used.put({ stamp }, name);
+        });
+        // The rows that were unused for longest are evicted.
+        while (size > bytesMax) {
+          const oldest = await answered(used.index("stamp").getAllKeys(null, EVICTED_AT_A_TIME));
+          if (oldest.length === 0) break;
+          for (const name of oldest) {
+            if (size <= bytesMax) break;
+            size -= (await answered(entries.get(name))).bytes;
+            for (const store of [chunks, entries, used]) store.delete(name);
+            evicted.push(name);
+          }
         }
-      }
-      state.put(size, "bytes");
-      state.put(stamp, "stamp");
-      await done;
+        state.put(size, "bytes");
+        state.put(stamp, "stamp");
+      });
       bytes = size;
       ++stamp;
       for (const { name } of rows) add(name);
       evicted.forEach(remove);
-      runstone._web_cache_kept(rows.length, evicted.length);
+      Program.call("web_cache_kept", rows.length, evicted.length);
     });
   }
 

@@ -10,17 +10,17 @@ const CACHE_BYTES_MAX = 64 * 1024 * 1024;
 const MOMENT_MS = 150; // from the last movement of the slider to the request
 const WHEEL_STEP = 60; // pixels; the notch of a mouse wheel has about 100
 
-let runstone = null; // the program, once it has been loaded
 let ticker = null; // a worker that calls the program while the page is hidden
 let isPlaying = false;
 let cache = null; // the promise of openCache(), once it was called
+let wantsMouse = false; // the player has captured the mouse, or a click has asked for it
 let momentTimer = 0; // runs while the player moves the slider of the timeline
 const early = []; // notices that came before there was a place to show them
 const materials = new Map();
 
 function fail(headline, detail) {
   isPlaying = false;
-  document.exitPointerLock?.();
+  release();
   document.body.classList.add("failed");
   $("hud").hidden = true;
   $("door").hidden = false;
@@ -72,7 +72,7 @@ const page = {
     while ($("lines").children.length > LINES_MAX) $("lines").firstChild.remove();
   },
   openChat() {
-    document.exitPointerLock?.();
+    release();
     $("say").hidden = false;
     $("say").focus();
   },
@@ -86,7 +86,7 @@ const page = {
     button.textContent = name;
     button.style.background = colourOf(id);
     button.onclick = () => {
-      runstone._web_hold(id);
+      Program.call("web_hold", id);
       $("palette").hidden = true;
       $("canvas").focus();
     };
@@ -94,7 +94,7 @@ const page = {
   },
   togglePalette() {
     $("palette").hidden = !$("palette").hidden;
-    if (!$("palette").hidden) document.exitPointerLock?.();
+    if (!$("palette").hidden) release();
   },
   slot(slot, material, isChosen) {
     const button = $("slots").children[slot];
@@ -107,7 +107,7 @@ const page = {
   },
   toggleTimeline() {
     $("timeline").hidden = !$("timeline").hidden;
-    if (!$("timeline").hidden) document.exitPointerLock?.();
+    if (!$("timeline").hidden) release();
   },
   time(newest, shown, isPast) {
     $("moment").max = newest;
@@ -118,6 +118,22 @@ const page = {
   },
   walking(isWalking) {
     $("walk").textContent = isWalking ? "fly" : "walk";
+  },
+  capture(isCaptured) {
+    if (!isCaptured) release();
+    else if (!document.body.classList.contains("touch")) capture();
+  },
+  async loadFont() {
+    let font = new ArrayBuffer(0);
+    try {
+      const answer = await fetch("DejaVuSans.ttf");
+      if (!answer.ok) throw new Error(`the gateway answers ${answer.status}`);
+      font = await answer.arrayBuffer();
+    } catch (error) {
+      page.notice(`the windows lack some letters: their font cannot be loaded: ${error?.message || error}`, true);
+    }
+    Program.buffer(new Uint8Array(font));
+    Program.call("web_font");
   },
   keepServer: Keys.keepServer,
 };
@@ -142,25 +158,13 @@ function missing() {
 
 async function loadProgram() {
   $("step").textContent = "loading the program";
-  await new Promise((resolve, reject) => {
-    const script = document.createElement("script");
-    script.src = "runstone-web-client.js";
-    script.onload = resolve;
-    script.onerror = () => reject(new Error("runstone-web-client.js cannot be loaded"));
-    document.head.append(script);
+  await Program.load({ page, chunks: Chunks }, (why) => {
+    ticker?.terminate();
+    fail("The client has failed",
+      `${why}\nLoad the page again. Edits that the server has not confirmed are lost.`);
   });
-  runstone = await makeRunstone({
-    page,
-    chunks: Chunks,
-    onAbort: (why) => {
-      ticker?.terminate();
-      fail("The client has failed", `${why}\nLoad the page again. Edits that the server has not confirmed are lost.`);
-    },
-    printErr: (text) => console.warn(text),
-  });
-  runstone._web_prepare();
   ticker = new Worker("ticker.js");
-  ticker.onmessage = () => runstone._web_tick();
+  ticker.onmessage = () => Program.call("web_tick");
 }
 
 // Settings of the form. A browser may forbid to keep them.
@@ -195,7 +199,7 @@ function resize() {
   const scale = Math.min(window.devicePixelRatio || 1, 2);
   canvas.width = Math.max(1, Math.round(canvas.clientWidth * scale));
   canvas.height = Math.max(1, Math.round(canvas.clientHeight * scale));
-  runstone?._web_resize(canvas.width, canvas.height, canvas.clientWidth, canvas.clientHeight);
+  Program.call("web_resize", canvas.width, canvas.height, canvas.clientWidth, canvas.clientHeight);
 }
 
 async function join(event) {
@@ -205,6 +209,7 @@ async function join(event) {
   for (const id of ["quality", "sight"]) keep(id, $(id).value);
   if (document.body.classList.contains("failed")) return location.reload();
   $("enter").disabled = true;
+  $("step").textContent = "reading what this browser keeps";
   $("detail").textContent = "";
   cache ??= openCache();
   const [keys, worlds] = await Promise.all([Keys.load(), cache]);
@@ -213,10 +218,10 @@ async function join(event) {
   url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
   // An invite is the part after '#', which browsers do not send.
   const invite = new URLSearchParams(location.hash.slice(1)).get("invite") ?? "";
-  const why = runstone.ccall("web_join", "string",
-    ["string", "string", "string", "string", "number", "string", "number", "number", "number", "number", "string"],
-    [url.href, name, invite, keys.seed, keys.isKept ? 1 : 0, keys.servers, Number($("sight").value), 3,
-      Number($("quality").value), worlds === null ? 0 : 1, worlds ?? ""]);
+  const [sight, quality] = ["sight", "quality"].map((id) => Number($(id).value));
+  const FAR_LEVELS = 3;
+  const why = Program.text("web_join", url.href, name, invite, keys.seed, keys.isKept ? 1 : 0,
+    keys.servers, sight, FAR_LEVELS, quality, worlds === null ? 0 : 1, worlds ?? "");
   if (why !== "") {
     $("step").textContent = "You cannot join like this";
     $("detail").textContent = why;
@@ -238,12 +243,28 @@ const modifiers = (event) => (event.ctrlKey ? 1 : 0) | (event.shiftKey ? 2 : 0) 
 function onKey(event) {
   if (!isPlaying || isTyping(event.target) || event.isComposing) return;
   // With the key of the system held, as on a Mac, the releases of other keys are not reported.
-  if (event.metaKey || event.key === "Meta") return runstone._web_focus_lost();
+  if (event.metaKey || event.key === "Meta") return Program.call("web_focus_lost");
   // The browser keeps these keys.
   if (event.code === "F5" || event.code === "F11" || event.code === "F12") return;
   event.preventDefault();
-  runstone.ccall("web_key", null, ["string", "string", "number", "number", "number"],
-    [event.code, event.key, event.type === "keydown" ? 1 : 0, event.repeat ? 1 : 0, modifiers(event)]);
+  const isPressed = event.type === "keydown" ? 1 : 0;
+  const character = [...event.key].length === 1 ? event.key.codePointAt(0) : 0;
+  Program.call("web_key", event.code, event.key, isPressed, event.repeat ? 1 : 0, modifiers(event),
+    character);
+}
+
+// If the browser refuses the capture, the mouse turns the player while it is over the canvas.
+function capture() {
+  wantsMouse = true;
+  $("canvas").requestPointerLock?.()?.catch?.(() => {});
+}
+function release() {
+  wantsMouse = false; // the browser may still be about to capture the mouse
+  document.exitPointerLock?.();
+}
+function onCapture() {
+  if (document.pointerLockElement === null) return void (isPlaying && Program.call("web_capture_lost"));
+  if (!wantsMouse) document.exitPointerLock();
 }
 
 // Events of the mouse, because a pointer event does not report a second button that is pressed while
@@ -254,10 +275,15 @@ function onButton(event) {
   const isPressed = event.type === "mousedown";
   if (isPressed) {
     $("canvas").focus();
-    // If the browser refuses the capture, the mouse turns the player while it is over the canvas.
-    if (document.pointerLockElement === null) $("canvas").requestPointerLock?.()?.catch?.(() => {});
+    const isForWindow = Program.call("web_has_window_at", event.clientX, event.clientY) !== 0;
+    if (document.pointerLockElement === null && !isForWindow) capture();
   }
-  runstone._web_button(event.button, isPressed ? 1 : 0);
+  Program.call("web_button", event.button, isPressed ? 1 : 0);
+}
+
+function onMove(event) {
+  const { clientX, clientY, movementX, movementY } = event;
+  if (isPlaying) Program.call("web_mouse", clientX, clientY, movementX, movementY);
 }
 
 let wheelPixels = 0; // since the last step
@@ -267,7 +293,7 @@ function onWheel(event) {
   const delta = event.deltaY || event.deltaX; // some systems turn the wheel while shift is held
   wheelPixels += event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? delta : Math.sign(delta) * WHEEL_STEP;
   if (Math.abs(wheelPixels) < WHEEL_STEP) return;
-  runstone._web_wheel(-Math.sign(wheelPixels));
+  Program.call("web_wheel", -Math.sign(wheelPixels));
   wheelPixels = 0;
 }
 
@@ -276,14 +302,15 @@ function onTouch(event) {
   event.preventDefault();
   document.body.classList.add("touch");
   const phase = { touchstart: 0, touchmove: 1, touchend: 2, touchcancel: 3 }[event.type];
-  for (const touch of event.changedTouches) runstone._web_touch(touch.identifier, phase, touch.clientX, touch.clientY);
+  for (const { identifier, clientX, clientY } of event.changedTouches)
+    Program.call("web_touch", identifier, phase, clientX, clientY);
 }
 
 // A button that is a key as long as it is held.
 function heldKey(id, code) {
   const send = (isPressed) => (event) => {
     event.preventDefault();
-    runstone.ccall("web_key", null, ["string", "string", "number", "number", "number"], [code, "", isPressed, 0, 0]);
+    Program.call("web_key", code, "", isPressed, 0, 0, 0);
   };
   $(id).addEventListener("pointerdown", send(1));
   for (const type of ["pointerup", "pointercancel", "pointerleave"]) $(id).addEventListener(type, send(0));
@@ -296,24 +323,23 @@ function listen() {
   canvas.addEventListener("mousedown", onButton);
   window.addEventListener("mouseup", onButton);
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("mousemove", (event) => isPlaying && runstone._web_mouse(event.movementX, event.movementY));
+  canvas.addEventListener("mousemove", onMove);
   canvas.addEventListener("wheel", onWheel, { passive: false });
   for (const type of ["touchstart", "touchmove", "touchend", "touchcancel"])
     canvas.addEventListener(type, onTouch, { passive: false });
   // The press of the button has captured the mouse in the program already.
-  document.addEventListener("pointerlockchange", () =>
-    isPlaying && document.pointerLockElement === null && runstone._web_capture_lost());
-  window.addEventListener("blur", () => runstone?._web_focus_lost());
+  document.addEventListener("pointerlockchange", onCapture);
+  window.addEventListener("blur", () => Program.call("web_focus_lost"));
   window.addEventListener("resize", resize);
   window.addEventListener("beforeunload", (event) => {
-    if (isPlaying && runstone._web_unconfirmed() > 0) event.preventDefault();
+    if (isPlaying && Program.call("web_unconfirmed") > 0) event.preventDefault();
   });
-  window.addEventListener("pagehide", () => runstone?._web_leave());
+  window.addEventListener("pagehide", () => Program.call("web_leave"));
   // A page that the browser shows again from its history has sent a goodbye.
   window.addEventListener("pageshow", (event) => event.persisted && location.reload());
   $("say").addEventListener("keydown", (event) => {
     if (event.isComposing || (event.key !== "Enter" && event.key !== "Escape")) return;
-    if (event.key === "Enter") runstone.ccall("web_say", null, ["string"], [$("say").value]);
+    if (event.key === "Enter") Program.call("web_say", $("say").value);
     $("say").value = "";
     $("say").hidden = true;
     $("canvas").focus();
@@ -324,7 +350,7 @@ function listen() {
     number.textContent = slot + 1;
     button.append(number);
     button.onclick = () => {
-      runstone._web_choose_slot(slot);
+      Program.call("web_choose_slot", slot);
       canvas.focus();
     };
     $("slots").append(button);
@@ -332,11 +358,12 @@ function listen() {
   $("mode").onclick = () => {
     const removes = $("mode").classList.toggle("removes");
     $("mode").textContent = removes ? "remove" : "place";
-    runstone._web_tap_mode(removes ? 1 : 0);
+    Program.call("web_tap_mode", removes ? 1 : 0);
   };
   heldKey("up", "Space");
   heldKey("down", "ShiftLeft");
-  $("walk").onclick = () => runstone._web_walk_or_fly();
+  $("walk").onclick = () => Program.call("web_act", "walk_or_fly");
+  for (const name of ["tools", "map", "rollback"]) $(name).onclick = () => Program.call("web_act", name);
   $("talk").onclick = page.openChat;
   $("all").onclick = page.togglePalette;
   $("past").onclick = page.toggleTimeline;
@@ -344,16 +371,16 @@ function listen() {
     clearTimeout(momentTimer);
     momentTimer = setTimeout(() => {
       momentTimer = 0;
-      runstone._web_show_moment(Number($("moment").value));
+      Program.call("web_show_moment", Number($("moment").value));
     }, MOMENT_MS);
   });
   const step = (steps) => () => {
     const [shown, newest] = [Number($("moment").value), Number($("moment").max)];
-    runstone._web_show_moment(Math.max(0, shown + steps * Math.max(1, Math.floor(newest / 100))));
+    Program.call("web_show_moment", Math.max(0, shown + steps * Math.max(1, Math.floor(newest / 100))));
   };
   $("earlier").onclick = step(-1);
   $("later").onclick = step(1);
-  $("live").onclick = () => runstone._web_show_moment(Number($("moment").max));
+  $("live").onclick = () => Program.call("web_show_moment", Number($("moment").max));
   if (window.matchMedia("(pointer: coarse)").matches) document.body.classList.add("touch");
 }
 

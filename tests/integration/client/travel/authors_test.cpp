@@ -1,7 +1,7 @@
 // Clients learn who edited when, and what a rollback would change, from a real server on loopback.
 #include <catch2/catch.hpp>
 
-#include "client/app/rollback_control.hpp"
+#include "client/panels/rollback_control.hpp"
 #include "tests/integration/client/travel/live_session.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"

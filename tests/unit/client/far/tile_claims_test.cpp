@@ -127,11 +127,13 @@ TEST_CASE_METHOD(ClaimFixture,
   REQUIRE(tiles.receive(kMiddle, tile(5)));
   REQUIRE(tiles.receive_uniform(kCoarse, 1));
   REQUIRE(tiles.take_for_cache(1).size() == 1);
+  CHECK(tiles.has_for_cache());
   const auto more = tiles.take_for_cache(9);
   REQUIRE(more.size() == 1);
   CHECK(more[0].first == kMiddle);
   CHECK(more[0].second->version.seq == 5);
   CHECK(tiles.take_for_cache(9).empty());
+  CHECK_FALSE(tiles.has_for_cache());
   REQUIRE(tiles.receive(kFine, tile(7)));
   reopen();
   CHECK(tiles.take_for_cache(9).empty());  // nobody has vouched for it on this connection

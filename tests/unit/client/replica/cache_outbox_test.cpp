@@ -86,3 +86,39 @@ TEST_CASE_METHOD(OutboxFixture,
   outbox.clear();
   CHECK(outbox.take(nullptr, 9).empty());
 }
+
+TEST_CASE_METHOD(OutboxFixture, "chunks that change all the time are handed over once a round",
+                 "[replica]") {
+  const auto change_all = [this](Sequence seq) {
+    for (std::int32_t x = 0; x < 8; ++x) current(x, seq);
+  };
+  for (Sequence round = 0; round < 3; ++round) {
+    std::vector<ChunkKey> keys;
+    for (Sequence call = 0; call < 4; ++call) {
+      change_all(10 * round + call + 1);
+      for (const auto& [key, chunk] : outbox.take(&table, 2)) keys.push_back(key);
+      CHECK(outbox.is_round_over() == (call == 3));
+    }
+    REQUIRE(keys.size() == 8);
+    for (std::int32_t x = 0; x < 8; ++x) CHECK(keys[static_cast<std::size_t>(x)].at.x == x);
+  }
+}
+
+TEST_CASE_METHOD(OutboxFixture, "a round that finds no more chunks begins anew", "[replica]") {
+  for (std::int32_t x = 0; x < 3; ++x) current(x, 1);
+  CHECK(outbox.take(&table, 2).size() == 2);
+  CHECK_FALSE(outbox.is_round_over());
+  table.request(*table.find({0, {2, 0, 0}}));  // the server no longer vouches for it
+  current(0, 2);
+  CHECK(outbox.take(&table, 2).size() == 1);
+  CHECK(outbox.is_round_over());
+  CHECK(outbox.take(&table, 2).empty());
+}
+
+TEST_CASE_METHOD(OutboxFixture, "the past ends a round", "[replica]") {
+  for (std::int32_t x = 0; x < 3; ++x) current(x, 1);
+  CHECK(outbox.take(&table, 2).size() == 2);
+  CHECK(outbox.take(nullptr, 2).empty());
+  CHECK(outbox.is_round_over());
+  CHECK(outbox.take(&table, 2).size() == 1);
+}

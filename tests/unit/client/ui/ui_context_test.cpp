@@ -4,6 +4,8 @@
 #include <imgui_stdlib.h>
 
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "client/input/input_event.hpp"
@@ -70,6 +72,47 @@ TEST_CASE("a press and a release that come together still click", "[client_ui]")
   context.feed({CursorEvent{500, 400, 0, 0}});
   context.make_frame(kSize, 0.016, build);
   CHECK_FALSE(context.over_window());
+}
+
+TEST_CASE("a window takes the mouse where it is, also before the cursor is there", "[client_ui]") {
+  UiContext context;
+  bool is_open = true;
+  const auto build = [&is_open] {
+    if (!is_open) return;
+    ImGui::SetNextWindowPos({100, 50});
+    ImGui::SetNextWindowSize({200, 100});
+    ImGui::Begin("w", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::End();
+    ImGui::SetNextWindowPos({400, 50});
+    ImGui::Begin("shows only", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs);
+    ImGui::TextUnformatted("text");
+    ImGui::End();
+  };
+  for (int i = 0; i < 2; ++i) context.make_frame(kSize, 0.016, build);
+  CHECK(context.has_window_at(101, 51));
+  CHECK(context.has_window_at(299, 149));
+  CHECK_FALSE(context.has_window_at(99, 51));
+  CHECK_FALSE(context.has_window_at(301, 149));
+  CHECK_FALSE(context.has_window_at(405, 55));
+  is_open = false;
+  context.make_frame(kSize, 0.016, build);
+  CHECK_FALSE(context.has_window_at(101, 51));
+}
+
+TEST_CASE("a font that is given is used", "[client_ui]") {
+  std::ifstream in("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", std::ios::binary);
+  const Bytes font{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (font.empty()) {
+    WARN("skipped: not installed");
+    return;
+  }
+  UiContext given(1, ByteView(font)), none(1, ByteView());
+  const auto atlas_of = [](UiContext& context) {
+    return context.make_frame(kSize, 0.016, [] {})->atlas;
+  };
+  UiContext read;
+  CHECK(atlas_of(given)->coverage == atlas_of(read)->coverage);
+  CHECK(atlas_of(none)->coverage != atlas_of(read)->coverage);
 }
 
 TEST_CASE("a batch of keys and characters types in its order", "[client_ui]") {

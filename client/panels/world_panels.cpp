@@ -1,4 +1,4 @@
-#include "client/app/world_panels.hpp"
+#include "client/panels/world_panels.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -13,6 +13,12 @@ namespace {
 constexpr double kRadiansPerTurn = 2 * std::numbers::pi / 65'536;
 
 }  // namespace
+
+ShownPanels shown_panels(const PanelWindows& windows) {
+  const MapWindow& map = windows.map();
+  return {windows.tools().is_open(),    map.is_open(),  windows.timeline().is_open(),
+          windows.rollback().is_open(), map.centre_x(), map.centre_z()};
+}
 
 void WorldPanels::set_materials(const MaterialTable& materials) {
   map_.set_materials(materials);
@@ -94,7 +100,8 @@ void WorldPanels::fill_rollback(RollbackState& state) const {
     }
   }
   state.authors.assign(authors.begin(), authors.end());
-  std::ranges::sort(state.authors, {}, &std::pair<AuthorId, std::string>::second);
+  std::sort(state.authors.begin(), state.authors.end(),
+            [](const auto& a, const auto& b) { return a.second < b.second; });
   rollback_.fill(state);
 }
 

@@ -1,4 +1,4 @@
-#include "client/app/rollback_control.hpp"
+#include "client/panels/rollback_control.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -5,20 +5,22 @@
 #include <map>
 #include <span>
 
-#include "client/app/rollback_control.hpp"
 #include "client/display/smooth_players.hpp"
 #include "client/map/world_map.hpp"
+#include "client/panels/rollback_control.hpp"
 #include "client/play/player.hpp"
 #include "client/tools/tool_box.hpp"
 #include "client/ui/hud_state.hpp"
+#include "client/ui/panel_windows.hpp"
 
 namespace runstone {
 
 /// The windows that are open.
 struct ShownPanels {
-  bool map = false, timeline = false, rollback = false;
+  bool tools = false, map = false, timeline = false, rollback = false;
   double map_x = 0, map_z = 0;  // the middle of the map, voxels
 };
+ShownPanels shown_panels(const PanelWindows& windows);
 
 class WorldPanels {
  public:
