@@ -63,16 +63,14 @@ MapService::~MapService() {
 }
 
 void MapService::ask(MapRequest request, std::string if_none_match, Reply reply) {
-  bool has_room = false;
   {
     const std::lock_guard lock(mutex_);
-    has_room = queue_.size() < kQueueMax;
-    if (has_room) {
-      Job job{request, std::move(if_none_match), std::move(reply), steady_now_us()};
-      queue_.push_back(std::move(job));
+    if (queue_.size() < kQueueMax) {
+      queue_.push_back({request, std::move(if_none_match), std::move(reply), steady_now_us()});
+      reply = nullptr;
     }
   }
-  if (has_room) return threads_.wake(*this);
+  if (reply == nullptr) return threads_.wake(*this);
   reply(map_words(503, "the map has much to do: ask again in a moment"));
 }
 
