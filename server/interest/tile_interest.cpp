@@ -81,7 +81,7 @@ void TileInterest::drop(const ChunkKey& key, std::vector<ChunkKey>& left) {
 }
 
 void TileInterest::drop_below(const ChunkKey& key, std::vector<ChunkKey>& left) {
-  if (known_below(key.lod) == 0) return;
+  if (key.lod <= 1 || known_below(key.lod) == 0) return;
   for (unsigned i = 0; i < kTileChildren; ++i) {
     const ChunkKey child = tile_child(key, i);
     // The view has the parents of all its tiles, so nothing below a child outside of it is known. Tiles
