@@ -1,8 +1,8 @@
 // Link: a connection to the server that is made again after a loss. It carries the messages of a
 // MessageStream over TCP and TLS, or over a WebSocket of a gateway. After a loss it connects again, with
-// growing pauses, until it is stopped. Messages carry the number of their connection; those of an
-// older connection are dropped. The io_context belongs to the caller, so one thread may run one
-// link (NetClient) or a thousand (bots).
+// growing pauses, until it is stopped. Messages carry the number of their connection; those of an older
+// connection are dropped. The io_context belongs to the caller, so one thread may run one link
+// (NetClient) or a thousand (bots).
 // Thread: all calls and callbacks on the one thread that runs the io_context.
 #pragma once
 #include <asio/io_context.hpp>

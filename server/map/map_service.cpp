@@ -63,15 +63,14 @@ MapService::~MapService() {
 }
 
 void MapService::ask(MapRequest request, std::string if_none_match, Reply reply) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (queue_.size() < kQueueMax) {
-      queue_.push_back({request, std::move(if_none_match), std::move(reply), steady_now_us()});
-      reply = nullptr;
-    }
+  std::unique_lock lock(mutex_);
+  if (queue_.size() >= kQueueMax) {
+    lock.unlock();
+    return reply(map_words(503, "the map has much to do: ask again in a moment"));
   }
-  if (reply == nullptr) return threads_.wake(*this);
-  reply(map_words(503, "the map has much to do: ask again in a moment"));
+  queue_.push_back({request, std::move(if_none_match), std::move(reply), steady_now_us()});
+  lock.unlock();
+  threads_.wake(*this);
 }
 
 bool MapService::turn() {

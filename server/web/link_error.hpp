@@ -1,5 +1,5 @@
-// How a WebSocket is closed that gets no connection to its server. The words are for the player, so they
-// name no path of this machine.
+// How a WebSocket is closed that gets no connection to its server. The words are for the player, so
+// they name no path of this machine.
 #pragma once
 #include <utility>
 // Boost 1.74 uses std::exchange without its header, so <utility> comes first.

@@ -76,6 +76,14 @@ HorizonCount count_sky(const Image& image, const Camera& camera, double lowest, 
   return out;
 }
 
+FrameContents noon_with_fades() {
+  FrameContents out;
+  out.look.time_of_day = 0.5;
+  out.look.quality = Quality::medium;
+  out.look.exact = false;
+  return out;
+}
+
 }  // namespace
 
 TEST_CASE("no pixel shows the sky through the ground, at the borders of levels and between them",
@@ -193,10 +201,7 @@ TEST_CASE("levels fade into each other, and no pixel shows the sky meanwhile", "
   view.radius_v = 2;
   view.levels = 3;
   scene.show(view);
-  FrameContents contents;
-  contents.look.time_of_day = 0.5;
-  contents.look.quality = Quality::medium;
-  contents.look.exact = false;
+  FrameContents contents = noon_with_fades();
   std::uint32_t parts = 0;
   const auto picture_at = [&](double seconds) {
     contents.look.seconds = seconds;
@@ -277,10 +282,7 @@ TEST_CASE("transparent faces are blended once while levels fade into each other"
   view.radius_v = 4;
   view.levels = 2;
   scene.show(view);
-  FrameContents contents;
-  contents.look.time_of_day = 0.5;
-  contents.look.quality = Quality::medium;
-  contents.look.exact = false;
+  FrameContents contents = noon_with_fades();
   const auto brightness_at = [&](double seconds) {
     contents.look.seconds = seconds;
     renderer.draw(camera, kPlaceWidth, kPlaceHeight, contents);

@@ -11,6 +11,7 @@
 #include "server/web/web_frame.hpp"
 #include "tests/integration/server/web/fake_server.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
+#include "tests/support/sample_frame.hpp"
 #include "tests/support/text_contains.hpp"
 
 namespace runstone::test {
@@ -19,13 +20,18 @@ namespace {
 // More bytes than the kernel's buffers between the two ends can hold.
 constexpr std::size_t kOnTheWayMax = 16 * 1024 * 1024;
 
-Bytes frame_of(std::size_t body_bytes, std::uint8_t fill) {
-  FrameWriter writer;
-  const FrameHeader header = writer.next(0, body_bytes, false);
-  Bytes out(header.begin(), header.end());
-  out.resize(kFrameHeaderBytes + body_bytes, fill);
-  return out;
-}
+/// A browser that is connected through a gateway to a server which the test plays.
+struct LinkedBench {
+  LinkedBench() {
+    REQUIRE(browser.upgrade().status == 101);
+    server.accept();
+  }
+
+  const TempFolder folder;
+  FakeServer server{folder / "web.sock"};
+  const std::unique_ptr<WebGateway> gateway = start_gateway(web_config_of(folder));
+  WebPeer browser{gateway->port()};
+};
 
 TEST_CASE("frames pass unchanged in both directions, however they are cut on the way",
           "[integration]") {
@@ -82,13 +88,8 @@ TEST_CASE("the gateway reads no more of the server than a browser takes, and end
   CHECK(is_ended);
 }
 
-TEST_CASE("the gateway reads no more of a browser than the server takes", "[integration]") {
-  const TempFolder folder;
-  FakeServer server(folder / "web.sock");
-  const auto gateway = start_gateway(web_config_of(folder));
-  WebPeer browser(gateway->port());
-  REQUIRE(browser.upgrade().status == 101);
-  server.accept();
+TEST_CASE_METHOD(LinkedBench, "the gateway reads no more of a browser than the server takes",
+                 "[integration]") {
   const timeval deadline{1, 0};
   ::setsockopt(browser.native_handle(), SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof deadline);
   const Bytes frame = frame_of(kFragmentBytesMax, 7);
@@ -124,13 +125,8 @@ TEST_CASE("a browser for which the server has no place in its queue is closed wi
   CHECK(next.is_open());
 }
 
-TEST_CASE("frames of the server that come together are one message", "[integration]") {
-  const TempFolder folder;
-  FakeServer server(folder / "web.sock");
-  const auto gateway = start_gateway(web_config_of(folder));
-  WebPeer browser(gateway->port());
-  REQUIRE(browser.upgrade().status == 101);
-  server.accept();
+TEST_CASE_METHOD(LinkedBench, "frames of the server that come together are one message",
+                 "[integration]") {
   constexpr int kFrames = 40;
   Bytes together;
   for (int i = 0; i < kFrames; ++i) {

@@ -1,7 +1,8 @@
-// A gateway that may open no more files. With AddressSanitizer its program does not go on when the
-// files run out, so these cases are left out there.
+// A gateway that may open no more files. UndefinedBehaviorSanitizer opens a pipe whenever it checks the
+// type of an object, and reports a fault if it cannot. So these cases are left out with sanitizers.
 #ifndef RUNSTONE_SANITIZED
 #include <catch2/catch.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -13,16 +14,23 @@
 namespace runstone::test {
 namespace {
 
+/// A gateway with one player.
+struct FewFilesBench {
+  FewFilesBench() { REQUIRE(player.join(1).has_value()); }
+
+  const TempFolder folder;
+  const std::unique_ptr<Server> server = start_server(server_config_of(folder), flat_creation());
+  WebProgram program{folder};
+  const std::size_t files = program.open_files().size();  // without the player's
+  WebPlayer player{program.port()};
+};
+
 bool serves(WebPeer& peer) { return peer.get("/style.css").status == 200; }
 
-TEST_CASE("a gateway that may open no more files closes its oldest idle connection for a new one",
-          "[integration]") {
-  const TempFolder folder;
-  const auto server = start_server(server_config_of(folder), flat_creation());
-  WebProgram program(folder);
-  const std::size_t files = program.open_files().size();
-  WebPlayer player(program.port());
-  REQUIRE(player.join(1).has_value());
+TEST_CASE_METHOD(
+    FewFilesBench,
+    "a gateway that may open no more files closes its oldest idle connection for a new one",
+    "[integration]") {
   WebPeer oldest(program.port()), newer(program.port());
   REQUIRE(program.comes_to_have_files(files + 4));
   program.forbid_more_files();
@@ -60,14 +68,10 @@ TEST_CASE("a gateway that may open no more files closes its oldest idle connecti
                           "/web.sock: Too many open files (the gateway has no room"));
 }
 
-TEST_CASE("a gateway without files closes no player, and takes new connections when one is free",
-          "[integration]") {
-  const TempFolder folder;
-  const auto server = start_server(server_config_of(folder), flat_creation());
-  WebProgram program(folder);
-  const std::size_t files = program.open_files().size();
-  WebPlayer player(program.port());
-  REQUIRE(player.join(1).has_value());
+TEST_CASE_METHOD(
+    FewFilesBench,
+    "a gateway without files closes no player, and takes new connections when one is free",
+    "[integration]") {
   std::optional<WebPlayer> leaver(std::in_place, program.port());
   REQUIRE(leaver->join(2).has_value());
   REQUIRE(program.comes_to_have_files(files + 4));

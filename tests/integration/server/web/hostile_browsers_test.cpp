@@ -4,19 +4,11 @@
 #include <vector>
 
 #include "tests/integration/server/web/web_bench.hpp"
+#include "tests/support/sample_frame.hpp"
 #include "tests/support/web_player.hpp"
 
 namespace runstone::test {
 namespace {
-
-/// Returns the bytes of a frame with a body of this size.
-Bytes frame_of(std::size_t body_bytes) {
-  FrameWriter writer;
-  const FrameHeader header = writer.next(0, body_bytes, false);
-  Bytes out(header.begin(), header.end());
-  out.resize(kFrameHeaderBytes + body_bytes);
-  return out;
-}
 
 TEST_CASE("a message that is not one frame closes the WebSocket with a code and words",
           "[integration]") {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <thread>
 
-#include "client/net/wake_up.hpp"
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "tests/support/worst_chunk.hpp"
+#include "tests/unit/client/net/next_event.hpp"
 
 using namespace runstone;
 using asio::ip::tcp;
@@ -70,17 +70,7 @@ struct Fixture {
     client = std::make_unique<NetClient>(std::move(net), [this] { wake.notify(); });
   }
   /// Returns the next event. Fails the test if none comes.
-  LinkEvent next() {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (events.empty()) {
-      REQUIRE(std::chrono::steady_clock::now() < until);
-      for (LinkEvent& event : client->take_events()) events.push_back(std::move(event));
-      if (events.empty()) wake.wait(std::chrono::milliseconds(50));
-    }
-    LinkEvent event = std::move(events.front());
-    events.erase(events.begin());
-    return event;
-  }
+  LinkEvent next() { return test::next_event(*client, wake, events); }
   template <class T>
   T next_as() {
     LinkEvent event = next();

@@ -5,13 +5,12 @@
 #include <array>
 #include <asio.hpp>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <string>
 #include <vector>
 
 #include "client/net/net_client.hpp"
-#include "client/net/wake_up.hpp"
 #include "protocol/codec/frame.hpp"
+#include "tests/unit/client/net/next_event.hpp"
 
 using namespace runstone;
 using asio::ip::tcp;
@@ -91,14 +90,7 @@ struct WebLinkFixture {
   /// Returns the next event of this kind. Fails the test if another one comes, or none.
   template <class Event>
   Event next() {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (events.empty()) {
-      REQUIRE(std::chrono::steady_clock::now() < until);
-      for (LinkEvent& event : client->take_events()) events.push_back(std::move(event));
-      if (events.empty()) wake.wait(std::chrono::milliseconds(50));
-    }
-    LinkEvent event = std::move(events.front());
-    events.erase(events.begin());
+    LinkEvent event = test::next_event(*client, wake, events);
     REQUIRE(std::holds_alternative<Event>(event));
     return std::get<Event>(std::move(event));
   }
