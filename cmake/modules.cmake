@@ -10,9 +10,9 @@
 # depends on the preset.
 #
 # Command lines (options.cpp, *_options.cpp and what the regular expression COMMAND_LINE names) are
-# one more unit. The release preset compiles it with -O1: a command line is read once, and CLI11 is
-# slow to optimise. No other code may be in it: the linker keeps one copy of an inline function,
-# which may be that of this unit.
+# one more unit, which is optimised little: a command line is read once, and CLI11 is slow to
+# optimise. No other code may be in it: the linker keeps one copy of an inline function, which may be
+# that of this unit.
 function(runstone_target_name folder out)
   string(REPLACE "/" "_" name ${folder})
   set(${out} runstone_${name} PARENT_SCOPE)
@@ -49,7 +49,7 @@ function(runstone_module folder)
   if(command_lines)
     list(REMOVE_ITEM sources ${command_lines})
     add_library(${name}_command_line OBJECT ${command_lines})
-    target_compile_options(${name}_command_line PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_compile_options(${name}_command_line PRIVATE $<IF:$<CONFIG:Release>,-O1,-O0>)
     target_compile_features(${name}_command_line PRIVATE cxx_std_20)
     target_include_directories(${name}_command_line PRIVATE ${PROJECT_SOURCE_DIR})
     set(libraries ${ARG_LIBS})

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::uint32_t kCalmAddress = 0x7f000002;
+constexpr std::uint32_t kCalmAddress = 0x7f010002;  // of another range than 127.0.0.1
 constexpr const char* kTile = "/map/tile/0/0/0.png";
 
 WebConfig map_config_of(const TempFolder& folder) {
