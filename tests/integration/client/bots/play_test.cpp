@@ -80,7 +80,7 @@ TEST_CASE("edits refused by a rate limit are offered again until all are applied
   REQUIRE(log.has_value());
   ServerConfig config = quiet_config(live.path());
   config.builder_budget = {200, 200};  // slow bots exceed it, too
-  config.budgets_per_address = 1;  // for all players of the log together
+  config.budgets_per_address = 1;      // for all players of the log together
   auto server = start_server(config, flat_creation());
   const PlayReport report = play(server->port(), *log, 0);
   INFO(to_table(report) << report.failure);
