@@ -110,9 +110,19 @@ export class Player {
     const { width, height } = this.page.viewport();
     await this.page.mouse.click(width / 2, height / 2, { button, delay: 60 });
   }
-  async holdKey(code, ms) {
+  // Waits until the page has drawn what it has been told, also on a machine that draws slowly.
+  async drawn() {
+    await this.page.evaluate(() => new Promise((done) =>
+      requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
+  }
+  // Holds a key until the player has moved sideways by more than this many voxels.
+  async moveBy(code, distance) {
+    const from = await this.state();
     await this.page.keyboard.down(code);
-    await sleep(ms);
+    await until(`${code} moved the player`, async () => {
+      const now = await this.state();
+      return Math.hypot(now.x - from.x, now.z - from.z) > distance;
+    });
     await this.page.keyboard.up(code);
   }
 }

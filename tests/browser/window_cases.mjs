@@ -13,6 +13,7 @@ async function clickUntil(player, what, places, ask, options = {}) {
   for (const [x, y] of places) {
     await player.page.mouse.move(x, y);
     await player.page.mouse.click(x, y, { delay: 80, ...options });
+    await player.drawn();
     await new Promise((resolve) => setTimeout(resolve, 250));
     const answer = await ask();
     if (answer) return { answer, x, y };
@@ -46,13 +47,19 @@ export function addWindowCases({ test, bin, files, out, somebody, world }) {
       downward(TOOLS_LEFT + 150, sphere.y + 155, 420), async () =>
         (await player.text("#state")) !== before && (await player.windows()).tool === "sphere");
     // With control, a slider is a field for its number.
-    await player.page.keyboard.down("Control");
-    await player.page.mouse.click(slider.x, slider.y, { delay: 80 });
-    await player.page.keyboard.up("Control");
-    await new Promise((resolve) => setTimeout(resolve, 300));
-    await player.page.keyboard.type("3", { delay: 80 });
-    await player.page.keyboard.press("Enter", { delay: 80 });
-    await until("the radius was typed", async () => /radius 3\b/.test(await player.text("#state")));
+    await until("the radius was typed", async () => {
+      await player.page.keyboard.down("Control");
+      await player.drawn();
+      await player.page.mouse.click(slider.x, slider.y, { delay: 80 });
+      await player.drawn();
+      await player.page.keyboard.up("Control");
+      await player.drawn();
+      await player.page.keyboard.type("3", { delay: 80 });
+      await player.drawn();
+      await player.page.keyboard.press("Enter", { delay: 80 });
+      await player.drawn();
+      return /radius 3\b/.test(await player.text("#state"));
+    });
     await player.page.screenshot({ path: join(out, "tools.png") });
     assert.equal(await player.voxel(x, y + 2, z), 0);
     await player.page.keyboard.press("Escape");
