@@ -55,7 +55,11 @@ void print_table(std::ostream& out, const Store& store, const VerifyReport& whol
   row(out, "lists") << report.listed_compared << " chunks compared\n";
   row(out, "left out") << report.not_compared
                        << " newer than the end, or of another level of detail\n";
-  if (whole.tiles) row(out, "rows") << "all read and sound\n";
+  if (whole.tiles) {
+    row(out, "rows") << (whole.tiles->differences == 0
+                             ? "all read and sound\n"
+                             : "all read; rows of tiles may not be sound, see the differences\n");
+  }
   row(out, "time") << std::setprecision(3) << seconds << " s, " << std::setprecision(0)
                    << rate_of(report, seconds) << " edits/s\n";
   row(out, "digest") << to_hex(report.world_digest) << '\n';
