@@ -67,7 +67,7 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
       previews_(session_, tool_),
       input_(router_of(options_.settings)),
       view_(session_, player_, {options_.view_radius, options_.view_radius_v}, options_.far_levels),
-      limits_({options_.memory_mib,
+      limits_({options_.memory_mib != 0 ? options_.memory_mib : automatic_memory_mib(),
                {options_.view_radius, options_.view_radius_v},
                options_.far_levels},
               session_.replica(), pipeline_, view_),
@@ -157,6 +157,11 @@ void Client::on_world_opened() {
   controls_.set_materials(welcome.materials);
   if (std::exchange(world_, welcome.world_id) != welcome.world_id) hud_.enter(welcome.materials);
   set_tool_materials(welcome.materials);
+  if (std::max(options_.view_radius, options_.view_radius_v) > welcome.view_radius_max) {
+    spdlog::warn(
+        "this server allows a view radius of {} chunks: the view of {} and {} is cut to it",
+        welcome.view_radius_max, options_.view_radius, options_.view_radius_v);
+  }
   limits_.open_world(welcome.view_radius_max);
 }
 

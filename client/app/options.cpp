@@ -14,6 +14,7 @@
 #include "common/os/passphrase.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/server_link.hpp"
+#include "protocol/codec/view_tiles.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -131,8 +132,8 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
       ->check(CLI::Range(0U, 64U));
   app.add_option("--memory-mib", out.memory_mib,
-                 "memory for chunks, edits and meshes in MiB; default 1024. Beyond it the view "
-                 "shrinks")
+                 "memory for chunks, edits and meshes in MiB; default: an eighth of the machine's, "
+                 "from 256 to 1024. Beyond it the view shrinks")
       ->check(CLI::Range(std::uint64_t{64}, std::uint64_t{65'536}));
   app.add_flag("--verbose", out.verbose, "log every step");
 }
@@ -202,6 +203,9 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   out.view_radius_v = static_cast<std::uint8_t>(
       app.count("--view-vertical") != 0 ? raw.view_v : (raw.view + 1) / 2);
   out.far_levels = static_cast<std::uint8_t>(raw.far_levels);
+  if (out.far_levels != 0 && out.view_radius < kTileRadiusHMin)
+    throw CLI::ValidationError(
+        "--far-levels", "far ground needs --view " + std::to_string(kTileRadiusHMin) + " or more");
   out.render = !raw.no_render && !out.list_materials;
   const bool has_window = out.render && !out.headless;
   const bool asks_for_cache = app.count("--cache-dir") != 0 || app.count("--cache-mib") != 0;

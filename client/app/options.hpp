@@ -49,12 +49,13 @@ struct ClientOptions {
   std::optional<FlightPath> benchmark;
   bool show_protected = false;  // outline protected boxes from the start
   bool exit_on_goodbye = false;
-  double reconnect_seconds = 30;    // the client ends after this time without an open world
-  unsigned workers = 0;             // mesh threads, at least 1 after parsing
-  bool cache = true;                // keep chunks on disk between runs
-  std::string cache_dir;            // empty: $XDG_CACHE_HOME/runstone
-  std::uint64_t cache_mib = 256;    // at most, on disk
-  std::uint64_t memory_mib = 1024;  // of chunks, edits and meshes (MemoryBudget)
+  double reconnect_seconds = 30;  // the client ends after this time without an open world
+  unsigned workers = 0;           // mesh threads, at least 1 after parsing
+  bool cache = true;              // keep chunks on disk between runs
+  std::string cache_dir;          // empty: $XDG_CACHE_HOME/runstone
+  std::uint64_t cache_mib = 256;  // at most, on disk
+  std::uint64_t memory_mib =
+      0;  // of chunks, edits and meshes (MemoryBudget); 0: automatic_memory_mib()
   bool verbose = false;
   bool list_materials = false;  // print the materials of the world instead of playing
   /// Returns true if frames go to a window.

@@ -10,6 +10,7 @@
 #include "client/settings/settings_file.hpp"
 #include "common/core/text.hpp"
 #include "common/os/private_file.hpp"
+#include "common/os/usable_memory.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -23,6 +24,12 @@ std::string account_name() {
 }
 
 }  // namespace
+
+std::uint64_t automatic_memory_mib() {
+  constexpr std::uint64_t kLeast = 256, kMost = 1024;
+  const auto bytes = usable_memory_bytes();
+  return bytes ? std::clamp((*bytes >> 20) / 8, kLeast, kMost) : kMost;
+}
 
 void apply_settings(const ClientSettings& settings, ClientOptions& options) {
   if (!options.given.name) {

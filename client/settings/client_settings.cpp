@@ -73,6 +73,17 @@ std::string set_quality(const toml::node& node, ClientSettings& out) {
   return R"(must be "automatic", "low", "medium" or "high")";
 }
 
+std::string set_memory(const toml::node& node, ClientSettings& out) {
+  const auto mib = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
+  const bool is_automatic = mib == 0;
+  if (!mib || (!is_automatic &&
+               (*mib < std::int64_t{kMemoryMibMin} || *mib > std::int64_t{kMemoryMibMax}))) {
+    return fmt::format("must be 0 or a whole number from {} to {}", kMemoryMibMin, kMemoryMibMax);
+  }
+  out.memory_mib = static_cast<std::uint64_t>(*mib);
+  return {};
+}
+
 /// Returns the fields by section and key. The section of the topmost keys has no name.
 const std::map<std::pair<std::string, std::string>, SetField>& fields() {
   static const auto kFields = [] {
@@ -84,7 +95,7 @@ const std::map<std::pair<std::string, std::string>, SetField>& fields() {
         {{"view", "field_of_view"}, number_field(&S::field_of_view, 30, 110)},
         {{"view", "radius"}, number_field(&S::view_radius, 1, kViewRadiusMax)},
         {{"view", "far_levels"}, number_field(&S::far_levels, 0, kTileLevelMax)},
-        {{"view", "memory_mib"}, number_field(&S::memory_mib, 64, 65'536)},
+        {{"view", "memory_mib"}, set_memory},
         {{"hand", "sensitivity"}, number_field(&S::sensitivity, 0.1, 10)},
         {{"hand", "invert_y"}, switch_field(&S::invert_y)},
         {{"hand", "walks"}, switch_field(&S::walks)},
@@ -187,7 +198,9 @@ std::string to_toml(const ClientSettings& settings) {
       "# Levels of coarser ground beyond it, 0 to {}. Each one lets you see twice as far.\n",
       kTileLevelMax);
   out += fmt::format("far_levels = {}\n", s.far_levels);
-  out += "# Memory for chunks, edits and meshes in MiB, 64 to 65536.\n";
+  out +=
+      fmt::format("# Memory for chunks, edits and meshes in MiB, {} to {}. 0: found by itself.\n",
+                  kMemoryMibMin, kMemoryMibMax);
   out += fmt::format("memory_mib = {}\n\n[hand]\n", s.memory_mib);
   out += "# Speed of looking with the mouse, 0.1 to 10.\n";
   out += "sensitivity = " + toml_float(s.sensitivity) + "\n";

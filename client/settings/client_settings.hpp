@@ -19,20 +19,23 @@ inline constexpr std::size_t kQualityChoiceCount = 4;
 /// Returns "automatic", "low", "medium" or "high".
 const char* name_of(QualityChoice quality);
 
+inline constexpr std::uint64_t kMemoryMibMin = 64, kMemoryMibMax = 65'536;
+
 struct ClientSettings {
   std::string name = "builder";  // shown to others; as the option --name
   std::string key_file;          // of the identity; empty: default_key_file()
   QualityChoice quality = QualityChoice::automatic;
-  double field_of_view = 69;        // degrees, vertical, 30 to 110
-  std::uint8_t view_radius = 6;     // chunks, horizontal, 1 to kViewRadiusMax
-  std::uint8_t far_levels = 5;      // of tiles beyond the view radius; each sees twice as far
-  std::uint64_t memory_mib = 1024;  // of chunks, edits and meshes, 64 to 65,536
-  double sensitivity = 1;           // of the mouse, 0.1 to 10
-  bool invert_y = false;            // mouse up looks down
-  double interface_scale = 1;       // of windows and text, 0.5 to 4
-  bool walks = false;               // players begin on their feet; false: they fly
-  bool shows_previews = true;       // ghosts of what other players are about to do
-  bool shares_previews = true;      // others see what this player is about to do
+  double field_of_view = 69;     // degrees, vertical, 30 to 110
+  std::uint8_t view_radius = 6;  // chunks, horizontal, 1 to kViewRadiusMax
+  std::uint8_t far_levels = 5;   // of tiles beyond the view radius; each sees twice as far
+  /// Of chunks, edits and meshes, kMemoryMibMin to kMemoryMibMax. 0: automatic_memory_mib().
+  std::uint64_t memory_mib = 0;
+  double sensitivity = 1;       // of the mouse, 0.1 to 10
+  bool invert_y = false;        // mouse up looks down
+  double interface_scale = 1;   // of windows and text, 0.5 to 4
+  bool walks = false;           // players begin on their feet; false: they fly
+  bool shows_previews = true;   // ghosts of what other players are about to do
+  bool shares_previews = true;  // others see what this player is about to do
   /// The keys that differ from the defaults, by the name of their action. A value has the names of
   /// keys with blanks between them, such as "W up", or is empty. key_map_of() checks the names.
   std::map<std::string, std::string> keys;

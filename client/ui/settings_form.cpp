@@ -49,7 +49,11 @@ SettingsForm::Result SettingsForm::build(double scale) {
   if (ImGui::SliderInt("far ground", &levels, 0, int{kTileLevelMax}, "%d levels",
                        ImGuiSliderFlags_AlwaysClamp))
     s.far_levels = static_cast<std::uint8_t>(levels);
-  if (ImGui::SliderInt("memory", &memory, 64, 65'536, "%d MiB",
+  bool is_automatic = s.memory_mib == 0;
+  if (ImGui::Checkbox("find the memory to use by itself", &is_automatic))
+    s.memory_mib = is_automatic ? 0 : 1024;
+  if (s.memory_mib != 0 &&
+      ImGui::SliderInt("memory", &memory, int{kMemoryMibMin}, int{kMemoryMibMax}, "%d MiB",
                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
     s.memory_mib = static_cast<std::uint64_t>(memory);
   }

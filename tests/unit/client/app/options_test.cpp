@@ -4,6 +4,7 @@
 #include <fstream>
 #include <vector>
 
+#include "client/app/player_defaults.hpp"
 #include "tests/support/temp_folder.hpp"
 
 using namespace runstone;
@@ -134,7 +135,9 @@ TEST_CASE("a client with a window has a cache, and other clients have one if an 
 }
 
 TEST_CASE("the memory budget is 1 GiB unless an option says otherwise", "[client_app]") {
-  CHECK(accepted({"--connect", "a:1"}).memory_mib == 1024);
+  CHECK(accepted({"--connect", "a:1"}).memory_mib == 0);
+  CHECK(automatic_memory_mib() >= 256);
+  CHECK(automatic_memory_mib() <= 1024);
   CHECK(accepted({"--connect", "a:1", "--memory-mib", "64"}).memory_mib == 64);
   CHECK(refused({"--connect", "a:1", "--memory-mib", "63"}) == 2);
   CHECK(refused({"--connect", "a:1", "--memory-mib", "65537"}) == 2);
@@ -170,6 +173,7 @@ TEST_CASE("sizes, views and encodings become numbers", "[client_app]") {
   CHECK(accepted({"--connect", "a:1"}).far_levels == 0);
   CHECK(accepted({"--connect", "a:1", "--far-levels", "6"}).far_levels == 6);
   CHECK(refused({"--connect", "a:1", "--far-levels", "9"}) == 2);
+  CHECK(refused({"--connect", "a:1", "--view", "1", "--far-levels", "3"}) == 2);
   CHECK(refused({"--connect", "a:1", "--encoding", "morse"}) == 2);
   CHECK(refused({"--connect", "a:1", "--script", "/does/not/exist"}) == 2);
   CHECK(refused({"--connect", "a:1", "--name", "a name of more than thirty-two bytes"}) == 2);

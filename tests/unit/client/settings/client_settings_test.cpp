@@ -79,7 +79,10 @@ TEST_CASE("a setting that cannot be used is named with its line, and the others 
   CHECK(only_warning("view.far_levels = 9") ==
         "client.toml:1: view.far_levels: must be a whole number from 0 to 8");
   CHECK_THAT(only_warning("view.field_of_view = nan"), Catch::Contains("must be a number"));
-  CHECK_THAT(only_warning("view.memory_mib = \"all\""), Catch::Contains("must be a whole number"));
+  for (const char* wrong : {"\"all\"", "63", "-1", "65537", "100.5"}) {
+    CHECK_THAT(only_warning(std::string("view.memory_mib = ") + wrong),
+               Catch::Contains("must be 0 or a whole number from 64 to 65536"));
+  }
   CHECK_THAT(only_warning("interface = 2"), Catch::Contains("interface: must be a table"));
   CHECK_THAT(only_warning("keys.undo = 3"), Catch::Contains("keys.undo: must be a text"));
 }
