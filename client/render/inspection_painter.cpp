@@ -15,7 +15,8 @@ constexpr std::uint32_t kRunWordsAtFirst = 1U << 16;
 
 constexpr const char* kInspectionVertexShader = RUNSTONE_QUAD_GLSL
     "uniform mat4 clip;\n"
-    "uniform vec3 origin;\n"  // of the chunk, minus eye
+    "uniform vec3 origin;\n"  // of the chunk or tile, minus eye
+    "uniform float scale;\n"  // world units of a voxel
     "out vec3 local;\n"       // the middle of the face's voxel, in the chunk
     "out vec2 side;\n"        // -1 .. 1 along both sides of the quad
     "flat out vec3 normal;\n"
@@ -25,7 +26,7 @@ constexpr const char* kInspectionVertexShader = RUNSTONE_QUAD_GLSL
     "  side = vec2(dot(c.outward, n.zxy), dot(c.outward, n.yzx));\n"
     "  local = c.at - c.normal * 0.5;\n"
     "  normal = c.normal;\n"
-    "  gl_Position = clip * vec4(origin + c.at, 1.0);\n"
+    "  gl_Position = clip * vec4(origin + scale * c.at, 1.0);\n"
     "}\n";
 
 constexpr const char* kInspectionFragmentShader =
@@ -163,7 +164,8 @@ void InspectionPainter::begin(const Inspection& inspection, const glm::mat4& cli
   depth.pull_polygons();
 }
 
-bool InspectionPainter::place(const ChunkKey& key, const glm::vec3& origin, std::int32_t edge) {
+bool InspectionPainter::place(const ChunkKey& key, const glm::vec3& origin, std::int32_t edge,
+                              float scale) {
   const InspectedChunk* const chunk = row_of(shown_->chunks, key);
   const bool shows_order = shown_->modes[InspectionMode::orders] && chunk != nullptr;
   const bool shows_runs = chunk != nullptr && chunks_.contains(key);
@@ -172,6 +174,7 @@ bool InspectionPainter::place(const ChunkKey& key, const glm::vec3& origin, std:
     return false;
   glUniform3fv(at("origin"), 1, glm::value_ptr(origin));
   glUniform1i(at("edge"), edge);
+  glUniform1f(at("scale"), scale);
   glm::vec4 tint{0};
   if (shows_order) {
     const InspectionColour colour = colour_of(chunk->voxels->order);

@@ -550,11 +550,11 @@ void Terrain::draw_inspection(const FrameView& view, const Inspection& inspectio
   if (!inspection_) inspection_.emplace();
   inspection_->begin(inspection, view.clip, view.depth, quads_, view.look.exact);
   for (const Visible& chunk : visible_) {
-    if (chunk.key.lod > 0) continue;
     spans_.clear();
     chunk.chunk->opaque.append_facing(chunk.eye, spans_);
     if (chunk.chunk->transparent.count != 0) spans_.push_back(chunk.chunk->transparent);
-    if (!spans_.empty() && inspection_->place(chunk.key, chunk.origin, chunk.chunk->edge))
+    if (spans_.empty()) continue;
+    if (inspection_->place(chunk.key, chunk.origin, chunk.chunk->edge, chunk.scale))
       quads_.draw(spans_, inspection_->first_vertex());
   }
   InspectionPainter::end(view.depth);
