@@ -3,6 +3,8 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
+#include <array>
+#include <span>
 #include <vector>
 
 namespace runstone {
@@ -35,18 +37,44 @@ struct Kind {
   const char* none;  // the failure if there is none
 };
 
+template <class Function>
+Function egl_function(const char* name) {
+  return reinterpret_cast<Function>(eglGetProcAddress(name));
+}
+
+/// Returns an initialized display without a screen, or EGL_NO_DISPLAY. Mesa has one for all its drivers.
+/// Drivers of vendors have one for each device.
+EGLDisplay screenless_display() {
+  const auto get_display =
+      egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+  if (get_display == nullptr) return EGL_NO_DISPLAY;
+  const auto initialized = [&](EGLenum platform, void* native) {
+    const EGLDisplay display = get_display(platform, native, nullptr);
+    const bool is_usable =
+        display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE;
+    return is_usable ? display : EGL_NO_DISPLAY;
+  };
+  const EGLDisplay surfaceless = initialized(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
+  const auto query_devices = egl_function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
+  if (surfaceless != EGL_NO_DISPLAY || query_devices == nullptr) return surfaceless;
+  std::array<EGLDeviceEXT, 8> devices{};
+  EGLint count = 0;
+  if (query_devices(static_cast<EGLint>(devices.size()), devices.data(), &count) != EGL_TRUE)
+    return EGL_NO_DISPLAY;
+  for (const EGLDeviceEXT device : std::span(devices).first(static_cast<std::size_t>(count))) {
+    const EGLDisplay display = initialized(EGL_PLATFORM_DEVICE_EXT, device);
+    if (display != EGL_NO_DISPLAY) return display;
+  }
+  return EGL_NO_DISPLAY;
+}
+
 std::unique_ptr<GlContext> make_context(const Kind& kind, std::string& tried) {
   const auto give_up = [&](const char* why) {
     tried += std::string(kind.name) + ": " + why + "; ";
     return nullptr;
   };
-  const auto get_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
-      eglGetProcAddress("eglGetPlatformDisplayEXT"));
-  if (get_display == nullptr) return give_up("no eglGetPlatformDisplayEXT");
-  const EGLDisplay display =
-      get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-  if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE)
-    return give_up("no display");
+  const EGLDisplay display = screenless_display();
+  if (display == EGL_NO_DISPLAY) return give_up("no display");
   eglBindAPI(kind.api);
   for (const std::vector<EGLint>& attributes : kind.attributes) {
     const EGLContext context =

@@ -1,4 +1,5 @@
-// OpenGL and OpenGL ES without a display server, through EGL's surfaceless platform (Mesa).
+// OpenGL and OpenGL ES without a display server, through EGL: the surfaceless platform of Mesa, or a device
+// of a vendor's driver.
 #pragma once
 #include <memory>
 #include <string>
