@@ -38,17 +38,16 @@ void MeshPipeline::set_materials(const MaterialTable& materials) {
   materials_ = materials;
   changed_ = true;
   if (draw_queue_) draw_queue_->set_materials(materials_);
+  const VisibilityTable visibility(visibilities(materials_));
+  far_planner_.set_visibility(visibility);
   if (has_grown) {
-    pool_->set_visibility(VisibilityTable(visibilities(materials_)));
-    far_planner_.mesh_again();
+    pool_->set_visibility(visibility);
     return planner_.mesh_again_from(static_cast<Material>(known));
   }
   planner_.forget_meshes();
-  far_planner_.mesh_again();
   pool_.reset();
   open_job_bytes_.clear();
-  pool_ = std::make_unique<MeshPool>(VisibilityTable(visibilities(materials_)), workers_,
-                                     steady_now_ns, wake_);
+  pool_ = std::make_unique<MeshPool>(visibility, workers_, steady_now_ns, wake_);
 }
 
 void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us) {

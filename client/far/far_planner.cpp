@@ -13,6 +13,27 @@ bool FarPlanner::Order::operator()(const Rank& a, const Rank& b) const {
   return std::tie(key_a.lod, distance_a, key_a) < std::tie(key_b.lod, distance_b, key_b);
 }
 
+void FarPlanner::set_visibility(const VisibilityTable& visibility) {
+  visibility_ = visibility;
+  // From the highest level down, as in take().
+  for (auto found = nodes_.rbegin(); found != nodes_.rend(); ++found) {
+    auto& [key, node] = *found;
+    if (!node.tile) continue;
+    if (node.arrived) {
+      set_tile(key, node, with_veil(node.arrived), node.arrived, true);
+      refresh_stand_ins_below(key, node);
+    }
+    node.job = 0;
+    mark(key, node);
+  }
+}
+
+TilePtr FarPlanner::with_veil(const TilePtr& tile) {
+  if (!visibility_) return tile;
+  auto changed = veiled(*tile, *visibility_, veil_scratch_);
+  return changed ? std::make_shared<const RunChunk>(*std::move(changed)) : tile;
+}
+
 void FarPlanner::take(std::span<const ChunkKey> changes) {
   // From the highest level down, so that no stand-in is made of a tile that is replaced next.
   for (auto key = changes.rbegin(); key != changes.rend(); ++key) {
@@ -55,7 +76,7 @@ void FarPlanner::erase_if_unused(const ChunkKey& key) {
   const auto found = nodes_.find(key);
   Node& node = found->second;
   if (node.is_held || node.children != 0) return;
-  set_tile(key, node, nullptr, false);
+  set_tile(key, node, nullptr, nullptr, false);
   nodes_.erase(found);
   if (key.lod == kTileLevelMax) return;
   const ChunkKey up = tile_parent(key);
@@ -66,9 +87,12 @@ void FarPlanner::erase_if_unused(const ChunkKey& key) {
 }
 
 void FarPlanner::refresh(const ChunkKey& key, Node& node, bool from_parent) {
-  TilePtr tile = tiles_.find(key);
-  const bool is_held = tile != nullptr;
-  if (!is_held && node.children != 0 && key.lod < kTileLevelMax) {
+  TilePtr arrived = tiles_.find(key);
+  const bool is_held = arrived != nullptr;
+  TilePtr tile;
+  if (is_held) {
+    tile = arrived == node.arrived ? node.tile : with_veil(arrived);
+  } else if (node.children != 0 && key.lod < kTileLevelMax) {
     const auto parent = nodes_.find(tile_parent(key));
     if (parent != nodes_.end() && parent->second.tile) {
       if (node.is_stand_in() && !from_parent) return;
@@ -76,7 +100,11 @@ void FarPlanner::refresh(const ChunkKey& key, Node& node, bool from_parent) {
     }
   }
   if (tile == node.tile && is_held == node.is_held) return;
-  set_tile(key, node, std::move(tile), is_held);
+  set_tile(key, node, std::move(tile), std::move(arrived), is_held);
+  refresh_stand_ins_below(key, node);
+}
+
+void FarPlanner::refresh_stand_ins_below(const ChunkKey& key, const Node& node) {
   if (key.lod <= 1) return;
   for (unsigned i = 0; i < kTileChildren; ++i) {
     if (!has_child(node.children, i)) continue;
@@ -86,15 +114,17 @@ void FarPlanner::refresh(const ChunkKey& key, Node& node, bool from_parent) {
   }
 }
 
-void FarPlanner::set_tile(const ChunkKey& key, Node& node, TilePtr tile, bool is_held) {
+void FarPlanner::set_tile(const ChunkKey& key, Node& node, TilePtr tile, TilePtr arrived,
+                          bool is_held) {
   if (key.lod == 0) return;
   const auto bytes_of = [](const Node& of) {
-    return of.is_stand_in() ? sizeof(RunChunk) + of.tile->runs.byte_size() : 0;
+    return of.tile && of.tile != of.arrived ? sizeof(RunChunk) + of.tile->runs.byte_size() : 0;
   };
   bytes_ -= bytes_of(node);
   stand_ins_ -= node.is_stand_in() ? 1 : 0;
   const bool is_changed = node.tile != tile;
   node.tile = std::move(tile);
+  node.arrived = std::move(arrived);
   node.is_held = is_held;
   bytes_ += bytes_of(node);
   stand_ins_ += node.is_stand_in() ? 1 : 0;
@@ -185,14 +215,6 @@ std::vector<ChunkKey> FarPlanner::take_removals() {
   std::vector<ChunkKey> out(removals_.begin(), removals_.end());
   removals_.clear();
   return out;
-}
-
-void FarPlanner::mesh_again() {
-  for (auto& [key, node] : nodes_) {
-    if (!node.tile) continue;
-    node.job = 0;
-    mark(key, node);
-  }
 }
 
 }  // namespace runstone

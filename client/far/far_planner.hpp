@@ -4,11 +4,14 @@
 //     between gets a stand-in (stand_in.hpp), so that FarCover finds no gap.
 //   - A tile whose mesh is new waits until the tiles that are held below it have their first
 //     meshes. So coarse ground never hides finer ground that was drawn before.
+//   - Enclosed voxels of a tile are never ground that is seen, and servers may give them any material
+//     (common/tiles/veil.hpp). But octants and stand-ins cut through tiles. So tiles are veiled here
+//     before they are meshed: pictures do not depend on what the server did.
 //   - The order is: finer levels first, then the nearest to the eye. All levels look equally large
 //     on the screen, because their reach grows with their voxels.
 //
 // Pure. One thread. Cost: O(levels * log n) per change; O(tiles to mesh) when the eye enters
-// another chunk. Memory: one entry for each chunk and tile that is held, and bytes() of stand-ins.
+// another chunk. Memory: one entry for each chunk and tile that is held, and bytes().
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +25,8 @@
 #include "client/far/far_tiles.hpp"
 #include "client/far/tile_mesh.hpp"
 #include "common/core/coords.hpp"
+#include "common/mesh/visibility.hpp"
+#include "common/tiles/veil.hpp"
 
 namespace runstone {
 
@@ -30,6 +35,9 @@ class FarPlanner {
   /// `tiles` must outlive the planner.
   explicit FarPlanner(const FarTiles& tiles) : tiles_(tiles) {}
 
+  /// Sets the visibility and look of materials. Makes all open jobs void and meshes every tile again.
+  /// Before the first call, tiles are meshed as they came.
+  void set_visibility(const VisibilityTable& visibility);
   /// Takes the keys of FarTiles::drain_changes().
   void take(std::span<const ChunkKey> changes);
   /// Records whether a chunk of level 0 is held.
@@ -44,8 +52,6 @@ class FarPlanner {
   /// Returns the tiles that are not to be drawn any more, of those for which finish() returned
   /// true.
   std::vector<ChunkKey> take_removals();
-  /// Makes all open jobs void and meshes every tile again, because materials look different now.
-  void mesh_again();
 
   /// Return the number of tiles to mesh, and the number of those that do not have to wait.
   std::size_t dirty_count() const { return dirty_; }
@@ -53,7 +59,7 @@ class FarPlanner {
   std::size_t stand_in_count() const { return stand_ins_; }
   /// Returns the number of jobs so far.
   std::uint64_t jobs() const { return jobs_; }
-  /// Returns the memory of stand-ins.
+  /// Returns the memory of stand-ins and of other tiles that are not those that arrived.
   std::size_t bytes() const { return bytes_; }
 
  private:
@@ -67,23 +73,29 @@ class FarPlanner {
     bool is_dirty = false;
     bool is_drawn = false;     // finish() returned true and take_removals() has not named it
     bool has_octants = false;  // the newest job has
-    TilePtr tile;              // that arrived, or a stand-in; null: there is none
+    TilePtr tile;              // that arrived, veiled, or a stand-in; null: there is none
+    TilePtr arrived;           // as it arrived; null for a stand-in
     std::uint64_t job = 0;     // number of the open job; 0: none
     std::optional<Rank> rank;  // place in ready_
     bool is_stand_in() const { return tile && !is_held; }
   };
 
+  TilePtr with_veil(const TilePtr& tile);
   Node& make(const ChunkKey& key);
   void erase_if_unused(const ChunkKey& key);
   /// Chooses the tile of a node anew. `from_parent` is true if the tile of its parent has changed.
   void refresh(const ChunkKey& key, Node& node, bool from_parent);
-  void set_tile(const ChunkKey& key, Node& node, TilePtr tile, bool is_held);
+  /// Makes the stand-ins below a tile anew.
+  void refresh_stand_ins_below(const ChunkKey& key, const Node& node);
+  void set_tile(const ChunkKey& key, Node& node, TilePtr tile, TilePtr arrived, bool is_held);
   void mark(const ChunkKey& key, Node& node);
   void place(const ChunkKey& key, Node& node);
   void place_parent(const ChunkKey& key);
   bool is_ready(const ChunkKey& key, const Node& node) const;
 
   const FarTiles& tiles_;
+  std::optional<VisibilityTable> visibility_;
+  VeilScratch veil_scratch_;
   ChunkCoord eye_;
   std::map<ChunkKey, Node> nodes_;  // those that are held, and all that are above them
   std::set<Rank, Order> ready_;

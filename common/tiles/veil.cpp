@@ -94,8 +94,9 @@ bool veil_runs(Runs runs, const OrderedExtent& e, const VisibilityTable& visibil
 }  // namespace
 }  // namespace tiles
 
-bool veil(RunChunk& tile, const VisibilityTable& visibility, VeilScratch& scratch) {
-  if (tile.is_uniform()) return false;
+std::optional<RunChunk> veiled(const RunChunk& tile, const VisibilityTable& visibility,
+                               VeilScratch& scratch) {
+  if (tile.is_uniform()) return std::nullopt;
   VeilScratch::State& state = scratch.state();
   const OrderedExtent e = ordered(tile.extent, tile.order);
   state.sink.clear();
@@ -104,8 +105,8 @@ bool veil(RunChunk& tile, const VisibilityTable& visibility, VeilScratch& scratc
       return tiles::veil_runs(runs, e, visibility, state.narrow, state.sink);
     return tiles::veil_runs(runs, e, visibility, state.wide, state.sink);
   });
-  if (is_changed) tile.runs = state.sink.runs_of(tile.volume());
-  return is_changed;
+  if (!is_changed) return std::nullopt;
+  return RunChunk{tile.extent, tile.order, state.sink.runs_of(tile.volume())};
 }
 
 }  // namespace runstone

@@ -1,5 +1,7 @@
 // Veil: replaces the materials of enclosed voxels of a tile, so that its runs are long. Tiles are
-// never edited, so enclosed voxels are never shown and their materials do not matter.
+// never edited, so enclosed voxels are never shown and their materials do not matter. Servers veil
+// tiles for the wire. They make tiles of tiles without a veil, because a voxel that is enclosed in one
+// level may be seen in the next.
 //
 // The rule: an opaque voxel whose six neighbours are all opaque takes the material of its
 // predecessor in index order, after that one was veiled. Voxels on the border of the tile keep
@@ -7,6 +9,7 @@
 // any neighbours of the tile.
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "common/mesh/visibility.hpp"
 #include "common/runs/run_chunk.hpp"
@@ -28,9 +31,11 @@ class VeilScratch {
   std::unique_ptr<State> state_;
 };
 
-/// Veils a tile in its axis order. Returns true if any voxel changed. The tile never gets more runs.
-/// Repeating it changes nothing. Requires a valid tile of any extent. Thread: any, with one scratch
-/// each. In a steady state only the new run list allocates. Cost: O(lines + runs).
-bool veil(RunChunk& tile, const VisibilityTable& visibility, VeilScratch& scratch);
+/// Returns the tile with its veil, in the same axis order, or nullopt if the veil changes no voxel. The
+/// result never has more runs than the tile. The veil of a veiled tile changes nothing. Requires a
+/// valid tile of any extent. Thread: any, with one scratch each. In a steady state only the result
+/// allocates. Cost: O(lines + runs).
+std::optional<RunChunk> veiled(const RunChunk& tile, const VisibilityTable& visibility,
+                               VeilScratch& scratch);
 
 }  // namespace runstone

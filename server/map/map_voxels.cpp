@@ -77,7 +77,7 @@ StoreResult<MapVoxels::Voxels> MapVoxels::build(const MapMoment& moment, const C
     children[i] = *std::move(child);
     runs[i] = children[i].get();
   }
-  return shared(veiled_tile(runs, moment.meta().chunk_edge, visibility_, build_));
+  return shared(build_tile(runs, moment.meta().chunk_edge, kTileOrder, visibility_, build_));
 }
 
 }  // namespace runstone

@@ -11,7 +11,8 @@
 #include <memory>
 
 #include "common/mesh/visibility.hpp"
-#include "common/tiles/veiled_tile.hpp"
+#include "common/tiles/tile_builder.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/map/map_caches.hpp"
 #include "server/map/map_moment.hpp"
 
@@ -48,7 +49,7 @@ class MapVoxels {
   MapCaches& caches_;
   const ShouldContinue should_continue_;
   ReplayScratch replay_;
-  VeiledTileScratch build_;
+  TileScratch build_;
 };
 
 }  // namespace runstone

@@ -4,7 +4,7 @@
 // Threads: the two loops run on the session's strand. A read that may complete a large message is
 // decoded on a thread of `decoders`, so that the I/O threads are free for the small messages of
 // others; the read loop waits for it. send(), reserve_chunk(), fill_chunk(),
-// forget_outside(), close(), abort(), handled(), set_encoding() and set_features() may be called
+// forget_outside(), close(), abort(), handled(), set_encodings() and set_features() may be called
 // from any thread and return at once.
 #pragma once
 #include <asio/any_io_executor.hpp>
@@ -22,6 +22,7 @@
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/session_encodings.hpp"
 #include "server/net/byte_stream.hpp"
 #include "server/net/chunk_gate.hpp"
 #include "server/net/net_events.hpp"
@@ -112,8 +113,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   void fill_chunk(ChunkPlace place, const ChunkEntry& chunk);
   /// Drops queued chunks outside of the view of which nothing was sent.
   void forget_outside(const View& view);
-  void set_encoding(ChunkEncoding encoding) { encoding_.store(encoding); }
-  ChunkEncoding encoding() const { return encoding_.load(); }
+  void set_encodings(SessionEncodings encodings) { encodings_.store(encodings); }
+  SessionEncodings encodings() const { return encodings_.load(); }
   /// Sets the optional parts of the protocol that are in force. Call it once, before the first
   /// chunk.
   void set_features(std::uint64_t features);
@@ -177,7 +178,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::unique_ptr<ByteStream> stream_;
   std::string peer_;
   const AddressBlock address_;
-  std::atomic<ChunkEncoding> encoding_{ChunkEncoding::raw};
+  std::atomic<SessionEncodings> encodings_{SessionEncodings{}};
   std::atomic<std::size_t> unhandled_{0};  // bytes, see NetLimits
   std::atomic<std::size_t> charged_{0};    // bytes to be added to the next read
   std::atomic<bool> reader_paused_{false};

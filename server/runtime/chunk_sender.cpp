@@ -14,7 +14,7 @@ bool ChunkSender::send_snapshot(const std::shared_ptr<NetSession>& session, std:
   const auto place = session->reserve_chunk(key, view);
   if (!place) return false;
   asio::post(workers_, [this, session, key, chunk, place = *place] {
-    session->fill_chunk(place, encoded_.snapshot(key, chunk, session->encoding()));
+    session->fill_chunk(place, encoded_.snapshot(key, chunk, session->encodings().of(key)));
   });
   return true;
 }
@@ -24,7 +24,7 @@ bool ChunkSender::send_update(const std::shared_ptr<NetSession>& session, std::u
   const auto place = session->reserve_chunk(key, view);
   if (!place) return false;
   asio::post(workers_, [this, session, key, chunk, held, place = *place] {
-    session->fill_chunk(place, encode_update(key, chunk, held, session->encoding()));
+    session->fill_chunk(place, encode_update(key, chunk, held, session->encodings().of(key)));
   });
   return true;
 }

@@ -21,8 +21,8 @@ std::vector<SessionId> ServerEnvironment::send_to_all(std::span<const SessionId>
   return full;
 }
 
-void ServerEnvironment::set_encoding(SessionId session, ChunkEncoding encoding) {
-  if (const auto& net = sessions_.find(session)) net->set_encoding(encoding);
+void ServerEnvironment::set_encodings(SessionId session, SessionEncodings encodings) {
+  if (const auto& net = sessions_.find(session)) net->set_encodings(encodings);
 }
 
 void ServerEnvironment::set_features(SessionId session, std::uint64_t features) {

@@ -49,7 +49,7 @@ class ServerEnvironment final : public WorldEnvironment {
   bool send(SessionId session, const EncodedMessage& message) override;
   std::vector<SessionId> send_to_all(std::span<const SessionId> sessions,
                                      const EncodedMessage& message) override;
-  void set_encoding(SessionId session, ChunkEncoding encoding) override;
+  void set_encodings(SessionId session, SessionEncodings encodings) override;
   void set_features(SessionId session, std::uint64_t features) override;
   void opened(SessionId session) override;
   bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,

@@ -132,6 +132,8 @@ class SqliteStore final : public Store {
               Tables tables, WorldMeta meta, std::unique_ptr<DurableMark> mark);
   /// Converts a world of an older format, in one transaction.
   StoreResult<void> convert();
+  /// Deletes the tiles that were made by other rules (kTileRules). A reader does not see them.
+  StoreResult<void> leave_tiles_of_other_rules();
   /// Adds what format 3 has and format 2 lacks: the players own their names, and of several players
   /// with one name the oldest. The log of such a world has no changes of rights.
   StoreResult<void> convert_to_format_3();

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/sqlite/transaction.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/loss_advice.hpp"
 #include "server/store/sqlite_result.hpp"
 #include "server/store/sqlite_store.hpp"
@@ -128,6 +129,7 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
   rows["checkpoint"] = std::int64_t{0};
   rows["author_max"] = std::int64_t{0};
   rows["log_last"] = std::int64_t{0};
+  rows["tile_rules"] = std::int64_t{kTileRules};
   for (const auto& [key, value] : rows) {
     if (auto put = table->put(key, value); !put) return put;
   }
@@ -252,6 +254,12 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   if (!store->tiles_ && access != StoreAccess::read_only) {
     if (const auto converted = store->convert(); !converted) return failed(converted.error());
   }
+  const auto rules = rows->find("tile_rules");
+  const bool are_tiles_current =
+      rules != rows->end() && rules->second == MetaValue{std::int64_t{kTileRules}};
+  if (!are_tiles_current) {
+    if (const auto left = store->leave_tiles_of_other_rules(); !left) return failed(left.error());
+  }
   store->database_->keep_wal_on_close(store->loss_.has_value());
   return store;
 }
@@ -266,6 +274,17 @@ StoreResult<void> SqliteStore::convert() {
     if (!tiles) return failed(tiles.error());
     tiles_ = *std::move(tiles);
     return {};
+  });
+}
+
+StoreResult<void> SqliteStore::leave_tiles_of_other_rules() {
+  if (access_ == StoreAccess::read_only) {
+    tiles_.reset();
+    return {};
+  }
+  return write([&]() -> StoreResult<void> {
+    if (auto cleared = tiles_->clear(); !cleared) return cleared;
+    return meta_table_.put("tile_rules", std::int64_t{kTileRules});
   });
 }
 

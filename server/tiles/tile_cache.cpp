@@ -8,7 +8,10 @@ namespace {
 /// Returns about the memory that a tile takes: runs, chunk, and the nodes of list and table.
 std::size_t bytes_of(const MadeTile& tile) {
   constexpr std::size_t kNodeBytes = 256;
-  return tile.tile->voxels.runs.byte_capacity() + sizeof(Chunk) + kNodeBytes;
+  const std::size_t veiled_bytes = tile.veiled && tile.veiled != tile.tile
+                                       ? tile.veiled->voxels.runs.byte_capacity() + sizeof(Chunk)
+                                       : 0;
+  return tile.tile->voxels.runs.byte_capacity() + sizeof(Chunk) + veiled_bytes + kNodeBytes;
 }
 
 }  // namespace

@@ -7,7 +7,10 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/tile_keys.hpp"
-#include "common/tiles/veiled_tile.hpp"
+#include "common/runs/reorder.hpp"
+#include "common/tiles/tile_builder.hpp"
+#include "common/tiles/tile_rules.hpp"
+#include "common/tiles/veil.hpp"
 #include "server/history/base_chunk.hpp"
 
 namespace runstone {
@@ -70,7 +73,7 @@ class TileSource::Making {
         source_.generator_.coarse(tile_origin(key, source_.edge_), source_.edge_, key.lod);
     if (!voxels) return std::nullopt;
     ++steps_;
-    return tile_of_voxels(key, veiled(*std::move(voxels), visibility_, scratch_), {}, true, false);
+    return tile_of_voxels(key, reorder(*voxels, kTileOrder), {}, true, false);
   }
 
   /// Returns the stored tile, or nullopt if there is none, if it is damaged, or if it lacks edit
@@ -115,7 +118,8 @@ class TileSource::Making {
       version = std::max(version, children[i].chunk->version);
     }
     return tile_of_voxels(
-        key, veiled_tile(runs, static_cast<unsigned>(source_.edge_), visibility_, scratch_),
+        key,
+        build_tile(runs, static_cast<unsigned>(source_.edge_), kTileOrder, visibility_, scratch_),
         version, is_approximate, is_damaged);
   }
 
@@ -205,7 +209,7 @@ class TileSource::Making {
   const VisibilityTable& visibility_;
   const PastChunk& past_chunk_;
   const std::map<ChunkCoord, ChunkPtr> fresh_;
-  VeiledTileScratch scratch_;
+  TileScratch scratch_;
   std::vector<MadeTile> on_the_way_;
   std::size_t steps_ = 0;  // chunks and tiles that were read or generated
   bool has_stopped_ = false;
@@ -231,9 +235,24 @@ StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
   auto tile = making.tile(request.key);
   if (making.has_stopped()) return making.take_on_the_way();
   if (!tile) return Unexpected<StoreError>{tile.error()};
+  add_veiled(*tile, visibility);
   std::vector<MadeTile> tiles = making.take_on_the_way();
   tiles.push_back(*std::move(tile));
   return tiles;
+}
+
+void TileSource::add_veiled(MadeTile& made, const VisibilityTable& visibility) {
+  if (made.veiled) return;
+  const Chunk& tile = *made.tile;
+  VeilScratch scratch;
+  if (auto voxels = veiled(tile.voxels, visibility, scratch)) {
+    Chunk out{*std::move(voxels), tile.version, {}};
+    if (tile.digest != Digest{}) out.digest = digest_of(out.voxels);
+    made.veiled = std::make_shared<const Chunk>(std::move(out));
+  } else {
+    made.veiled = made.tile;
+  }
+  if (!made.is_past) cache_.put(made);
 }
 
 bool TileSource::is_current(const ChunkKey& key, const Version& version,
@@ -242,7 +261,7 @@ bool TileSource::is_current(const ChunkKey& key, const Version& version,
   const Sequence newest = ledger_.newest_edit(key);
   if (const auto made = cache_.find(key); made && newest <= made->through) {
     return made->is_complete() && made->tile->version == version &&
-           made->tile->digest.lane[0] == claim_digest;
+           (!made->veiled || made->veiled->digest.lane[0] == claim_digest);
   }
   return has_found_ground_.load() && newest == version.seq && (newest != 0 || version == Version{});
 }

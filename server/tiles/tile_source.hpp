@@ -53,7 +53,7 @@ class TileSource {
   /// Makes a chunk as it was after edit TileRequest::at.
   using PastChunk = std::function<StoreResult<Chunk>(const ChunkKey&)>;
 
-  /// Returns the tile as the last of the list. Before it come the tiles below it that were made on
+  /// Returns the tile as the last of the list, with MadeTile::veiled. Before it come the tiles below it that were made on
   /// the way and are worth storing. If request.steps_max is reached, the call stops between two tiles,
   /// and the list lacks the requested one. The next call finds the tiles that this one made in memory.
   /// The first call reads the keys of all stored chunks. Requires a
@@ -66,7 +66,8 @@ class TileSource {
                                           const VisibilityTable& visibility,
                                           const PastChunk& past_chunk = {});
   /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now. It
-  /// makes no tile and reads none from the disk. If the tile is in memory, the digests are compared.
+  /// makes no tile and reads none from the disk. If the tile with its veil is in memory, the digests are
+  /// compared.
   /// Otherwise the version must be that of the newest edit below the tile. Returns false before the
   /// first make(), because the edits of earlier runs are not known then. Cost: two look-ups. It may
   /// wait for other threads for a moment.
@@ -76,6 +77,8 @@ class TileSource {
   class Making;  // one call of make()
   /// Passes the chunks that the folder has to the ledger, unless it was done.
   StoreResult<void> find_ground();
+  /// Adds MadeTile::veiled, unless the tile has it.
+  void add_veiled(MadeTile& tile, const VisibilityTable& visibility);
   /// Reports a damaged row, once for each key.
   void warn_once(const ChunkKey& key, const StoreError& error);
 

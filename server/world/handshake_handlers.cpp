@@ -26,6 +26,13 @@ ChunkEncoding choose_encoding(const WorldConfig& config, std::uint8_t offered) {
   return ChunkEncoding::coded;
 }
 
+/// Chunks near the eye come first, and `packed` is read sooner. Of far ground, the bytes count most.
+ChunkEncoding choose_tile_encoding(ChunkEncoding of_chunks, std::uint8_t offered) {
+  const bool offers_coded =
+      (offered >> (static_cast<unsigned>(ChunkEncoding::coded) - 1) & 1U) != 0;
+  return of_chunks == ChunkEncoding::packed && offers_coded ? ChunkEncoding::coded : of_chunks;
+}
+
 Welcome welcome_of(const WorldState& world, const PublicKey& key) {
   const WorldConfig& config = world.config;
   Welcome welcome;
@@ -213,7 +220,8 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.auth_transcript = client_transcript(hello, welcome, mine.binding);
   mine.durable_sent = welcome.durable;
   mine.state = SessionStage::authenticating;
-  world.environment.set_encoding(session, welcome.encoding);
+  world.environment.set_encodings(
+      session, {welcome.encoding, choose_tile_encoding(welcome.encoding, hello.encodings)});
   world.environment.set_features(session, welcome.features);
   send_or_close(world, session, welcome);
 }

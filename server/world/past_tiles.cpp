@@ -113,7 +113,7 @@ void on_past_tile_made(WorldState& world, SessionId session, const TileRequest& 
       if (made.empty()) mine->past_tiles_retry_us = now.steady_us + kTileRetryUs;
       mine->tiles->want_again(request.key);
     } else {
-      send_past_tile(world, session, request.key, made.back().tile, now);
+      send_past_tile(world, session, request.key, made.back().for_clients(), now);
     }
   }
   request_tiles(world, session, now);

@@ -66,7 +66,7 @@ void resend_changed(WorldState& world, const ChunkKey& key, const MadeTile& made
   const auto waiting = std::ranges::partition(receivers, std::not_fn(waits));
   const std::size_t unpaid = receivers.size() - waiting.size();
   world.tiles.queue.charge_changed(now.steady_us, kTileResendUs * static_cast<TimeUs>(unpaid));
-  world.tiles.resends.add(key, made.tile, std::move(receivers), !waiting.empty());
+  world.tiles.resends.add(key, made.for_clients(), std::move(receivers), !waiting.empty());
 }
 
 }  // namespace
@@ -197,7 +197,7 @@ void on_tiles_made(WorldState& world, const ChunkKey& key, const std::vector<Mad
   for (const SessionId session : waiting) {
     WorldSession& mine = *world.find(session);
     if (!is_past_tile(world, mine, key)) {
-      send_tile(world, session, key, tile.tile, now);
+      send_tile(world, session, key, tile.for_clients(), now);
     } else if (mine.tiles->status(key) == TileStatus::waiting) {
       // An edit came after the session's request. It needs the tile as it was.
       mine.tiles->want_again(key);

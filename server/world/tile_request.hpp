@@ -19,7 +19,8 @@ namespace runstone {
 /// incomplete tile is 0, so that no client claims it later.
 struct MadeTile {
   ChunkKey key;
-  ChunkPtr tile;         // its version is the greatest version of the chunks below it
+  /// Without a veil, as it is stored. Its version is the greatest version of the chunks below it.
+  ChunkPtr tile;
   Sequence through = 0;  // it contains every edit below it up to this one, unless it is a past tile
   /// A part of it is not made of chunks: the generator approximated it, or a chunk below it is
   /// damaged and left out.
@@ -30,8 +31,15 @@ struct MadeTile {
   bool is_damaged = false;
   /// It shows an earlier moment (TileRequest::at), and differs from the present one.
   bool is_past = false;
-  /// Of the voxels. That of `tile` is zero unless the tile is complete, so that nobody claims it.
+  /// Of the voxels of `tile`. Chunk::digest is zero unless the tile is complete, so that nobody claims
+  /// it.
   Digest digest{};
+  /// The tile with its veil, as clients get it: `tile` itself if the veil changes nothing. Null if no
+  /// client was to get it so far.
+  ChunkPtr veiled = {};
+
+  /// Returns what clients get. Requires the requested tile of TileSource::make().
+  const ChunkPtr& for_clients() const { return veiled ? veiled : tile; }
 
   /// Returns true if clients may keep it and claim it by its version. A tile that contains some edits
   /// behind `through` may lack others, and its version would not tell.

@@ -13,6 +13,7 @@
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/session_encodings.hpp"
 #include "server/world/chat_entry.hpp"
 #include "server/world/player_rows.hpp"
 #include "server/world/tile_request.hpp"
@@ -69,15 +70,15 @@ class WorldEnvironment {
     }
     return full;
   }
-  /// Sets the encoding agreed with a session. Called once, before its first send_snapshot().
-  virtual void set_encoding(SessionId /*session*/, ChunkEncoding /*encoding*/) {}
+  /// Sets the encodings agreed with a session. Called once, before its first send_snapshot().
+  virtual void set_encodings(SessionId /*session*/, SessionEncodings /*encodings*/) {}
   /// Sets the optional parts of the protocol in force with a session. Called once, before session
   /// accepted.
   virtual void set_features(SessionId /*session*/, std::uint64_t /*features*/) {}
   /// Reports that the session has authenticated its key. It may still wait for the claim of its
   /// name.
   virtual void opened(SessionId /*session*/) {}
-  /// Encodes a snapshot on a worker in the session's encoding and queues it like send(), as an
+  /// Encodes a snapshot on a worker in the session's encoding for its level and queues it like send(), as an
   /// answer to the view of this number. Returns false as send() does. WorldServer::drained() is
   /// called when the queue has room again.
   virtual bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,

@@ -24,15 +24,17 @@ struct TilesRow {
   std::size_t columns = 0;  // columns of voxels at level 0 that the tiles cover together
   std::size_t tiles = 0, uniform = 0;
   std::size_t runs = 0, veiled_runs = 0;
-  std::size_t bytes = 0, veiled_bytes = 0;  // packed
-  std::size_t coded_bytes = 0;              // of the veiled tiles, `coded`
+  std::size_t bytes = 0, veiled_bytes = 0;  // packed; the first are those on disk
+  std::size_t coded_bytes = 0;              // of the veiled tiles, as servers send them
   std::size_t quads = 0;                    // without neighbours
-  double make_us = 0;            // built and veiled, from the children in their own axis orders
+  double make_us = 0;                       // from the children in their own axis orders
   double make_one_order_us = 0;  // from the same children, reordered before the time starts
-  double decode_us = 0;          // of the packed bytes of these tiles, veiled
-  double decode_coded_us = 0;    // of the coded ones
-  double mesh_us = 0;            // without neighbours
-  /// The time to decode the children of these tiles: decode_us of the level below.
+  double veil_us = 0;
+  double decode_stored_us = 0;  // of the packed bytes without a veil
+  double decode_us = 0;         // of the packed bytes with a veil
+  double decode_coded_us = 0;   // of the coded ones
+  double mesh_us = 0;           // without neighbours
+  /// The time to decode the children of these tiles: decode_stored_us of the level below.
   double decode_children_us = 0;
 };
 

@@ -125,7 +125,7 @@ TEST_CASE("the tables have the columns of format 4", "[store][golden]") {
       "author_max base_fold checkpoint chunk_edge epoch generator generator_parameters "
       "generator_version log_head log_last materials name_claim_fold player_fold player_instance_fold "
       "rights_record_fold seed "
-      "server_key_seed snapshot_fold spawn world_id");
+      "server_key_seed snapshot_fold spawn tile_rules world_id");
 }
 
 TEST_CASE("rows have the bytes and checksums of format 4", "[store][golden]") {

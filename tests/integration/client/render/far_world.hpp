@@ -15,16 +15,22 @@
 #include "common/generate/generator.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/tiles/tile_builder.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "common/tiles/veil.hpp"
 #include "protocol/codec/view_tiles.hpp"
 
 namespace runstone::test {
 
+/// What a server does to the tiles that it sends.
+enum class TileVeil { veiled, none };
+
 class FarWorld {
  public:
   /// `parameters` are those of the terrain generator.
-  FarWorld(std::int32_t edge, const MaterialTable& materials, const std::string& parameters)
+  FarWorld(std::int32_t edge, const MaterialTable& materials, const std::string& parameters,
+           TileVeil veil = TileVeil::veiled)
       : edge_(edge),
+        veil_(veil),
         materials_(materials),
         visibility_(visibilities(materials)),
         generator_(*make_generator({"terrain", 1, 7, parameters}, materials)) {}
@@ -55,8 +61,8 @@ class FarWorld {
     }
     TilePtr out;
     if (has_ground) {
-      out = std::make_shared<const RunChunk>(build_tile(
-          pointers, static_cast<unsigned>(edge_), AxisOrder::yxz, visibility_, tile_scratch_));
+      out = std::make_shared<const RunChunk>(build_tile(pointers, static_cast<unsigned>(edge_),
+                                                        kTileOrder, visibility_, tile_scratch_));
     }
     tiles_[key] = out;
     return out;
@@ -65,13 +71,13 @@ class FarWorld {
   RunChunk sent(const ChunkKey& key) {
     const TilePtr tile = built(key);
     if (!tile) return uniform_chunk(Extent::cube(static_cast<unsigned>(edge_)), kEmpty);
-    RunChunk out = *tile;
-    veil(out, visibility_, veil_scratch_);
-    return out;
+    if (veil_ == TileVeil::none) return *tile;
+    return veiled(*tile, visibility_, veil_scratch_).value_or(*tile);
   }
 
  private:
   const std::int32_t edge_;
+  const TileVeil veil_;
   const MaterialTable materials_;
   const VisibilityTable visibility_;
   const std::unique_ptr<Generator> generator_;
@@ -84,6 +90,7 @@ class FarScene {
  public:
   FarScene(FarWorld& world, Renderer& renderer) : world_(world), renderer_(renderer) {
     renderer_.set_materials(world.materials());
+    planner_.set_visibility(world.visibility());
   }
 
   /// Shows a view. Chunks and tiles that were shown before stay if the view has them.

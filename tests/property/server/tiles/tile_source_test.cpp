@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/runs/run_builder.hpp"
-#include "common/tiles/veiled_tile.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/tile_oracle.hpp"
 #include "tests/unit/server/tiles/tile_world.hpp"
@@ -37,17 +37,21 @@ Chunk expected(const TileWorld& world, const ChunkKey& key) {
     out.version = std::max(out.version, below[i].version);
   }
   const DenseChunk tile = expected_tile(children, kSampleEdge, default_material_table());
-  out.voxels = runs_of(expected_veil(tile, kTileOrder, default_material_table()), kTileOrder);
+  out.voxels = runs_of(tile, kTileOrder);
   return out;
 }
 
 /// Returns true if the last made tile is the expected one.
 bool is_expected(const TileWorld& world, const std::vector<MadeTile>& made, const ChunkKey& key) {
   const Chunk tile = expected(world, key);
+  const DenseChunk voxels = DenseChunk::of(tile.voxels);
+  const DenseChunk veiled = expected_veil(voxels, kTileOrder, default_material_table());
   const MadeTile& found = made.back();
-  return found.key == key && found.tile->version == tile.version &&
-         DenseChunk::of(found.tile->voxels) == DenseChunk::of(tile.voxels) &&
-         found.tile->digest == digest_of(tile.voxels) && found.through >= world.head;
+  const Chunk& sent = *found.for_clients();
+  return found.key == key && found.tile->version == tile.version && found.through >= world.head &&
+         DenseChunk::of(found.tile->voxels) == voxels &&
+         found.tile->digest == digest_of(tile.voxels) && sent.version == tile.version &&
+         DenseChunk::of(sent.voxels) == veiled && sent.digest == digest_of(sent.voxels);
 }
 
 void edit_and_compare(TileWorld& world, std::uint8_t level_max, int steps) {

@@ -137,7 +137,7 @@ class SimServer final : public WorldEnvironment {
  private:
   struct Session {
     std::shared_ptr<SimConnection> connection;
-    ChunkEncoding encoding = ChunkEncoding::raw;
+    SessionEncodings encodings;
     std::size_t encoding_now = 0;  // snapshots on a worker
   };
 
@@ -182,8 +182,8 @@ class SimServer final : public WorldEnvironment {
     }
     return it->second.connection->send_from_server(message);
   }
-  void set_encoding(SessionId id, ChunkEncoding encoding) override {
-    if (const auto it = sessions_.find(id); it != sessions_.end()) it->second.encoding = encoding;
+  void set_encodings(SessionId id, SessionEncodings encodings) override {
+    if (const auto it = sessions_.find(id); it != sessions_.end()) it->second.encodings = encodings;
   }
   bool send_snapshot(SessionId id, std::uint32_t view, const ChunkKey& key,
                      const ChunkPtr& chunk) override {
@@ -194,7 +194,7 @@ class SimServer final : public WorldEnvironment {
       const auto session = sessions_.find(id);
       if (session == sessions_.end()) return;
       --session->second.encoding_now;
-      send_encoded(id, view, encode_snapshot(key, *chunk, session->second.encoding));
+      send_encoded(id, view, encode_snapshot(key, *chunk, session->second.encodings.of(key)));
     });
     return true;
   }
@@ -207,7 +207,7 @@ class SimServer final : public WorldEnvironment {
       const auto session = sessions_.find(id);
       if (session == sessions_.end()) return;
       --session->second.encoding_now;
-      const ChunkEncoding encoding = session->second.encoding;
+      const ChunkEncoding encoding = session->second.encodings.of(key);
       const auto edits = value(
           missing_edits(*store_, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding)));
       updates += edits ? 1 : 0;

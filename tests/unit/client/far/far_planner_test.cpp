@@ -9,6 +9,7 @@
 #include "client/far/far_cover.hpp"
 #include "common/core/hash.hpp"
 #include "common/core/tile_keys.hpp"
+#include "tests/support/mesh_scene.hpp"
 #include "tests/unit/client/far/cover_model.hpp"
 #include "tests/unit/client/far/some_tile.hpp"
 
@@ -169,11 +170,41 @@ TEST_CASE("other materials mesh every tile again", "[far]") {
   bench.pass();
   const auto open = bench.planner.next();
   REQUIRE(open);
-  bench.planner.mesh_again();
+  bench.planner.set_visibility(mesh_visibility());
   CHECK(bench.planner.dirty_count() == 2);
   CHECK_FALSE(bench.planner.finish(open->key, open->number));
   bench.settle();
   CHECK(bench.present.size() == 2);
+}
+
+TEST_CASE("tiles are meshed with a veil, whatever the server did", "[far]") {
+  const Extent extent = Extent::cube(kTileEdge);
+  const RunChunk stone = uniform_chunk(extent, kStone, AxisOrder::xyz);
+  RunChunk with_dirt = stone;
+  fill(with_dirt, index_of({5, 5, 5}, extent, AxisOrder::xyz), 1, kDirt);
+  fill(with_dirt, 0, 1, kDirt);
+  RunChunk veiled = stone;
+  fill(veiled, 0, 1, kDirt);
+
+  FarBench bench(2);
+  bench.planner.set_visibility(mesh_visibility());
+  const ChunkKey veiled_here{1, {0, 0, 0}}, veiled_there{1, {1, 0, 0}};
+  REQUIRE(bench.tiles.receive(veiled_here, Chunk{with_dirt, {}, {}}));
+  REQUIRE(bench.tiles.receive(veiled_there, Chunk{veiled, {}, {}}));
+  bench.settle();
+  CHECK(*bench.drawn.at(veiled_here) == veiled);
+  CHECK(*bench.tiles.find(veiled_here) == with_dirt);  // for claims and the cache
+  CHECK(bench.drawn.at(veiled_there) == bench.tiles.find(veiled_there));
+  CHECK(bench.planner.bytes() == sizeof(RunChunk) + veiled.runs.byte_size());
+
+  // The same after other materials, and without the tiles nothing is left.
+  bench.planner.set_visibility(mesh_visibility());
+  bench.settle();
+  CHECK(*bench.drawn.at(veiled_here) == veiled);
+  CHECK(bench.planner.bytes() == sizeof(RunChunk) + veiled.runs.byte_size());
+  bench.tiles.clear();
+  bench.settle();
+  CHECK(bench.planner.bytes() == 0);
 }
 
 TEST_CASE("known ground is drawn exactly once while tiles and chunks come, go and are meshed late",

@@ -8,7 +8,8 @@
 #include "common/core/tile_keys.hpp"
 #include "common/generate/columns_world.hpp"
 #include "common/generate/generator.hpp"
-#include "common/tiles/veiled_tile.hpp"
+#include "common/tiles/tile_builder.hpp"
+#include "common/tiles/tile_rules.hpp"
 
 using namespace runstone;
 
@@ -32,7 +33,7 @@ VisibilityTable visibility() {
 
 /// Returns the tile that follows from all chunks below it.
 RunChunk exact(const Generator& generator, const ChunkKey& key, const VisibilityTable& materials,
-               VeiledTileScratch& scratch) {
+               TileScratch& scratch) {
   if (key.lod == 0) return generator.generate(origin_of(key.at, kEdge), Extent::cube(kEdge));
   std::array<RunChunk, 8> children;
   TileChildren pointers{};
@@ -40,7 +41,7 @@ RunChunk exact(const Generator& generator, const ChunkKey& key, const Visibility
     children[i] = exact(generator, tile_child(key, i), materials, scratch);
     pointers[i] = &children[i];
   }
-  return veiled_tile(pointers, kEdge, materials, scratch);
+  return build_tile(pointers, kEdge, kTileOrder, materials, scratch);
 }
 
 /// Returns the height of a column of a tile: its highest voxel that is not empty + 1, or 0.
@@ -84,7 +85,7 @@ struct Comparison {
 
 Comparison compare(const Generator& generator, std::uint8_t level, int tiles, std::int32_t y) {
   const VisibilityTable materials = visibility();
-  VeiledTileScratch scratch;
+  TileScratch scratch;
   Comparison out;
   SplitMix64 random(level);
   for (int i = 0; i < tiles; ++i) {

@@ -40,7 +40,7 @@ DenseLevel chunks_at(const std::string& folder, Sequence at) {
 /// The tiles above a level.
 DenseLevel level_above(const DenseLevel& below, const VisibilityTable& visibility) {
   DenseLevel out;
-  VeiledTileScratch scratch;
+  TileScratch scratch;
   for (const auto& [at, ignored] : below) {
     const ChunkKey parent = tile_parent({0, at});
     if (out.contains(parent.at)) continue;
@@ -49,7 +49,7 @@ DenseLevel level_above(const DenseLevel& below, const VisibilityTable& visibilit
       const auto found = below.find(tile_child({1, parent.at}, i).at);
       if (found != below.end()) children[i] = &found->second;
     }
-    out[parent.at] = veiled_tile(children, kSampleEdge, visibility, scratch);
+    out[parent.at] = build_tile(children, kSampleEdge, kTileOrder, visibility, scratch);
   }
   return out;
 }

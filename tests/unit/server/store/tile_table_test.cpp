@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/core/tile_keys.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/store.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"
@@ -162,6 +163,31 @@ TEST_CASE("a compaction deletes the tiles that are older than the snapshots it m
   const auto compacted = world.store->compact(20);
   if (!compacted) FAIL(compacted.error().message());
   CHECK(*world.store->tile_keys() == Keys{{{1, {4, 0, 0}}, {1, 3}}, {{2, {0, 0, 0}}, {1, 20}}});
+}
+
+TEST_CASE("tiles of other rules are not there for a reader, and a writer deletes them",
+          "[store][tiles]") {
+  const char* const changes[] = {"DELETE FROM meta WHERE key = 'tile_rules'; SELECT 'done'",
+                                 nullptr};
+  for (const char* const change : changes) {
+    TiledWorld world;
+    world.save_tile({1, {0, 0, 0}}, {1, 6});
+    world.store.reset();
+    const std::string file = world.file();
+    if (change != nullptr) REQUIRE(raw_sql(file, change) == "done");
+    const std::size_t left = change != nullptr ? 0 : 1;
+    {
+      const auto reader = *open_world(world.folder.path(), StoreAccess::read_only);
+      CHECK(reader->tile_keys()->size() == left);
+      CHECK(reader->load_tile({1, {0, 0, 0}})->has_value() == (left == 1));
+    }
+    CHECK(raw_sql(file, "SELECT count(*) FROM tile") == "1");  // a reader deletes nothing
+    world.store = *open_world(world.folder.path(), StoreAccess::read_write);
+    CHECK(world.store->tile_keys()->size() == left);
+    CHECK(raw_sql(file, "SELECT value FROM meta WHERE key = 'tile_rules'") ==
+          std::to_string(kTileRules));
+    CHECK(world.store->check().has_value());
+  }
 }
 
 TEST_CASE("a world of format 3 has no tiles for a reader, and gets the table from a writer",

@@ -4,7 +4,8 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "common/tiles/veiled_tile.hpp"
+#include "common/tiles/tile_builder.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/unit/server/tiles/tile_world.hpp"
 
@@ -156,10 +157,10 @@ TEST_CASE("a damaged chunk is reported once, and tiles show nothing there", "[ti
   const auto damaged = world.make({1, {0, 0, 0}});
   CHECK(damaged.back().is_approximate);
   CHECK_FALSE(damaged.back().is_worth_storing());
-  VeiledTileScratch scratch;
+  TileScratch scratch;
   const ChunkPtr sound = world.chunk({1, 0, 0});
   CHECK(damaged.back().tile->voxels ==
-        veiled_tile({nullptr, &sound->voxels}, kSampleEdge, *world.visibility, scratch));
+        build_tile({nullptr, &sound->voxels}, kSampleEdge, kTileOrder, *world.visibility, scratch));
   CHECK(world.make({2, {0, 0, 0}}).back().is_approximate);
   CHECK(world.warnings == std::vector{world.file() + ": snapshot chunk=0,0,0: checksum is wrong"});
 }
@@ -243,7 +244,8 @@ TEST_CASE("a copy of a tile is known to be current until an edit below, without 
   world.edit({{0, 0, 0}});
   world.save_all();
   std::map<ChunkKey, Chunk> copies;
-  for (const ChunkKey& key : {near, above, far}) copies[key] = *world.make(key).back().tile;
+  for (const ChunkKey& key : {near, above, far})
+    copies[key] = *world.make(key).back().for_clients();
   for (const auto& [key, copy] : copies) {
     CHECK(is_current(world, key, copy));
     Chunk other = copy;
@@ -262,7 +264,7 @@ TEST_CASE("a copy of a tile is known to be current until an edit below, without 
   CHECK_FALSE(is_current(world, near, copies[near]));
   CHECK_FALSE(is_current(world, above, copies[above]));
   CHECK(is_current(world, far, copies[far]));
-  CHECK(is_current(world, near, *world.make(near).back().tile));
+  CHECK(is_current(world, near, *world.make(near).back().for_clients()));
   world.start();  // the edit is in no snapshot
   static_cast<void>(world.make({1, {50, 0, 50}}));
   CHECK_FALSE(is_current(world, near, copies[near]));

@@ -65,7 +65,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::vector<std::string> lines;
   std::vector<PlayerVisit> came, left;
   std::vector<std::string> commands;
-  std::map<SessionId, ChunkEncoding> encodings;
+  std::map<SessionId, SessionEncodings> encodings;
   std::set<SessionId> full;          // sessions whose queue is full
   std::set<SessionId> refuse_edits;  // sessions whose queue of the edits class is full
   std::map<SessionId, std::size_t> snapshot_room;  // snapshots that still fit; absent: no bound
@@ -99,8 +99,8 @@ class FakeEnvironment : public WorldEnvironment {
     updates.emplace_back(key, held);
     return true;
   }
-  void set_encoding(SessionId session, ChunkEncoding encoding) override {
-    encodings[session] = encoding;
+  void set_encodings(SessionId session, SessionEncodings agreed) override {
+    encodings[session] = agreed;
   }
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override {
     closed.push_back({session, reason, text});

@@ -23,7 +23,7 @@ TEST_CASE("hello is answered by a signed welcome, and the client's signature ope
   CHECK(welcome.materials == config().materials);
   CHECK(welcome.challenge[0] == 9);
   CHECK(welcome.encoding == ChunkEncoding::packed);
-  CHECK(bench.environment.encodings.at(1) == ChunkEncoding::packed);
+  CHECK(bench.environment.encodings.at(1).chunks == ChunkEncoding::packed);
   CHECK(verify(welcome.server_key, server_transcript(hello, welcome, std::nullopt),
                welcome.signature));
   CHECK(bench.environment.messages<SessionAccepted>(1, kEdge).empty());
@@ -90,6 +90,27 @@ TEST_CASE("a client gets coded chunks if it reads nothing else or the server pre
   CHECK(chosen(ChunkEncoding::coded, 7) == ChunkEncoding::coded);
   CHECK(chosen(ChunkEncoding::coded, 3) == ChunkEncoding::packed);
   CHECK(chosen(ChunkEncoding::raw, 6) == ChunkEncoding::packed);
+}
+
+TEST_CASE("tiles are coded if the client reads that, unless the host chose another encoding",
+          "[world]") {
+  const auto chosen = [](ChunkEncoding preferred, std::uint8_t offered) {
+    WorldConfig wanted = config();
+    wanted.preferred_encoding = preferred;
+    Bench bench(wanted);
+    bench.server.connected(1, bench.now());
+    Hello hello = bench.hello(1);
+    hello.encodings = offered;
+    bench.server.received(1, hello, bench.now());
+    const SessionEncodings agreed = bench.environment.encodings.at(1);
+    CHECK(agreed.of({0, {1, 2, 3}}) == bench.environment.messages<Welcome>(1, 0).at(0).encoding);
+    return agreed.of({1, {1, 2, 3}});
+  };
+  CHECK(chosen(ChunkEncoding::packed, 7) == ChunkEncoding::coded);
+  CHECK(chosen(ChunkEncoding::packed, 3) == ChunkEncoding::packed);
+  CHECK(chosen(ChunkEncoding::packed, 1) == ChunkEncoding::raw);
+  CHECK(chosen(ChunkEncoding::raw, 7) == ChunkEncoding::raw);
+  CHECK(chosen(ChunkEncoding::coded, 7) == ChunkEncoding::coded);
 }
 
 TEST_CASE("a message at the wrong stage closes the session with its reason", "[world]") {
