@@ -35,4 +35,6 @@ PFNGLCLIPCONTROLPROC clip_control() {
   return GLAD_GL_VERSION_4_5 != 0 ? glad_glClipControl : nullptr;
 }
 
+bool has_texture_storage() { return loaded_es || GLAD_GL_VERSION_4_2 != 0; }
+
 }  // namespace runstone

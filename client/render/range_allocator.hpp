@@ -27,7 +27,7 @@ class RangeAllocator {
     return first;
   }
 
-  /// Gives back a range that take() returned.
+  /// Gives back a range that take() returned, or a part of it.
   void give_back(std::uint32_t first, std::uint32_t count) {
     RUNSTONE_ASSERT(used_ >= count);
     used_ -= count;

@@ -114,21 +114,51 @@ void Terrain::set_materials(const MaterialTable& materials) {
   light_codes_ = light_codes(materials);
 }
 
-Terrain::Chunk Terrain::add_quads(std::int32_t edge, const ChunkMesh& mesh, bool with_tree) {
-  Chunk out;
-  out.edge = edge;
-  if (with_tree) out.tree = TransparentTree::build(mesh.transparent.quads);
+Terrain::Chunk Terrain::add_chunk(std::int32_t edge, const ChunkMesh& mesh) {
+  auto tree = TransparentTree::build(mesh.transparent.quads);
   // Both passes lie in one span, so that a chunk has one range of the buffer.
   const auto opaque_count = static_cast<std::uint32_t>(mesh.opaque.quads.size());
-  std::vector<Quad> quads = mesh.opaque.quads;
   const std::span<const Quad> transparent =
-      out.tree ? out.tree->pieces() : std::span<const Quad>(mesh.transparent.quads);
-  quads.insert(quads.end(), transparent.begin(), transparent.end());
-  const std::uint32_t first = quads_.add(quads);
-  out.quads = {first, static_cast<std::uint32_t>(quads.size())};
+      tree ? tree->pieces() : std::span<const Quad>(mesh.transparent.quads);
+  staged_ = mesh.opaque.quads;
+  staged_.insert(staged_.end(), transparent.begin(), transparent.end());
+  const std::uint32_t first = quads_.add(staged_);
+  Chunk out;
+  out.edge = edge;
+  out.quads = {first, static_cast<std::uint32_t>(staged_.size())};
   out.opaque = QuadSpans(mesh.opaque, edge, first);
   out.transparent = {first + opaque_count, static_cast<std::uint32_t>(transparent.size())};
-  if (!out.tree) out.layers = QuadSpans(mesh.transparent, edge, first + opaque_count);
+  if (!tree) out.layers = QuadSpans(mesh.transparent, edge, first + opaque_count);
+  out.tree = std::move(tree);
+  return out;
+}
+
+Terrain::Tile Terrain::add_tile(std::int32_t edge, const TileMesh& mesh) {
+  // Drivers take some time for each copy to the GPU. So all bodies are copied together.
+  staged_.clear();
+  const auto stage = [this](const ChunkMesh& body) {
+    for (const QuadLayers* pass : {&body.opaque, &body.transparent})
+      staged_.insert(staged_.end(), pass->quads.begin(), pass->quads.end());
+  };
+  stage(mesh.whole);
+  for (const ChunkMesh& octant : mesh.octants) stage(octant);
+  std::uint32_t next = quads_.add(staged_);
+  const auto body_of = [&next](std::int32_t side, const ChunkMesh& body) {
+    Chunk out;
+    const auto opaque_count = static_cast<std::uint32_t>(body.opaque.quads.size());
+    const auto transparent_count = static_cast<std::uint32_t>(body.transparent.quads.size());
+    out.edge = side;
+    out.quads = {next, opaque_count + transparent_count};
+    out.opaque = QuadSpans(body.opaque, side, next);
+    out.transparent = {next + opaque_count, transparent_count};
+    out.layers = QuadSpans(body.transparent, side, next + opaque_count);
+    next += out.quads.count;
+    return out;
+  };
+  Tile out;
+  out.whole = body_of(edge, mesh.whole);
+  for (const ChunkMesh& octant : mesh.octants)
+    out.octants.push_back(octant.empty() ? Chunk{} : body_of(edge / 2, octant));
   return out;
 }
 
@@ -138,7 +168,7 @@ void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& me
     quads_.remove(before->second.quads);
     chunks_.erase(before);
   }
-  if (!mesh.empty()) chunks_.emplace(key, add_quads(edge, mesh, true));
+  if (!mesh.empty()) chunks_.emplace(key, add_chunk(edge, mesh));
   cover(key, true);
   if (key.lod == 0) {
     if (voxels != nullptr) {
@@ -159,11 +189,7 @@ void Terrain::upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh
   }
   cover(key, mesh.empty() || !mesh.octants.empty());
   if (mesh.empty()) return;
-  Tile tile;
-  tile.whole = add_quads(edge, mesh.whole, false);
-  for (const ChunkMesh& octant : mesh.octants)
-    tile.octants.push_back(octant.empty() ? Chunk{} : add_quads(edge / 2, octant, false));
-  tiles_.emplace(key, std::move(tile));
+  tiles_.emplace(key, add_tile(edge, mesh));
 }
 
 void Terrain::remove_quads(const Tile& tile) {

@@ -116,8 +116,10 @@ class Terrain {
     bool is_used = false;
   };
 
-  /// Without a tree, the order of transparent quads is that of their layers.
-  Chunk add_quads(std::int32_t edge, const ChunkMesh& mesh, bool with_tree);
+  /// Copy a mesh to the GPU. The transparent quads of a chunk are ordered by a tree if they are not too
+  /// many, and those of a tile by their layers. Require at least one quad, in a tile that of the whole.
+  Chunk add_chunk(std::int32_t edge, const ChunkMesh& mesh);
+  Tile add_tile(std::int32_t edge, const TileMesh& mesh);
   void remove_quads(const Tile& tile);
   /// Records in the cover that a chunk or tile is there, and begins a fade if it replaces its octant.
   void cover(const ChunkKey& key, bool is_open);
@@ -169,6 +171,7 @@ class Terrain {
   LightTexture field_texture_;
   std::vector<VoxelBox> relit_;  // scratch
   QuadBuffer quads_;
+  std::vector<Quad> staged_;  // on their way to the GPU; kept for its capacity
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
   std::map<ChunkKey, Tile> tiles_;    // likewise

@@ -89,9 +89,13 @@ void TexelStore::begin_move(std::uint64_t texels) {
   moved_ = 0;
   const bool is_r32 = format_ == TexelFormat::r32;
   glBindTexture(GL_TEXTURE_2D, next_.get());
-  glTexImage2D(GL_TEXTURE_2D, 0, is_r32 ? GL_R32UI : GL_RG32UI, kTexelRow,
-               static_cast<GLsizei>(next_size_ / kTexelRow), 0,
-               is_r32 ? GL_RED_INTEGER : GL_RG_INTEGER, GL_UNSIGNED_INT, nullptr);
+  const auto rows = static_cast<GLsizei>(next_size_ / kTexelRow);
+  if (has_texture_storage()) {
+    glTexStorage2D(GL_TEXTURE_2D, 1, is_r32 ? GL_R32UI : GL_RG32UI, kTexelRow, rows);
+  } else {
+    glTexImage2D(GL_TEXTURE_2D, 0, is_r32 ? GL_R32UI : GL_RG32UI, kTexelRow, rows, 0,
+                 is_r32 ? GL_RED_INTEGER : GL_RG_INTEGER, GL_UNSIGNED_INT, nullptr);
+  }
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
