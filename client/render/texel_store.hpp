@@ -65,6 +65,7 @@ class TexelStore {
   std::uint64_t texels_max_ = 0;  // that the driver allows
   RangeAllocator ranges_;         // of texture_
   GlTexture texture_;
+  GlBuffer unpack_;                          // through which texels are copied
   GlTexture next_;                           // to which the texels move; none if they do not move
   GlFramebuffer source_;                     // from which they are copied: texture_
   std::uint32_t next_size_ = 0, moved_ = 0;  // texels, whole rows
