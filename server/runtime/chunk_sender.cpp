@@ -11,10 +11,21 @@ namespace runstone {
 
 bool ChunkSender::send_snapshot(const std::shared_ptr<NetSession>& session, std::uint32_t view,
                                 const ChunkKey& key, const ChunkPtr& chunk) {
+  return queue_snapshot(session, view, key, chunk, session->encodings().of(key));
+}
+
+bool ChunkSender::send_changed_tile(const std::shared_ptr<NetSession>& session, std::uint32_t view,
+                                    const ChunkKey& key, const ChunkPtr& tile) {
+  return queue_snapshot(session, view, key, tile, session->encodings().chunks);
+}
+
+bool ChunkSender::queue_snapshot(const std::shared_ptr<NetSession>& session, std::uint32_t view,
+                                 const ChunkKey& key, const ChunkPtr& chunk,
+                                 ChunkEncoding encoding) {
   const auto place = session->reserve_chunk(key, view);
   if (!place) return false;
-  asio::post(workers_, [this, session, key, chunk, place = *place] {
-    session->fill_chunk(place, encoded_.snapshot(key, chunk, session->encodings().of(key)));
+  asio::post(workers_, [this, session, key, chunk, encoding, place = *place] {
+    session->fill_chunk(place, encoded_.snapshot(key, chunk, encoding));
   });
   return true;
 }

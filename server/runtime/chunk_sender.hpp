@@ -25,6 +25,9 @@ class ChunkSender {
   /// session's queue is full.
   bool send_snapshot(const std::shared_ptr<NetSession>& session, std::uint32_t view,
                      const ChunkKey& key, const ChunkPtr& chunk);
+  /// Queues a tile that replaces one that the session has, in the encoding of chunks.
+  bool send_changed_tile(const std::shared_ptr<NetSession>& session, std::uint32_t view,
+                         const ChunkKey& key, const ChunkPtr& tile);
   /// Queues the edits that lead from version `held` to the chunk, or its snapshot if that is
   /// shorter or if the log cannot be read. Requires that these edits are durable. Returns false if
   /// the session's queue is full.
@@ -35,6 +38,8 @@ class ChunkSender {
   std::uint64_t encoded_count() const { return encoded_.encoded(); }
 
  private:
+  bool queue_snapshot(const std::shared_ptr<NetSession>& session, std::uint32_t view,
+                      const ChunkKey& key, const ChunkPtr& chunk, ChunkEncoding encoding);
   ChunkEntry encode_update(const ChunkKey& key, const ChunkPtr& chunk, Version held,
                            ChunkEncoding encoding);
 

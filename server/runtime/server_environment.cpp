@@ -31,6 +31,12 @@ void ServerEnvironment::set_features(SessionId session, std::uint64_t features) 
 
 void ServerEnvironment::opened(SessionId session) { listener_.opened(session); }
 
+bool ServerEnvironment::send_changed_tile(SessionId session, std::uint32_t view,
+                                          const ChunkKey& key, const ChunkPtr& tile) {
+  const auto& net = sessions_.find(session);
+  return net == nullptr || sender_.send_changed_tile(net, view, key, tile);
+}
+
 bool ServerEnvironment::send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
                                       const ChunkPtr& chunk) {
   const auto& net = sessions_.find(session);

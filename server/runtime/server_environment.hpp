@@ -52,6 +52,8 @@ class ServerEnvironment final : public WorldEnvironment {
   void set_encodings(SessionId session, SessionEncodings encodings) override;
   void set_features(SessionId session, std::uint64_t features) override;
   void opened(SessionId session) override;
+  bool send_changed_tile(SessionId session, std::uint32_t view, const ChunkKey& key,
+                         const ChunkPtr& tile) override;
   bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
                      const ChunkPtr& chunk) override;
   bool send_update(SessionId session, std::uint32_t view, const ChunkKey& key,

@@ -82,7 +82,7 @@ void resend_tiles(WorldState& world, const Clocks& now) {
       mine.tiles->want_again(next->key);
       leave_tiles(world, next->session, {&next->key, 1});
     } else {
-      send_tile(world, next->session, next->key, next->tile, now);
+      send_changed_tile(world, next->session, next->key, next->tile, now);
     }
   }
 }

@@ -73,16 +73,23 @@ void send_same_tile(WorldState& world, SessionId session, const ChunkKey& key, S
 
 namespace {
 
+/// Why a tile is sent: the session requested it, or it has it in another state.
+enum class SendCause : std::uint8_t { request, change };
+
 /// Queues a tile. Returns false if the session's queue is full. Then the session wants the tile again.
 bool queue_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
-                const Clocks& now) {
+                SendCause cause, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   // An older state that still waits to be sent must not arrive after this one.
   std::erase_if(mine.uniform, [&key](const UniformChunk& one) { return one.key == key; });
+  const auto queue_voxels = [&] {
+    const std::uint32_t view = view_in_force(world, session);
+    return cause == SendCause::request
+               ? world.environment.send_snapshot(session, view, key, tile)
+               : world.environment.send_changed_tile(session, view, key, tile);
+  };
   const bool is_queued =
-      tile->voxels.is_uniform()
-          ? queue_uniform(world, session, key, *tile, now)
-          : world.environment.send_snapshot(session, view_in_force(world, session), key, tile);
+      tile->voxels.is_uniform() ? queue_uniform(world, session, key, *tile, now) : queue_voxels();
   if (is_queued) {
     ++world.counters.tiles_sent;
     return true;
@@ -94,10 +101,8 @@ bool queue_tile(WorldState& world, SessionId session, const ChunkKey& key, const
   return false;
 }
 
-}  // namespace
-
-void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
-               const Clocks& now) {
+void send_for(SendCause cause, WorldState& world, SessionId session, const ChunkKey& key,
+              const ChunkPtr& tile, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (mine.tiles->status(key) == TileStatus::wanted) return;
   if (const CachedChunk* claim = mine.claims.find(key)) {
@@ -109,14 +114,26 @@ void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const 
     }
     mine.claims.drop(key);
   }
-  if (queue_tile(world, session, key, tile, now))
+  if (queue_tile(world, session, key, tile, cause, now))
     tile_sent(world, session, key, is_empty(tile->voxels));
+}
+
+}  // namespace
+
+void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
+               const Clocks& now) {
+  send_for(SendCause::request, world, session, key, tile, now);
+}
+
+void send_changed_tile(WorldState& world, SessionId session, const ChunkKey& key,
+                       const ChunkPtr& tile, const Clocks& now) {
+  send_for(SendCause::change, world, session, key, tile, now);
 }
 
 void send_past_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
                     const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  if (!queue_tile(world, session, key, tile, now)) return;
+  if (!queue_tile(world, session, key, tile, SendCause::request, now)) return;
   leave_tiles(world, session, mine.tiles->set_sent(key, is_empty(tile->voxels)));
 }
 

@@ -18,6 +18,9 @@ std::size_t tile_price(const std::vector<MadeTile>& made);
 /// sends it.
 void send_tile(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& tile,
                const Clocks& now);
+/// Does the same for a tile that replaces one that the session has.
+void send_changed_tile(WorldState& world, SessionId session, const ChunkKey& key,
+                       const ChunkPtr& tile, const Clocks& now);
 /// Queues "not modified". The session claims only tiles that are not uniform.
 void send_same_tile(WorldState& world, SessionId session, const ChunkKey& key, Sequence seq);
 /// Sends a tile of the moment that the session sees, which waits for it. Later changes of the present

@@ -83,6 +83,12 @@ class WorldEnvironment {
   /// called when the queue has room again.
   virtual bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
                              const ChunkPtr& chunk) = 0;
+  /// Does the same for a tile that replaces one that the session has. It is encoded as chunks are: after
+  /// an edit many sessions get it at the same time as edits, and then time counts more than bytes.
+  virtual bool send_changed_tile(SessionId session, std::uint32_t view, const ChunkKey& key,
+                                 const ChunkPtr& tile) {
+    return send_snapshot(session, view, key, tile);
+  }
   /// Queues a chunk for a session that has it at the earlier version `held`. A worker sends the
   /// edits between the two versions if the log has them and they are shorter than a snapshot,
   /// otherwise a snapshot. Returns false as send() does. Requires that the edits are durable.

@@ -357,7 +357,7 @@ std::string mean_us(double sum, const TilesRow& row) {
 
 void write_table(const TilesResult& result, std::ostream& out) {
   fmt::print(out,
-             "| world | edge | level | tiles | uniform | runs | runs, veiled | stored | veiled, "
+             "\n| world | edge | level | tiles | uniform | runs | runs, veiled | stored | veiled, "
              "packed | sent |\n"
              "|---|---|---|---|---|---|---|---|---|---|\n");
   for (const TilesRow& row : result.rows) {
@@ -365,7 +365,7 @@ void write_table(const TilesResult& result, std::ostream& out) {
                row.uniform, per(static_cast<double>(row.runs), row.tiles),
                per(static_cast<double>(row.veiled_runs), row.tiles),
                bytes_per_column(row.bytes, row), bytes_per_column(row.veiled_bytes, row),
-               bytes_per_column(row.coded_bytes, row));
+               bytes_per_column(row.level == 0 ? row.veiled_bytes : row.coded_bytes, row));
   }
   fmt::print(out,
              "\n{} passes over the tiles of a level; times are means of a tile, in µs\n\n"

@@ -40,6 +40,8 @@ class FakeEnvironment : public WorldEnvironment {
   std::vector<Sent> sent;
   std::vector<SentSnapshot> snapshots;                // updates included
   std::vector<std::pair<ChunkKey, Version>> updates;  // and the version that the session has
+  std::vector<std::pair<SessionId, ChunkKey>>
+      changed_tiles;  // of the snapshots, those that replace a tile
   std::vector<Closed> closed;
   std::vector<PlayerRow> players;
   std::vector<EditRecord> records;
@@ -91,6 +93,12 @@ class FakeEnvironment : public WorldEnvironment {
       --room->second;
     }
     snapshots.push_back({session, key, chunk, view});
+    return true;
+  }
+  bool send_changed_tile(SessionId session, std::uint32_t view, const ChunkKey& key,
+                         const ChunkPtr& tile) override {
+    if (!send_snapshot(session, view, key, tile)) return false;
+    changed_tiles.emplace_back(session, key);
     return true;
   }
   bool send_update(SessionId session, std::uint32_t view, const ChunkKey& key,

@@ -188,6 +188,13 @@ TEST_CASE("those who have a tile get it again if anything of it has changed") {
   CHECK(sent_for(with_voxel(key, {1, 5}, 3, 4)) == 1);  // it may lack edits
   CHECK(sent_for(with_voxel(key, {1, 5}, 3, 4)) == 0);
   CHECK(sent_for(with_voxel(key, {1, 5}, 3, 5)) == 1);  // it is complete
+  // What replaces a tile is sent as such, and what a newcomer requests is not.
+  const auto changes_of = [&](SessionId session) {
+    return std::ranges::count(bench.environment.changed_tiles, std::pair{session, key});
+  };
+  CHECK(changes_of(1) == 5);
+  CHECK(changes_of(newcomer) == 0);
+  CHECK(bench.tiles_of(newcomer).count(key) == 1);
 }
 
 TEST_CASE("an older state of a tile that waits to be sent is not sent after a newer one") {
