@@ -162,6 +162,8 @@ void Client::on_world_opened() {
         "this server allows a view radius of {} chunks: the view of {} and {} is cut to it",
         welcome.view_radius_max, options_.view_radius, options_.view_radius_v);
   }
+  if (options_.far_levels != 0 && options_.view_radius < kTileRadiusHMin)
+    spdlog::warn("far ground needs a view radius of {} chunks or more", kTileRadiusHMin);
   limits_.open_world(welcome.view_radius_max);
 }
 

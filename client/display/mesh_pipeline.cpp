@@ -39,7 +39,7 @@ void MeshPipeline::set_materials(const MaterialTable& materials) {
   changed_ = true;
   if (draw_queue_) draw_queue_->set_materials(materials_);
   const VisibilityTable visibility(visibilities(materials_));
-  far_planner_.set_visibility(visibility);
+  far_planner_.set_visibility(visibility, has_grown ? static_cast<Material>(known) : Material{0});
   if (has_grown) {
     pool_->set_visibility(visibility);
     return planner_.mesh_again_from(static_cast<Material>(known));

@@ -13,13 +13,26 @@ bool FarPlanner::Order::operator()(const Rank& a, const Rank& b) const {
   return std::tie(key_a.lod, distance_a, key_a) < std::tie(key_b.lod, distance_b, key_b);
 }
 
-void FarPlanner::set_visibility(const VisibilityTable& visibility) {
+namespace {
+
+bool has_material_from(const RunChunk& tile, Material first) {
+  return tile.runs.visit([first](const auto& runs) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (runs.material(i) >= first) return true;
+    }
+    return false;
+  });
+}
+
+}  // namespace
+
+void FarPlanner::set_visibility(const VisibilityTable& visibility, Material known) {
   visibility_ = visibility;
   // From the highest level down, as in take().
   for (auto found = nodes_.rbegin(); found != nodes_.rend(); ++found) {
     auto& [key, node] = *found;
     if (!node.tile) continue;
-    if (node.arrived) {
+    if (node.arrived && has_material_from(*node.arrived, known)) {
       set_tile(key, node, with_veil(node.arrived), node.arrived, true);
       refresh_stand_ins_below(key, node);
     }

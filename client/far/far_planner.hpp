@@ -4,9 +4,9 @@
 //     between gets a stand-in (stand_in.hpp), so that FarCover finds no gap.
 //   - A tile whose mesh is new waits until the tiles that are held below it have their first
 //     meshes. So coarse ground never hides finer ground that was drawn before.
-//   - Enclosed voxels of a tile are never ground that is seen, and servers may give them any material
-//     (common/tiles/veil.hpp). But octants and stand-ins cut through tiles. So tiles are veiled here
-//     before they are meshed: pictures do not depend on what the server did.
+//   - Servers may give enclosed voxels of a tile any opaque material (common/tiles/veil.hpp). But octants
+//     and stand-ins cut through tiles, and show enclosed voxels at their sides. So tiles are veiled here
+//     before they are meshed: then pictures do not depend on what the server did.
 //   - The order is: finer levels first, then the nearest to the eye. All levels look equally large
 //     on the screen, because their reach grows with their voxels.
 //
@@ -36,8 +36,9 @@ class FarPlanner {
   explicit FarPlanner(const FarTiles& tiles) : tiles_(tiles) {}
 
   /// Sets the visibility and look of materials. Makes all open jobs void and meshes every tile again.
-  /// Before the first call, tiles are meshed as they came.
-  void set_visibility(const VisibilityTable& visibility);
+  /// Materials below `known` are as before. Before the first call, tiles are meshed as they came. Cost:
+  /// O(tiles + runs), and a veil for each tile with other materials.
+  void set_visibility(const VisibilityTable& visibility, Material known = 0);
   /// Takes the keys of FarTiles::drain_changes().
   void take(std::span<const ChunkKey> changes);
   /// Records whether a chunk of level 0 is held.

@@ -65,8 +65,8 @@ void TexelStore::write_to(const GlTexture& texture, std::uint32_t first, const v
                           std::uint32_t count) const {
   const GLenum format = format_ == TexelFormat::r32 ? GL_RED_INTEGER : GL_RG_INTEGER;
   // Through a buffer, the driver need not wait until the GPU has read the texture, and keeps no second
-  // copy of it in main memory. With 10,584 tiles on an NVIDIA GPU, all copies took 64 ms instead of 3.7 s
-  // and the process 100 MB less.
+  // copy of it in main memory. With the 12,000 copies of a far view on an NVIDIA GPU, these calls took
+  // 64 ms instead of 3.7 s, and the process 100 MB less.
   const auto bytes = static_cast<GLsizeiptr>(std::size_t{count} * texel_bytes());
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, unpack_.get());
   glBufferData(GL_PIXEL_UNPACK_BUFFER, bytes, texels, GL_STREAM_DRAW);

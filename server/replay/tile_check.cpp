@@ -68,7 +68,7 @@ StoreResult<TileReport> check_tiles(const std::string& folder, WorldReader& stor
   ChunkSource chunks(folder, generator);
   TileLedger ground;
   TileSource source(chunks, generator, store.meta().chunk_edge, ground, differs,
-                    {kCacheBytes, false});
+                    {kCacheBytes, false, false});
   const VisibilityTable visibility(visibilities(*materials));
   std::uint64_t done = 0;
   for (const auto& [key, version] : *keys) {

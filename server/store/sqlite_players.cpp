@@ -228,7 +228,7 @@ StoreResult<std::vector<std::string>> SqliteStore::accept_losses() {
   const auto written = write([&]() -> StoreResult<void> {
     if (auto put = meta_table_.put("epoch", std::int64_t{state_.epoch}); !put) return put;
     if (auto put = meta_table_.put("author_max", std::int64_t{state_.author_max}); !put) return put;
-    if (auto cleared = tiles_->clear(); !cleared) return cleared;
+    if (auto deleted = delete_tiles(); !deleted) return deleted;
     return accept_lost_rows(lost);
   });
   if (!written) return failed(written.error());

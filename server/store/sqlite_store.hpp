@@ -134,6 +134,8 @@ class SqliteStore final : public Store {
   StoreResult<void> convert();
   /// Deletes the tiles that were made by other rules (kTileRules). A reader does not see them.
   StoreResult<void> leave_tiles_of_other_rules();
+  /// Deletes all tiles and records the present rules, in the caller's transaction.
+  StoreResult<void> delete_tiles();
   /// Adds what format 3 has and format 2 lacks: the players own their names, and of several players
   /// with one name the oldest. The log of such a world has no changes of rights.
   StoreResult<void> convert_to_format_3();
@@ -205,7 +207,7 @@ class SqliteStore final : public Store {
   SegmentTable segments_;
   ChunkTable base_, snapshots_;
   KeyframeTable keyframes_;
-  // nullopt: a world of format 2 or 3 that is open for reading only
+  // nullopt: a world without the table, or with tiles of other rules, that is open for reading only
   std::optional<TileTable> tiles_;
   StoreAccess access_;
   WorldMeta meta_;

@@ -257,7 +257,8 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   const auto rules = rows->find("tile_rules");
   const bool are_tiles_current =
       rules != rows->end() && rules->second == MetaValue{std::int64_t{kTileRules}};
-  if (!are_tiles_current) {
+  // A world that lacks edits stays as it is, until its losses are accepted.
+  if (!are_tiles_current && !store->loss_) {
     if (const auto left = store->leave_tiles_of_other_rules(); !left) return failed(left.error());
   }
   store->database_->keep_wal_on_close(store->loss_.has_value());
@@ -270,6 +271,7 @@ StoreResult<void> SqliteStore::convert() {
       if (auto added = convert_to_format_3(); !added) return added;
     }
     if (auto made = add_tables_of_format_4(*database_); !made) return made;
+    if (auto marked = set_format(*database_); !marked) return marked;
     auto tiles = TileTable::open(*database_);
     if (!tiles) return failed(tiles.error());
     tiles_ = *std::move(tiles);
@@ -282,10 +284,13 @@ StoreResult<void> SqliteStore::leave_tiles_of_other_rules() {
     tiles_.reset();
     return {};
   }
-  return write([&]() -> StoreResult<void> {
-    if (auto cleared = tiles_->clear(); !cleared) return cleared;
-    return meta_table_.put("tile_rules", std::int64_t{kTileRules});
-  });
+  return write([&] { return delete_tiles(); });
+}
+
+StoreResult<void> SqliteStore::delete_tiles() {
+  if (auto cleared = tiles_->clear(); !cleared) return cleared;
+  if (auto marked = set_format(*database_); !marked) return marked;
+  return meta_table_.put("tile_rules", std::int64_t{kTileRules});
 }
 
 StoreResult<void> SqliteStore::read_state() {

@@ -129,7 +129,8 @@ StoreResult<void> create_schema(sql::Database& database) {
     if (auto made = make_chunk_table(database, name); !made) return made;
   }
   if (auto made = add_tables_of_format_3(database); !made) return made;
-  return add_tables_of_format_4(database);
+  if (auto made = add_tables_of_format_4(database); !made) return made;
+  return set_format(database);
 }
 
 StoreResult<void> add_tables_of_format_3(sql::Database& database) {
@@ -140,7 +141,10 @@ StoreResult<void> add_tables_of_format_3(sql::Database& database) {
 }
 
 StoreResult<void> add_tables_of_format_4(sql::Database& database) {
-  if (auto made = make_chunk_table(database, "tile"); !made) return made;
+  return make_chunk_table(database, "tile");
+}
+
+StoreResult<void> set_format(sql::Database& database) {
   const std::string mark = "PRAGMA user_version=" + std::to_string(kWorldFormat);
   return store_result(database.run(mark.c_str()));
 }

@@ -14,7 +14,7 @@ namespace runstone {
 inline constexpr std::uint32_t kApplicationId = 0x52756e53;
 /// PRAGMA user_version of every world: the version of the schema and of the contents of its
 /// columns.
-inline constexpr std::uint32_t kWorldFormat = 4;
+inline constexpr std::uint32_t kWorldFormat = 5;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
 
@@ -22,9 +22,10 @@ inline constexpr std::uint32_t kWorldFormatConverted = 2;
 StoreResult<void> create_schema(sql::Database& database);
 /// Makes the tables that format 3 adds to format 2, without rows, in the caller's transaction.
 StoreResult<void> add_tables_of_format_3(sql::Database& database);
-/// Makes the table that format 4 adds to format 3, without rows, and sets the mark of format 4, in
-/// the caller's transaction.
+/// Makes the table that format 4 adds to format 3, without rows, in the caller's transaction.
 StoreResult<void> add_tables_of_format_4(sql::Database& database);
+/// Sets the mark kWorldFormat, in the caller's transaction.
+StoreResult<void> set_format(sql::Database& database);
 
 /// Reads the marks from the main file alone, so that a file that is refused does not change. `vfs`
 /// is that of sql::Database::open(). Fails with not_a_world, newer_version or corrupt.

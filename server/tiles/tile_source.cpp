@@ -242,7 +242,7 @@ StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
 }
 
 void TileSource::add_veiled(MadeTile& made, const VisibilityTable& visibility) {
-  if (made.veiled) return;
+  if (made.veiled || !options_.adds_veils) return;
   const Chunk& tile = *made.tile;
   VeilScratch scratch;
   if (auto voxels = veiled(tile.voxels, visibility, scratch)) {

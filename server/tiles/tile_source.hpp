@@ -38,6 +38,7 @@ class TileSource {
     std::size_t cache_bytes = std::size_t{16} << 20;  // of the tiles that were made lately
     /// False: no tile is read from the folder, so that stored tiles can be compared with others.
     bool reads_stored_tiles = true;
+    bool adds_veils = true;  // false: made tiles have no MadeTile::veiled
   };
   /// Reports a damaged row. The text names file, table and row.
   using Warn = std::function<void(const std::string&)>;

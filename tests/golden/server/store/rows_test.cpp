@@ -1,4 +1,4 @@
-// The bytes of world format 4: columns, row checksums and marks. A change here means a new
+// The bytes of world format 5: columns, row checksums and marks. A change here means a new
 // kWorldFormat.
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -62,15 +62,15 @@ std::string columns(const std::string& file, const std::string& table) {
 
 }  // namespace
 
-TEST_CASE("the marks of a world are where format 4 has them", "[store][golden]") {
+TEST_CASE("the marks of a world are where format 5 has them", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(raw_sql(file, "PRAGMA application_id") == "1383427667");
-  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "5");
   CHECK(raw_sql(file, "PRAGMA journal_mode") == "wal");
 }
 
-TEST_CASE("the tables have the columns of format 4", "[store][golden]") {
+TEST_CASE("the tables have the columns of format 5", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
@@ -128,7 +128,7 @@ TEST_CASE("the tables have the columns of format 4", "[store][golden]") {
       "server_key_seed snapshot_fold spawn tile_rules world_id");
 }
 
-TEST_CASE("rows have the bytes and checksums of format 4", "[store][golden]") {
+TEST_CASE("rows have the bytes and checksums of format 5", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   const auto value = [&](const std::string& column, const std::string& from) {

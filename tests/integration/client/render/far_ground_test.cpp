@@ -307,7 +307,7 @@ TEST_CASE("transparent faces are blended once while levels fade into each other"
   CHECK(middle < std::max(fine, coarse) + 2);
 }
 
-TEST_CASE("a veil changes no pixel, though octants and stand-ins cut through tiles",
+TEST_CASE("the veil of a server changes no pixel, though octants and stand-ins cut through tiles",
           "[render][far]") {
   std::string tried;
   const auto context = make_egl_surfaceless_context(tried);

@@ -187,14 +187,24 @@ class SimServer final : public WorldEnvironment {
   }
   bool send_snapshot(SessionId id, std::uint32_t view, const ChunkKey& key,
                      const ChunkPtr& chunk) override {
+    return encode_later(id, view, key, chunk, false);
+  }
+  bool send_changed_tile(SessionId id, std::uint32_t view, const ChunkKey& key,
+                         const ChunkPtr& tile) override {
+    return encode_later(id, view, key, tile, true);
+  }
+  bool encode_later(SessionId id, std::uint32_t view, const ChunkKey& key, const ChunkPtr& chunk,
+                    bool is_changed_tile) {
     const auto it = sessions_.find(id);
     if (it == sessions_.end() || it->second.encoding_now >= 16) return false;
     ++it->second.encoding_now;
-    later(100, 30'000, [this, id, view, key, chunk] {  // the worker
+    later(100, 30'000, [this, id, view, key, chunk, is_changed_tile] {  // the worker
       const auto session = sessions_.find(id);
       if (session == sessions_.end()) return;
       --session->second.encoding_now;
-      send_encoded(id, view, encode_snapshot(key, *chunk, session->second.encodings.of(key)));
+      const SessionEncodings agreed = session->second.encodings;
+      const ChunkEncoding encoding = is_changed_tile ? agreed.chunks : agreed.of(key);
+      send_encoded(id, view, encode_snapshot(key, *chunk, encoding));
     });
     return true;
   }

@@ -134,7 +134,7 @@ TEST_CASE("a client with a window has a cache, and other clients have one if an 
   CHECK(refused({"--connect", "a:1", "--cache-mib", "0"}) == 2);
 }
 
-TEST_CASE("the memory budget is 1 GiB unless an option says otherwise", "[client_app]") {
+TEST_CASE("the memory budget is found by itself unless an option says otherwise", "[client_app]") {
   CHECK(accepted({"--connect", "a:1"}).memory_mib == 0);
   CHECK(automatic_memory_mib() >= 256);
   CHECK(automatic_memory_mib() <= 1024);

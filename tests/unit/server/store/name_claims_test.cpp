@@ -120,6 +120,6 @@ TEST_CASE("a world of format 2 is converted: the oldest player of a name owns it
     CHECK(store->players()->size() == 5);
     CHECK(store->check().has_value());
   }
-  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "5");
   CHECK(claimed_world(folder.path(), StoreAccess::read_write)->name_claims()->size() == 2);
 }

@@ -167,8 +167,10 @@ TEST_CASE("a compaction deletes the tiles that are older than the snapshots it m
 
 TEST_CASE("tiles of other rules are not there for a reader, and a writer deletes them",
           "[store][tiles]") {
-  const char* const changes[] = {"DELETE FROM meta WHERE key = 'tile_rules'; SELECT 'done'",
-                                 nullptr};
+  // A world of format 4, one that is as it was, and one of format 5 that lost the row.
+  const char* const changes[] = {
+      "DELETE FROM meta WHERE key = 'tile_rules'; PRAGMA user_version = 4; SELECT 'done'", nullptr,
+      "DELETE FROM meta WHERE key = 'tile_rules'; SELECT 'done'"};
   for (const char* const change : changes) {
     TiledWorld world;
     world.save_tile({1, {0, 0, 0}}, {1, 6});
@@ -186,6 +188,7 @@ TEST_CASE("tiles of other rules are not there for a reader, and a writer deletes
     CHECK(world.store->tile_keys()->size() == left);
     CHECK(raw_sql(file, "SELECT value FROM meta WHERE key = 'tile_rules'") ==
           std::to_string(kTileRules));
+    CHECK(raw_sql(file, "PRAGMA user_version") == "5");
     CHECK(world.store->check().has_value());
   }
 }
@@ -204,7 +207,7 @@ TEST_CASE("a world of format 3 has no tiles for a reader, and gets the table fro
   }
   CHECK(raw_sql(world.file(), "PRAGMA user_version") == "3");  // a reader converts nothing
   world.store = *open_world(world.folder.path(), StoreAccess::read_write);
-  CHECK(raw_sql(world.file(), "PRAGMA user_version") == "4");
+  CHECK(raw_sql(world.file(), "PRAGMA user_version") == "5");
   world.save_tile({1, {0, 0, 0}}, {1, 6});
   CHECK(world.store->tile_keys()->size() == 1);
   CHECK(world.store->check().has_value());

@@ -66,21 +66,21 @@ TEST_CASE("a world of a newer format is refused and its bytes stay as they are",
   const TempFolder folder;
   create(folder.path());
   const std::string file = folder / "world.sqlite";
-  REQUIRE(raw_sql(file, "PRAGMA user_version = 5").empty());
+  REQUIRE(raw_sql(file, "PRAGMA user_version = 6").empty());
   const auto before = bytes_of(file);
   for (const StoreAccess access : {StoreAccess::read_only, StoreAccess::read_write}) {
     const auto store = open_world(folder.path(), access);
     REQUIRE_FALSE(store.has_value());
     CHECK(store.error().kind == StoreError::Kind::newer_version);
     CHECK(store.error().message() ==
-          file + ": is of world format 5; this program knows format 4. Nothing was changed.");
+          file + ": is of world format 6; this program knows format 5. Nothing was changed.");
   }
   CHECK(bytes_of(file) == before);
   CHECK_FALSE(std::filesystem::exists(file + "-wal"));
   REQUIRE(raw_sql(file, "PRAGMA user_version = 1").empty());
   const auto older = open_world(folder.path(), StoreAccess::read_write);
   REQUIRE_FALSE(older.has_value());
-  CHECK(older.error().message().find(": is of world format 1; this program knows format 4. ") !=
+  CHECK(older.error().message().find(": is of world format 1; this program knows format 5. ") !=
         std::string::npos);
   REQUIRE(raw_sql(file, "PRAGMA user_version = 0").empty());
   CHECK(open_world(folder.path(), StoreAccess::read_only).error().kind ==
