@@ -5,6 +5,7 @@
 #include "client/far/child_bits.hpp"
 #include "client/far/stand_in.hpp"
 #include "common/core/chunk_distance.hpp"
+#include "common/runs/material_scan.hpp"
 
 namespace runstone {
 bool FarPlanner::Order::operator()(const Rank& a, const Rank& b) const {
@@ -12,19 +13,6 @@ bool FarPlanner::Order::operator()(const Rank& a, const Rank& b) const {
   const auto& [distance_b, key_b] = b;
   return std::tie(key_a.lod, distance_a, key_a) < std::tie(key_b.lod, distance_b, key_b);
 }
-
-namespace {
-
-bool has_material_from(const RunChunk& tile, Material first) {
-  return tile.runs.visit([first](const auto& runs) {
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (runs.material(i) >= first) return true;
-    }
-    return false;
-  });
-}
-
-}  // namespace
 
 void FarPlanner::set_visibility(const VisibilityTable& visibility, Material known) {
   visibility_ = visibility;

@@ -4,9 +4,9 @@
 //     between gets a stand-in (stand_in.hpp), so that FarCover finds no gap.
 //   - A tile whose mesh is new waits until the tiles that are held below it have their first
 //     meshes. So coarse ground never hides finer ground that was drawn before.
-//   - Servers may give enclosed voxels of a tile any opaque material (common/tiles/veil.hpp). But octants
-//     and stand-ins cut through tiles, and show enclosed voxels at their sides. So tiles are veiled here
-//     before they are meshed: then pictures do not depend on what the server did.
+//   - Servers may give enclosed voxels of a tile any opaque material (common/tiles/veil.hpp). Octants
+//     and stand-ins are parts of a tile, and their sides show enclosed voxels of it. So tiles are
+//     veiled here before they are meshed. Then a picture is the same whether the server veils or not.
 //   - The order is: finer levels first, then the nearest to the eye. All levels look equally large
 //     on the screen, because their reach grows with their voxels.
 //
@@ -60,7 +60,7 @@ class FarPlanner {
   std::size_t stand_in_count() const { return stand_ins_; }
   /// Returns the number of jobs so far.
   std::uint64_t jobs() const { return jobs_; }
-  /// Returns the memory of stand-ins and of other tiles that are not those that arrived.
+  /// Returns the bytes of stand-ins, and of tiles that the veil changed.
   std::size_t bytes() const { return bytes_; }
 
  private:
@@ -74,7 +74,7 @@ class FarPlanner {
     bool is_dirty = false;
     bool is_drawn = false;     // finish() returned true and take_removals() has not named it
     bool has_octants = false;  // the newest job has
-    TilePtr tile;              // that arrived, veiled, or a stand-in; null: there is none
+    TilePtr tile;              // to be meshed: what arrived, with a veil, or a stand-in; or null
     TilePtr arrived;           // as it arrived; null for a stand-in
     std::uint64_t job = 0;     // number of the open job; 0: none
     std::optional<Rank> rank;  // place in ready_

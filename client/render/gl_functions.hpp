@@ -22,7 +22,8 @@ bool is_gl_es();
 /// neither. Valid after load_gl().
 PFNGLCLIPCONTROLPROC clip_control();
 
-/// Returns true if the context has glTexStorage2D(): OpenGL 4.2 and OpenGL ES 3.0. Valid after load_gl().
+/// Returns true if the context has glTexStorage2D(): OpenGL 4.2 and OpenGL ES 3.0. Valid after
+/// load_gl().
 bool has_texture_storage();
 
 }  // namespace runstone

@@ -54,7 +54,8 @@ class TileSource {
   /// Makes a chunk as it was after edit TileRequest::at.
   using PastChunk = std::function<StoreResult<Chunk>(const ChunkKey&)>;
 
-  /// Returns the tile as the last of the list, with MadeTile::veiled. Before it come the tiles below it that were made on
+  /// Returns the tile as the last of the list, with MadeTile::veiled. Before it come the tiles below it
+  /// that were made on
   /// the way and are worth storing. If request.steps_max is reached, the call stops between two tiles,
   /// and the list lacks the requested one. The next call finds the tiles that this one made in memory.
   /// The first call reads the keys of all stored chunks. Requires a

@@ -15,22 +15,24 @@
 namespace runstone {
 namespace {
 
+/// Returns true if Hello::encodings has this encoding.
+bool offers(std::uint8_t encodings, ChunkEncoding encoding) {
+  return (encodings >> (static_cast<unsigned>(encoding) - 1) & 1U) != 0;
+}
+
 ChunkEncoding choose_encoding(const WorldConfig& config, std::uint8_t offered) {
-  const auto offers = [&](ChunkEncoding e) {
-    return (offered >> (static_cast<unsigned>(e) - 1) & 1U) != 0;
-  };
-  if (offers(config.preferred_encoding)) return config.preferred_encoding;
+  if (offers(offered, config.preferred_encoding)) return config.preferred_encoding;
   for (const ChunkEncoding e : {ChunkEncoding::packed, ChunkEncoding::raw}) {
-    if (offers(e)) return e;
+    if (offers(offered, e)) return e;
   }
   return ChunkEncoding::coded;
 }
 
-/// Chunks near the eye come first, and `packed` is read sooner. Of far ground, the bytes count most.
+/// Tiles are `coded` where chunks are `packed`, if the client reads that: it takes fewer bytes and more
+/// time to read. A player waits for chunks near the eye, and less for far ground.
 ChunkEncoding choose_tile_encoding(ChunkEncoding of_chunks, std::uint8_t offered) {
-  const bool offers_coded =
-      (offered >> (static_cast<unsigned>(ChunkEncoding::coded) - 1) & 1U) != 0;
-  return of_chunks == ChunkEncoding::packed && offers_coded ? ChunkEncoding::coded : of_chunks;
+  const bool is_coded = of_chunks == ChunkEncoding::packed && offers(offered, ChunkEncoding::coded);
+  return is_coded ? ChunkEncoding::coded : of_chunks;
 }
 
 Welcome welcome_of(const WorldState& world, const PublicKey& key) {

@@ -31,11 +31,11 @@ struct MadeTile {
   bool is_damaged = false;
   /// It shows an earlier moment (TileRequest::at), and differs from the present one.
   bool is_past = false;
-  /// Of the voxels of `tile`. Chunk::digest is zero unless the tile is complete, so that nobody claims
-  /// it.
+  /// The digest of the voxels of `tile`. Chunk::digest of an incomplete tile is zero instead, so that
+  /// no client claims it.
   Digest digest{};
-  /// The tile with its veil, as clients get it: `tile` itself if the veil changes nothing. Null if no
-  /// client was to get it so far.
+  /// The tile with its veil, as clients get it: `tile` itself if the veil changes nothing. Null until a
+  /// client requests the tile.
   ChunkPtr veiled = {};
 
   /// Returns what clients get. Requires the requested tile of TileSource::make().

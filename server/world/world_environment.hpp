@@ -78,13 +78,14 @@ class WorldEnvironment {
   /// Reports that the session has authenticated its key. It may still wait for the claim of its
   /// name.
   virtual void opened(SessionId /*session*/) {}
-  /// Encodes a snapshot on a worker in the session's encoding for its level and queues it like send(), as an
+  /// Encodes a snapshot on a worker, in the session's encoding of chunks or tiles, and queues it like
+  /// send(), as an
   /// answer to the view of this number. Returns false as send() does. WorldServer::drained() is
   /// called when the queue has room again.
   virtual bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
                              const ChunkPtr& chunk) = 0;
-  /// Does the same for a tile that replaces one that the session has. It is encoded as chunks are: after
-  /// an edit many sessions get it at the same time as edits, and then time counts more than bytes.
+  /// Does the same for a tile that replaces one that the session has, in the encoding of chunks. After
+  /// an edit many sessions get the tile, and the time to read it delays their edits.
   virtual bool send_changed_tile(SessionId session, std::uint32_t view, const ChunkKey& key,
                                  const ChunkPtr& tile) {
     return send_snapshot(session, view, key, tile);

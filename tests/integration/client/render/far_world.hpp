@@ -21,7 +21,7 @@
 
 namespace runstone::test {
 
-/// What a server does to the tiles that it sends.
+/// Whether the tiles that a server sends have a veil.
 enum class TileVeil { veiled, none };
 
 class FarWorld {

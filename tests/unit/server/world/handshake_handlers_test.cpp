@@ -74,17 +74,28 @@ TEST_CASE("a client that reads only raw chunks gets raw chunks", "[world]") {
   CHECK(bench.environment.messages<Welcome>(1, 0).at(0).encoding == ChunkEncoding::raw);
 }
 
+namespace {
+
+/// The encodings of a session after a Hello that offered some, with a host's preferred one.
+SessionEncodings agreed_encodings(ChunkEncoding preferred, std::uint8_t offered) {
+  WorldConfig wanted = config();
+  wanted.preferred_encoding = preferred;
+  Bench bench(wanted);
+  bench.server.connected(1, bench.now());
+  Hello hello = bench.hello(1);
+  hello.encodings = offered;
+  bench.server.received(1, hello, bench.now());
+  const SessionEncodings agreed = bench.environment.encodings.at(1);
+  CHECK(agreed.chunks == bench.environment.messages<Welcome>(1, 0).at(0).encoding);
+  return agreed;
+}
+
+}  // namespace
+
 TEST_CASE("a client gets coded chunks if it reads nothing else or the server prefers them",
           "[world]") {
   const auto chosen = [](ChunkEncoding preferred, std::uint8_t offered) {
-    WorldConfig wanted = config();
-    wanted.preferred_encoding = preferred;
-    Bench bench(wanted);
-    bench.server.connected(1, bench.now());
-    Hello hello = bench.hello(1);
-    hello.encodings = offered;
-    bench.server.received(1, hello, bench.now());
-    return bench.environment.messages<Welcome>(1, 0).at(0).encoding;
+    return agreed_encodings(preferred, offered).of({0, {1, 2, 3}});
   };
   CHECK(chosen(ChunkEncoding::packed, 4) == ChunkEncoding::coded);
   CHECK(chosen(ChunkEncoding::coded, 7) == ChunkEncoding::coded);
@@ -95,16 +106,7 @@ TEST_CASE("a client gets coded chunks if it reads nothing else or the server pre
 TEST_CASE("tiles are coded if the client reads that, unless the host chose another encoding",
           "[world]") {
   const auto chosen = [](ChunkEncoding preferred, std::uint8_t offered) {
-    WorldConfig wanted = config();
-    wanted.preferred_encoding = preferred;
-    Bench bench(wanted);
-    bench.server.connected(1, bench.now());
-    Hello hello = bench.hello(1);
-    hello.encodings = offered;
-    bench.server.received(1, hello, bench.now());
-    const SessionEncodings agreed = bench.environment.encodings.at(1);
-    CHECK(agreed.of({0, {1, 2, 3}}) == bench.environment.messages<Welcome>(1, 0).at(0).encoding);
-    return agreed.of({1, {1, 2, 3}});
+    return agreed_encodings(preferred, offered).of({1, {1, 2, 3}});
   };
   CHECK(chosen(ChunkEncoding::packed, 7) == ChunkEncoding::coded);
   CHECK(chosen(ChunkEncoding::packed, 3) == ChunkEncoding::packed);

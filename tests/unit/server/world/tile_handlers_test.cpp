@@ -188,7 +188,7 @@ TEST_CASE("those who have a tile get it again if anything of it has changed") {
   CHECK(sent_for(with_voxel(key, {1, 5}, 3, 4)) == 1);  // it may lack edits
   CHECK(sent_for(with_voxel(key, {1, 5}, 3, 4)) == 0);
   CHECK(sent_for(with_voxel(key, {1, 5}, 3, 5)) == 1);  // it is complete
-  // What replaces a tile is sent as such, and what a newcomer requests is not.
+  // A tile that a session requests is no changed tile. The later ones that replace it are.
   const auto changes_of = [&](SessionId session) {
     return std::ranges::count(bench.environment.changed_tiles, std::pair{session, key});
   };
