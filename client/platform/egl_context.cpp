@@ -42,51 +42,55 @@ Function egl_function(const char* name) {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-/// Returns an initialized display without a screen, or EGL_NO_DISPLAY. Mesa has one for all its drivers.
-/// Drivers of vendors have one for each device.
-EGLDisplay screenless_display() {
-  const auto get_display =
-      egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
-  if (get_display == nullptr) return EGL_NO_DISPLAY;
-  const auto initialized = [&](EGLenum platform, void* native) {
-    const EGLDisplay display = get_display(platform, native, nullptr);
-    const bool is_usable =
-        display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE;
-    return is_usable ? display : EGL_NO_DISPLAY;
-  };
-  const EGLDisplay surfaceless = initialized(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
+/// A display without a screen that EGL may have.
+struct Screenless {
+  EGLenum platform;
+  void* native;
+};
+
+/// Returns the displays to try, in this order: that of Mesa for all its drivers, then one for each device
+/// of the drivers of vendors.
+std::vector<Screenless> screenless_displays() {
+  std::vector<Screenless> out = {{EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY}};
   const auto query_devices = egl_function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
-  if (surfaceless != EGL_NO_DISPLAY || query_devices == nullptr) return surfaceless;
   std::array<EGLDeviceEXT, 8> devices{};
   EGLint count = 0;
-  if (query_devices(static_cast<EGLint>(devices.size()), devices.data(), &count) != EGL_TRUE)
-    return EGL_NO_DISPLAY;
-  for (const EGLDeviceEXT device : std::span(devices).first(static_cast<std::size_t>(count))) {
-    const EGLDisplay display = initialized(EGL_PLATFORM_DEVICE_EXT, device);
-    if (display != EGL_NO_DISPLAY) return display;
-  }
-  return EGL_NO_DISPLAY;
+  if (query_devices == nullptr ||
+      query_devices(static_cast<EGLint>(devices.size()), devices.data(), &count) != EGL_TRUE)
+    return out;
+  for (const EGLDeviceEXT device : std::span(devices).first(static_cast<std::size_t>(count)))
+    out.push_back({EGL_PLATFORM_DEVICE_EXT, device});
+  return out;
 }
 
-std::unique_ptr<GlContext> make_context(const Kind& kind, std::string& tried) {
-  const auto give_up = [&](const char* why) {
-    tried += std::string(kind.name) + ": " + why + "; ";
-    return nullptr;
-  };
-  const EGLDisplay display = screenless_display();
-  if (display == EGL_NO_DISPLAY) return give_up("no display");
+/// Makes a context of this kind current on an initialized display. Returns null if there is none.
+std::unique_ptr<GlContext> make_context_on(EGLDisplay display, const Kind& kind) {
   eglBindAPI(kind.api);
   for (const std::vector<EGLint>& attributes : kind.attributes) {
     const EGLContext context =
         eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     if (context == EGL_NO_CONTEXT) continue;
-    if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE) {
+    if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE)
       return std::make_unique<EglContext>(display, context, kind.name);
-    }
     eglDestroyContext(display, context);
   }
-  eglTerminate(display);
-  return give_up(kind.none);
+  return nullptr;
+}
+
+std::unique_ptr<GlContext> make_context(const Kind& kind, std::string& tried) {
+  const auto get_display =
+      egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+  const char* failure = "no display";
+  for (const Screenless& screenless : screenless_displays()) {
+    if (get_display == nullptr) break;
+    const EGLDisplay display = get_display(screenless.platform, screenless.native, nullptr);
+    if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) continue;
+    if (auto context = make_context_on(display, kind)) return context;
+    eglTerminate(display);
+    failure = kind.none;
+  }
+  tried += std::string(kind.name) + ": " + failure + "; ";
+  return nullptr;
 }
 
 std::vector<EGLint> core_profile(EGLint major, EGLint minor) {
