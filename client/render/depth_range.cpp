@@ -1,6 +1,7 @@
 #include "client/render/depth_range.hpp"
 
 #include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
 
 namespace runstone {
 namespace {
@@ -28,14 +29,11 @@ void DepthRange::reset() {
   clear_depth_to(1);
 }
 
-void DepthRange::pull_polygons() const {
-  const float sign = is_reversed_ ? 1 : -1;
-  glPolygonOffset(sign * 1, sign * 2);
-}
-
 glm::vec3 DepthRange::distance_terms() const {
   const double reach = far_ - near_;
   return {near_ * far_, is_reversed_ ? reach : -reach, is_reversed_ ? near_ : far_};
 }
+
+glm::mat4 in_front(const glm::mat4& clip) { return glm::scale(clip, glm::vec3(1 - 1.0F / 2048)); }
 
 }  // namespace runstone

@@ -148,7 +148,7 @@ void InspectionPainter::begin(const Inspection& inspection, const glm::mat4& cli
   shown_ = &inspection;
   update_bits(exact);
   glUseProgram(program_.get());
-  glUniformMatrix4fv(at("clip"), 1, GL_FALSE, glm::value_ptr(clip));
+  glUniformMatrix4fv(at("clip"), 1, GL_FALSE, glm::value_ptr(in_front(clip)));
   glUniform1f(at("wireframe"), inspection.modes[InspectionMode::wireframe] ? 1.0F : 0.0F);
   glActiveTexture(GL_TEXTURE0 + kRunStartUnit);
   glBindTexture(GL_TEXTURE_2D, bits_.texture());
@@ -160,8 +160,6 @@ void InspectionPainter::begin(const Inspection& inspection, const glm::mat4& cli
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  glEnable(GL_POLYGON_OFFSET_FILL);
-  depth.pull_polygons();
 }
 
 bool InspectionPainter::place(const ChunkKey& key, const glm::vec3& origin, std::int32_t edge,
@@ -209,7 +207,6 @@ bool InspectionPainter::place_flash(const ChunkKey& key) const {
 }
 
 void InspectionPainter::end(const DepthRange& depth) {
-  glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDepthMask(GL_TRUE);

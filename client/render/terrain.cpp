@@ -612,8 +612,9 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
   });
   if (ghosts_.empty()) return;
   glUseProgram(ghost_program_.get());
+  // A ghost of removed voxels has the faces of the world, and must lie in front of them.
   glUniformMatrix4fv(glGetUniformLocation(ghost_program_.get(), "clip"), 1, GL_FALSE,
-                     glm::value_ptr(view.clip));
+                     glm::value_ptr(in_front(view.clip)));
   glUniform1f(glGetUniformLocation(ghost_program_.get(), "seam"), 0);
   glUniform1f(glGetUniformLocation(ghost_program_.get(), "scale"), 1);
   materials_.bind(ghost_program_, kMaterialUnit);
@@ -623,9 +624,6 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glEnable(GL_CULL_FACE);
   glDepthMask(GL_FALSE);
-  // A ghost of removed voxels has the faces of the world, and must lie in front of them.
-  glEnable(GL_POLYGON_OFFSET_FILL);
-  view.depth.pull_polygons();
   const auto draw = [&](const GhostChunk& ghost, const std::shared_ptr<const ChunkMesh>& mesh,
                         const glm::vec4& tint, float opaque) {
     if (!mesh || mesh->empty()) return;
@@ -651,7 +649,6 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
     draw(ghost, ghost.removed, {0.80F, 0.02F, 0.02F, 0.85F}, 0.42F + pulse);
     draw(ghost, ghost.placed, {1, 1, 1, 0.08F}, 0.62F + pulse);
   }
-  glDisable(GL_POLYGON_OFFSET_FILL);
   glDepthMask(GL_TRUE);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
