@@ -13,6 +13,7 @@
 #include <atomic>
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -190,6 +191,8 @@ class RawClient {
   std::string ticket;          // an invite token; empty: none
   std::string password;        // sent to a world that has one; empty: none
   std::string refusal;         // text of the goodbye in place of SessionAccepted; empty: none
+  std::function<void(MessageKind, ByteView)>
+      on_body;  // called with each message before it is decoded
 
  private:
   static constexpr time_t kSendSeconds = 60;
@@ -226,6 +229,7 @@ class RawClient {
       return false;
     }
     const auto on_message = [this](MessageKind kind, ByteView body) -> Result<void> {
+      if (on_body) on_body(kind, body);
       auto message = decode_message(Sender::server, kind, body, chunk_edge_);
       if (!message) return Unexpected<Error>{message.error()};
       // The chunk edge is known from welcome on, also for messages of the same read.

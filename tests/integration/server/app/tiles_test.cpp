@@ -17,6 +17,7 @@
 #include "common/tiles/tile_builder.hpp"
 #include "common/tiles/tile_rules.hpp"
 #include "common/tiles/veil.hpp"
+#include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/view_tiles.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
@@ -220,6 +221,49 @@ TEST_CASE("a tower appears in the tiles of another client, and in those of the n
   check_exact(watcher, expected);
   server->stop();
   CHECK(raw_sql(folder / "world.sqlite", "SELECT count(*) FROM tile WHERE seq > 0") != "0");
+}
+
+TEST_CASE("requested tiles are sent coded, and a tile that replaces another one is sent packed",
+          "[integration]") {
+  TempFolder folder;
+  const auto server = start_server(quiet_config(folder.path()), terrain_creation());
+  Watcher watcher(server->port(), 1, far_view({0, 2, 0}));
+  std::map<ChunkKey, ChunkEncoding> sent_as;  // the last time
+  watcher.client().on_body = [&](MessageKind kind, ByteView body) {
+    const auto message = decode_message(Sender::server, kind, body, kEdge);
+    const auto* chunks = message ? std::get_if<Chunks>(&*message) : nullptr;
+    if (chunks == nullptr) return;
+    for (const ChunkAnswer& answer : chunks->chunks) {
+      const auto* snapshot = std::get_if<ChunkSnapshot>(&answer);
+      if (snapshot == nullptr || snapshot->key.lod == 0) continue;
+      const auto is_sent = [&](ChunkEncoding encoding) {
+        const auto entry = encode_snapshot(snapshot->key, snapshot->chunk, encoding);
+        return !std::ranges::search(body, *entry.bytes).empty();
+      };
+      CHECK(is_sent(ChunkEncoding::coded) != is_sent(ChunkEncoding::packed));
+      sent_as[snapshot->key] =
+          is_sent(ChunkEncoding::coded) ? ChunkEncoding::coded : ChunkEncoding::packed;
+    }
+  };
+  watcher.read_all();
+  CHECK(sent_as.size() > 20);
+  std::vector<ChunkKey> first;
+  for (const auto& [key, encoding] : sent_as) {
+    CHECK(encoding == ChunkEncoding::coded);
+    first.push_back(key);
+  }
+
+  RawClient builder(server->port());
+  REQUIRE(builder.join(2).has_value());
+  builder.send(EditRequest{1, 0, kTowers[0]});
+  REQUIRE(builder.sees_durable(1));
+  const auto changed = [&](const ChunkKey& key) {
+    const Chunk* now = watcher.find(key);
+    return now != nullptr && now->version.seq == 1;
+  };
+  watcher.read_until([&] { return std::ranges::any_of(first, changed); });
+  CHECK(sent_as.at(*std::ranges::find_if(first, changed)) == ChunkEncoding::packed);
+  server->stop();
 }
 
 TEST_CASE("far ground shows the moment to which a client moves in time", "[integration]") {
