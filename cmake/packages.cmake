@@ -22,6 +22,7 @@ find_package(tomlplusplus REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
+pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(UTF8PROC REQUIRED IMPORTED_TARGET libutf8proc)
 
 # Asio 1.22 comes without a CMake file, and keeps coroutines off under clang unless told otherwise.
@@ -47,7 +48,6 @@ target_link_libraries(runstone_asio PUBLIC Threads::Threads)
 # standalone Asio.
 find_package(Boost 1.74 REQUIRED)
 find_package(prometheus-cpp REQUIRED CONFIG)
-find_package(PNG REQUIRED)
 add_library(runstone_beast INTERFACE)
 target_compile_definitions(runstone_beast INTERFACE BOOST_ASIO_NO_DEPRECATED BOOST_ASIO_HAS_STD_ALIGNED_ALLOC=1)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
@@ -62,4 +62,5 @@ if(RUNSTONE_TESTS)
   find_package(Catch2 2.13 REQUIRED CONFIG)
   find_package(benchmark 1.7 REQUIRED CONFIG)
   find_package(ZLIB REQUIRED)  # a foreign format that is measured
+  find_package(PNG REQUIRED)   # reads the pictures of the map
 endif()

@@ -97,8 +97,6 @@ void MapPainter::paint(const MapTops& tops, std::span<const ColumnTop> west,
   RUNSTONE_ASSERT(north.empty() || north.size() == edge);
   RUNSTONE_ASSERT(edge == 0 || (stride >= edge && out.size() >= (edge - 1) * stride + edge));
   const std::span<const ColumnTop> all_ground = tops.ground_or_surface();
-  std::uint64_t last_bits = kNoBits;
-  std::uint32_t last_pixel = 0;
   for (std::size_t z = 0; z < edge; ++z) {
     const ColumnTop* row = tops.surface.data() + z * edge;
     const ColumnTop* ground = all_ground.data() + z * edge;
@@ -119,14 +117,10 @@ void MapPainter::paint(const MapTops& tops, std::span<const ColumnTop> west,
       if (above != nullptr) slope += rise(here, above[x]);
       const PixelKey key = key_of(here, ground[x], slope, unit_);
       const std::uint64_t bits = key.bits();
-      if (bits != last_bits) {
-        Kept& kept = kept_[slot_of(bits)];
-        if (kept.bits != bits)
-          kept = {bits, packed(column_colour(key, materials_), 1 + kRelief * slope)};
-        last_bits = bits;
-        last_pixel = kept.pixel;
-      }
-      pixels[x] = last_pixel;
+      Kept& kept = kept_[slot_of(bits)];
+      if (kept.bits != bits)
+        kept = {bits, packed(column_colour(key, materials_), 1 + kRelief * slope)};
+      pixels[x] = kept.pixel;
     }
   }
 }

@@ -50,6 +50,7 @@ StoreResult<MapVoxels::Voxels> MapVoxels::chunk(const MapMoment& moment, const C
   const std::uint16_t edge = moment.meta().chunk_edge;
   if (!moment.ground().version(key))
     return shared(generator_.generate(origin_of(key.at, edge), Extent::cube(edge)));
+  if (auto begun = reads_.next(); !begun) return Unexpected<StoreError>{begun.error()};
   auto voxels = moment.voxels(key, reader_, replay_);
   if (voxels) return shared(*std::move(voxels));
   if (voxels.error().kind != StoreError::Kind::corrupt)
@@ -58,6 +59,7 @@ StoreResult<MapVoxels::Voxels> MapVoxels::chunk(const MapMoment& moment, const C
 }
 
 StoreResult<MapVoxels::Voxels> MapVoxels::stored(const ChunkKey& key, const Version& version) {
+  if (auto begun = reads_.next(); !begun) return Unexpected<StoreError>{begun.error()};
   auto row = reader_.load_tile(key);
   if (!row) {
     // A damaged tile is made of its chunks again.

@@ -3,7 +3,7 @@
 //   2. the generator's coarse form, if nothing below the tile is stored or was edited;
 //   3. the table of tiles in the world's folder, if it has the version of the moment;
 //   4. its eight children.
-// It writes nothing.
+// It writes nothing. The reads of an object are joined to spans, which end with it.
 // Thread: one, as its reader.
 #pragma once
 #include <cstddef>
@@ -15,6 +15,7 @@
 #include "common/tiles/tile_rules.hpp"
 #include "server/map/map_caches.hpp"
 #include "server/map/map_moment.hpp"
+#include "server/store/read_span.hpp"
 
 namespace runstone {
 
@@ -30,6 +31,7 @@ class MapVoxels {
       : generator_(generator),
         visibility_(visibility),
         reader_(reader),
+        reads_(reader),
         caches_(caches),
         should_continue_(std::move(should_continue)) {}
 
@@ -46,6 +48,7 @@ class MapVoxels {
   const Generator& generator_;
   const VisibilityTable& visibility_;
   WorldReader& reader_;
+  ReadSpan reads_;
   MapCaches& caches_;
   const ShouldContinue should_continue_;
   ReplayScratch replay_;

@@ -67,6 +67,7 @@ StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us,
   auto reader = open_world(folder_, StoreAccess::read_only);
   if (!reader) return Unexpected<StoreError>{reader.error()};
   world_->reader = *std::move(reader);
+  world_->reader->set_row_check(RowCheck::bytes);
   auto generator = generator_of(*world_->reader);
   if (!generator) {
     return Unexpected<StoreError>{

@@ -23,8 +23,18 @@ struct StoredChunk {
   friend bool operator==(const StoredChunk&, const StoredChunk&) = default;
 };
 
+/// What is checked of a row with a chunk or tile when it is read.
+enum class RowCheck {
+  voxels,  // the checksum of the row, and that its digest is that of its voxels
+  bytes    // the checksum: it finds damage, but not a chunk that was written with a wrong digest
+};
+
 class ChunkReader : public virtual WorldInfo {
  public:
+  /// Sets what later reads check, at first RowCheck::voxels. To compute the digest takes about as long as
+  /// the rest of a read. Use RowCheck::bytes only to show chunks.
+  virtual void set_row_check(RowCheck check) = 0;
+
   /// Returns true if there are base chunks: imported, or completed by a compaction.
   virtual StoreResult<bool> has_base() = 0;
   /// Returns a base chunk, or nullopt if there is none.

@@ -10,6 +10,7 @@
 #include "common/core/result.hpp"
 #include "common/runs/chunk.hpp"
 #include "common/sqlite/database.hpp"
+#include "server/store/chunk_reader.hpp"
 
 namespace runstone {
 
@@ -25,10 +26,10 @@ struct ChunkRow {
 /// Returns the checksum that the row must have. `table`, the name of its table, is part of it.
 std::int64_t checksum_of(std::string_view table, const ChunkRow& row);
 
-/// Returns the chunk of a row. Fails with the cause if checksum, encoding, size or digest are
-/// wrong.
+/// Returns the chunk of a row. Fails with the cause if checksum, encoding or size are wrong, or the
+/// digest, if it is checked.
 Result<Chunk, std::string> chunk_of(std::string_view table, const ChunkRow& row,
-                                    std::uint16_t chunk_edge);
+                                    std::uint16_t chunk_edge, RowCheck check);
 
 /// Returns the reason why a chunk cannot be stored in a world of this edge, or an empty string if
 /// it can.

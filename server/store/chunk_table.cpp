@@ -53,7 +53,8 @@ Unexpected<StoreError> ChunkTable::failure(StoreError::Kind kind, const ChunkKey
   return {{kind, file_, table_ + " chunk=" + text_of(key), std::move(what)}};
 }
 
-StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, std::uint16_t chunk_edge) {
+StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, std::uint16_t chunk_edge,
+                                                   RowCheck check) {
   const sql::ResetAtEnd reset_at_end(load_);
   bind_key(load_, key);
   const auto found = load_.step();
@@ -61,7 +62,7 @@ StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, std::uin
   if (!*found) return std::optional<Chunk>();
   auto chunk = chunk_of(
       table_, {key, version_at(load_, 0), digest_at(load_, 2), load_.integer(4), load_.blob(5)},
-      chunk_edge);
+      chunk_edge, check);
   if (!chunk) return failure(StoreError::Kind::corrupt, key, chunk.error());
   return std::optional<Chunk>(*std::move(chunk));
 }

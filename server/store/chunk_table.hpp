@@ -18,7 +18,8 @@ class ChunkTable {
   enum class Kind { base, snapshot };
   static StoreResult<ChunkTable> open(sql::Database& database, Kind kind);
 
-  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge);
+  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge,
+                                         RowCheck check);
   /// Returns all rows without their voxels, ascending by key. Fails (corrupt) if their fold is not
   /// `expected`.
   StoreResult<std::vector<StoredChunk>> rows(const RowFold& expected);

@@ -99,25 +99,26 @@ StoreResult<std::vector<StoredChunk>> KeyframeTable::rows(Sequence last) {
 }
 
 StoreResult<std::optional<Chunk>> KeyframeTable::load(const ChunkKey& key, Sequence seq,
-                                                      std::uint16_t chunk_edge) {
-  return read(s_.load, key, seq, chunk_edge);
+                                                      std::uint16_t chunk_edge, RowCheck check) {
+  return read(s_.load, key, seq, chunk_edge, check);
 }
 
 StoreResult<std::optional<Chunk>> KeyframeTable::newest(const ChunkKey& key, Sequence last,
-                                                        std::uint16_t chunk_edge) {
-  return read(s_.newest, key, last, chunk_edge);
+                                                        std::uint16_t chunk_edge, RowCheck check) {
+  return read(s_.newest, key, last, chunk_edge, check);
 }
 
 StoreResult<std::optional<Chunk>> KeyframeTable::read(sql::Statement& row, const ChunkKey& key,
-                                                      Sequence seq, std::uint16_t chunk_edge) {
+                                                      Sequence seq, std::uint16_t chunk_edge,
+                                                      RowCheck check) {
   const sql::ResetAtEnd reset_at_end(row);
   bind_key(row, key);
   const auto found = row.bind(5, static_cast<std::int64_t>(seq)).step();
   if (!found) return failed(found.error());
   if (!*found) return std::optional<Chunk>();
   const Version version = version_at(row, 0);
-  auto chunk =
-      chunk_of(kChunks, {key, version, digest_at(row, 2), row.integer(4), row.blob(5)}, chunk_edge);
+  auto chunk = chunk_of(kChunks, {key, version, digest_at(row, 2), row.integer(4), row.blob(5)},
+                        chunk_edge, check);
   if (!chunk) return corrupt(place_of(key, version.seq), chunk.error());
   return std::optional<Chunk>(*std::move(chunk));
 }
@@ -128,7 +129,7 @@ StoreResult<void> KeyframeTable::save(const ChunkKey& key, const Chunk& chunk,
   if (const std::string what = unfit(chunk, chunk_edge); !what.empty()) {
     return Unexpected<StoreError>{{StoreError::Kind::bad_request, file_, place_of(key, seq), what}};
   }
-  const auto stored = load(key, seq, chunk_edge);
+  const auto stored = load(key, seq, chunk_edge, RowCheck::voxels);
   if (!stored) return failed(stored.error());
   if (stored->has_value()) {
     if ((*stored)->version == chunk.version && (*stored)->digest == chunk.digest) return {};

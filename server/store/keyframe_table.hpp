@@ -28,11 +28,11 @@ class KeyframeTable {
   StoreResult<std::vector<StoredChunk>> rows(Sequence last);
   /// Returns the row of a chunk at exactly this sequence, verified, or nullopt if there is none.
   StoreResult<std::optional<Chunk>> load(const ChunkKey& key, Sequence seq,
-                                         std::uint16_t chunk_edge);
+                                         std::uint16_t chunk_edge, RowCheck check);
   /// Returns the newest row of a chunk up to a sequence, verified, or nullopt if there is none.
   /// Cost: O(log rows).
   StoreResult<std::optional<Chunk>> newest(const ChunkKey& key, Sequence last,
-                                           std::uint16_t chunk_edge);
+                                           std::uint16_t chunk_edge, RowCheck check);
 
   /// Inserts a row in the caller's transaction. A row that exists already stays. Fails (corrupt) if
   /// it differs.
@@ -56,7 +56,7 @@ class KeyframeTable {
   KeyframeTable(std::string file, Statements statements)
       : file_(std::move(file)), s_(std::move(statements)) {}
   StoreResult<std::optional<Chunk>> read(sql::Statement& row, const ChunkKey& key, Sequence seq,
-                                         std::uint16_t chunk_edge);
+                                         std::uint16_t chunk_edge, RowCheck check);
   Unexpected<StoreError> corrupt(std::string where, std::string what) const;
 
   std::string file_;

@@ -51,8 +51,9 @@ StoreResult<StoredMoment> SqliteStore::stored_moment(Sequence at) {
 }
 
 StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& chunk) {
-  auto loaded = chunk.is_base ? load_base(chunk.key)
-                              : keyframes_.load(chunk.key, chunk.version.seq, meta_.chunk_edge);
+  auto loaded = chunk.is_base
+                    ? load_base(chunk.key)
+                    : keyframes_.load(chunk.key, chunk.version.seq, meta_.chunk_edge, row_check_);
   if (!loaded || !loaded->has_value()) return loaded;
   if ((*loaded)->version != chunk.version)
     return std::optional<Chunk>();  // a compaction replaced it
@@ -64,7 +65,7 @@ StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& ch
 }
 
 StoreResult<std::optional<Chunk>> SqliteStore::load_kept(const ChunkKey& key, Sequence at) {
-  return keyframes_.newest(key, at, meta_.chunk_edge);
+  return keyframes_.newest(key, at, meta_.chunk_edge, row_check_);
 }
 
 StoreResult<void> SqliteStore::check_keyframe(const Keyframe& keyframe, const LogRange& range) {

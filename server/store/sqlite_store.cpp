@@ -246,9 +246,19 @@ StoreResult<void> SqliteStore::save_tiles(ChunkSpan tiles) {
   });
 }
 
+StoreResult<void> SqliteStore::begin_reads() {
+  if (const auto begun = database_->run("SAVEPOINT reads"); !begun) return failed(begun.error());
+  return {};
+}
+
+StoreResult<void> SqliteStore::end_reads() {
+  if (const auto ended = database_->run("RELEASE reads"); !ended) return failed(ended.error());
+  return {};
+}
+
 StoreResult<std::optional<Chunk>> SqliteStore::load_tile(const ChunkKey& key) {
   if (!tiles_) return std::optional<Chunk>();
-  return tiles_->load(key, meta_.chunk_edge);
+  return tiles_->load(key, meta_.chunk_edge, row_check_);
 }
 
 StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::tile_keys() {
@@ -257,11 +267,11 @@ StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::tile_keys() 
 }
 
 StoreResult<std::optional<Chunk>> SqliteStore::load_snapshot(const ChunkKey& key) {
-  return snapshots_.load(key, meta_.chunk_edge);
+  return snapshots_.load(key, meta_.chunk_edge, row_check_);
 }
 
 StoreResult<std::optional<Chunk>> SqliteStore::load_base(const ChunkKey& key) {
-  return base_.load(key, meta_.chunk_edge);
+  return base_.load(key, meta_.chunk_edge, row_check_);
 }
 
 StoreResult<void> SqliteStore::read_log(Sequence first, Sequence last, const EachRecord& each) {

@@ -62,6 +62,7 @@ class SqliteStore final : public Store {
   StoreResult<MaterialTable> materials(Sequence at) override;
 
   // ChunkReader
+  void set_row_check(RowCheck check) override { row_check_ = check; }
   StoreResult<bool> has_base() override;
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
   StoreResult<std::vector<StoredChunk>> base_chunks() override;
@@ -86,6 +87,8 @@ class SqliteStore final : public Store {
   AuthorId author_max() const override { return state_.author_max; }
 
   // WorldReader
+  StoreResult<void> begin_reads() override;
+  StoreResult<void> end_reads() override;
   const std::optional<StoreError>& loss() const override { return loss_; }
   StoreResult<void> check() override;
 
@@ -210,6 +213,7 @@ class SqliteStore final : public Store {
   // nullopt: a world without the table, or with tiles of other rules, that is open for reading only
   std::optional<TileTable> tiles_;
   StoreAccess access_;
+  RowCheck row_check_ = RowCheck::voxels;
   WorldMeta meta_;
   std::unique_ptr<DurableMark> mark_;
   /// The greatest numbers of database and mark.

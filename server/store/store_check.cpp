@@ -21,7 +21,7 @@ StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
   const bool is_base = &table == &base_;
   const Version newest = is_base ? head->version : range->last.version;
   for (const auto& [key, version, digest, completed] : *rows) {
-    const auto chunk = table.load(key, meta_.chunk_edge);
+    const auto chunk = table.load(key, meta_.chunk_edge, RowCheck::voxels);
     if (!chunk) return failed(chunk.error());
     if (version > newest) {
       return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(),

@@ -39,7 +39,8 @@ Unexpected<StoreError> TileTable::failure(StoreError::Kind kind, const ChunkKey&
   return {{kind, file_, std::string(kTable) + " chunk=" + text_of(key), std::move(what)}};
 }
 
-StoreResult<std::optional<Chunk>> TileTable::load(const ChunkKey& key, std::uint16_t chunk_edge) {
+StoreResult<std::optional<Chunk>> TileTable::load(const ChunkKey& key, std::uint16_t chunk_edge,
+                                                  RowCheck check) {
   const sql::ResetAtEnd reset_at_end(s_.load);
   bind_key(s_.load, key);
   const auto found = s_.load.step();
@@ -48,7 +49,7 @@ StoreResult<std::optional<Chunk>> TileTable::load(const ChunkKey& key, std::uint
   auto tile = chunk_of(
       kTable,
       {key, version_at(s_.load, 0), digest_at(s_.load, 2), s_.load.integer(4), s_.load.blob(5)},
-      chunk_edge);
+      chunk_edge, check);
   if (!tile) return failure(StoreError::Kind::corrupt, key, tile.error());
   return std::optional<Chunk>(*std::move(tile));
 }

@@ -24,7 +24,8 @@ class TileTable {
 
   /// Returns a tile, verified, or nullopt if there is none. The error (corrupt) names file, table
   /// and tile.
-  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge);
+  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge,
+                                         RowCheck check);
   /// Returns keys and versions of all tiles, ascending by key.
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys();
 
