@@ -162,6 +162,10 @@ void Client::on_world_opened() {
         "this server allows a view radius of {} chunks: the view of {} and {} is cut to it",
         welcome.view_radius_max, options_.view_radius, options_.view_radius_v);
   }
+  if (welcome.tile_levels_max < options_.far_levels) {
+    spdlog::warn("this server allows {} levels of far ground: the {} levels are cut to it",
+                 welcome.tile_levels_max, options_.far_levels);
+  }
   if (options_.far_levels != 0 && options_.view_radius < kTileRadiusHMin)
     spdlog::warn("far ground needs a view radius of {} chunks or more", kTileRadiusHMin);
   limits_.open_world(welcome.view_radius_max);

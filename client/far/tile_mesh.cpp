@@ -43,6 +43,30 @@ void append_waterline(const QuadFields& quad, const RunChunk& body, std::vector<
   }
 }
 
+/// Appends the parts of an upper face above which `above` has another material, as strips along z.
+/// `above` are the voxels over the body, its lowest ones over the body's highest.
+void append_surface(const QuadFields& quad, const RunChunk& above, std::vector<Quad>& out) {
+  // u and v are z and x for faces along y.
+  const auto is_surface = [&](int x, int z) {
+    const LocalPos over{static_cast<std::uint8_t>(x), 0, static_cast<std::uint8_t>(z)};
+    return material_at(above, over) != quad.material;
+  };
+  QuadFields strip = quad;
+  strip.height = 1;
+  for (int x = quad.x; x < quad.x + quad.height; ++x) {
+    strip.x = static_cast<std::uint8_t>(x);
+    for (int first = quad.z; first < quad.z + quad.width; ++first) {
+      if (!is_surface(x, first)) continue;
+      int end = first + 1;
+      while (end < quad.z + quad.width && is_surface(x, end)) ++end;
+      strip.z = static_cast<std::uint8_t>(first);
+      strip.width = static_cast<std::uint8_t>(end - first);
+      out.push_back(pack(strip));
+      first = end;
+    }
+  }
+}
+
 /// Replaces the quads of one layer.
 void replace_layer(QuadLayers& layers, Direction d, unsigned l, const std::vector<Quad>& quads) {
   const std::size_t i = static_cast<std::size_t>(d) * kSideMax + l;
@@ -54,9 +78,9 @@ void replace_layer(QuadLayers& layers, Direction d, unsigned l, const std::vecto
     layers.first[later] = layers.first[later] - before + after;
 }
 
-/// Leaves of the transparent faces on the border those on top, and the waterlines of the lateral
-/// ones.
-void trim_border(const RunChunk& body, QuadLayers& transparent) {
+/// Leaves of the transparent faces on the border those on top that nothing of the same material covers,
+/// and the waterlines of the lateral ones. `above`: the voxels over the body, or null if they are not known.
+void trim_border(const RunChunk& body, const RunChunk* above, QuadLayers& transparent) {
   if (transparent.quads.empty()) return;
   replace_layer(transparent, Direction::neg_y, 0, {});
   for (const Direction d : kLateral) {
@@ -65,14 +89,24 @@ void trim_border(const RunChunk& body, QuadLayers& transparent) {
     for (const Quad quad : transparent.layer(d, layer)) append_waterline(unpack(quad), body, lines);
     replace_layer(transparent, d, layer, lines);
   }
+  if (above == nullptr) return;
+  const unsigned top = body.extent.y - 1U;
+  std::vector<Quad> surface;
+  for (const Quad quad : transparent.layer(Direction::pos_y, top))
+    append_surface(unpack(quad), *above, surface);
+  replace_layer(transparent, Direction::pos_y, top, surface);
 }
 
-ChunkMesh mesh_body(const RunChunk& body, const VisibilityTable& visibility, RdmScratch& scratch) {
+ChunkMesh mesh_body(const RunChunk& body, const RunChunk* above, const VisibilityTable& visibility,
+                    RdmScratch& scratch) {
   ChunkMesh out;
   mesh_rdm(body, {}, visibility, scratch, out);
-  trim_border(body, out.transparent);
+  trim_border(body, above, out.transparent);
   return out;
 }
+
+/// The bit of the number of a child that says that it is an upper one (tile_child()).
+constexpr unsigned kUpper = 2;
 
 }  // namespace
 
@@ -85,11 +119,16 @@ std::size_t TileMesh::quad_count() const {
 FarMeshResult mesh_tile(const FarMeshJob& job, const VisibilityTable& visibility,
                         RdmScratch& scratch) {
   auto mesh = std::make_shared<TileMesh>();
-  mesh->whole = mesh_body(*job.tile, visibility, scratch);
+  mesh->whole = mesh_body(*job.tile, nullptr, visibility, scratch);
   if (job.with_octants && !mesh->empty()) {
+    std::vector<RunChunk> octants;
+    octants.reserve(kTileChildren);
+    for (unsigned i = 0; i < kTileChildren; ++i) octants.push_back(cut_octant(*job.tile, i));
     mesh->octants.reserve(kTileChildren);
-    for (unsigned i = 0; i < kTileChildren; ++i)
-      mesh->octants.push_back(mesh_body(cut_octant(*job.tile, i), visibility, scratch));
+    for (unsigned i = 0; i < kTileChildren; ++i) {
+      const RunChunk* const above = (i & kUpper) != 0 ? nullptr : &octants[i | kUpper];
+      mesh->octants.push_back(mesh_body(octants[i], above, visibility, scratch));
+    }
   }
   return {job.key, job.number, job.tile->extent.x, std::move(mesh)};
 }
@@ -97,10 +136,12 @@ FarMeshResult mesh_tile(const FarMeshJob& job, const VisibilityTable& visibility
 bool drop_water_walls(ChunkMesh& mesh, std::int32_t edge, std::uint8_t sides) {
   const std::size_t before = mesh.transparent.quads.size();
   if (before == 0) return false;
-  for (const Direction d : kLateral) {
-    if ((sides >> static_cast<unsigned>(d) & 1U) == 0) continue;
+  const auto drop = [&](Direction d) {
+    if ((sides >> static_cast<unsigned>(d) & 1U) == 0) return;
     replace_layer(mesh.transparent, d, is_positive(d) ? static_cast<unsigned>(edge - 1) : 0, {});
-  }
+  };
+  std::ranges::for_each(kLateral, drop);
+  drop(Direction::neg_y);
   return mesh.transparent.quads.size() != before;
 }
 

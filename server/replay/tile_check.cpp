@@ -59,6 +59,12 @@ StoreResult<TileReport> check_tiles(const std::string& folder, WorldReader& stor
   // it all the time, so no newer snapshot was saved below it meanwhile.
   const auto keys = store.tile_keys();
   if (!keys) return fail_with(keys.error());
+  const auto damaged = store.rows_of_no_tile();
+  if (!damaged) return fail_with(damaged.error());
+  for (const std::string& row : *damaged) {
+    ++report.compared;
+    differs(row);
+  }
   if (keys->empty()) return report;
   const auto materials = store.materials();
   if (!materials) return fail_with(materials.error());

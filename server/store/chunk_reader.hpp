@@ -56,6 +56,9 @@ class ChunkReader : public virtual WorldInfo {
   virtual StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key) = 0;
   /// Returns keys and versions of all stored tiles, ascending by key.
   virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys() = 0;
+  /// Returns a line for each row of tiles whose key is damaged so that it is that of no tile. Nothing
+  /// else reads such a row.
+  virtual StoreResult<std::vector<std::string>> rows_of_no_tile() = 0;
 };
 
 }  // namespace runstone

@@ -266,6 +266,11 @@ StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::tile_keys() 
   return tiles_->keys();
 }
 
+StoreResult<std::vector<std::string>> SqliteStore::rows_of_no_tile() {
+  if (!tiles_) return std::vector<std::string>();
+  return tiles_->keyless();
+}
+
 StoreResult<std::optional<Chunk>> SqliteStore::load_snapshot(const ChunkKey& key) {
   return snapshots_.load(key, meta_.chunk_edge, row_check_);
 }

@@ -71,6 +71,7 @@ class SqliteStore final : public Store {
   StoreResult<Sequence> checkpoint() override;
   StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key) override;
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys() override;
+  StoreResult<std::vector<std::string>> rows_of_no_tile() override;
 
   // KeyframeReader
   StoreResult<std::vector<Keyframe>> keyframes() override;

@@ -13,6 +13,13 @@ namespace {
 
 constexpr const char* kTable = "tile";
 
+/// True of rows whose key fits its types. The key of another one would be cut to that of a tile.
+std::string has_key() {
+  constexpr const char* kFits = " BETWEEN -2147483648 AND 2147483647";
+  return "(lod BETWEEN 1 AND " + std::to_string(kTileLevelMax) + " AND x" + kFits + " AND y" + kFits +
+         " AND z" + kFits + ")";
+}
+
 }  // namespace
 
 StoreResult<TileTable> TileTable::open(sql::Database& database) {
@@ -20,8 +27,13 @@ StoreResult<TileTable> TileTable::open(sql::Database& database) {
   auto load =
       database.prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM tile" + where);
   if (!load) return failed(load.error());
-  auto keys = database.prepare("SELECT lod, x, y, z, epoch, seq FROM tile ORDER BY lod, x, y, z");
+  auto keys = database.prepare("SELECT lod, x, y, z, epoch, seq FROM tile WHERE " + has_key() +
+                               " ORDER BY lod, x, y, z");
   if (!keys) return failed(keys.error());
+  auto keyless = database.prepare(
+      "SELECT 'lod=' || lod || ' x=' || x || ' y=' || y || ' z=' || z FROM tile WHERE NOT " +
+      has_key());
+  if (!keyless) return failed(keyless.error());
   auto save = database.prepare(
       "INSERT OR REPLACE INTO tile(lod, x, y, z, epoch, seq, digest0, digest1, checksum, data) "
       "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)");
@@ -30,7 +42,7 @@ StoreResult<TileTable> TileTable::open(sql::Database& database) {
   if (!remove_older) return failed(remove_older.error());
   auto clear = database.prepare("DELETE FROM tile");
   if (!clear) return failed(clear.error());
-  return TileTable(database.file(), {*std::move(load), *std::move(keys), *std::move(save),
+  return TileTable(database.file(), {*std::move(load), *std::move(keys), *std::move(keyless), *std::move(save),
                                      *std::move(remove_older), *std::move(clear)});
 }
 
@@ -62,6 +74,18 @@ StoreResult<std::vector<std::pair<ChunkKey, Version>>> TileTable::keys() {
     if (!more) return failed(more.error());
     if (!*more) return keys;
     keys.emplace_back(key_at(s_.keys, 0), version_at(s_.keys, 4));
+  }
+}
+
+StoreResult<std::vector<std::string>> TileTable::keyless() {
+  const sql::ResetAtEnd reset_at_end(s_.keyless);
+  std::vector<std::string> rows;
+  for (;;) {
+    const auto more = s_.keyless.step();
+    if (!more) return failed(more.error());
+    if (!*more) return rows;
+    rows.push_back(file_ + ": " + kTable + " " + std::string(s_.keyless.text(0)) +
+                   ": is the key of no tile");
   }
 }
 

@@ -88,7 +88,7 @@ class TileSource::Making {
     if (!read) return Unexpected<StoreError>{read.error()};
     if (!row) {
       if (row.error().kind != StoreError::Kind::corrupt) return Unexpected<StoreError>{row.error()};
-      source_.warn_once(key, row.error());
+      source_.warn_once(key, row.error().message() + "; the tile is made again");
       return out;
     }
     if (!row->has_value() || newest > (*row)->version.seq) return out;
@@ -187,7 +187,7 @@ class TileSource::Making {
 
   StoreResult<Child> damaged_chunk(const ChunkKey& key, const StoreError& error) {
     if (error.kind != StoreError::Kind::corrupt) return Unexpected<StoreError>{error};
-    source_.warn_once(key, error);
+    source_.warn_once(key, error.message());
     return Child{nullptr, true, true};
   }
 
@@ -288,12 +288,12 @@ StoreResult<void> TileSource::find_ground() {
   return found;
 }
 
-void TileSource::warn_once(const ChunkKey& key, const StoreError& error) {
+void TileSource::warn_once(const ChunkKey& key, const std::string& line) {
   {
     const std::lock_guard lock(mutex_);
     if (!warned_.insert(key).second) return;
   }
-  warn_(error.message());
+  warn_(line);
 }
 
 }  // namespace runstone

@@ -82,7 +82,7 @@ class TileSource {
   /// Adds MadeTile::veiled, unless the tile has it.
   void add_veiled(MadeTile& tile, const VisibilityTable& visibility);
   /// Reports a damaged row, once for each key.
-  void warn_once(const ChunkKey& key, const StoreError& error);
+  void warn_once(const ChunkKey& key, const std::string& line);
 
   ChunkSource& chunks_;
   const Generator& generator_;

@@ -221,6 +221,20 @@ TEST_CASE("verify compares stored tiles with their chunks", "[store][replay][til
                            "/world.sqlite: tile chunk=0,0,0 lod=2: checksum is wrong\n") !=
           std::string::npos);
   }
+  SECTION("a tile whose key became that of no tile") {
+    for (const char* change : {"lod = -1", "lod = 256", "lod = 258", "x = 4294967296"}) {
+      CAPTURE(change);
+      REQUIRE(raw_sql(world + "/world.sqlite",
+                      std::string("UPDATE tile SET ") + change + " WHERE lod NOT IN (1)")
+                  .empty());
+      const ReplayOutcome damaged = run_replay({"verify", "--world", world});
+      INFO(damaged.out << damaged.err);
+      CHECK(damaged.code == 1);
+      CHECK(damaged.out.find("tiles       9 compared, 0 left out") != std::string::npos);
+      CHECK(damaged.out.find("/world.sqlite: tile lod=") != std::string::npos);
+      CHECK(damaged.out.find(": is the key of no tile\n") != std::string::npos);
+    }
+  }
   SECTION("an edit behind the checkpoint") {
     {
       const auto store = *open_world(world, StoreAccess::read_write);
