@@ -47,13 +47,13 @@ void FarTiles::reopen(std::uint32_t rules, const std::function<bool(const Versio
 bool FarTiles::receive(const ChunkKey& key, Chunk tile) {
   if (tile.voxels.extent != Extent::cube(static_cast<unsigned>(edge_))) return false;
   if (tile.voxels.is_uniform()) return receive_uniform(key, material_at(tile.voxels, {0, 0, 0}));
-  Held held;
-  held.source = std::make_shared<const Chunk>(std::move(tile));
-  held.voxels = TilePtr(held.source, &held.source->voxels);
-  held.is_vouched = true;
+  Entry entry;
+  entry.source = std::make_shared<const Chunk>(std::move(tile));
+  entry.voxels = TilePtr(entry.source, &entry.source->voxels);
+  entry.is_vouched = true;
   // The server marks a tile that it will replace soon by the digest 0.
-  held.can_be_kept = rules_ != 0 && held.source->digest != Digest{};
-  return keep(key, std::move(held));
+  entry.can_be_kept = rules_ != 0 && entry.source->digest != Digest{};
+  return keep(key, std::move(entry));
 }
 
 bool FarTiles::receive_uniform(const ChunkKey& key, Material material) {
@@ -63,18 +63,18 @@ bool FarTiles::receive_uniform(const ChunkKey& key, Material material) {
     shared = std::make_shared<const RunChunk>(
         uniform_chunk(Extent::cube(static_cast<unsigned>(edge_)), material));
   }
-  Held held;
-  held.voxels = shared;
-  held.is_vouched = true;
+  Entry entry;
+  entry.voxels = shared;
+  entry.is_vouched = true;
   if (uniform_.size() > kSharedMax) uniform_.clear();
-  return keep(key, std::move(held));
+  return keep(key, std::move(entry));
 }
 
 bool FarTiles::receive_not_modified(const ChunkKey& key, Sequence seq) {
-  const auto held = tiles_.find(key);
-  if (held == tiles_.end() || !held->second.source || held->second.source->version.seq != seq)
+  const auto entry = tiles_.find(key);
+  if (entry == tiles_.end() || !entry->second.source || entry->second.source->version.seq != seq)
     return false;
-  held->second.is_vouched = true;
+  entry->second.is_vouched = true;
   return true;
 }
 
@@ -82,30 +82,30 @@ bool FarTiles::adopt(const ChunkKey& key, ChunkPtr tile) {
   const bool fits = rules_ != 0 && !tile->voxels.is_uniform() &&
                     tile->voxels.extent == Extent::cube(static_cast<unsigned>(edge_));
   if (!fits || tiles_.contains(key) || is_below_empty(key)) return false;
-  Held held;
-  held.voxels = TilePtr(tile, &tile->voxels);
-  held.source = std::move(tile);
-  held.can_be_kept = held.is_cached = true;
-  return keep(key, std::move(held));
+  Entry entry;
+  entry.voxels = TilePtr(tile, &tile->voxels);
+  entry.source = std::move(tile);
+  entry.can_be_kept = entry.is_cached = true;
+  return keep(key, std::move(entry));
 }
 
-bool FarTiles::keep(const ChunkKey& key, Held tile) {
+bool FarTiles::keep(const ChunkKey& key, Entry tile) {
   RUNSTONE_ASSERT(key.lod > 0);
   if (!view_ || !has_key(*view_, CoordLimit::of(edge_), key)) return false;
-  Held& held = tiles_[key];
-  if (held.voxels) {
+  Entry& entry = tiles_[key];
+  if (entry.voxels) {
     // A tile is often sent again with the same voxels, after an edit that it does not show.
-    if (held.voxels == tile.voxels || *held.voxels == *tile.voxels) {
-      tile.voxels = held.voxels;
-      held = std::move(tile);
+    if (entry.voxels == tile.voxels || *entry.voxels == *tile.voxels) {
+      tile.voxels = entry.voxels;
+      entry = std::move(tile);
       return true;
     }
-    count(*held.voxels, false);
+    count(*entry.voxels, false);
   }
-  held = std::move(tile);
-  count(*held.voxels, true);
+  entry = std::move(tile);
+  count(*entry.voxels, true);
   changed_.insert(key);
-  if (is_empty(*held.voxels)) drop_below(key);
+  if (is_empty(*entry.voxels)) drop_below(key);
   return true;
 }
 
@@ -119,9 +119,9 @@ bool FarTiles::is_below_empty(const ChunkKey& key) const {
   ChunkKey above = key;
   while (above.lod < kTileLevelMax) {
     above = tile_parent(above);
-    const auto held = tiles_.find(above);
-    // Only the nearest held tile above counts: the ones above it are not empty.
-    if (held != tiles_.end()) return is_empty(*held->second.voxels);
+    const auto entry = tiles_.find(above);
+    // Only the nearest tile above that is here counts: the ones above it are not empty.
+    if (entry != tiles_.end()) return is_empty(*entry->second.voxels);
   }
   return false;
 }
@@ -131,9 +131,9 @@ void FarTiles::drop_below(const ChunkKey& key) {
   const CoordLimit world = CoordLimit::of(edge_);
   for (unsigned i = 0; i < kTileChildren; ++i) {
     const ChunkKey child = tile_child(key, i);
-    // A view has the parents of all its tiles, so nothing below a child outside of it is held.
+    // A view has the parents of all its tiles, so nothing below a child outside of it is here.
     if (!has_key(*view_, world, child)) continue;
-    if (const auto held = tiles_.find(child); held != tiles_.end()) drop(held);
+    if (const auto entry = tiles_.find(child); entry != tiles_.end()) drop(entry);
     drop_below(child);
   }
 }
@@ -145,8 +145,8 @@ void FarTiles::count(const RunChunk& tile, bool is_added) {
 }
 
 TilePtr FarTiles::find(const ChunkKey& key) const {
-  const auto held = tiles_.find(key);
-  return held == tiles_.end() ? nullptr : held->second.voxels;
+  const auto entry = tiles_.find(key);
+  return entry == tiles_.end() ? nullptr : entry->second.voxels;
 }
 
 void FarTiles::for_each_claimable(

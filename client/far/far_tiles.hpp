@@ -81,7 +81,7 @@ class FarTiles {
   std::vector<ChunkKey> drain_changes();
 
  private:
-  struct Held {
+  struct Entry {
     TilePtr voxels;
     ChunkPtr source;           // as it arrived last, with the same voxels; null if it is uniform
     bool is_vouched = false;   // the server has answered for it on this connection
@@ -90,9 +90,9 @@ class FarTiles {
 
     bool is_for_cache() const { return is_vouched && can_be_kept && !is_cached; }
   };
-  using Tiles = std::map<ChunkKey, Held>;
+  using Tiles = std::map<ChunkKey, Entry>;
 
-  bool keep(const ChunkKey& key, Held tile);
+  bool keep(const ChunkKey& key, Entry tile);
   Tiles::iterator drop(Tiles::iterator tile);
   void drop_below(const ChunkKey& key);
   bool is_below_empty(const ChunkKey& key) const;

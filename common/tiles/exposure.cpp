@@ -106,11 +106,11 @@ void ExposureSweep::reset(unsigned edge) {
 }
 
 void ExposureSweep::find(const LayerWindow& window, AxisOrder order, MostExposed& out) {
-  const std::array<const LayerRows*, 4> layers = {window.before, window.own[0], window.own[1],
+  const std::array<const LayerRows*, 4> layers = {window.before, window.middle[0], window.middle[1],
                                                   window.behind};
   for (std::size_t w = 0; w < words_; ++w) {
     for (std::size_t s = 0; s < 2; ++s) {
-      const LayerRows& own = *layers[s + 1];
+      const LayerRows& layer = *layers[s + 1];
       const LayerRows& before = *layers[s];
       const LayerRows& behind = *layers[s + 2];
       // Words outside of the line are not there; any word with the right count of lines does.
@@ -118,32 +118,32 @@ void ExposureSweep::find(const LayerWindow& window, AxisOrder order, MostExposed
       WordOfLines even{}, odd{};
       even.first = odd.first = w == 0 ? 1 : 0;
       even.last = odd.last = w + 1 == words_ ? Row64{1} << ((2 * edge_ - 1) % 64) : 0;
-      even.solid = own.solid.even(w);
-      even.opaque = own.opaque.even(w);
-      even.opaque_below = own.opaque.even(below);
-      even.opaque_above = own.opaque.even(above);
-      even.same = own.same_along.even(w);
-      even.same_below = own.same_along.even(below);
-      even.opaque_low = own.opaque.before_even(w);
-      even.same_low = own.same_across.before_even(w);
-      even.opaque_high = own.opaque.odd(w);
-      even.same_high = own.same_across.even(w);
+      even.solid = layer.solid.even(w);
+      even.opaque = layer.opaque.even(w);
+      even.opaque_below = layer.opaque.even(below);
+      even.opaque_above = layer.opaque.even(above);
+      even.same = layer.same_along.even(w);
+      even.same_below = layer.same_along.even(below);
+      even.opaque_low = layer.opaque.before_even(w);
+      even.same_low = layer.same_across.before_even(w);
+      even.opaque_high = layer.opaque.odd(w);
+      even.same_high = layer.same_across.even(w);
       even.opaque_before = before.opaque.even(w);
-      even.same_before = own.same_before.even(w);
+      even.same_before = layer.same_before.even(w);
       even.opaque_behind = behind.opaque.even(w);
       even.same_behind = behind.same_before.even(w);
-      odd.solid = own.solid.odd(w);
-      odd.opaque = own.opaque.odd(w);
-      odd.opaque_below = own.opaque.odd(below);
-      odd.opaque_above = own.opaque.odd(above);
-      odd.same = own.same_along.odd(w);
-      odd.same_below = own.same_along.odd(below);
-      odd.opaque_low = own.opaque.even(w);
-      odd.same_low = own.same_across.even(w);
-      odd.opaque_high = own.opaque.even(w) + 1;
-      odd.same_high = own.same_across.odd(w);
+      odd.solid = layer.solid.odd(w);
+      odd.opaque = layer.opaque.odd(w);
+      odd.opaque_below = layer.opaque.odd(below);
+      odd.opaque_above = layer.opaque.odd(above);
+      odd.same = layer.same_along.odd(w);
+      odd.same_below = layer.same_along.odd(below);
+      odd.opaque_low = layer.opaque.even(w);
+      odd.same_low = layer.same_across.even(w);
+      odd.opaque_high = layer.opaque.even(w) + 1;
+      odd.same_high = layer.same_across.odd(w);
       odd.opaque_before = before.opaque.odd(w);
-      odd.same_before = own.same_before.odd(w);
+      odd.same_before = layer.same_before.odd(w);
       odd.opaque_behind = behind.opaque.odd(w);
       odd.same_behind = behind.same_before.odd(w);
       const auto count = words_ == 1 ? count_faces<false> : count_faces<true>;

@@ -18,7 +18,7 @@ namespace runstone::tiles {
 /// layer of the tile.
 struct LayerWindow {
   const LayerRows* before = nullptr;
-  std::array<const LayerRows*, 2> own{};
+  std::array<const LayerRows*, 2> middle{};
   const LayerRows* behind = nullptr;
 };
 

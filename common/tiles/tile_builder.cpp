@@ -239,7 +239,7 @@ class LayerWriter {
     std::array<std::array<Row64, kWords>, 4> changes;
     std::array<Row64, kWords> any{};
     for (std::size_t i = 0; i < 4; ++i) {
-      const LayerRows& layer = *window.own[i >> 1];
+      const LayerRows& layer = *window.middle[i >> 1];
       const std::size_t line = 2 * m + (i & 1);
       materials[i] = layer.materials.data() + layer.first_segment[line];
       for (std::size_t w = 0; w < kWords; ++w) {

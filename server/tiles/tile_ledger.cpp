@@ -66,7 +66,7 @@ Sequence TileLedger::newest_edit(const ChunkKey& tile) const {
   return entry == nullptr ? 0 : entry->newest_edit;
 }
 
-bool TileLedger::has_ground(const ChunkKey& tile) const {
+bool TileLedger::is_stored_or_edited(const ChunkKey& tile) const {
   const std::lock_guard lock(mutex_);
   return entries_.contains(tile);
 }

@@ -1,7 +1,6 @@
-// TileLedger: which tiles have ground, and the newest edit below each, of this run or of a stored
-// chunk. A tile has *ground* if a chunk below it is stored or was edited, so that the generator alone
-// does not determine it.
-// Memory: an entry for each chunk that is stored or was edited in this run, and for each tile above
+// TileLedger: the tiles below which a chunk is stored or was edited, so that the generator alone does not
+// determine them, and the newest edit below each: one since the server started, or that of a stored chunk.
+// Memory: an entry for each chunk that is stored or was edited since the start, and for each tile above
 // one of them.
 // Threads: any. The mutex is a leaf and is held for short times only.
 #pragma once
@@ -36,7 +35,7 @@ class TileLedger {
   Sequence newest_edit(const ChunkKey& tile) const;
   /// Returns true if a chunk below the tile, or the chunk itself at level 0, is stored or was
   /// edited. It is complete once stored() got all chunks of the folder.
-  bool has_ground(const ChunkKey& tile) const;
+  bool is_stored_or_edited(const ChunkKey& tile) const;
 
  private:
   /// The entry of a chunk or a tile. Invariant: no edit of `above` is older than the newest of this one.

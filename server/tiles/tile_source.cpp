@@ -68,7 +68,7 @@ class TileSource::Making {
   };
 
   std::optional<MadeTile> coarse(const ChunkKey& key) {
-    if (key.lod < kCoarseLevelMin || source_.ledger_.has_ground(key)) return std::nullopt;
+    if (key.lod < kCoarseLevelMin || source_.ledger_.is_stored_or_edited(key)) return std::nullopt;
     auto voxels =
         source_.generator_.coarse(tile_origin(key, source_.edge_), source_.edge_, key.lod);
     if (!voxels) return std::nullopt;
@@ -93,7 +93,7 @@ class TileSource::Making {
     }
     if (!row->has_value() || newest > (*row)->version.seq) return out;
     out = MadeTile{key, std::make_shared<const Chunk>(**std::move(row)), 0, false, true};
-    out->digest = out->tile->digest;
+    out->voxel_digest = out->tile->digest;
     out->through = std::max(out->tile->version.seq, request_.head);
     return out;
   }
@@ -175,7 +175,7 @@ class TileSource::Making {
     if (const auto fresh = fresh_.find(key.at); fresh != fresh_.end())
       return Child{fresh->second, fresh->second == nullptr, fresh->second == nullptr};
     ++steps_;
-    if (!source_.ledger_.has_ground(key)) {
+    if (!source_.ledger_.is_stored_or_edited(key)) {
       return Child{std::make_shared<const Chunk>(generated_chunk(
                        source_.generator_, key, static_cast<std::uint16_t>(source_.edge_))),
                    false, false};
@@ -200,7 +200,7 @@ class TileSource::Making {
     MadeTile made{key, std::make_shared<const Chunk>(std::move(tile)), request_.head,
                   is_approximate};
     made.is_damaged = is_damaged;
-    made.digest = digest;
+    made.voxel_digest = digest;
     return made;
   }
 

@@ -28,7 +28,7 @@ void charge(WorldState& world, const ChunkKey& key, const std::vector<MadeTile>&
 }
 
 TileState state_of(const MadeTile& made) {
-  return {made.tile->version, made.digest, made.is_complete()};
+  return {made.tile->version, made.voxel_digest, made.is_complete()};
 }
 
 /// Queues a tile for the sessions that have it in another state. A tile is often made because one more

@@ -1,7 +1,7 @@
-// TileQueue: the tiles that workers are to make, and the sessions that wait for them. A tile that a
-// session waits for comes before a tile that sessions have and an edit has changed. Of those that are
-// waited for, the coarsest level comes first, within a level the earliest request. Of the changed ones,
-// that comes first which has been due for the longest time.
+// TileQueue: the tiles that workers are to make, and the sessions that wait for them. The order:
+//   1. The tiles for which sessions wait: the coarsest level first, within a level the earliest request.
+//   2. The tiles that sessions have and that an edit has changed: the one that has been due for longest
+//      first.
 // A tile that takes long is made in several turns. Between them it waits behind the others, and every
 // second turn is given to such a tile, the one that waits for longest.
 // Bounds: the waited ones by kTilesWaitingMax for each session, the changed ones by the tiles that

@@ -15,8 +15,7 @@
 
 namespace runstone {
 
-/// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty. The digest of an
-/// incomplete tile is 0, so that no client claims it later.
+/// A tile that workers made or read. An empty tile is a uniform chunk of kEmpty.
 struct MadeTile {
   ChunkKey key;
   /// Without a veil, as it is stored. Its version is the greatest version of the chunks below it.
@@ -33,7 +32,7 @@ struct MadeTile {
   bool is_past = false;
   /// The digest of the voxels of `tile`. Chunk::digest of an incomplete tile is zero instead, so that
   /// no client claims it.
-  Digest digest{};
+  Digest voxel_digest{};
   /// The tile with its veil, as clients get it: `tile` itself if the veil changes nothing. Null until a
   /// client requests the tile.
   ChunkPtr veiled = {};

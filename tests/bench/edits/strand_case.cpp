@@ -183,7 +183,7 @@ class Strand {
     Chunk tile = ground_;
     tile.version.seq = outside_.newest_tile_edit(request.key);
     MadeTile made{request.key, nullptr, request.head};
-    made.digest = tile.digest;
+    made.voxel_digest = tile.digest;
     made.tile = std::make_shared<const Chunk>(std::move(tile));
     return made;
   }

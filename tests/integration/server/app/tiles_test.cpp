@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "common/core/tile_keys.hpp"
@@ -323,18 +325,22 @@ TEST_CASE("a view that flips its levels and place with each message delays nobod
   RawClient hostile(server->port());
   hostile.features = kFeatureTiles;
   REQUIRE(hostile.join(1).has_value());
-  for (std::int32_t i = 0; i < 1'500; ++i) {
-    View view = far_view({(i % 7) * 1'000, 2, i % 5});
-    view.levels = static_cast<std::uint8_t>(i % 9);
-    std::vector<CachedChunk> claims;  // of tiles that it never had
-    for (std::int32_t x = -2; x <= 2; ++x)
-      claims.push_back({tile_of({view.centre.x + 16 * x, 2, 0}, 4), {1, 9}, 77});
-    for (Message& message : cached_chunks_messages(claims)) hostile.send(std::move(message));
-    hostile.send(view);
-  }
+  std::jthread flips([&hostile](const std::stop_token& stop) {
+    for (std::int32_t i = 0; !stop.stop_requested() && hostile.is_open(); ++i) {
+      View view = far_view({(i % 7) * 1'000, 2, i % 5});
+      view.levels = static_cast<std::uint8_t>(i % 9);
+      std::vector<CachedChunk> claims;  // of tiles that it never had
+      for (std::int32_t x = -2; x <= 2; ++x)
+        claims.push_back({tile_of({view.centre.x + 16 * x, 2, 0}, 4), {1, 9}, 77});
+      for (Message& message : cached_chunks_messages(claims)) hostile.send(std::move(message));
+      hostile.send(view);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
   Expected expected(folder.path());
   Watcher watcher(server->port(), 2, far_view({0, 2, 0}));
   watcher.read_all();
+  CHECK(hostile.is_open());
   check_exact(watcher, expected);
   server->stop();
 }

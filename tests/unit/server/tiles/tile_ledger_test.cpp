@@ -38,7 +38,7 @@ ChunkCoord random_chunk_at(SplitMix64& random) {
 TEST_CASE("a new ledger knows no edit and no ground", "[tiles]") {
   const TileLedger ledger;
   CHECK(ledger.newest_edit({1, {0, 0, 0}}) == 0);
-  CHECK_FALSE(ledger.has_ground({8, {0, 0, 0}}));
+  CHECK_FALSE(ledger.is_stored_or_edited({8, {0, 0, 0}}));
 }
 
 TEST_CASE("a ledger knows the newest edit and the ground of each tile", "[tiles]") {
@@ -75,7 +75,7 @@ TEST_CASE("a ledger knows the newest edit and the ground of each tile", "[tiles]
         for (std::int32_t z = -48 >> level; z <= 48 >> level; ++z) {
           const ChunkKey key{level, {x, y, z}};
           const auto known = model.newest.find(key);
-          REQUIRE(ledger.has_ground(key) == (known != model.newest.end()));
+          REQUIRE(ledger.is_stored_or_edited(key) == (known != model.newest.end()));
           REQUIRE(ledger.newest_edit(key) == (known == model.newest.end() ? 0 : known->second));
         }
       }

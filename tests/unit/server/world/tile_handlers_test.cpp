@@ -19,7 +19,7 @@ MadeTile with_voxel(const ChunkKey& key, Version version, Material material, Seq
   tile.version = version;
   tile.digest = digest_of(tile.voxels);
   MadeTile out{key, nullptr, through};
-  out.digest = tile.digest;
+  out.voxel_digest = tile.digest;
   out.tile = std::make_shared<const Chunk>(std::move(tile));
   return out;
 }
