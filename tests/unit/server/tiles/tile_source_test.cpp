@@ -130,7 +130,8 @@ TEST_CASE("a damaged row of a tile is reported and made anew", "[tiles][damage]"
   REQUIRE(raw_sql(world.file(), "UPDATE tile SET digest1 = digest1 + 1; SELECT changes()") == "1");
   const auto again = world.make({1, {0, 0, 0}});
   CHECK(world.warnings ==
-        std::vector{world.file() + ": tile chunk=0,0,0 lod=1: checksum is wrong; the tile is made again"});
+        std::vector{world.file() +
+                    ": tile chunk=0,0,0 lod=1: checksum is wrong; the tile is made again"});
   CHECK(*again.back().tile == *first.back().tile);
   REQUIRE(again.back().is_worth_storing());
   world.save_tiles(again);
