@@ -1,6 +1,6 @@
 // DepthRange: how the distances of a frame become depths. A floating-point number is finest near 0,
 // so depth is reversed: 1 at the near plane and 0 at the far plane. Two faces a voxel apart then
-// differ in depth up to 29,000 voxels away (client/far/far_reach.hpp). Source: Reed, "Depth Precision Visualized", 2015.
+// differ in depth up to 32,768 voxels away. Source: Reed, "Depth Precision Visualized", 2015.
 // Where OpenGL cannot map depth that way (clip_control()), depth is 0 at the near plane, as usual.
 #pragma once
 #include <glm/glm.hpp>

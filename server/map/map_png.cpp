@@ -22,8 +22,8 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t kColoursMax = 256;
 
-/// The bytes of a picture as deflate gets them: each row has a leading 0, which says that no filter is
-/// used. Filters find nothing in indices, and slopes change from pixel to pixel.
+/// The bytes of a picture before they are compressed. Each row begins with a 0: no filter. Filters find
+/// nothing in indices, and slopes change from pixel to pixel.
 struct Rows {
   std::vector<std::uint32_t> colours;  // empty: the bytes are pixels, not indices of colours
   std::vector<std::uint8_t> bytes;
@@ -101,8 +101,8 @@ std::string png_of(std::span<const std::uint32_t> pixels, std::int32_t side) {
   const bool has_palette = with_palette.has_value();
   const Rows rows = has_palette ? *std::move(with_palette) : pixel_rows(pixels, width);
   constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
-  // After the bits of a sample: indices of colours or pixels with alpha; deflate; filters of each row;
-  // not interlaced.
+  // Bits of a sample, kind of pixels (indices of colours, or colours with alpha), compression, filters, and
+  // no interlacing.
   constexpr std::string_view kIndices("\x08\x03\0\0\0", 5), kPixels("\x08\x06\0\0\0", 5);
   std::string out(kSignature);
   const std::string both_sides =

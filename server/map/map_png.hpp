@@ -1,4 +1,4 @@
-// PNG files of map tiles. Pure.
+// PNG files (ISO/IEC 15948) of map tiles. Pure.
 #pragma once
 #include <cstdint>
 #include <span>
