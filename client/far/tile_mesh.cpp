@@ -140,7 +140,7 @@ bool drop_water_walls(ChunkMesh& mesh, std::int32_t edge, std::uint8_t sides) {
     if ((sides >> static_cast<unsigned>(d) & 1U) == 0) return;
     replace_layer(mesh.transparent, d, is_positive(d) ? static_cast<unsigned>(edge - 1) : 0, {});
   };
-  std::ranges::for_each(kLateral, drop);
+  for (const Direction d : kLateral) drop(d);
   drop(Direction::neg_y);
   return mesh.transparent.quads.size() != before;
 }
