@@ -1,6 +1,5 @@
 #include "client/far/tile_mesh.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "client/far/stand_in.hpp"
