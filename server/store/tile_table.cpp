@@ -16,8 +16,8 @@ constexpr const char* kTable = "tile";
 /// True of rows whose key fits its types. The key of another one would be cut to that of a tile.
 std::string has_key() {
   constexpr const char* kFits = " BETWEEN -2147483648 AND 2147483647";
-  return "(lod BETWEEN 1 AND " + std::to_string(kTileLevelMax) + " AND x" + kFits + " AND y" + kFits +
-         " AND z" + kFits + ")";
+  return "(lod BETWEEN 1 AND " + std::to_string(kTileLevelMax) + " AND x" + kFits + " AND y" +
+         kFits + " AND z" + kFits + ")";
 }
 
 }  // namespace
@@ -42,8 +42,9 @@ StoreResult<TileTable> TileTable::open(sql::Database& database) {
   if (!remove_older) return failed(remove_older.error());
   auto clear = database.prepare("DELETE FROM tile");
   if (!clear) return failed(clear.error());
-  return TileTable(database.file(), {*std::move(load), *std::move(keys), *std::move(keyless), *std::move(save),
-                                     *std::move(remove_older), *std::move(clear)});
+  return TileTable(database.file(),
+                   {*std::move(load), *std::move(keys), *std::move(keyless), *std::move(save),
+                    *std::move(remove_older), *std::move(clear)});
 }
 
 Unexpected<StoreError> TileTable::failure(StoreError::Kind kind, const ChunkKey& key,
