@@ -1,9 +1,9 @@
 // FarFades: chunks and tiles that replaced their octant of the parent, or were replaced by it, a short
 // time ago. Meanwhile both bodies are drawn. The finer one is drawn in full, because the meshes beside
-// it leave out the faces that it covers. The octant, which is in front of it nearly everywhere, loses or gains one pixel after
-// another in a fixed pattern (client/render/terrain_glsl.hpp). So at least one body is drawn in full
-// at every time, and no gap opens. Transparent faces would be blended twice, so the finer body draws
-// them only in the pixels that the octant lacks.
+// it leave out the faces that it covers. The octant, which is in front of it nearly everywhere,
+// loses or gains one pixel after another in a fixed pattern (client/render/terrain_glsl.hpp). So at
+// least one body is drawn in full at every time, and no gap opens. Transparent faces would be
+// blended twice, so the finer body draws them only in the pixels that the octant lacks.
 //
 // Pure. One thread. Bound: kFadesMax; further changes happen at once.
 #pragma once

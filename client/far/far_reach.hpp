@@ -7,8 +7,8 @@
 
 namespace runstone {
 
-/// The far plane lies a tenth farther, within the 32,768 voxels up to which depth separates faces a voxel
-/// apart (client/render/depth_range.hpp).
+/// The far plane lies a tenth farther, within the 32,768 voxels up to which depth separates faces a
+/// voxel apart (client/render/depth_range.hpp).
 inline constexpr double kReachMax = 29'000;
 
 /// Returns the distance within which the view has ground in all directions, or 0 if it has no

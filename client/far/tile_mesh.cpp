@@ -50,6 +50,8 @@ void append_surface(const QuadFields& quad, const RunChunk& above, std::vector<Q
     const LocalPos over{static_cast<std::uint8_t>(x), 0, static_cast<std::uint8_t>(z)};
     return material_at(above, over) != quad.material;
   };
+  const std::size_t strips_before = out.size();
+  int shown = 0;
   QuadFields strip = quad;
   strip.height = 1;
   for (int x = quad.x; x < quad.x + quad.height; ++x) {
@@ -61,9 +63,13 @@ void append_surface(const QuadFields& quad, const RunChunk& above, std::vector<Q
       strip.z = static_cast<std::uint8_t>(first);
       strip.width = static_cast<std::uint8_t>(end - first);
       out.push_back(pack(strip));
+      shown += end - first;
       first = end;
     }
   }
+  if (shown < quad.width * quad.height) return;
+  out.resize(strips_before);
+  out.push_back(pack(quad));  // nothing covers it
 }
 
 /// Replaces the quads of one layer.
@@ -78,7 +84,8 @@ void replace_layer(QuadLayers& layers, Direction d, unsigned l, const std::vecto
 }
 
 /// Leaves of the transparent faces on the border those on top that nothing of the same material covers,
-/// and the waterlines of the lateral ones. `above`: the voxels over the body, or null if they are not known.
+/// and the waterlines of the lateral ones. `above`: the voxels over the body, or null if they are
+/// not known.
 void trim_border(const RunChunk& body, const RunChunk* above, QuadLayers& transparent) {
   if (transparent.quads.empty()) return;
   replace_layer(transparent, Direction::neg_y, 0, {});
@@ -105,7 +112,7 @@ ChunkMesh mesh_body(const RunChunk& body, const RunChunk* above, const Visibilit
 }
 
 /// The bit of the number of a child that says that it is an upper one (tile_child()).
-constexpr unsigned kUpper = 2;
+constexpr unsigned kUpper = 1U << static_cast<unsigned>(Axis::y);
 
 }  // namespace
 

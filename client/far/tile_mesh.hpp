@@ -39,16 +39,16 @@ struct FarMeshResult {
 };
 
 /// Meshes a tile. Of the faces of transparent materials on the border of a body, the lower ones are
-/// left out, because water would show them as walls, and so are the upper ones of an octant if the octant
-/// above it goes on with the same material. Of the lateral ones only the waterline is kept: the uppermost
-/// voxel. The water beside it may have another level and end up to a voxel lower. Thread: any, with one
-/// scratch each.
+/// left out, because water would show them as walls, and so are the upper ones of an octant if the
+/// octant above it goes on with the same material. Of the lateral ones only the waterline is kept:
+/// the uppermost voxel. The water beside it may have another level and end up to a voxel lower.
+/// Thread: any, with one scratch each.
 FarMeshResult mesh_tile(const FarMeshJob& job, const VisibilityTable& visibility,
                         RdmScratch& scratch);
 
-/// Removes the transparent faces of a chunk on its border in the lateral directions and the downward one of
-/// `sides`, one bit for each Direction. Where distant ground continues the water of a chunk, they would be
-/// walls in it. Returns true if there were any.
+/// Removes the transparent faces of a chunk on its border in the lateral directions and the
+/// downward one of `sides`, one bit for each Direction. Where distant ground continues the water of
+/// a chunk, they would be walls in it. Returns true if there were any.
 bool drop_water_walls(ChunkMesh& mesh, std::int32_t edge, std::uint8_t sides);
 
 }  // namespace runstone

@@ -48,8 +48,8 @@ struct Screenless {
   void* native;
 };
 
-/// Returns the displays to try, in this order: that of Mesa for all its drivers, then one for each device
-/// of the drivers of vendors.
+/// Returns the displays to try, in this order: that of Mesa for all its drivers, then one for each
+/// device of the drivers of vendors.
 std::vector<Screenless> screenless_displays() {
   std::vector<Screenless> out = {{EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY}};
   const auto query_devices = egl_function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
@@ -81,8 +81,8 @@ std::unique_ptr<GlContext> make_context(const Kind& kind, std::string& tried) {
   const auto get_display =
       egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
   const char* failure = "no display";
-  for (const Screenless& screenless : screenless_displays()) {
-    if (get_display == nullptr) break;
+  const auto displays = get_display == nullptr ? std::vector<Screenless>() : screenless_displays();
+  for (const Screenless& screenless : displays) {
     const EGLDisplay display = get_display(screenless.platform, screenless.native, nullptr);
     if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) continue;
     if (auto context = make_context_on(display, kind)) return context;

@@ -38,9 +38,9 @@ class DepthRange {
   bool is_reversed_;
 };
 
-/// Returns a projection with which polygons lie a little in front of themselves, at the same pixels: the
-/// space around the eye is 1/2048 smaller. `clip` has the eye at its origin. An offset that grows with the
-/// slope would draw faces that are seen edge-on in front of everything.
+/// Returns a projection with which polygons lie a little in front of themselves, at the same
+/// pixels: the space around the eye is 1/2048 smaller. `clip` has the eye at its origin. An offset
+/// that grows with the slope would draw faces that are seen edge-on in front of everything.
 glm::mat4 in_front(const glm::mat4& clip);
 
 }  // namespace runstone

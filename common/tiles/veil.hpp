@@ -1,8 +1,8 @@
 // Veil: replaces the materials of enclosed voxels of a tile, so that its runs are long. Tiles are never
-// edited, so no face of an enclosed voxel is seen in the world. The client also draws octants, whose sides
-// show enclosed voxels, so it veils each tile itself (client/far/far_planner.hpp). Servers veil tiles for
-// the wire. They make tiles of tiles without a veil, because a voxel that is enclosed in one level may be
-// seen in the next.
+// edited, so no face of an enclosed voxel is seen in the world. The client also draws octants,
+// whose sides show enclosed voxels, so it veils each tile itself (client/far/far_planner.hpp).
+// Servers veil tiles for the wire. They make tiles of tiles without a veil, because a voxel that is
+// enclosed in one level may be seen in the next.
 //
 // The rule: an opaque voxel whose six neighbours are all opaque takes the material of its
 // predecessor in index order, after that one was veiled. Voxels on the border of the tile keep

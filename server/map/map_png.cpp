@@ -101,8 +101,8 @@ std::string png_of(std::span<const std::uint32_t> pixels, std::int32_t side) {
   const bool has_palette = with_palette.has_value();
   const Rows rows = has_palette ? *std::move(with_palette) : pixel_rows(pixels, width);
   constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
-  // Bits of a sample, kind of pixels (indices of colours, or colours with alpha), compression, filters, and
-  // no interlacing.
+  // Bits of a sample, kind of pixels (indices of colours, or colours with alpha), compression,
+  // filters, and no interlacing.
   constexpr std::string_view kIndices("\x08\x03\0\0\0", 5), kPixels("\x08\x06\0\0\0", 5);
   std::string out(kSignature);
   const std::string both_sides =

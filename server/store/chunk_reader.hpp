@@ -23,7 +23,7 @@ struct StoredChunk {
   friend bool operator==(const StoredChunk&, const StoredChunk&) = default;
 };
 
-/// What is checked of a row with a chunk or tile when it is read.
+/// What a read checks before it returns the chunk or tile of a row.
 enum class RowCheck {
   voxels,  // the checksum of the row, and that its digest is that of its voxels
   bytes    // the checksum: it finds damage, but not a chunk that was written with a wrong digest
@@ -31,8 +31,8 @@ enum class RowCheck {
 
 class ChunkReader : public virtual WorldInfo {
  public:
-  /// Sets what later reads check, at first RowCheck::voxels. To compute the digest takes about as long as
-  /// the rest of a read. Use RowCheck::bytes only to show chunks.
+  /// Sets what later reads check. At first it is RowCheck::voxels. The digest takes about half the
+  /// time of a read. Use RowCheck::bytes only to show chunks.
   virtual void set_row_check(RowCheck check) = 0;
 
   /// Returns true if there are base chunks: imported, or completed by a compaction.
@@ -56,8 +56,8 @@ class ChunkReader : public virtual WorldInfo {
   virtual StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key) = 0;
   /// Returns keys and versions of all stored tiles, ascending by key.
   virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys() = 0;
-  /// Returns a line for each row of tiles whose key is damaged so that it is that of no tile. Nothing
-  /// else reads such a row.
+  /// Returns a line for each row of tiles whose key is damaged: no tile has such a key, so no other
+  /// function reads the row.
   virtual StoreResult<std::vector<std::string>> rows_of_no_tile() = 0;
 };
 

@@ -268,7 +268,7 @@ StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::tile_keys() 
 
 StoreResult<std::vector<std::string>> SqliteStore::rows_of_no_tile() {
   if (!tiles_) return std::vector<std::string>();
-  return tiles_->keyless();
+  return tiles_->rows_of_no_tile();
 }
 
 StoreResult<std::optional<Chunk>> SqliteStore::load_snapshot(const ChunkKey& key) {

@@ -30,10 +30,10 @@ StoreResult<TileTable> TileTable::open(sql::Database& database) {
   auto keys = database.prepare("SELECT lod, x, y, z, epoch, seq FROM tile WHERE " + has_key() +
                                " ORDER BY lod, x, y, z");
   if (!keys) return failed(keys.error());
-  auto keyless = database.prepare(
+  auto no_tile = database.prepare(
       "SELECT 'lod=' || lod || ' x=' || x || ' y=' || y || ' z=' || z FROM tile WHERE NOT " +
       has_key());
-  if (!keyless) return failed(keyless.error());
+  if (!no_tile) return failed(no_tile.error());
   auto save = database.prepare(
       "INSERT OR REPLACE INTO tile(lod, x, y, z, epoch, seq, digest0, digest1, checksum, data) "
       "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)");
@@ -43,7 +43,7 @@ StoreResult<TileTable> TileTable::open(sql::Database& database) {
   auto clear = database.prepare("DELETE FROM tile");
   if (!clear) return failed(clear.error());
   return TileTable(database.file(),
-                   {*std::move(load), *std::move(keys), *std::move(keyless), *std::move(save),
+                   {*std::move(load), *std::move(keys), *std::move(no_tile), *std::move(save),
                     *std::move(remove_older), *std::move(clear)});
 }
 
@@ -78,14 +78,14 @@ StoreResult<std::vector<std::pair<ChunkKey, Version>>> TileTable::keys() {
   }
 }
 
-StoreResult<std::vector<std::string>> TileTable::keyless() {
-  const sql::ResetAtEnd reset_at_end(s_.keyless);
+StoreResult<std::vector<std::string>> TileTable::rows_of_no_tile() {
+  const sql::ResetAtEnd reset_at_end(s_.no_tile);
   std::vector<std::string> rows;
   for (;;) {
-    const auto more = s_.keyless.step();
+    const auto more = s_.no_tile.step();
     if (!more) return failed(more.error());
     if (!*more) return rows;
-    rows.push_back(file_ + ": " + kTable + " " + std::string(s_.keyless.text(0)) +
+    rows.push_back(file_ + ": " + kTable + " " + std::string(s_.no_tile.text(0)) +
                    ": is the key of no tile");
   }
 }

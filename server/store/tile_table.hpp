@@ -26,10 +26,12 @@ class TileTable {
   /// and tile.
   StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge,
                                          RowCheck check);
-  /// Returns keys and versions of all tiles, ascending by key, without the rows that keyless() reports.
+  /// Returns keys and versions of all tiles, ascending by key, without the rows that
+  /// rows_of_no_tile() reports.
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys();
-  /// Returns a line for each row whose level is not 1 to kTileLevelMax, or whose place does not fit a key.
-  StoreResult<std::vector<std::string>> keyless();
+  /// Returns a line for each row whose level is not 1 to kTileLevelMax, or whose place does not fit
+  /// a key.
+  StoreResult<std::vector<std::string>> rows_of_no_tile();
 
   /// Inserts or replaces a tile in the caller's transaction. Does nothing if a snapshot below it
   /// that remove_stale() got is newer. Fails (bad_request) if the level is not 1 to kTileLevelMax,
@@ -43,7 +45,7 @@ class TileTable {
 
  private:
   struct Statements {
-    sql::Statement load, keys, keyless, save, remove_older, clear;
+    sql::Statement load, keys, no_tile, save, remove_older, clear;
   };
   TileTable(std::string file, Statements statements)
       : file_(std::move(file)), s_(std::move(statements)) {}

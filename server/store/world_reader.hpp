@@ -18,9 +18,10 @@ class WorldReader : public LogReader,
   /// Returns the error if the world, when it was opened, lacked edits that had been durable, or if
   /// that cannot be known. Returns nullopt if the log is whole.
   virtual const std::optional<StoreError>& loss() const = 0;
-  /// Begins reads that see one moment of the world until end_reads(). Each of them costs less, because it
-  /// takes and leaves no lock. Few at a time: meanwhile a server that runs the world cannot move its
-  /// write-ahead log into the database. Do not nest them, and write nothing before end_reads().
+  /// Begins reads that see one moment of the world until end_reads(). Each of them costs less,
+  /// because it takes and leaves no lock. Few at a time: meanwhile a server that runs the world
+  /// cannot move its write-ahead log into the database. Do not nest them, and write nothing before
+  /// end_reads().
   virtual StoreResult<void> begin_reads() = 0;
   virtual StoreResult<void> end_reads() = 0;
   /// Reads and verifies every row of every table but `tile`, which is a cache, and runs the

@@ -1,7 +1,7 @@
-// TileLedger: the tiles below which a chunk is stored or was edited, so that the generator alone does not
-// determine them, and the newest edit below each: one since the server started, or that of a stored chunk.
-// Memory: an entry for each chunk that is stored or was edited since the start, and for each tile above
-// one of them.
+// TileLedger: the tiles below which a chunk is stored or was edited, so that the generator alone
+// does not determine them, and the newest edit below each: one since the server started, or that of
+// a stored chunk. Memory: an entry for each chunk that is stored or was edited since the start, and
+// for each tile above one of them.
 // Threads: any. The mutex is a leaf and is held for short times only.
 #pragma once
 #include <cstddef>
@@ -38,7 +38,8 @@ class TileLedger {
   bool is_stored_or_edited(const ChunkKey& tile) const;
 
  private:
-  /// The entry of a chunk or a tile. Invariant: no edit of `above` is older than the newest of this one.
+  /// The entry of a chunk or a tile. Invariant: no edit of `above` is older than the newest of this
+  /// one.
   struct Entry {
     Sequence newest_edit = 0;
     Entry* above = nullptr;  // null: of level kTileLevelMax

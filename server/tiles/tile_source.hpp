@@ -54,22 +54,23 @@ class TileSource {
   /// Makes a chunk as it was after edit TileRequest::at.
   using PastChunk = std::function<StoreResult<Chunk>(const ChunkKey&)>;
 
-  /// Returns the tile as the last of the list, with MadeTile::veiled. The tiles below it that were made on
-  /// the way and are worth storing come before it. If request.steps_max is reached, the call stops between
-  /// two tiles, and the list lacks the requested one. The next call finds the tiles that this one made in
-  /// memory. The first call reads the keys of all stored chunks. Requires a tile inside the world, and that
-  /// every edit up to request.head was reported to the ledger. Fails if the folder cannot be read.
-  /// A request with `at` also requires `past_chunk` and request.past_made. A tile below which an edit is
-  /// later than `at` is made of its children at that moment. It is a past tile (MadeTile::is_past), which
-  /// is kept in request.past_made alone. Other tiles are the present ones.
+  /// Returns the tile as the last of the list, with MadeTile::veiled. The tiles below it that were
+  /// made on the way and are worth storing come before it. If request.steps_max is reached, the
+  /// call stops between two tiles, and the list lacks the requested one. The next call finds the
+  /// tiles that this one made in memory. The first call reads the keys of all stored chunks.
+  /// Requires a tile inside the world, and that every edit up to request.head was reported to the
+  /// ledger. Fails if the folder cannot be read. A request with `at` also requires `past_chunk` and
+  /// request.past_made. A tile below which an edit is later than `at` is made of its children at
+  /// that moment. It is a past tile (MadeTile::is_past), which is kept in request.past_made alone.
+  /// Other tiles are the present ones.
   StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
                                           const VisibilityTable& visibility,
                                           const PastChunk& past_chunk = {});
   /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now. It
-  /// makes no tile and reads none from the disk. If the tile with its veil is in memory, the digests are
-  /// compared. Otherwise the version must be that of the newest edit below the tile. Returns false before
-  /// the first make(), because the edits before the start are not known then. Cost: two look-ups. It may
-  /// wait for other threads for a moment.
+  /// makes no tile and reads none from the disk. If the tile with its veil is in memory, the
+  /// digests are compared. Otherwise the version must be that of the newest edit below the tile.
+  /// Returns false before the first make(), because the edits before the start are not known then.
+  /// Cost: two look-ups. It may wait for other threads for a moment.
   bool is_current(const ChunkKey& key, const Version& version, std::uint64_t claim_digest);
 
  private:

@@ -60,8 +60,8 @@ struct TileRequest {
   std::size_t steps_max = std::numeric_limits<std::size_t>::max();
   /// The tile is made as it was after this edit. Then what is newer in `fresh` is not used.
   std::optional<Sequence> at = std::nullopt;
-  /// For a request with `at`: the past tiles that earlier turns made, without those below another one of
-  /// them. Used by the worker alone.
+  /// For a request with `at`: the past tiles that earlier turns made, without those below another
+  /// one of them. Used by the worker alone.
   std::shared_ptr<std::map<ChunkKey, MadeTile>> past_made = {};
 };
 

@@ -21,7 +21,7 @@
 
 namespace runstone::test {
 
-/// Whether the tiles that a server sends have a veil.
+/// Says if the server sends its tiles with a veil.
 enum class TileVeil { veiled, none };
 
 class FarWorld {

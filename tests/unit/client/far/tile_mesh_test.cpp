@@ -40,6 +40,27 @@ std::vector<UnitFace> closed_faces(const RunChunk& body, const RunChunk* above,
 
 }  // namespace
 
+TEST_CASE("water loses its walls on the sides that distant ground continues", "[far]") {
+  const MaterialTable materials = default_material_table();
+  const auto water = materials.find("water");
+  REQUIRE(water.has_value());
+  constexpr std::int32_t kEdge = 16;
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  mesh_rdm(uniform_chunk(Extent::cube(kEdge), *water), {}, VisibilityTable(visibilities(materials)),
+           scratch, mesh);
+  const auto has_wall = [&](Direction d) {
+    return !mesh.transparent.layer(d, is_positive(d) ? kEdge - 1 : 0).empty();
+  };
+  for (unsigned d = 0; d < 6; ++d) REQUIRE(has_wall(static_cast<Direction>(d)));
+  CHECK_FALSE(drop_water_walls(mesh, kEdge, 0));
+  CHECK(drop_water_walls(mesh, kEdge, 0b111111));
+  for (unsigned d = 0; d < 6; ++d) {
+    const auto direction = static_cast<Direction>(d);
+    CHECK(has_wall(direction) == (direction == Direction::pos_y));  // the surface stays
+  }
+}
+
 TEST_CASE("the whole of a tile and each octant are closed bodies", "[far][property]") {
   SplitMix64 rng{Catch::rngSeed()};
   CAPTURE(Catch::rngSeed());
