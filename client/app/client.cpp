@@ -133,8 +133,8 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     if (benchmark_ && session_.is_open()) benchmark_->step(player_, pipeline_, view_);
     flush();  // local edits go first, because following the player may take long
     follow_player(now_us);
+    network_.step_cache(now_us, limits_.room());  // the view names the chunks that were found
     session_.tick(now_us);
-    network_.step_cache(now_us, limits_.room());
     flush();
     if (tool_.step_preview()) pipeline_.moved();
     if (previews_.step(settings(), now_us)) pipeline_.moved();

@@ -85,8 +85,8 @@ void WebClient::turn(TimeUs now_us, bool draws) {
   view_.update_completeness(now_us);
   network_.flush(now_us);  // local edits go first
   follow_player(now_us);
+  network_.step_cache(limits_.room(), now_us);  // the view names the chunks that were found
   session_.tick(now_us);
-  network_.step_cache(limits_.room(), now_us);
   if (is_joined_) network_.keep_chunks(now_us);
   network_.flush(now_us);
   drain_changes();

@@ -40,6 +40,11 @@ class KeyframeMaker {
   /// called again after an error: keyframes that were saved are not made twice. `progress` is
   /// called after every 1,024 edits and after each chunk.
   StoreResult<void> make_due(const Save& save, const Progress& progress = {});
+  /// Returns the last edit that make_due() read. Requires a successful make_due() before.
+  Sequence read_to() const { return *read_; }
+  /// Returns the edit at which make_due() is worth the next call: no keyframe is due before if the
+  /// edits so far are fewer than `edits_min`. Requires as read_to().
+  Sequence look_again_at() const { return *read_ + policy_.edits_min - edits_ % policy_.edits_min; }
   /// Makes a keyframe after this edit, due or not. Requires that there is none.
   StoreResult<void> make_at(Sequence at, const Save& save, const Progress& progress = {});
 

@@ -12,8 +12,8 @@ namespace runstone {
 
 namespace {
 
-// The number of new edits for which the thread waits, so that a commit of one edit does not wake
-// it.
+// The thread reads the log in portions of so many edits, or up to the place where a keyframe may be
+// due. So a commit of one edit does not wake it.
 constexpr Sequence kPortionEdits = 1024;
 
 /// The result of a slice that the writer saves. It is shared with the writer, which may answer
@@ -58,11 +58,9 @@ bool KeyframeThread::is_stopping() const {
   return stopping_;
 }
 
-bool KeyframeThread::wait_for_work(Sequence seen) {
+bool KeyframeThread::wait_for(Sequence seq) {
   std::unique_lock lock(mutex_);
-  work_.wait(lock, [&] {
-    return stopping_ || durable_ >= seen + std::min<Sequence>(kPortionEdits, policy_.edits_min);
-  });
+  work_.wait(lock, [&] { return stopping_ || durable_ >= seq; });
   return !stopping_;
 }
 
@@ -92,8 +90,6 @@ void KeyframeThread::run() {
   if (!reader) return failed(reader.error());
   KeyframeMaker maker(**reader, generator_, policy_);
   for (;;) {
-    const auto last = (*reader)->last_sequence();
-    if (!last) return failed(last.error());
     const std::uint64_t before = maker.made();
     const auto made = maker.make_due(
         [this](KeyframeMaker::Chunks chunks, const std::optional<Keyframe>& keyframe) {
@@ -105,8 +101,8 @@ void KeyframeThread::run() {
         });
     if (!made) return failed(made.error());
     if (maker.made() > before)
-      logger("store").info("keyframes made={} seq={}", maker.made() - before, *last);
-    if (!wait_for_work(*last)) return;
+      logger("store").info("keyframes made={} seq={}", maker.made() - before, maker.read_to());
+    if (!wait_for(std::min(maker.read_to() + kPortionEdits, maker.look_again_at()))) return;
   }
 }
 

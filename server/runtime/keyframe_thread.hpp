@@ -34,8 +34,8 @@ class KeyframeThread {
 
  private:
   void run();
-  /// Waits until enough new edits are durable. Returns false if the thread must end.
-  bool wait_for_work(Sequence seen);
+  /// Waits until the log is on disk up to `seq`. Returns false if the thread must end.
+  bool wait_for(Sequence seq);
   bool is_stopping() const;
   StoreResult<void> save(KeyframeMaker::Chunks chunks, const std::optional<Keyframe>& keyframe);
 

@@ -144,6 +144,15 @@ TEST_CASE("a log that grows gets the same keyframes as a complete log", "[histor
     REQUIRE(logged.store->append_history({}, more).has_value());
     logged.records.insert(logged.records.end(), more.begin(), more.end());
     REQUIRE(maker.make_due(logged.save()).has_value());
+    const Sequence end = logged.records.size();
+    CHECK(maker.read_to() == end);
+    CHECK(maker.look_again_at() > end);
+    const std::vector<Sequence> made = places(*logged.store);
+    const Sequence newest = made.empty() ? 0 : made.back();
+    if (end < newest + kPolicy.edits_min)
+      CHECK(maker.look_again_at() == newest + kPolicy.edits_min);
+    else
+      CHECK(maker.look_again_at() <= end + kPolicy.edits_min);
   }
   CHECK(places(*logged.store) == due_places(logged.records, kPolicy));
   CHECK(maker.made() > 3);

@@ -30,10 +30,10 @@ struct PastBench : TileBench {
     }
     environment.snapshots.clear();
   }
-  void go_to(Sequence seq) {
-    server.received(1, HistoryRequest{++request, HistoryTarget::sequence, seq, 0}, now());
+  void go_to(Sequence seq, SessionId session = 1) {
+    server.received(session, HistoryRequest{++request, HistoryTarget::sequence, seq, 0}, now());
     tick(1'000'000);
-    server.history_opened(1, request, OpenedHistory{seq, 0}, now());
+    server.history_opened(session, request, OpenedHistory{seq, 0}, now());
     tick();
   }
   void go_live() {
@@ -64,11 +64,11 @@ struct PastBench : TileBench {
     }
     return keys;
   }
-  /// Returns the sequence of the tile that session 1 was sent last, or nullopt.
-  std::optional<Sequence> shown(const ChunkKey& key) const {
+  /// Returns the sequence of the tile that the session was sent last, or nullopt.
+  std::optional<Sequence> shown(const ChunkKey& key, SessionId session = 1) const {
     std::optional<Sequence> newest;
     for (const auto& sent : environment.snapshots) {
-      if (sent.session == 1 && sent.key == key) newest = sent.chunk->version.seq;
+      if (sent.session == session && sent.key == key) newest = sent.chunk->version.seq;
     }
     return newest;
   }
@@ -148,6 +148,25 @@ TEST_CASE("a session that moves on and on has few requests with workers", "[tile
   bench.tick();
   bench.answer_past();
   for (const ChunkKey& key : kAboveEdit) CHECK(bench.shown(key) == Sequence{1});
+}
+
+TEST_CASE("all sessions together have few requests with workers, and each gets its tiles",
+          "[tiles][travel]") {
+  constexpr SessionId kSessions = 8;
+  REQUIRE(kSessions * kAboveEdit.size() > kPastTilesMax);
+  PastBench bench;
+  for (SessionId id = 2; id <= kSessions; ++id) bench.enter(id);
+  bench.settle();
+  for (SessionId id = 1; id <= kSessions; ++id) bench.go_to(0, id);
+  CHECK(bench.environment.past_tile_requests.size() == kPastTilesMax);
+  for (int i = 0; i < 3; ++i) {
+    bench.answer_past();
+    bench.answer_tiles();
+  }
+  for (SessionId id = 1; id <= kSessions; ++id) {
+    CAPTURE(id);
+    for (const ChunkKey& key : kAboveEdit) CHECK(bench.shown(key, id) == Sequence{0});
+  }
 }
 
 TEST_CASE("edits of others do not change the tiles of a session in the past", "[tiles][travel]") {
