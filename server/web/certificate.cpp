@@ -20,18 +20,22 @@ struct ReadCertificate {
   std::int64_t ends_s;
 };
 
-/// Returns true if the time from which on the certificate is valid has come.
-bool has_begun(SSL_CTX* context) {
-  const X509* const certificate = SSL_CTX_get0_certificate(context);
-  return certificate != nullptr && X509_cmp_current_time(X509_get0_notBefore(certificate)) < 0;
-}
-
 std::int64_t end_of(SSL_CTX* context) {
   const X509* const certificate = SSL_CTX_get0_certificate(context);
   tm end{};
   if (certificate == nullptr || ASN1_TIME_to_tm(X509_get0_notAfter(certificate), &end) != 1)
     return 0;
   return ::timegm(&end);
+}
+
+/// Returns why browsers refuse a certificate today, or nullopt.
+std::optional<std::string> fault_of_time(SSL_CTX* context) {
+  const X509* const certificate = SSL_CTX_get0_certificate(context);
+  if (end_of(context) < static_cast<std::int64_t>(std::time(nullptr)))
+    return "the certificate has ended";
+  if (X509_cmp_current_time(X509_get0_notBefore(certificate)) >= 0)
+    return "the certificate is not valid yet";
+  return std::nullopt;
 }
 
 /// Returns the text of a file, or nullopt if it cannot be read or is far too long.
@@ -80,15 +84,19 @@ Result<Certificate, std::string> Certificate::read(const std::string& chain_file
   return out;
 }
 
+std::optional<std::string> Certificate::fault() const {
+  const auto fault = context_ ? fault_of_time(context_->get()) : std::nullopt;
+  if (!fault) return std::nullopt;
+  return "tls_certificate = \"" + chain_file_ + "\": " + *fault;
+}
+
 Result<void, std::string> Certificate::reload() {
   // Files that change while they are read differ from these stamps and are read once more.
   read_ = stamps();
   auto files = read_files(chain_file_, key_file_);
   if (!files) return failure(files.error());
-  if (files->ends_s < static_cast<std::int64_t>(std::time(nullptr)))
-    return failure("tls_certificate = \"" + chain_file_ + "\": the certificate has ended");
-  if (!has_begun(files->context.get()))
-    return failure("tls_certificate = \"" + chain_file_ + "\": the certificate is not valid yet");
+  if (const auto fault = fault_of_time(files->context.get()))
+    return failure("tls_certificate = \"" + chain_file_ + "\": " + *fault);
   context_ = std::move(files->context);
   ends_s_ = files->ends_s;
   return {};

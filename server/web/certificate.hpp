@@ -24,9 +24,12 @@ class Certificate {
   const TlsContext* context() const { return context_ ? &*context_ : nullptr; }
   /// Returns when the certificate ends, in seconds of UTC since 1970; 0 without TLS.
   std::int64_t ends_s() const { return ends_s_; }
+  /// Returns a line that says why browsers refuse the certificate today: it has ended, or is not valid
+  /// yet. Returns nullopt if it is valid, or without TLS.
+  std::optional<std::string> fault() const;
 
-  /// Reads the files again. If the new certificate cannot be used, or has ended, the old one stays,
-  /// and the error says why. Requires is_there().
+  /// Reads the files again. If the new certificate cannot be used, or has a fault(), the old one
+  /// stays, and the error says why. Requires is_there().
   Result<void, std::string> reload();
   /// Returns true if the files have changed since they were read, and then not for two seconds: a
   /// program that replaces them writes one after the other. Call it about once a second.

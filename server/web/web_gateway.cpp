@@ -251,6 +251,9 @@ Result<std::unique_ptr<WebGateway>, std::string> WebGateway::start(const WebConf
   if (!origins) return failure(origins.error());
   auto certificate = Certificate::read(config.tls_certificate, config.tls_key);
   if (!certificate) return failure(certificate.error());
+  // The gateway starts nevertheless: it takes the next certificate as soon as the files have it.
+  if (const auto invalid = certificate->fault())
+    std::cerr << "runstone-web: browsers will refuse to connect: " << *invalid << std::endl;
   Result<ClientFiles, std::string> client = ClientFiles();
   if (!config.client_files.empty()) client = ClientFiles::load(config.client_files);
   if (!client) return failure("client_files: " + client.error());

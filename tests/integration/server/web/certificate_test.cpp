@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string>
 
+#include "server/web/certificate.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
 #include "tests/support/pem_files.hpp"
 #include "tests/support/web_player.hpp"
@@ -124,6 +125,20 @@ TEST_CASE("a certificate that cannot be used is refused, and the old one stays",
   CHECK(player.next_of<Pong>().has_value());
   bench.files.become(bench.second);  // the next try is a good one
   CHECK(comes_to_have_certificate_of(port, bench.second));
+}
+
+TEST_CASE("a certificate that has ended is taken at the start, and its fault is known",
+          "[integration]") {
+  const PemFiles ended("localhost", -2 * PemFiles::kDaySeconds, -60), next("localhost");
+  CertificateFiles files;
+  files.become(ended);
+  auto certificate = Certificate::read(files.chain, files.key);
+  REQUIRE(certificate.has_value());
+  CHECK(certificate->fault() ==
+        "tls_certificate = \"" + files.chain + "\": the certificate has ended");
+  files.become(next);
+  REQUIRE(certificate->reload().has_value());
+  CHECK_FALSE(certificate->fault().has_value());
 }
 
 TEST_CASE("a key that others can read is refused until its rights are mended", "[integration]") {
