@@ -2,10 +2,12 @@
 
 #include <utility>
 
+#include "common/sqlite/sqlite_file.hpp"
+
 namespace runstone {
 
 CacheDatabase::CacheDatabase(const std::string& file) {
-  auto opened = sql::Database::open(file, sql::Database::Mode::create);
+  auto opened = sql::open_sqlite(file, sql::SqliteMode::create);
   if (opened) {
     database_ = *std::move(opened);
   } else {

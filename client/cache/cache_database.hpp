@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 
 namespace runstone {
 
@@ -31,7 +31,7 @@ class CacheDatabase {
   /// Returns the first column of the first row, or 0 without a row.
   std::int64_t integer(const char* text);
   /// Returns the number of rows that the last statement changed.
-  std::int64_t changes() const { return database_->changes(); }
+  std::int64_t changes() { return database_->changes(); }
 
  private:
   void fail(const sql::Error& error) {

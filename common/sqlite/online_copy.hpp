@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 
 struct sqlite3_backup;
 
@@ -15,8 +15,8 @@ namespace runstone::sql {
 
 class OnlineCopy {
  public:
-  /// Requires that `from` has an open read transaction, that `to` is new, and that both outlive the
-  /// object. Fails (bad_statement) without the transaction.
+  /// Requires two databases of open_sqlite(), that `from` has an open read transaction, that `to` is
+  /// new, and that both outlive the object. Fails (bad_statement) without the transaction.
   static Result<OnlineCopy> begin(Database& from, Database& to);
 
   /// Copies at most `pages` further pages. Returns false if the copy is complete. A copy that is

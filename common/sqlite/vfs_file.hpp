@@ -10,7 +10,7 @@
 #include <string>
 
 #include "common/core/bytes.hpp"
-#include "common/sqlite/sql_error.hpp"
+#include "common/sql/sql_error.hpp"
 
 namespace runstone::sql {
 

@@ -31,7 +31,9 @@ std::uint64_t bytes_of(const std::string& file) {
 
 Result<void, std::string> compact_world(const CompactRequest& request, TimeUs now_us,
                                         std::ostream& out, const SqliteOptions& options) {
-  auto opened = open_sqlite_world(request.world, StoreAccess::read_write, options);
+  auto opened = is_database(request.world)
+                    ? open_world(request.world, StoreAccess::read_write)
+                    : open_sqlite_world(request.world, StoreAccess::read_write, options);
   if (!opened) return compaction_failure(opened.error());
   Store& store = **opened;
   const auto generator = generator_of(store);
@@ -83,6 +85,7 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
         "which new edits will use; to give it back, make room for a second copy of the world and "
         "run VACUUM"};
   }
+  if (is_database(request.world)) return {};
   out << "file        " << before << " bytes before, " << bytes_of(store.file()) << " now\n";
   return {};
 }

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/core/result.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 
 namespace runstone {
 

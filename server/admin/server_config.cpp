@@ -135,6 +135,8 @@ const SettingsTable<ServerConfig>& settings() {
       "RUNSTONE_",
       {
           text("world", "folder of the world", &C::world),
+          optional("store", "address of a PostgreSQL database for the world: postgresql://...",
+                   &C::store),
           text("listen", "HOST, HOST:PORT, [V6]:PORT or :PORT; port 0 takes a free one",
                &C::listen),
           flag("insecure", "connections are not encrypted; for 127.0.0.1 and [::1] only",

@@ -26,6 +26,10 @@ namespace runstone {
 struct ServerConfig {
   // Place.
   std::string world = "world";  // folder
+  /// Address of the PostgreSQL database that holds the rows of the world: postgresql://... The folder
+  /// `world` then holds the log of the chat and the socket of `runstone-server control`. Empty: the world
+  /// is a file in the folder.
+  std::string store;
   // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
   std::string listen = "0.0.0.0:" + std::to_string(kDefaultPort);
   /// Connections are not encrypted. Only for an address of this machine, unless `i_know` is set.
@@ -105,6 +109,10 @@ struct ServerConfig {
   friend bool operator==(const ServerConfig&, const ServerConfig&) = default;
 };
 
+/// Returns the place of the world, see create_world().
+inline const std::string& world_place(const ServerConfig& config) {
+  return config.store.empty() ? config.world : config.store;
+}
 /// Returns all settings, in the order of the struct.
 const std::vector<SettingField>& config_fields();
 /// Returns "RUNSTONE_SESSIONS_MAX" for "sessions_max".

@@ -15,10 +15,11 @@ std::filesystem::path canonical(const std::string& folder) {
 
 }  // namespace
 
-Result<void, std::string> allow_new_world(const std::string& folder, bool create) {
-  if (create || has_world(folder)) return {};
-  if (canonical(folder) == canonical(ServerConfig{}.world)) return {};
-  return Unexpected<std::string>{folder + ": holds no world; --create makes a new one there"};
+Result<void, std::string> allow_new_world(const std::string& place, bool create) {
+  if (create || has_world(place)) return {};
+  if (canonical(place) == canonical(ServerConfig{}.world)) return {};
+  return Unexpected<std::string>{place_name(place) +
+                                 ": holds no world; --create makes a new one there"};
 }
 
 }  // namespace runstone

@@ -6,9 +6,9 @@
 
 namespace runstone {
 
-/// Fails if `folder` holds no world and the server may not make one there. It may if `create` is
-/// set, or if the folder is the default one of ServerConfig. The error is one line that names the
+/// Fails if `place` holds no world and the server may not make one there. It may if `create` is
+/// set, or if the place is the default folder of ServerConfig. The error is one line that names the
 /// flag --create.
-Result<void, std::string> allow_new_world(const std::string& folder, bool create);
+Result<void, std::string> allow_new_world(const std::string& place, bool create);
 
 }  // namespace runstone

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/os/file_lock.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
@@ -41,6 +42,23 @@ void use_certificate(ServerCore& core, const std::optional<TlsContext>& certific
 /// Returns the path at which the server answers questions of a gateway.
 std::string status_path(const ServerConfig& config) { return config.gateway_socket + ".status"; }
 
+/// Makes the folder of a world whose rows are in a database, for its owner only, unless it exists, and
+/// locks it as the folder of a world. So two servers do not share its chat and its control socket.
+Result<FileLock, std::string> take_local_folder(const std::string& folder) {
+  std::error_code error;
+  if (std::filesystem::create_directories(folder, error))
+    std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
+  if (error) return failure(folder + ": cannot be made: " + error.message());
+  if (has_world(folder)) {
+    return failure(folder +
+                   ": holds a world of its own; with `store`, the folder must be another one");
+  }
+  auto lock = FileLock::take(folder + "/world.lock");
+  if (lock) return *std::move(lock);
+  return failure(folder + (lock.error().is_held ? ": another server uses this folder"
+                                                : "/world.lock: " + lock.error().what));
+}
+
 Result<void, std::string> can_listen_for_gateway(const ServerConfig& config) {
   if (config.gateway_socket.empty()) return {};
   for (const std::string& path : {config.gateway_socket, status_path(config)}) {
@@ -61,6 +79,7 @@ Result<void, std::string> can_listen_for_gateway(const ServerConfig& config) {
 // Members are destroyed in reverse order: the core before the objects that it refers to.
 struct Server::Parts {
   ServerConfig config;
+  FileLock local_lock;  // of the folder `world`, if the world is in a database
   OpenedWorld world;
   asio::io_context io;
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
@@ -95,11 +114,18 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   if (!certificate) return failure(certificate.error());
   if (const auto gateway = can_listen_for_gateway(config); !gateway)
     return failure(gateway.error());
-  auto world = open_or_create_world(config.world, creation, accept_losses);
+  FileLock local_lock;
+  if (!config.store.empty()) {
+    auto taken = take_local_folder(config.world);
+    if (!taken) return failure(taken.error());
+    local_lock = *std::move(taken);
+  }
+  auto world = open_or_create_world(world_place(config), creation, accept_losses);
   if (!world) return Unexpected<std::string>{world.error()};
   if (accept_losses) log_losses(world->losses);
   auto parts = std::make_unique<Parts>();
   parts->config = config;
+  parts->local_lock = std::move(local_lock);
   parts->world = *std::move(world);
   parts->workers = low_priority_threads(config.worker_threads);
   parts->decoders = low_priority_threads(config.io_threads);

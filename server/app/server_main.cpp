@@ -159,7 +159,7 @@ int run(const ServerOptions& options) {
     std::cout << to_toml(*config);
     return kStopped;
   }
-  if (const auto allowed = allow_new_world(config->world, options.create); !allowed) {
+  if (const auto allowed = allow_new_world(world_place(*config), options.create); !allowed) {
     return cannot_start(allowed.error());
   }
   start_logging(config->log_level, config->log_format);
@@ -181,7 +181,9 @@ int run(const ServerOptions& options) {
       if (running) running->reload(read_config(options), std::move(reply));
     });
   };
-  actions.back_up = [&backup](const std::string& folder, CommandReply reply) {
+  actions.back_up = [&](const std::string& folder, CommandReply reply) {
+    if (!config->store.empty())
+      return refuse(reply, "the world is in PostgreSQL: back it up with pg_dump");
     backup.start(folder, std::move(reply));
   };
   auto server = Server::start(*config, options.creation, end, actions, options.accept_losses);
@@ -245,6 +247,7 @@ int server_program(int argc, char** argv) {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   const TimeUs now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
   if (options->compact) return exit_code_of(compact_world(*options->compact, now_us, std::cout));
+  if (options->copy) return exit_code_of(copy_between(*options->copy, std::cout));
   if (options->backup) return exit_code_of(back_up(*options->backup, now_us, std::cout));
   if (options->restore) return exit_code_of(restore(*options->restore, now_us, std::cout));
   if (options->control) {

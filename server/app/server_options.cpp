@@ -60,7 +60,9 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
 CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
   CLI::App* const compact =
       app.add_subcommand("compact", "move the oldest part of a world's log into its base");
-  compact->add_option("--world", out.world, "folder of the world; no server may run it")
+  compact
+      ->add_option("--world", out.world,
+                   "folder of the world, or postgresql://...; no server may run it")
       ->required();
   compact->add_option("--keep", out.keep_days, "days of the past to keep")
       ->required()
@@ -71,6 +73,17 @@ CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
   compact->add_flag("--progress", out.progress,
                     "print progress even if standard error is no terminal");
   return compact;
+}
+
+CLI::App* add_copy(CLI::App& app, CopyRequest& out) {
+  CLI::App* const copy = app.add_subcommand(
+      "copy", "copy a world from a folder to a PostgreSQL database, or back, and verify it");
+  copy->add_option("--from", out.from, "folder of the world, or postgresql://...")->required();
+  copy->add_option("--to", out.to, "the new folder, or postgresql://... without a world")
+      ->required();
+  copy->add_flag("--progress", out.progress,
+                 "print progress even if standard error is no terminal");
+  return copy;
 }
 
 CLI::App* add_backup(CLI::App& app, BackupRequest& out) {
@@ -117,7 +130,7 @@ int arguments_before_command(int argc, const char* const* argv) {
 void print_unknown_argument(const CLI::App& app) {
   std::cerr
       << "runstone-server: \"" << app.remaining(true).front()
-      << "\" is no subcommand (import, compact, backup, restore, control) and no flag; --help lists the flags\n";
+      << "\" is no subcommand (import, compact, copy, backup, restore, control) and no flag; --help lists the flags\n";
 }
 
 }  // namespace
@@ -126,6 +139,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   ServerOptions out;
   ImportRequest import_request;
   CompactRequest compact_request;
+  CopyRequest copy_request;
   BackupRequest backup_request;
   RestoreRequest restore_request;
   ControlRequest control_request;
@@ -136,6 +150,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   add_flags(app, out);
   const CLI::App* const import = add_import(app, import_request);
   const CLI::App* const compact = add_compact(app, compact_request);
+  const CLI::App* const copy = add_copy(app, copy_request);
   const CLI::App* const backup = add_backup(app, backup_request);
   const CLI::App* const restore = add_restore(app, restore_request);
   const CLI::App* const control = add_control(app, control_request);
@@ -150,6 +165,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   }
   if (import->parsed()) out.import = import_request;
   if (compact->parsed()) out.compact = compact_request;
+  if (copy->parsed()) out.copy = copy_request;
   if (backup->parsed()) out.backup = backup_request;
   if (restore->parsed()) out.restore = restore_request;
   if (control->parsed()) {

@@ -6,6 +6,7 @@
 
 #include "server/admin/compact_program.hpp"
 #include "server/admin/control_program.hpp"
+#include "server/admin/copy_program.hpp"
 #include "server/backup/backup_program.hpp"
 #include "server/import/import_program.hpp"
 #include "server/store/world_folder.hpp"
@@ -21,6 +22,7 @@ struct ServerOptions {
   WorldCreation creation;
   std::optional<ImportRequest> import;    // the import subcommand
   std::optional<CompactRequest> compact;  // the compact subcommand
+  std::optional<CopyRequest> copy;        // the copy subcommand
   std::optional<BackupRequest> backup;    // the backup subcommand
   std::optional<RestoreRequest> restore;  // the restore subcommand
   bool console = false;          // read commands from standard input even if it is no terminal

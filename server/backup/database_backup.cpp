@@ -6,9 +6,10 @@
 
 #include "common/os/free_space.hpp"
 #include "common/sqlite/online_copy.hpp"
+#include "common/sqlite/sqlite_file.hpp"
 #include "server/backup/uncached_file.hpp"
 #include "server/store/meta_table.hpp"
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 
 namespace runstone {
 namespace {
@@ -50,7 +51,7 @@ StoreResult<BackupMoment> begin_moment(sql::Database& from) {
 /// Opens the new file. No journal and no sync of SQLite is needed: a copy that is cut off is thrown
 /// away, and UncachedFile syncs it.
 StoreResult<sql::Database> open_target(const std::string& to) {
-  auto database = sql::Database::open(to, sql::Database::Mode::write);
+  auto database = sql::open_sqlite(to, sql::SqliteMode::write);
   if (!database) return failed(database.error());
   const auto set = database->run(
       "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF");
@@ -89,9 +90,8 @@ BackupPace gentle_pace() {
 StoreResult<BackupMoment> copy_database(const std::string& from, SourceUse use,
                                         const std::string& to, const BackupPace& pace,
                                         const BackupProgress& progress) {
-  const auto mode =
-      use == SourceUse::live ? sql::Database::Mode::read : sql::Database::Mode::header;
-  auto source = sql::Database::open(from, mode);
+  const auto mode = use == SourceUse::live ? sql::SqliteMode::read : sql::SqliteMode::header;
+  auto source = sql::open_sqlite(from, mode);
   if (!source) return failed(source.error());
   const auto moment = begin_moment(*source);
   if (!moment) return moment;

@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {

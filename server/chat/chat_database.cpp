@@ -11,7 +11,8 @@
 #include <system_error>
 
 #include "common/core/text.hpp"
-#include "common/sqlite/transaction.hpp"
+#include "common/sql/transaction.hpp"
+#include "common/sqlite/sqlite_file.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/rules/chat_text.hpp"
 
@@ -75,7 +76,7 @@ bool is_damage(const sql::Error& error) {
 
 sql::Result<ChatDatabase> ChatDatabase::open(const std::string& file, std::uint64_t lines_max) {
   if (auto made = make_private(file); !made) return Unexpected<sql::Error>{made.error()};
-  auto opened = sql::Database::open(file, sql::Database::Mode::create);
+  auto opened = sql::open_sqlite(file, sql::SqliteMode::create);
   if (!opened) return Unexpected<sql::Error>{opened.error()};
   ChatDatabase database(*std::move(opened), lines_max);
   if (auto ready = database.prepare(); !ready) return Unexpected<sql::Error>{ready.error()};

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/chat/chat_query.hpp"
 #include "server/world/chat_entry.hpp"
 

@@ -1,6 +1,7 @@
 #include "server/import/luanti_map.hpp"
 
 #include "common/formats/luanti_block.hpp"
+#include "common/sqlite/sqlite_file.hpp"
 
 namespace runstone {
 namespace {
@@ -17,7 +18,7 @@ constexpr const char* kFindByCoordinates =
 }  // namespace
 
 Result<LuantiMap, std::string> LuantiMap::open(const std::string& file) {
-  auto database = sql::Database::open(file, sql::Database::Mode::read);
+  auto database = sql::open_sqlite(file, sql::SqliteMode::read);
   if (!database) return Unexpected<std::string>{database.error().what};
   // The transaction ends with the connection.
   if (const auto begun = database->run("BEGIN"); !begun)

@@ -9,7 +9,7 @@
 
 #include "common/core/bytes.hpp"
 #include "common/core/result.hpp"
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 
 namespace runstone {
 

@@ -22,6 +22,7 @@ constexpr Sequence kForwardEditsMax = 8'192;
 }  // namespace
 
 StoreResult<MapWorld::FileId> MapWorld::file_id() const {
+  if (is_database(folder_)) return FileId{};  // the same one for as long as it answers
   const std::string file = folder_ + "/world.sqlite";
   struct stat about{};
   if (::stat(file.c_str(), &about) != 0) {

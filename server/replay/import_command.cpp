@@ -17,7 +17,7 @@ void declare_import(SubcommandOptions& command_line, ImportOptions& options) {
 Result<int, std::string> run_import(const ImportOptions& options, std::ostream& out) {
   const auto done = import_rlog(options.common.world, options.file);
   if (!done) return Unexpected<std::string>{done.error()};
-  row(out, "world") << options.common.world << (done->made_world ? ", made\n" : "\n");
+  row(out, "world") << place_name(options.common.world) << (done->made_world ? ", made\n" : "\n");
   row(out, "edits") << done->added << " added, " << done->known << " known, " << done->compacted
                     << " compacted\n";
   row(out, "log") << "ends with sequence " << done->last << '\n';

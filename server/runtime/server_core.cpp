@@ -40,9 +40,9 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       listener_(std::make_shared<Listener>(threads.io, threads.decoders.get_executor(),
                                            net_limits_of(config), store.meta().chunk_edge, *this)),
       sessions_(strand_),
-      chunks_(config.world, generator),
+      chunks_(world_place(config), generator),
       sender_(threads.workers, chunks_),
-      readers_(strand_, threads.workers, chunks_, config.world, generator),
+      readers_(strand_, threads.workers, chunks_, world_place(config), generator),
       tiles_(strand_, chunks_, generator, store.meta().chunk_edge,
              [this](Sequence at, const ChunkKey& key) { return readers_.past_chunk(at, key); }),
       environment_(sessions_, *listener_, sender_, readers_, tiles_),
@@ -104,7 +104,7 @@ Result<void, std::string> ServerCore::recover() {
   options.reserve_bytes = config_.disk_reserve_mib << 20;
   options.durable = start->log.last;
   if (config_.keyframe_edits > 0) options.keyframes = KeyframePolicy{config_.keyframe_edits};
-  log_ = std::make_unique<DurableLog>(strand_, store_, config_.world, generator_, options,
+  log_ = std::make_unique<DurableLog>(strand_, store_, world_place(config_), generator_, options,
                                       log_events());
   // A task that on_space posted from the constructor runs later, because no thread runs the strand.
   environment_.attach(*world_, *log_, *commands_, chat_log_.get());

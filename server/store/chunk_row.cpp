@@ -41,6 +41,14 @@ std::string unfit(const Chunk& chunk, std::uint16_t chunk_edge) {
   return "";
 }
 
+std::string save_chunk_text(const std::string& table) {
+  return "INSERT INTO " + table +
+         "(lod, x, y, z, epoch, seq, digest0, digest1, checksum, data) "
+         "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT(lod, x, y, z) "
+         "DO UPDATE SET epoch = excluded.epoch, seq = excluded.seq, digest0 = excluded.digest0, "
+         "digest1 = excluded.digest1, checksum = excluded.checksum, data = excluded.data";
+}
+
 void bind_key(sql::Statement& statement, const ChunkKey& key) {
   statement.bind(1, std::int64_t{key.lod})
       .bind(2, std::int64_t{key.at.x})

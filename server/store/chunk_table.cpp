@@ -5,7 +5,7 @@
 #include "common/core/key_text.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -37,12 +37,7 @@ StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
   if (!rows) return failed(rows.error());
   auto version = database.prepare("SELECT epoch, seq" + where);
   if (!version) return failed(version.error());
-  auto save = database.prepare(
-      "INSERT INTO " + table +
-      "(lod, x, y, z, epoch, seq, digest0, digest1, checksum, data) "
-      "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT(lod, x, y, z) "
-      "DO UPDATE SET epoch = excluded.epoch, seq = excluded.seq, digest0 = excluded.digest0, "
-      "digest1 = excluded.digest1, checksum = excluded.checksum, data = excluded.data");
+  auto save = database.prepare(save_chunk_text(table));
   if (!save) return failed(save.error());
   return ChunkTable(database.file(), kind, table, *std::move(load), *std::move(rows),
                     *std::move(version), *std::move(save));

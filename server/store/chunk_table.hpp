@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/store/chunk_reader.hpp"
 #include "server/store/meta_table.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/store_error.hpp"

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {

@@ -6,7 +6,8 @@
 #include "common/core/key_text.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
-#include "server/store/sqlite_result.hpp"
+#include "server/store/index_hint.hpp"
+#include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -46,8 +47,9 @@ StoreResult<KeyframeTable> KeyframeTable::open(sql::Database& database) {
   Statements statements{
       prepare("SELECT seq, epoch, time_us, chunks, digest0, digest1, checksum FROM keyframe "
               "ORDER BY seq"),
-      prepare("SELECT lod, x, y, z, epoch, seq, digest0, digest1 FROM keyframe_chunk "
-              "INDEXED BY keyframe_chunk_digest WHERE seq <= ?1 ORDER BY seq, lod, x, y, z"),
+      prepare("SELECT lod, x, y, z, epoch, seq, digest0, digest1 FROM keyframe_chunk" +
+              indexed_by(database, "keyframe_chunk_digest") +
+              " WHERE seq <= ?1 ORDER BY seq, lod, x, y, z"),
       prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk "
               "WHERE lod = ?1 AND x = ?2 AND y = ?3 AND z = ?4 AND seq = ?5"),
       prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk "

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/store/keyframe_reader.hpp"
 
 namespace runstone {

@@ -1,9 +1,16 @@
 #include "server/store/log_search.hpp"
-#include "server/store/sqlite_result.hpp"
+#include "server/store/index_hint.hpp"
+#include "server/store/sql_result.hpp"
 
 #include <algorithm>
 
 namespace runstone {
+namespace {
+
+// The edits that a statement finds at most. PostgreSQL returns all of them at once.
+constexpr std::size_t kPortion = 65'536;
+
+}  // namespace
 
 StoreResult<TimeUs> LogSearch::time_of(Sequence seq) {
   if (!time_) {
@@ -42,9 +49,7 @@ StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
   // whole log.
   std::string text = "SELECT seq FROM edit_log";
   const bool by_cause = !author && query.cause && *query.cause != Cause::player;
-  text += author     ? " INDEXED BY edit_log_author"
-          : by_cause ? " INDEXED BY edit_log_cause"
-                     : " NOT INDEXED";
+  text += indexed_by(database_, author ? "edit_log_author" : by_cause ? "edit_log_cause" : nullptr);
   text += " WHERE log = 0 AND seq BETWEEN ?1 AND ?2";
   if (author) text += " AND author = ?3";
   if (query.cause) text += " AND cause = ?4";
@@ -54,7 +59,7 @@ StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
         " AND min_x < ?5 AND max_x > ?6 AND min_y < ?7 AND max_y > ?8 AND min_z < ?9 AND max_z > "
         "?10";
   }
-  auto rows = database_.prepare(text + " ORDER BY seq");
+  auto rows = database_.prepare(text + " ORDER BY seq LIMIT " + std::to_string(kPortion));
   if (!rows) return failed(rows.error());
   if (author) rows->bind(3, std::int64_t{*author});
   if (query.cause) rows->bind(4, static_cast<std::int64_t>(*query.cause));
@@ -116,12 +121,19 @@ StoreResult<void> LogSearch::run(const LogQuery& query, const std::function<bool
   }
   auto rows = matching(query, query.author);
   if (!rows) return failed(rows.error());
-  rows->bind(1, static_cast<std::int64_t>(first)).bind(2, static_cast<std::int64_t>(last));
-  for (;;) {
-    const auto more = rows->step();
-    if (!more) return failed(more.error());
-    if (!*more || !each(static_cast<Sequence>(rows->integer(0)))) return {};
+  for (std::size_t found = kPortion; found == kPortion;) {
+    rows->rewind();
+    rows->bind(1, static_cast<std::int64_t>(first)).bind(2, static_cast<std::int64_t>(last));
+    for (found = 0;; ++found) {
+      const auto more = rows->step();
+      if (!more) return failed(more.error());
+      if (!*more) break;
+      const auto seq = static_cast<Sequence>(rows->integer(0));
+      if (!each(seq)) return {};
+      first = seq + 1;
+    }
   }
+  return {};
 }
 
 }  // namespace runstone

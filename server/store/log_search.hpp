@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/store/log_query.hpp"
 #include "server/store/log_reader.hpp"
 #include "server/store/segment_table.hpp"

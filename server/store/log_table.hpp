@@ -3,10 +3,11 @@
 // base.
 #pragma once
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/store/log_reader.hpp"
 #include "server/world/player_rows.hpp"
 
@@ -20,8 +21,8 @@ class LogTable {
   /// Returns the extent of the log. `head` is the last edit that was compacted away, read in the
   /// same transaction. Fails (corrupt) if the rows do not begin right after it. Cost: O(log rows).
   StoreResult<LogRange> range(const LogEnd& head);
-  /// Inserts a record in the caller's transaction. Requires that the record continues the log.
-  StoreResult<void> insert(const EditRecord& record);
+  /// Inserts records in the caller's transaction. Requires that they continue the log.
+  StoreResult<void> insert(std::span<const EditRecord> records);
   /// Reads as LogReader::read_log(). `each` may call it too.
   StoreResult<void> read(const LogRange& range, Sequence first, Sequence last,
                          const std::function<bool(const EditRecord&)>& each);
@@ -37,15 +38,17 @@ class LogTable {
 
  private:
   LogTable(sql::Database& database, sql::Statement first, sql::Statement last,
-           sql::Statement insert)
+           sql::Statement insert, sql::Statement insert_many)
       : database_(&database),
         first_(std::move(first)),
         last_(std::move(last)),
-        insert_(std::move(insert)) {}
+        insert_(std::move(insert)),
+        insert_many_(std::move(insert_many)) {}
   Unexpected<StoreError> corrupt(Sequence seq, std::string what) const;
 
   sql::Database* database_;
   sql::Statement first_, last_, insert_;
+  sql::Statement insert_many_;  // kManyRows; empty for SQLite
 };
 
 }  // namespace runstone

@@ -4,6 +4,6 @@
 namespace runstone {
 
 inline constexpr const char* kLossAdvice =
-    "Put the world's folder back from a backup, or start the server once with --accept-losses";
+    "Put the world back from a backup, or start the server once with --accept-losses";
 
 }  // namespace runstone

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -74,6 +74,19 @@ class MetaReader {
   std::string bad_key_;
 };
 
+// A value as an integer, a text and a blob, two of which are NULL.
+constexpr const char* kSqliteValue =
+    "CASE typeof(value) WHEN 'integer' THEN value END, CASE typeof(value) WHEN 'text' THEN value "
+    "END, CASE typeof(value) WHEN 'blob' THEN value END";
+constexpr const char* kPostgresValue = "integer_value, text_value, blob_value";
+constexpr const char* kSqliteWrite =
+    "INSERT OR REPLACE INTO meta(key, value, checksum) VALUES(?1, coalesce(?2, ?3, ?4), ?5)";
+constexpr const char* kPostgresWrite =
+    "INSERT INTO meta(key, integer_value, text_value, blob_value, checksum) "
+    "VALUES(?1, ?2, ?3, ?4, ?5) ON CONFLICT(key) DO UPDATE SET "
+    "integer_value = excluded.integer_value, text_value = excluded.text_value, "
+    "blob_value = excluded.blob_value, checksum = excluded.checksum";
+
 constexpr std::int64_t kIntegerMin = std::numeric_limits<std::int64_t>::min();
 constexpr std::int64_t kIntegerMax = std::numeric_limits<std::int64_t>::max();
 
@@ -121,12 +134,14 @@ Result<WorldMeta, std::string> meta_of(const MetaRows& rows) {
 }
 
 StoreResult<MetaTable> MetaTable::open(sql::Database& database) {
-  auto all = database.prepare("SELECT key, value, checksum FROM meta ORDER BY key");
+  const bool is_sqlite = database.dialect() == sql::Dialect::sqlite;
+  const std::string rows = std::string("SELECT key, ") +
+                           (is_sqlite ? kSqliteValue : kPostgresValue) + ", checksum FROM meta ";
+  auto all = database.prepare(rows + "ORDER BY key");
   if (!all) return failed(all.error());
-  auto one = database.prepare("SELECT key, value, checksum FROM meta WHERE key = ?1");
+  auto one = database.prepare(rows + "WHERE key = ?1");
   if (!one) return failed(one.error());
-  auto write =
-      database.prepare("INSERT OR REPLACE INTO meta(key, value, checksum) VALUES(?1, ?2, ?3)");
+  auto write = database.prepare(is_sqlite ? kSqliteWrite : kPostgresWrite);
   if (!write) return failed(write.error());
   return MetaTable(database.file(), *std::move(all), *std::move(one), *std::move(write));
 }
@@ -137,20 +152,16 @@ Unexpected<StoreError> MetaTable::corrupt(std::string_view key, std::string what
 
 StoreResult<MetaValue> MetaTable::read_row(sql::Statement& row, std::string_view key) {
   MetaValue value;
-  switch (row.type(1)) {
-    case sql::Type::integer:
-      value = row.integer(1);
-      break;
-    case sql::Type::text:
-      value = std::string(row.text(1));
-      break;
-    case sql::Type::blob:
-      value = Bytes(row.blob(1).begin(), row.blob(1).end());
-      break;
-    case sql::Type::other:
-      return corrupt(key, "has a value of an unknown type");
+  if (row.type(1) == sql::Type::integer) {
+    value = row.integer(1);
+  } else if (row.type(2) == sql::Type::text) {
+    value = std::string(row.text(2));
+  } else if (row.type(3) == sql::Type::blob) {
+    value = Bytes(row.blob(3).begin(), row.blob(3).end());
+  } else {
+    return corrupt(key, "has a value of an unknown type");
   }
-  if (row.integer(2) != checksum_of(key, value)) return corrupt(key, "checksum is wrong");
+  if (row.integer(4) != checksum_of(key, value)) return corrupt(key, "checksum is wrong");
   return value;
 }
 
@@ -173,11 +184,11 @@ StoreResult<void> MetaTable::put(const std::string& key, const MetaValue& value)
   if (const auto* integer = std::get_if<std::int64_t>(&value)) {
     write_.bind(2, *integer);
   } else if (const auto* text = std::get_if<std::string>(&value)) {
-    write_.bind(2, std::string_view(*text));
+    write_.bind(3, std::string_view(*text));
   } else {
-    write_.bind(2, ByteView(*std::get_if<Bytes>(&value)));
+    write_.bind(4, ByteView(*std::get_if<Bytes>(&value)));
   }
-  return store_result(write_.bind(3, checksum_of(key, value)).run());
+  return store_result(write_.bind(5, checksum_of(key, value)).run());
 }
 
 StoreResult<MetaValue> MetaTable::get(const std::string& key) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/store/log_reader.hpp"
 
 namespace runstone {

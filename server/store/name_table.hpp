@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/player_rows.hpp"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -24,6 +24,13 @@ std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_
       .integer(last_us)
       .value();
 }
+
+std::int64_t checksum_of(const HighWater& mark) {
+  return checksum_of(std::int64_t{mark.author}, static_cast<std::int64_t>(mark.instance),
+                     static_cast<std::int64_t>(mark.resolved), mark.last_us);
+}
+
+constexpr std::size_t kRaisedMax = 1'024;  // bounds the memory
 
 }  // namespace
 
@@ -48,7 +55,7 @@ StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {
       "DO UPDATE SET decided = excluded.decided, last_us = excluded.last_us, "
       "checksum = excluded.checksum");
   if (!raise) return failed(raise.error());
-  return PlayerTable(database.file(), *std::move(players), *std::move(player), *std::move(marks),
+  return PlayerTable(database, *std::move(players), *std::move(player), *std::move(marks),
                      *std::move(mark), *std::move(put), *std::move(raise));
 }
 
@@ -123,26 +130,37 @@ StoreResult<void> PlayerTable::put(const PlayerRow& player, RowFold& fold) {
                           .run());
 }
 
+StoreResult<std::optional<HighWater>> PlayerTable::stored_mark(const HighWater& mark) {
+  const auto raised = raised_.find({mark.author, mark.instance});
+  if (raised != raised_.end()) return std::optional(raised->second);
+  const sql::ResetAtEnd reset_at_end(mark_);
+  const auto found = mark_.bind(1, std::int64_t{mark.author})
+                         .bind(2, static_cast<std::int64_t>(mark.instance))
+                         .step();
+  if (!found) return failed(found.error());
+  if (!*found) return std::optional<HighWater>();
+  const auto stored = mark_of(mark_);
+  if (!stored) return failed(stored.error());
+  return std::optional(*stored);
+}
+
 StoreResult<void> PlayerTable::raise(HighWater mark, RowFold& fold) {
-  const auto instance = static_cast<std::int64_t>(mark.instance);
-  {
-    const sql::ResetAtEnd reset_at_end(mark_);
-    const auto found = mark_.bind(1, std::int64_t{mark.author}).bind(2, instance).step();
-    if (!found) return failed(found.error());
-    if (*found) {
-      const auto stored = mark_of(mark_);
-      if (!stored) return failed(stored.error());
-      mark.resolved = std::max(mark.resolved, stored->resolved);
-      mark.last_us = std::max(mark.last_us, stored->last_us);
-      remove_row(fold, mark_.integer(4));
-    }
+  const auto stored = stored_mark(mark);
+  if (!stored) return failed(stored.error());
+  if (*stored) {
+    mark.resolved = std::max(mark.resolved, (*stored)->resolved);
+    mark.last_us = std::max(mark.last_us, (*stored)->last_us);
+    remove_row(fold, checksum_of(**stored));
   }
-  const auto resolved = static_cast<std::int64_t>(mark.resolved);
-  const std::int64_t checksum = checksum_of(mark.author, instance, resolved, mark.last_us);
+  const std::int64_t checksum = checksum_of(mark);
   add_row(fold, checksum);
+  if (keeps_raised_) {
+    if (raised_.size() >= kRaisedMax) raised_.clear();
+    raised_[{mark.author, mark.instance}] = mark;
+  }
   return store_result(raise_.bind(1, std::int64_t{mark.author})
-                          .bind(2, instance)
-                          .bind(3, resolved)
+                          .bind(2, static_cast<std::int64_t>(mark.instance))
+                          .bind(3, static_cast<std::int64_t>(mark.resolved))
                           .bind(4, mark.last_us)
                           .bind(5, checksum)
                           .run());

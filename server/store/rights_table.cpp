@@ -1,7 +1,7 @@
 #include "server/store/rights_table.hpp"
 
 #include "server/store/record_checksum.hpp"
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 
 namespace runstone {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/edits/descriptor/edit_record.hpp"
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/store_error.hpp"

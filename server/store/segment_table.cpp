@@ -3,12 +3,18 @@
 #include <algorithm>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr std::size_t kOpenMax = 1024;  // authors with an open segment; bounds the memory
+
+// What the index by space of PostgreSQL understands. The numbers of the box are those of find().
+constexpr const char* kPostgresInBox =
+    " AND int8range(min_x, max_x, '[]') && int8range(?5, ?4, '[]')"
+    " AND int8range(min_y, max_y, '[]') && int8range(?7, ?6, '[]')"
+    " AND int8range(min_z, max_z, '[]') && int8range(?9, ?8, '[]')";
 
 VoxelBox join(const VoxelBox& a, const VoxelBox& b) {
   // An edit without a place belongs to every box.
@@ -26,9 +32,18 @@ bool is_small(const VoxelBox& box) {
 }  // namespace
 
 StoreResult<SegmentTable> SegmentTable::open(sql::Database& database) {
+  const std::string row =
+      "INTO log_box(first_seq, min_x, max_x, min_y, max_y, min_z, max_z, last_seq, author) "
+      "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)";
+  // The virtual table of SQLite knows no ON CONFLICT.
   auto put = database.prepare(
-      "INSERT OR REPLACE INTO log_box(first_seq, min_x, max_x, min_y, max_y, min_z, max_z, "
-      "last_seq, author) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)");
+      database.dialect() == sql::Dialect::sqlite
+          ? "INSERT OR REPLACE " + row
+          : "INSERT " + row +
+                " ON CONFLICT(first_seq) DO UPDATE SET min_x = excluded.min_x, "
+                "max_x = excluded.max_x, min_y = excluded.min_y, max_y = excluded.max_y, "
+                "min_z = excluded.min_z, max_z = excluded.max_z, last_seq = excluded.last_seq, "
+                "author = excluded.author");
   if (!put) return failed(put.error());
   return SegmentTable(database, *std::move(put));
 }
@@ -90,6 +105,7 @@ StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<Voxe
     text +=
         " AND min_x < ?4 AND max_x > ?5 AND min_y < ?6 AND max_y > ?7 AND min_z < ?8 AND max_z > "
         "?9";
+  if (box && database_->dialect() == sql::Dialect::postgres) text += kPostgresInBox;
   auto rows = database_->prepare(text);
   if (!rows) return failed(rows.error());
   rows->bind(1, static_cast<std::int64_t>(last)).bind(2, static_cast<std::int64_t>(first));

@@ -5,7 +5,7 @@
 //   - WorldSink is what the log writer of a running server calls;
 //   - ImportSink fills a new world;
 //   - Maintenance shortens the log of a world that no server runs.
-// SQLite implements it; another database may do so later. Every call blocks on the disk, so the
+// SqlStore implements it on SQLite and on PostgreSQL. Every call blocks on the disk or the network, so the
 // world strand makes none: one writer thread owns a Store, and readers open their own. These rules
 // keep a world safe:
 //   - append() returns after the data is on disk: what it has written is durable;
@@ -72,15 +72,22 @@ class Store : public WorldReader, public WorldSink, public ImportSink, public Ma
   /// Returns a line for each loss; there are none if nothing is lost. Deletes all tiles, because a
   /// tile may contain lost edits.
   ///   - Lost edits: the world stays as the rest of the log makes it. The epoch becomes that
-  ///     of a new branch, and the next raise_epoch() ends the loss.
+  ///     of a new branch, and the next raise_epoch() ends the loss. In PostgreSQL it does so in any case,
+  ///     because nobody notices that a database was put back from a backup.
   ///   - Lost players: the rest is counted anew. Their numbers are not given again.
   ///   - Lost watermarks: those of edits in the log are made again, and all are counted anew.
   virtual StoreResult<std::vector<std::string>> accept_losses() = 0;
 };
 
-/// Creates a world in a folder, which is made if it does not exist, and opens it for writing. Fails
-/// if the folder already holds `world.sqlite`.
-StoreResult<std::unique_ptr<Store>> create_world(const std::string& folder, const WorldMeta& meta,
+// A place is a folder, for a world in an SQLite file, or the address of a PostgreSQL database:
+// postgresql://...
+bool is_database(const std::string& place);
+/// Returns the place for messages. It has no password.
+std::string place_name(const std::string& place);
+
+/// Creates a world and opens it for writing. A folder is made if it does not exist. Fails if the place
+/// holds a world already.
+StoreResult<std::unique_ptr<Store>> create_world(const std::string& place, const WorldMeta& meta,
                                                  const std::string& vfs = "");
 
 enum class StoreAccess {
@@ -91,7 +98,7 @@ enum class StoreAccess {
 /// Opens an existing world. Fails (locked) if another program has it open for writing, and `access`
 /// is not read_only. `vfs` is the name of an SQLite VFS, for tests; an empty name means the default
 /// one.
-StoreResult<std::unique_ptr<Store>> open_world(const std::string& folder, StoreAccess access,
+StoreResult<std::unique_ptr<Store>> open_world(const std::string& place, StoreAccess access,
                                                const std::string& vfs = "");
 
 }  // namespace runstone

@@ -1,15 +1,15 @@
-// SqliteStore::check(): verifies every row of every table, and the relations between the tables.
+// SqlStore::check(): verifies every row of every table, and the relations between the tables.
 #include <map>
 #include <utility>
 
 #include "common/core/key_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "server/store/sqlite_result.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sql_result.hpp"
+#include "server/store/sql_store.hpp"
 
 namespace runstone {
 
-StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
+StoreResult<void> SqlStore::check_chunks(ChunkTable& table) {
   const auto rows = rows_of(table);
   if (!rows) return failed(rows.error());
   // Both are read after the rows, because a running server only increases them.
@@ -33,7 +33,7 @@ StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
   return {};
 }
 
-StoreResult<void> SqliteStore::check_marks_cover_log() {
+StoreResult<void> SqlStore::check_marks_cover_log() {
   // The log is read before the watermarks, because a running server increases both.
   const auto last = last_sequence();
   if (!last) return failed(last.error());
@@ -58,7 +58,7 @@ StoreResult<void> SqliteStore::check_marks_cover_log() {
        "is behind the log, which holds client edit " + std::to_string(uncovered->seq)}};
 }
 
-StoreResult<void> SqliteStore::check_segments_cover_log() {
+StoreResult<void> SqlStore::check_segments_cover_log() {
   // The range is read before the segments, because a running server adds to both.
   const auto range = log_range();
   if (!range) return failed(range.error());
@@ -83,7 +83,7 @@ StoreResult<void> SqliteStore::check_segments_cover_log() {
                                  "lacks edit_log seq=" + std::to_string(uncovered)}};
 }
 
-StoreResult<void> SqliteStore::check_keyframes() {
+StoreResult<void> SqlStore::check_keyframes() {
   // All reads are in one transaction, because a running server adds rows and keyframes.
   return at_one_moment<void>([&]() -> StoreResult<void> {
     const auto head = meta_table_.log_head();
@@ -115,11 +115,8 @@ StoreResult<void> SqliteStore::check_keyframes() {
   });
 }
 
-StoreResult<void> SqliteStore::check() {
-  const auto verdict = database_->text("PRAGMA integrity_check(1)");
-  if (!verdict) return failed(verdict.error());
-  if (*verdict != "ok")
-    return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "database", *verdict}};
+StoreResult<void> SqlStore::check() {
+  if (auto sound = backend_->check(); !sound) return sound;
   if (const auto rows = meta_table_.read_all(); !rows) return failed(rows.error());
   if (const auto rows = players(); !rows) return failed(rows.error());
   if (const auto rows = names_.names(); !rows) return failed(rows.error());

@@ -6,7 +6,7 @@
 #include "common/core/tile_keys.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 
 namespace runstone {
 namespace {
@@ -34,9 +34,7 @@ StoreResult<TileTable> TileTable::open(sql::Database& database) {
       "SELECT 'lod=' || lod || ' x=' || x || ' y=' || y || ' z=' || z FROM tile WHERE NOT " +
       has_key());
   if (!no_tile) return failed(no_tile.error());
-  auto save = database.prepare(
-      "INSERT OR REPLACE INTO tile(lod, x, y, z, epoch, seq, digest0, digest1, checksum, data) "
-      "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)");
+  auto save = database.prepare(save_chunk_text(std::string(kTable)));
   if (!save) return failed(save.error());
   auto remove_older = database.prepare("DELETE FROM tile" + where + " AND (epoch, seq) < (?5, ?6)");
   if (!remove_older) return failed(remove_older.error());

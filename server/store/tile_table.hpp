@@ -13,7 +13,8 @@
 
 #include "common/core/ids.hpp"
 #include "common/runs/chunk.hpp"
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
+#include "server/store/chunk_reader.hpp"
 #include "server/store/store_error.hpp"
 
 namespace runstone {

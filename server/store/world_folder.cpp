@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/generate/spawn_point.hpp"
+#include "server/store/postgres_backend.hpp"
 
 namespace runstone {
 namespace {
@@ -36,9 +37,13 @@ Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
 
 }  // namespace
 
-bool has_world(const std::string& folder) {
+bool has_world(const std::string& place) {
+  if (is_database(place)) {
+    const auto there = has_postgres_world(place);
+    return !there || *there;
+  }
   std::error_code ignored;
-  return std::filesystem::exists(std::filesystem::path(folder) / "world.sqlite", ignored);
+  return std::filesystem::exists(std::filesystem::path(place) / "world.sqlite", ignored);
 }
 
 Result<MaterialTable, std::string> read_materials(const std::string& file) {
@@ -66,12 +71,13 @@ Result<std::unique_ptr<Generator>, std::string> generator_of(const WorldInfo& wo
   return *std::move(generator);
 }
 
-Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
+Result<OpenedWorld, std::string> open_or_create_world(const std::string& place,
                                                       const WorldCreation& creation,
                                                       bool accept_losses) {
   OpenedWorld opened;
-  opened.is_new = !has_world(folder);
-  const auto file = std::filesystem::path(folder) / "world.sqlite";
+  opened.is_new = !has_world(place);
+  // There is no such file if the place is a database.
+  const auto file = std::filesystem::path(place) / "world.sqlite";
   std::error_code ignored;
   if (!opened.is_new && std::filesystem::file_size(file, ignored) == 0) {
     return failure(
@@ -81,11 +87,11 @@ Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
   if (opened.is_new) {
     const auto meta = new_meta(creation);
     if (!meta) return failure(meta.error());
-    auto store = create_world(folder, *meta);
+    auto store = create_world(place, *meta);
     if (!store) return failure(store.error().message());
     opened.store = *std::move(store);
   } else {
-    auto store = open_world(folder, accept_losses ? StoreAccess::repair : StoreAccess::read_write);
+    auto store = open_world(place, accept_losses ? StoreAccess::repair : StoreAccess::read_write);
     if (!store) return failure(store.error().message());
     opened.store = *std::move(store);
     if (accept_losses) {
@@ -97,7 +103,8 @@ Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
   using std::filesystem::perms;
   const perms others = perms::group_read | perms::others_read;
   const auto status = std::filesystem::status(file, ignored);
-  opened.is_readable_by_others = (status.permissions() & others) != perms::none;
+  opened.is_readable_by_others =
+      std::filesystem::exists(status) && (status.permissions() & others) != perms::none;
   auto generator = generator_of(*opened.store);
   if (!generator) return failure(generator.error());
   opened.generator = *std::move(generator);

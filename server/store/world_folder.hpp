@@ -30,19 +30,20 @@ struct OpenedWorld {
   std::vector<std::string> losses;     // that were accepted, one line each
 };
 
-/// Returns true if the folder holds a world.
-bool has_world(const std::string& folder);
+/// Returns false if the place holds no world. Returns true also if a database does not answer: opening
+/// the world then says so.
+bool has_world(const std::string& place);
 /// Reads a material table. An empty name means the built-in one.
 Result<MaterialTable, std::string> read_materials(const std::string& file);
 /// Sets a new identity: a random world id and a random server key.
 void draw_identity(WorldMeta& meta);
-/// Opens the world for writing. Creates it first if the folder holds none. Fails if
+/// Opens the world for writing. Creates it first if the place holds none. Fails if
 ///   - this build lacks the generator;
 ///   - the world has a newer format, or its rows are damaged;
 ///   - the world lacks edits that were durable, unless `accept_losses` is set;
 ///   - another server has the world open;
-///   - the folder cannot be written.
-Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
+///   - the place cannot be written.
+Result<OpenedWorld, std::string> open_or_create_world(const std::string& place,
                                                       const WorldCreation& creation,
                                                       bool accept_losses = false);
 /// Returns the generator that a world pins.

@@ -6,21 +6,33 @@
 #include <string>
 #include <utility>
 
-#include "server/store/sqlite_result.hpp"
+#include "common/sqlite/sqlite_file.hpp"
+#include "server/store/sql_result.hpp"
 
 namespace runstone {
 
 namespace {
 
-// `edit_log` and `player_instance` have small composite keys and no rowid: the rows lie in the tree
-// of the key, and an edit of one voxel costs one cell. Rows of chunks are long, so they have a
-// rowid. Their blob is the last column: keys and versions are read without its overflow pages.
-constexpr const char* kTables = R"sql(
+// A value is an integer, a text or a blob. PostgreSQL has a column for each.
+constexpr const char* kSqliteMeta = R"sql(
 CREATE TABLE meta(
   key TEXT NOT NULL PRIMARY KEY,
   value ANY NOT NULL,
   checksum INTEGER NOT NULL
 ) STRICT, WITHOUT ROWID;
+)sql";
+constexpr const char* kPostgresMeta = R"sql(
+CREATE TABLE meta(
+  key TEXT NOT NULL PRIMARY KEY,
+  integer_value INTEGER, text_value TEXT, blob_value BLOB,
+  checksum INTEGER NOT NULL
+);
+)sql";
+
+// `edit_log` and `player_instance` have small composite keys and no rowid: the rows lie in the tree
+// of the key, and an edit of one voxel costs one cell. Rows of chunks are long, so they have a
+// rowid. Their blob is the last column: keys and versions are read without its overflow pages.
+constexpr const char* kTables = R"sql(
 CREATE TABLE edit_log(
   log INTEGER NOT NULL, seq INTEGER NOT NULL, epoch INTEGER NOT NULL,
   author INTEGER NOT NULL, instance INTEGER NOT NULL, client_seq INTEGER NOT NULL,
@@ -88,8 +100,24 @@ constexpr const char* kChunkColumns = R"sql((
 constexpr const char* kIndexes = R"sql(
 CREATE INDEX edit_log_author ON edit_log(author, seq);
 CREATE INDEX edit_log_cause ON edit_log(cause, seq) WHERE cause <> 0;
+)sql";
+
+// An index in space of the log, see segment_table.hpp.
+constexpr const char* kSqliteBoxes = R"sql(
 CREATE VIRTUAL TABLE log_box USING rtree_i32(
   first_seq, min_x, max_x, min_y, max_y, min_z, max_z, +last_seq INTEGER, +author INTEGER
+);
+)sql";
+constexpr const char* kPostgresBoxes = R"sql(
+CREATE TABLE log_box(
+  first_seq INTEGER NOT NULL PRIMARY KEY,
+  min_x INTEGER NOT NULL, max_x INTEGER NOT NULL,
+  min_y INTEGER NOT NULL, max_y INTEGER NOT NULL,
+  min_z INTEGER NOT NULL, max_z INTEGER NOT NULL,
+  last_seq INTEGER NOT NULL, author INTEGER NOT NULL
+);
+CREATE INDEX log_box_space ON log_box USING gist(
+  int8range(min_x, max_x, '[]'), int8range(min_y, max_y, '[]'), int8range(min_z, max_z, '[]')
 );
 )sql";
 
@@ -113,29 +141,51 @@ CREATE TABLE keyframe_chunk(
 CREATE INDEX keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1);
 )sql";
 
+/// Replaces whole words that PostgreSQL writes otherwise.
+std::string in_postgres(std::string_view text) {
+  constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+      {" STRICT, WITHOUT ROWID", ""},
+      {" STRICT", ""},
+      {"INTEGER", "BIGINT"},
+      {"BLOB", "BYTEA"},
+      {"TEXT", "TEXT COLLATE \"C\""}};
+  std::string out(text);
+  for (const auto& [from, to] : kWords) {
+    for (std::size_t at = out.find(from); at != std::string::npos;
+         at = out.find(from, at + to.size()))
+      out.replace(at, from.size(), to);
+  }
+  return out;
+}
+
+/// Runs statements that are written for SQLite.
+StoreResult<void> run_in_dialect(sql::Database& database, const std::string& text) {
+  if (database.dialect() == sql::Dialect::sqlite) return store_result(database.run(text.c_str()));
+  return store_result(database.run(in_postgres(text).c_str()));
+}
+
 StoreResult<void> make_chunk_table(sql::Database& database, const char* name) {
-  const std::string statement = std::string("CREATE TABLE ") + name + kChunkColumns;
-  return store_result(database.run(statement.c_str()));
+  return run_in_dialect(database, std::string("CREATE TABLE ") + name + kChunkColumns);
 }
 
 }  // namespace
 
 StoreResult<void> create_schema(sql::Database& database) {
-  const std::string mark = "PRAGMA application_id=" + std::to_string(kApplicationId) + ";";
-  for (const char* part : {mark.c_str(), kTables, kPlayerNames, kIndexes, kKeyframes}) {
-    if (auto made = database.run(part); !made) return failed(made.error());
+  const bool is_sqlite = database.dialect() == sql::Dialect::sqlite;
+  for (const char* part : {is_sqlite ? kSqliteMeta : kPostgresMeta, kTables, kPlayerNames, kIndexes,
+                           is_sqlite ? kSqliteBoxes : kPostgresBoxes, kKeyframes}) {
+    if (auto made = run_in_dialect(database, part); !made) return made;
   }
   for (const char* name : {"base", "snapshot"}) {
     if (auto made = make_chunk_table(database, name); !made) return made;
   }
   if (auto made = add_tables_of_format_3(database); !made) return made;
-  if (auto made = add_tables_of_format_4(database); !made) return made;
-  return set_format(database);
+  return add_tables_of_format_4(database);
 }
 
 StoreResult<void> add_tables_of_format_3(sql::Database& database) {
   for (const char* table : {kNameClaims, kRightsRecords}) {
-    if (auto made = database.run(table); !made) return failed(made.error());
+    if (auto made = run_in_dialect(database, table); !made) return made;
   }
   return {};
 }
@@ -144,35 +194,10 @@ StoreResult<void> add_tables_of_format_4(sql::Database& database) {
   return make_chunk_table(database, "tile");
 }
 
-StoreResult<void> set_format(sql::Database& database) {
-  const std::string mark = "PRAGMA user_version=" + std::to_string(kWorldFormat);
-  return store_result(database.run(mark.c_str()));
-}
-
-StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
+StoreResult<void> check_format(const std::string& file, std::uint32_t version) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
     return Unexpected<StoreError>{{kind, file, "", std::move(what)}};
   };
-  auto database = sql::Database::open(file, sql::Database::Mode::header, vfs);
-  if (!database)
-    return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + database.error().what);
-  // The bytes are read directly, without a PRAGMA: after a crash during a checkpoint the main file
-  // is not valid until its WAL is applied. The marks are in it even then, because they were written
-  // before the WAL existed.
-  const auto header = database->header();
-  constexpr std::string_view kMagic("SQLite format 3\0", 16);
-  const auto big_endian = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | (*header)[i];
-    return value;
-  };
-  if (!header ||
-      !std::equal(kMagic.begin(), kMagic.end(), header->begin(),
-                  [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }) ||
-      big_endian(68) != kApplicationId) {
-    return fail_as(StoreError::Kind::not_a_world, "is not a Runstone world");
-  }
-  const std::uint32_t version = big_endian(60);
   if (version > kWorldFormat) {
     return fail_as(StoreError::Kind::newer_version,
                    "is of world format " + std::to_string(version) +
@@ -190,6 +215,32 @@ StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
   if (version < kWorldFormatConverted)
     return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(version));
   return {};
+}
+
+StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
+  const auto fail_as = [&](StoreError::Kind kind, std::string what) {
+    return Unexpected<StoreError>{{kind, file, "", std::move(what)}};
+  };
+  auto database = sql::open_sqlite(file, sql::SqliteMode::header, vfs);
+  if (!database)
+    return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + database.error().what);
+  // The bytes are read directly, without a PRAGMA: after a crash during a checkpoint the main file
+  // is not valid until its WAL is applied. The marks are in it even then, because they were written
+  // before the WAL existed.
+  const auto header = sql::file_header(*database);
+  constexpr std::string_view kMagic("SQLite format 3\0", 16);
+  const auto big_endian = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | (*header)[i];
+    return value;
+  };
+  if (!header ||
+      !std::equal(kMagic.begin(), kMagic.end(), header->begin(),
+                  [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }) ||
+      big_endian(68) != kApplicationId) {
+    return fail_as(StoreError::Kind::not_a_world, "is not a Runstone world");
+  }
+  return check_format(file, big_endian(60));
 }
 
 RowChecksum& RowChecksum::integer(std::int64_t value) {

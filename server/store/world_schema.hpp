@@ -1,11 +1,12 @@
-// The schema of world.sqlite, the marks in its header, and the checksum of a row. docs/edit-log.md
-// describes every column.
+// The schema of a world, the marks in the header of world.sqlite, and the checksum of a row.
+// docs/edit-log.md describes every column.
 #pragma once
 #include <cstdint>
 #include <string_view>
 
 #include "common/core/bytes.hpp"
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
+#include "common/sqlite/sqlite_file.hpp"
 #include "server/store/store_error.hpp"
 
 namespace runstone {
@@ -18,17 +19,17 @@ inline constexpr std::uint32_t kWorldFormat = 5;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
 
-/// Makes all tables and sets both marks, in the caller's transaction.
+/// Makes all tables in the caller's transaction.
 StoreResult<void> create_schema(sql::Database& database);
 /// Makes the tables that format 3 adds to format 2, without rows, in the caller's transaction.
 StoreResult<void> add_tables_of_format_3(sql::Database& database);
 /// Makes the table that format 4 adds to format 3, without rows, in the caller's transaction.
 StoreResult<void> add_tables_of_format_4(sql::Database& database);
-/// Sets the mark kWorldFormat, in the caller's transaction.
-StoreResult<void> set_format(sql::Database& database);
-
+/// Fails with newer_version, bad_request or corrupt if this program cannot read a world of this format.
+/// `file` names the world in the error.
+StoreResult<void> check_format(const std::string& file, std::uint32_t version);
 /// Reads the marks from the main file alone, so that a file that is refused does not change. `vfs`
-/// is that of sql::Database::open(). Fails with not_a_world, newer_version or corrupt.
+/// is that of sql::open_sqlite(). Fails with not_a_world, newer_version or corrupt.
 StoreResult<void> check_marks(const std::string& file, const std::string& vfs);
 
 /// Computes the checksum of a row: XXH3-64 of the table's name and of every other column, in the

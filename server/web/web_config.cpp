@@ -37,7 +37,8 @@ const SettingsTable<WebServer>& server_settings() {
               line_setting<S>("public_address",
                               "HOST or HOST:PORT at which desktop clients reach the server",
                               &S::public_address, true),
-              line_setting<S>("world", "folder of the world, to show its map; empty: no map",
+              line_setting<S>("world",
+                              "folder or database of the world, to show its map; empty: no map",
                               &S::world, true),
           });
   return all;
@@ -135,8 +136,8 @@ const SettingsTable<WebConfig>& web_settings() {
                "origins of pages that may open a WebSocket, such as https://play.example.org, "
                "separated by blanks or commas; empty: only pages of this gateway",
                &C::origins, true),
-          text("world", "folder of the world, to show its map at /map; empty: no map", &C::world,
-               true),
+          text("world", "folder or database of the world, to show its map at /map; empty: no map",
+               &C::world, true),
           number("map_memory_mib", &C::map_memory_mib, 8, 65'536,
                  "MiB of memory for what the map has drawn"),
           number(

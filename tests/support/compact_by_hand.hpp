@@ -6,9 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/sqlite/transaction.hpp"
+#include "common/sql/transaction.hpp"
 #include "server/store/chunk_table.hpp"
 #include "server/store/meta_table.hpp"
+#include "tests/support/temp_place.hpp"
 
 namespace runstone::test {
 
@@ -16,7 +17,7 @@ namespace runstone::test {
 /// chunks.
 inline void compact_by_hand(const std::string& file, const LogEnd& head,
                             const std::vector<std::pair<ChunkKey, ChunkPtr>>& chunks) {
-  auto database = sql::Database::open(file, sql::Database::Mode::write, "");
+  auto database = open_database(file);
   REQUIRE(database.has_value());
   auto meta = MetaTable::open(*database);
   auto base = ChunkTable::open(*database, ChunkTable::Kind::base);

@@ -1,7 +1,7 @@
 // The includes of the tree must follow the arrows between modules. An arrow is a DEPS entry of
 // runstone_module() in a CMakeLists.txt: a module may include its own headers and those of its
 // DEPS. In addition:
-// - The pure folders (common/ without os and sqlite, and protocol/) include no header for sockets,
+// - The pure folders (common/ without os, postgres, sql and sqlite, and protocol/) include no header for sockets,
 //   files, clocks, threads, logs or graphics.
 // - The folders of authority and replica include no header for sockets, clocks or threads.
 #include <algorithm>
@@ -102,14 +102,16 @@ const std::vector<Ban>& bans() {
       {{"common/core", "common/runs", "common/materials", "common/edits", "common/mesh",
         "common/tiles", "common/map", "common/generate", "common/rlog", "common/formats",
         "protocol"},
-       {"common/os/", "common/sqlite/", "asio.hpp",  "asio/",   "boost/",   "spdlog/", "sqlite3.h",
-        "GL/",        "GLES2/",         "GLES3/",    "GLFW/",   "EGL/",     "epoxy/",  "chrono",
-        "ctime",      "time.h",         "thread",    "fstream", "iostream", "random",  "unistd.h",
-        "sys/time.h", "sys/socket.h",   "filesystem"}},
+       {"common/os/",   "common/postgres/", "common/sql/", "common/sqlite/", "asio.hpp",
+        "asio/",        "boost/",           "spdlog/",     "sqlite3.h",      "libpq-fe.h",
+        "GL/",          "GLES2/",           "GLES3/",      "GLFW/",          "EGL/",
+        "epoxy/",       "chrono",           "ctime",       "time.h",         "thread",
+        "fstream",      "iostream",         "random",      "unistd.h",       "sys/time.h",
+        "sys/socket.h", "filesystem"}},
       {{"server/world", "server/interest", "client/replica"},
-       {"asio.hpp", "asio/", "boost/", "sqlite3.h", "chrono", "ctime", "time.h", "thread",
-        "fstream", "random", "unistd.h", "sys/time.h", "sys/socket.h", "common/os/",
-        "common/sqlite/"}},
+       {"asio.hpp", "asio/", "boost/", "sqlite3.h", "libpq-fe.h", "chrono", "ctime", "time.h",
+        "thread", "fstream", "random", "unistd.h", "sys/time.h", "sys/socket.h", "common/os/",
+        "common/postgres/", "common/sql/", "common/sqlite/"}},
   };
   return kBans;
 }
@@ -223,8 +225,9 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   CHECK(is_wrong("common/os/open_files.cpp", "#include \"server/app/server.hpp\""));
   CHECK(is_wrong("client/app/client_main.cpp", "#include \"tests/support/dense_chunk.hpp\""));
   // System headers in the pure libraries.
-  for (const char* header : {"asio.hpp", "asio/ip/tcp.hpp", "spdlog/spdlog.h", "sqlite3.h",
-                             "GL/gl.h", "GLFW/glfw3.h", "chrono", "thread", "fstream"}) {
+  for (const char* header :
+       {"asio.hpp", "asio/ip/tcp.hpp", "spdlog/spdlog.h", "sqlite3.h", "libpq-fe.h", "GL/gl.h",
+        "GLFW/glfw3.h", "chrono", "thread", "fstream"}) {
     CAPTURE(header);
     CHECK(is_wrong("common/edits/apply/edit_stack.cpp", "#include <" + std::string(header) + ">"));
     CHECK(is_wrong("protocol/codec/frame.hpp", "#include <" + std::string(header) + ">"));

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/core/hex.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/support/compact_by_hand.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "server/store/durable_mark.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/support/power_loss_vfs.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/simulation/client/session/sim_client.hpp"
 #include "tests/simulation/client/session/sim_server.hpp"
 #include "tests/support/edit_oracle.hpp"

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/simulation/client/session/sim_server.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"

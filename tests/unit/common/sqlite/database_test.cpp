@@ -1,10 +1,11 @@
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
+#include "common/sqlite/sqlite_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 
-#include "common/sqlite/transaction.hpp"
+#include "common/sql/transaction.hpp"
 #include "tests/support/temp_folder.hpp"
 
 using namespace runstone;
@@ -13,7 +14,7 @@ using namespace runstone::test;
 namespace {
 
 sql::Database created(const std::string& file) {
-  auto database = sql::Database::open(file, sql::Database::Mode::create);
+  auto database = sql::open_sqlite(file, sql::SqliteMode::create);
   REQUIRE(database.has_value());
   REQUIRE(database->run("CREATE TABLE t(k INTEGER PRIMARY KEY, v ANY) STRICT").has_value());
   return *std::move(database);
@@ -111,13 +112,13 @@ TEST_CASE("errors name the file and their kind", "[sqlite]") {
   CHECK(database.run("INSERT INTO t VALUES(1, 1)").error().kind == Kind::constraint);
   CHECK(database.integer("SELECT k FROM t WHERE k = 9").error().kind == Kind::corrupt);
 
-  const auto absent = sql::Database::open(folder / "none.sqlite", sql::Database::Mode::write);
+  const auto absent = sql::open_sqlite(folder / "none.sqlite", sql::SqliteMode::write);
   REQUIRE_FALSE(absent.has_value());
   CHECK(absent.error().kind == Kind::io);
   CHECK(absent.error().file == folder / "none.sqlite");
 
   std::ofstream(folder / "text") << std::string(2000, 'x');
-  auto text = sql::Database::open(folder / "text", sql::Database::Mode::write);
+  auto text = sql::open_sqlite(folder / "text", sql::SqliteMode::write);
   REQUIRE(text.has_value());
   CHECK(text->integer("SELECT count(*) FROM t").error().kind == Kind::corrupt);
 }
@@ -126,7 +127,7 @@ TEST_CASE("a database open for reading refuses writes", "[sqlite]") {
   const TempFolder folder;
   const std::string file = folder / "a.sqlite";
   created(file);
-  auto database = sql::Database::open(file, sql::Database::Mode::read);
+  auto database = sql::open_sqlite(file, sql::SqliteMode::read);
   REQUIRE(database.has_value());
   CHECK_FALSE(database->run("INSERT INTO t(v) VALUES(1)").has_value());
   CHECK(rows_of(*database) == 0);
@@ -149,16 +150,16 @@ TEST_CASE("the header is read from the main file", "[sqlite]") {
     auto database = created(file);
     REQUIRE(database.run("PRAGMA application_id = 258").has_value());
   }
-  auto database = sql::Database::open(file, sql::Database::Mode::header);
+  auto database = sql::open_sqlite(file, sql::SqliteMode::header);
   REQUIRE(database.has_value());
-  const auto header = database->header();
+  const auto header = sql::file_header(*database);
   REQUIRE(header.has_value());
   CHECK((*header)[70] == 1);
   CHECK((*header)[71] == 2);
   std::ofstream(folder / "short") << "SQLite";
-  auto shorter = sql::Database::open(folder / "short", sql::Database::Mode::header);
+  auto shorter = sql::open_sqlite(folder / "short", sql::SqliteMode::header);
   REQUIRE(shorter.has_value());
-  CHECK_FALSE(shorter->header().has_value());
+  CHECK_FALSE(sql::file_header(*shorter).has_value());
 }
 
 TEST_CASE("a file is looked up through its VFS", "[sqlite]") {

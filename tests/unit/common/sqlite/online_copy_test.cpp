@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "common/sqlite/sqlite_file.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -17,7 +18,7 @@ constexpr int kPagesPerStep = 10;
 
 /// A database in WAL mode with about 200 pages.
 sql::Database filled(const std::string& file) {
-  auto database = sql::Database::open(file, sql::Database::Mode::create);
+  auto database = sql::open_sqlite(file, sql::SqliteMode::create);
   REQUIRE(database.has_value());
   REQUIRE(database->text("PRAGMA journal_mode = WAL").has_value());
   REQUIRE(database
@@ -35,8 +36,8 @@ void write(sql::Database& database) {
           .has_value());
 }
 
-sql::Database opened(const std::string& file, sql::Database::Mode mode) {
-  auto database = sql::Database::open(file, mode);
+sql::Database opened(const std::string& file, sql::SqliteMode mode) {
+  auto database = sql::open_sqlite(file, mode);
   REQUIRE(database.has_value());
   return *std::move(database);
 }
@@ -47,8 +48,8 @@ TEST_CASE("a copy under constant writing is of one moment and never begins anew"
   const TempFolder folder;
   auto writer = filled(folder / "a.sqlite");
   {
-    auto from = opened(folder / "a.sqlite", sql::Database::Mode::read);
-    auto to = opened(folder / "b.sqlite", sql::Database::Mode::create);
+    auto from = opened(folder / "a.sqlite", sql::SqliteMode::read);
+    auto to = opened(folder / "b.sqlite", sql::SqliteMode::create);
     REQUIRE(from.run("BEGIN").has_value());
     const auto pages = from.integer("PRAGMA page_count");
     REQUIRE(pages.has_value());
@@ -88,8 +89,8 @@ TEST_CASE("SQLite begins a copy without a read transaction anew, so begin() refu
     sqlite3_close(to);
   }
   SECTION("begin()") {
-    auto from = opened(folder / "a.sqlite", sql::Database::Mode::read);
-    auto to = opened(folder / "b.sqlite", sql::Database::Mode::create);
+    auto from = opened(folder / "a.sqlite", sql::SqliteMode::read);
+    auto to = opened(folder / "b.sqlite", sql::SqliteMode::create);
     const auto copy = sql::OnlineCopy::begin(from, to);
     REQUIRE_FALSE(copy.has_value());
     CHECK(copy.error().what == "has no read transaction to copy");

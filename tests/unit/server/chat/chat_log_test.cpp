@@ -9,6 +9,7 @@
 #include <future>
 
 #include "common/core/hex.hpp"
+#include "common/sqlite/sqlite_file.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/runtime/read_clocks.hpp"
 #include "tests/support/full_disk_vfs.hpp"
@@ -180,7 +181,7 @@ TEST_CASE("a damaged file is set aside, and the lines go to a new one", "[chat]"
   }
   SECTION("it has the tables of another program") {
     std::filesystem::remove(bench.file());
-    auto other = sql::Database::open(bench.file(), sql::Database::Mode::create);
+    auto other = sql::open_sqlite(bench.file(), sql::SqliteMode::create);
     REQUIRE(other.has_value());
     REQUIRE(other->run("CREATE TABLE t(x); PRAGMA user_version = 9").has_value());
   }
@@ -214,7 +215,7 @@ TEST_CASE("rows that no line can be are left out", "[chat]") {
   bench.log->append(entry_by(1, "sound"));
   bench.log.reset();
   {
-    auto database = sql::Database::open(bench.file(), sql::Database::Mode::write);
+    auto database = sql::open_sqlite(bench.file(), sql::SqliteMode::write);
     REQUIRE(database.has_value());
     for (const char* row : {"5, 1, zeroblob(32), 'a\"b', 'text'", "5, 1, zeroblob(31), 'a', 'text'",
                             "5, 3, zeroblob(32), '', 'text'", "5, 2, zeroblob(32), 'a', 'text'",

@@ -1,10 +1,10 @@
 // The material table of a world on disk: records of the log append to it, and a compaction keeps it.
 #include <catch2/catch.hpp>
 
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temp_place.hpp"
 
 namespace runstone::test {
 namespace {
@@ -22,15 +22,15 @@ EditRecord record_of_rows(Sequence seq, Material first, const std::vector<std::s
   return record;
 }
 
-std::unique_ptr<Store> opened_world(const std::string& folder) {
-  auto store = open_world(folder, StoreAccess::read_write);
+std::unique_ptr<Store> opened_world(const std::string& place) {
+  auto store = open_world(place, StoreAccess::read_write);
   if (!store) FAIL(store.error().message());
   return *std::move(store);
 }
 
 /// Makes a world whose edits 5 and 20 of 30 add materials, with a keyframe at 10.
-MaterialTable make_world_with_wool(const std::string& folder) {
-  auto store = *create_world(folder, sample_meta());
+MaterialTable make_world_with_wool(const std::string& place) {
+  auto store = *create_world(place, sample_meta());
   REQUIRE(store->raise_epoch().has_value());
   SplitMix64 rng(7);
   auto records = sample_records(rng, 1, 1, 30);
@@ -47,9 +47,9 @@ MaterialTable make_world_with_wool(const std::string& folder) {
 
 TEST_CASE("the material table grows with the log, from sequence to sequence",
           "[store][materials]") {
-  const TempFolder folder;
-  const MaterialTable pinned = make_world_with_wool(folder / "w");
-  const auto store = opened_world(folder / "w");
+  TempPlace place;
+  const MaterialTable pinned = make_world_with_wool(place / "w");
+  const auto store = opened_world(place / "w");
   CHECK(store->meta().materials == pinned);
   CHECK(*store->materials(4) == pinned);
   CHECK(store->materials(5)->size() == pinned.size() + 2);
@@ -62,12 +62,12 @@ TEST_CASE("the material table grows with the log, from sequence to sequence",
 }
 
 TEST_CASE("added materials are kept when the log is compacted", "[store][materials]") {
-  const TempFolder folder;
-  const MaterialTable pinned = make_world_with_wool(folder / "w");
+  TempPlace place;
+  const MaterialTable pinned = make_world_with_wool(place / "w");
   MaterialTable all;
   {
-    const auto store = opened_world(folder / "w");
-    const auto reader = *open_world(folder / "w", StoreAccess::read_only);  // opened before
+    const auto store = opened_world(place / "w");
+    const auto reader = *open_world(place / "w", StoreAccess::read_only);  // opened before
     all = *store->materials();
     REQUIRE(store->compact(10).has_value());
     CHECK(store->log_range()->first == 11);
@@ -76,7 +76,7 @@ TEST_CASE("added materials are kept when the log is compacted", "[store][materia
     CHECK(store->meta().materials.size() == pinned.size() + 2);
     CHECK(store->check().has_value());
   }
-  const auto store = opened_world(folder / "w");
+  const auto store = opened_world(place / "w");
   CHECK(store->meta().materials.size() == pinned.size() + 2);
   CHECK(*store->materials() == all);
   const auto next = static_cast<Material>(all.size());
@@ -88,8 +88,8 @@ TEST_CASE("added materials are kept when the log is compacted", "[store][materia
 }
 
 TEST_CASE("records that do not continue the material table are refused", "[store][materials]") {
-  const TempFolder folder;
-  const auto store = *create_world(folder / "w", sample_meta());
+  TempPlace place;
+  const auto store = *create_world(place / "w", sample_meta());
   REQUIRE(store->raise_epoch().has_value());
   const auto first = static_cast<Material>(store->meta().materials.size());
   const auto refused = [&](const std::vector<EditRecord>& records) {
@@ -112,28 +112,30 @@ TEST_CASE("records that do not continue the material table are refused", "[store
 }
 
 TEST_CASE("a damaged or lost record of materials is noticed", "[store][materials][damage]") {
-  const TempFolder folder;
-  make_world_with_wool(folder / "w");
+  TempPlace place;
+  make_world_with_wool(place / "w");
   std::string where;
   SECTION("damaged") {
-    raw_sql(folder / "w/world.sqlite",
-            "UPDATE edit_log SET descriptor = zeroblob(length(descriptor)) WHERE seq = 5");
+    raw_sql(
+        place / "w/world.sqlite",
+        "UPDATE edit_log SET descriptor = (SELECT descriptor FROM edit_log WHERE seq = 4) WHERE seq = 5");
     where = "seq=5";
   }
   SECTION("lost") {
-    raw_sql(folder / "w/world.sqlite", "DELETE FROM edit_log WHERE seq = 5");
+    raw_sql(place / "w/world.sqlite", "DELETE FROM edit_log WHERE seq = 5");
     where = "seq=20";  // which does not continue the table
   }
   SECTION("damaged after a compaction") {
-    REQUIRE(opened_world(folder / "w")->compact(10).has_value());
-    raw_sql(folder / "w/world.sqlite",
-            "UPDATE meta SET value = replace(value, 'lime', 'limo') WHERE key = 'materials'");
-    const auto store = open_world(folder / "w", StoreAccess::read_write);
+    REQUIRE(opened_world(place / "w")->compact(10).has_value());
+    const std::string value = place.is_postgres() ? "text_value" : "value";
+    raw_sql(place / "w/world.sqlite", "UPDATE meta SET " + value + " = replace(" + value +
+                                          ", 'lime', 'limo') WHERE key = 'materials'");
+    const auto store = open_world(place / "w", StoreAccess::read_write);
     REQUIRE_FALSE(store.has_value());
     CHECK(store.error().message().find("meta key=materials") != std::string::npos);
     return;
   }
-  const auto store = opened_world(folder / "w");
+  const auto store = opened_world(place / "w");
   const auto read = store->materials();
   REQUIRE_FALSE(read.has_value());
   CHECK(read.error().kind == StoreError::Kind::corrupt);

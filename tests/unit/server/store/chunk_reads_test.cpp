@@ -6,7 +6,7 @@
 #include "server/store/read_span.hpp"
 #include "server/store/store.hpp"
 #include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temp_place.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
@@ -38,8 +38,8 @@ TEST_CASE(
 
 TEST_CASE("joined reads see one moment while another program writes", "[store]") {
   SplitMix64 rng{7};
-  const TempFolder folder;
-  const auto writer = *create_world(folder.path(), sample_meta());
+  TempPlace place;
+  const auto writer = *create_world(place.path(), sample_meta());
   REQUIRE(writer->raise_epoch().has_value());
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
   REQUIRE(writer->append(players, sample_records(rng, 1, 1, 20)).has_value());
@@ -49,7 +49,7 @@ TEST_CASE("joined reads see one moment while another program writes", "[store]")
     REQUIRE(writer->save_snapshots(chunks, std::nullopt).has_value());
   };
   save({1, 3});
-  const auto reader = *open_world(folder.path(), StoreAccess::read_only);
+  const auto reader = *open_world(place.path(), StoreAccess::read_only);
   const auto version = [&] { return (*reader->load_snapshot(key))->version; };
   {
     ReadSpan reads(*reader);

@@ -30,7 +30,7 @@ void write_mark(const TempFolder& folder, const DurableState& state) {
 
 }  // namespace
 
-TEST_CASE("a mark holds the newest state, across writers", "[store][mark]") {
+TEST_CASE("a mark holds the newest state, across writers", "[store][mark][sqlite]") {
   const TempFolder folder;
   CHECK(mark_in(folder) == std::nullopt);
   CHECK(std::filesystem::is_empty(folder.path()));  // reading makes no file
@@ -44,7 +44,8 @@ TEST_CASE("a mark holds the newest state, across writers", "[store][mark]") {
   CHECK(mark_in(folder) == DurableState{2, 4, 3});
 }
 
-TEST_CASE("one damaged slot of a mark leaves the other, and two are reported", "[store][mark]") {
+TEST_CASE("one damaged slot of a mark leaves the other, and two are reported",
+          "[store][mark][sqlite]") {
   const TempFolder folder;
   const std::string file = folder / "world.durable";
   write_mark(folder, {1, 7, 1});  // in the first slot
@@ -73,7 +74,8 @@ TEST_CASE("one damaged slot of a mark leaves the other, and two are reported", "
   CHECK(read.error().file == file);
 }
 
-TEST_CASE("the next write repairs a damaged slot and keeps the sound one", "[store][mark]") {
+TEST_CASE("the next write repairs a damaged slot and keeps the sound one",
+          "[store][mark][sqlite]") {
   const TempFolder folder;
   write_mark(folder, {1, 7, 1});
   write_mark(folder, {1, 8, 1});
@@ -84,7 +86,7 @@ TEST_CASE("the next write repairs a damaged slot and keeps the sound one", "[sto
   CHECK(mark_in(folder) == DurableState{1, 7, 1});
 }
 
-TEST_CASE("an empty mark and the mark of another world count as none", "[store][mark]") {
+TEST_CASE("an empty mark and the mark of another world count as none", "[store][mark][sqlite]") {
   const TempFolder folder;
   std::ofstream(folder / "world.durable").flush();
   CHECK(mark_in(folder) == std::nullopt);

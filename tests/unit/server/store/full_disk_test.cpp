@@ -6,7 +6,7 @@
 #include <semaphore>
 
 #include "server/store/log_writer.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/support/power_loss_vfs.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -99,7 +99,7 @@ std::vector<Sequence> sequences(Sequence last) {
 }  // namespace
 
 TEST_CASE("a full disk keeps every queued record, and writing goes on when there is space",
-          "[store][log-writer]") {
+          "[store][log-writer][sqlite]") {
   SpaceBench bench;
   bench.append(1, 2);
   bench.sink.is_full = true;
@@ -121,7 +121,7 @@ TEST_CASE("a full disk keeps every queued record, and writing goes on when there
 }
 
 TEST_CASE("a stop on a full disk gives up and says how many records are lost",
-          "[store][log-writer]") {
+          "[store][log-writer][sqlite]") {
   SpaceBench bench;
   bench.sink.is_full = true;
   bench.append(1, 3);
@@ -134,7 +134,7 @@ TEST_CASE("a stop on a full disk gives up and says how many records are lost",
 }
 
 TEST_CASE("a stop writes all records although the snapshots before them have no room",
-          "[store][log-writer]") {
+          "[store][log-writer][sqlite]") {
   SpaceBench bench(0, 1h);
   bench.sink.is_full_for_snapshots = true;
   REQUIRE(bench.writer->save_snapshots({}, Sequence{1}));
@@ -145,7 +145,8 @@ TEST_CASE("a stop writes all records although the snapshots before them have no 
   CHECK(bench.writer->counters().queued_records == 0);
 }
 
-TEST_CASE("snapshots wait for space, and keyframes end with an error", "[store][log-writer]") {
+TEST_CASE("snapshots wait for space, and keyframes end with an error",
+          "[store][log-writer][sqlite]") {
   SpaceBench bench;
   bench.sink.is_full = true;
   REQUIRE(bench.writer->save_snapshots({}, Sequence{1}));
@@ -165,7 +166,7 @@ TEST_CASE("snapshots wait for space, and keyframes end with an error", "[store][
 }
 
 TEST_CASE("below the reserve there is no room for new records, and queued ones are written",
-          "[store][log-writer]") {
+          "[store][log-writer][sqlite]") {
   SpaceBench bench(2 << 20);       // one MiB is free
   CHECK(bench.low.try_acquire());  // known before the constructor returns
   CHECK_FALSE(bench.writer->has_room(1));
@@ -187,7 +188,7 @@ TEST_CASE("below the reserve there is no room for new records, and queued ones a
 }
 
 TEST_CASE("a store that found the disk full at any operation accepts the same records again",
-          "[store]") {
+          "[store][sqlite]") {
   std::size_t refused = 0;
   for (std::uint64_t room = 0; room < 40; ++room) {
     CAPTURE(room);

@@ -4,12 +4,12 @@
 #include <catch2/catch.hpp>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/support/builder_session.hpp"
 #include "tests/support/compact_by_hand.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temp_place.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
@@ -33,11 +33,11 @@ std::vector<EditRecord> mixed_records(std::uint64_t seed, std::size_t count) {
 }
 
 /// Writes the records in commits of 1 to 40, and opens the world three times.
-void make_world(const std::string& folder, std::vector<EditRecord>& records, SplitMix64& rng) {
-  REQUIRE(create_world(folder, sample_meta()).has_value());
+void make_world(const std::string& place, std::vector<EditRecord>& records, SplitMix64& rng) {
+  REQUIRE(create_world(place, sample_meta()).has_value());
   std::size_t done = 0;
   for (std::size_t part = 1; part <= 3; ++part) {
-    auto store = *open_world(folder, StoreAccess::read_write);
+    auto store = *open_world(place, StoreAccess::read_write);
     const Epoch epoch = *store->raise_epoch();
     const std::size_t end = records.size() * part / 3;
     while (done < end) {
@@ -109,11 +109,11 @@ std::size_t compare(Store& store, const std::vector<EditRecord>& records, SplitM
 }  // namespace
 
 TEST_CASE("queries of the log find the same records as a naive scan", "[store][query]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(1);
   auto records = mixed_records(1, 1500);
-  make_world(folder.path(), records, rng);
-  auto store = *open_world(folder.path(), StoreAccess::read_only);
+  make_world(place.path(), records, rng);
+  auto store = *open_world(place.path(), StoreAccess::read_only);
   CHECK(compare(*store, records, rng, 400) > 150);
   CHECK(ask(*store, {}) == records);
   CHECK(store->check().has_value());
@@ -123,22 +123,22 @@ TEST_CASE("queries of the log find the same records as a naive scan", "[store][q
 }
 
 TEST_CASE("queries reach no further back than the log", "[store][query]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(3);
   auto records = mixed_records(3, 300);
-  make_world(folder.path(), records, rng);
-  compact_by_hand(folder / "world.sqlite", {records[99].version, records[99].time_us}, {});
+  make_world(place.path(), records, rng);
+  compact_by_hand(place / "world.sqlite", {records[99].version, records[99].time_us}, {});
   records.erase(records.begin(), records.begin() + 100);
-  auto store = *open_world(folder.path(), StoreAccess::read_only);
+  auto store = *open_world(place.path(), StoreAccess::read_only);
   CHECK(compare(*store, records, rng, 100) > 20);
 }
 
 TEST_CASE("a segment that misses an edit is damage that the check names", "[store][query]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(4);
   auto records = mixed_records(4, 300);
-  make_world(folder.path(), records, rng);
-  const std::string file = folder / "world.sqlite";
+  make_world(place.path(), records, rng);
+  const std::string file = place / "world.sqlite";
   const std::string change = GENERATE(
       std::string("DELETE FROM log_box WHERE first_seq = (SELECT max(first_seq) FROM log_box)"),
       std::string("UPDATE log_box SET max_x = min_x WHERE first_seq = (SELECT max(first_seq) "
@@ -146,15 +146,15 @@ TEST_CASE("a segment that misses an edit is damage that the check names", "[stor
       std::string(
           "UPDATE log_box SET author = 77 WHERE first_seq = (SELECT max(first_seq) FROM log_box)"));
   REQUIRE(raw_sql(file, change).find("ERROR") == std::string::npos);
-  const auto checked = (*open_world(folder.path(), StoreAccess::read_only))->check();
+  const auto checked = (*open_world(place.path(), StoreAccess::read_only))->check();
   REQUIRE_FALSE(checked.has_value());
   CHECK(checked.error().where == "log_box");
 }
 
 TEST_CASE("a commit that was refused leaves the segments as they were", "[store][query]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(5);
-  auto store = *create_world(folder.path(), sample_meta());
+  auto store = *create_world(place.path(), sample_meta());
   REQUIRE(store->raise_epoch().has_value());
   auto records = mixed_records(5, 40);
   REQUIRE(store->append({}, std::span(records).first(20)).has_value());
@@ -170,9 +170,9 @@ TEST_CASE("a commit that was refused leaves the segments as they were", "[store]
 }
 
 TEST_CASE("a builders' edit costs at most 120 bytes of database, five edits a commit",
-          "[store][query]") {
-  const TempFolder folder;
-  auto store = *create_world(folder.path(), sample_meta());
+          "[store][query][sqlite]") {
+  TempPlace place;
+  auto store = *create_world(place.path(), sample_meta());
   REQUIRE(store->raise_epoch().has_value());
   const auto bytes_of_file = [&] {
     return std::stol(raw_sql(

@@ -5,7 +5,7 @@
 #include <semaphore>
 
 #include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temp_place.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
@@ -341,8 +341,8 @@ TEST_CASE("a failure of the writer ends the jobs for keyframes with an error",
 }
 
 TEST_CASE("batches from another thread arrive on disk in order", "[store][log-writer]") {
-  const TempFolder folder;
-  auto store = *create_world(folder.path(), sample_meta());
+  TempPlace place;
+  auto store = *create_world(place.path(), sample_meta());
   REQUIRE(store->raise_epoch().has_value());
   SplitMix64 rng(6);
   const auto records = sample_records(rng, 1, 1, 3000);

@@ -62,12 +62,12 @@ bool has(const std::string& text, const std::string& part) {
 
 constexpr const char* kAllOfWalLost =
     "ends at seq=12, but seq=20 was durable: the edits seq=13 to seq=20 are lost, because "
-    "world.sqlite-wal was lost or damaged, or an older world.sqlite was put back. Put the world's "
-    "folder back from a backup, or start the server once with --accept-losses";
+    "world.sqlite-wal was lost or damaged, or an older world.sqlite was put back. Put the world "
+    "back from a backup, or start the server once with --accept-losses";
 
 }  // namespace
 
-TEST_CASE("a killed world with its WAL has lost nothing", "[store][loss]") {
+TEST_CASE("a killed world with its WAL has lost nothing", "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   {
@@ -78,7 +78,7 @@ TEST_CASE("a killed world with its WAL has lost nothing", "[store][loss]") {
   CHECK(refusal(folder.path()) == "opens");
 }
 
-TEST_CASE("a deleted WAL is noticed, and the world stays as it is", "[store][loss]") {
+TEST_CASE("a deleted WAL is noticed, and the world stays as it is", "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   std::filesystem::remove(folder / "world.sqlite-wal");
@@ -98,7 +98,7 @@ TEST_CASE("a deleted WAL is noticed, and the world stays as it is", "[store][los
 }
 
 TEST_CASE("a flipped bit anywhere in the WAL is noticed, and the WAL is left for a repair",
-          "[store][loss]") {
+          "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   const std::string wal = folder / "world.sqlite-wal";
@@ -125,7 +125,8 @@ TEST_CASE("a flipped bit anywhere in the WAL is noticed, and the WAL is left for
         kSavedEdits + kWalEdits);
 }
 
-TEST_CASE("a damaged WAL that hides newer pages of the main file is noticed", "[store][loss]") {
+TEST_CASE("a damaged WAL that hides newer pages of the main file is noticed",
+          "[store][loss][sqlite]") {
   const TempFolder live, folder;
   SplitMix64 rng(41);
   {
@@ -162,7 +163,7 @@ TEST_CASE("a damaged WAL that hides newer pages of the main file is noticed", "[
 }
 
 TEST_CASE("a log that ends elsewhere than meta says is not written, with or without a mark",
-          "[store][loss]") {
+          "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   REQUIRE(raw_sql(folder / "world.sqlite", "DELETE FROM edit_log WHERE seq = 20").empty());
@@ -174,7 +175,8 @@ TEST_CASE("a log that ends elsewhere than meta says is not written, with or with
   CHECK(world_of(folder.path(), StoreAccess::read_only)->loss().has_value());
 }
 
-TEST_CASE("an accepted loss raises the epoch above every lost start, and ends", "[store][loss]") {
+TEST_CASE("an accepted loss raises the epoch above every lost start, and ends",
+          "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   std::filesystem::remove(folder / "world.sqlite-wal");
@@ -205,7 +207,7 @@ TEST_CASE("an accepted loss raises the epoch above every lost start, and ends", 
   CHECK(store->check().has_value());
 }
 
-TEST_CASE("nothing is accepted where nothing is lost", "[store][loss]") {
+TEST_CASE("nothing is accepted where nothing is lost", "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   const auto store = world_of(folder.path(), StoreAccess::repair);
@@ -214,7 +216,7 @@ TEST_CASE("nothing is accepted where nothing is lost", "[store][loss]") {
   CHECK(*store->last_sequence() == kSavedEdits + kWalEdits);
 }
 
-TEST_CASE("a lost start is noticed although no edit is lost", "[store][loss]") {
+TEST_CASE("a lost start is noticed although no edit is lost", "[store][loss][sqlite]") {
   const TempFolder live, folder;
   {
     const auto store = *create_world(live.path(), sample_meta());
@@ -227,7 +229,7 @@ TEST_CASE("a lost start is noticed although no edit is lost", "[store][loss]") {
   CHECK(has(refusal(folder.path()), "epoch=2 was durable: the database has epoch=1"));
 }
 
-TEST_CASE("an older database that was put back is noticed", "[store][loss]") {
+TEST_CASE("an older database that was put back is noticed", "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   std::filesystem::copy_file(folder / "world.sqlite", folder / "old");
@@ -237,7 +239,7 @@ TEST_CASE("an older database that was put back is noticed", "[store][loss]") {
   CHECK(refusal(folder.path()) == kAllOfWalLost);
 }
 
-TEST_CASE("a checkpoint of the WAL and a compaction lose nothing", "[store][loss]") {
+TEST_CASE("a checkpoint of the WAL and a compaction lose nothing", "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   REQUIRE(raw_sql(folder / "world.sqlite", "PRAGMA wal_checkpoint(TRUNCATE)") == "0");
@@ -252,7 +254,7 @@ TEST_CASE("a checkpoint of the WAL and a compaction lose nothing", "[store][loss
   CHECK(refusal(folder.path()) == "opens");
 }
 
-TEST_CASE("a world without a mark opens without a word and gets one", "[store][loss]") {
+TEST_CASE("a world without a mark opens without a word and gets one", "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   std::filesystem::remove(folder / "world.sqlite-wal");
@@ -269,7 +271,7 @@ TEST_CASE("a world without a mark opens without a word and gets one", "[store][l
   CHECK(refusal(folder.path()) == "opens");
 }
 
-TEST_CASE("a damaged mark is reported until the loss is accepted", "[store][loss]") {
+TEST_CASE("a damaged mark is reported until the loss is accepted", "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   flip_bit(folder / "world.durable", 20);

@@ -6,7 +6,7 @@
 #include "tests/support/compact_by_hand.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temp_place.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
@@ -17,9 +17,9 @@ constexpr Sequence kLostPlayerEdits = 30;
 
 /// Makes a closed world with two players, who have two client processes each. One of them was
 /// renamed.
-void make_peopled_world(const std::string& folder) {
+void make_peopled_world(const std::string& place) {
   SplitMix64 rng(8);
-  const auto store = *create_world(folder, sample_meta());
+  const auto store = *create_world(place, sample_meta());
   REQUIRE(store->raise_epoch().has_value());
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
   REQUIRE(store->append(players, sample_records(rng, 1, 1, kLostPlayerEdits - 1)).has_value());
@@ -28,14 +28,14 @@ void make_peopled_world(const std::string& folder) {
   REQUIRE(store->append({&renamed, 1}, sample_records(rng, 1, kLostPlayerEdits, 1)).has_value());
 }
 
-std::unique_ptr<Store> peopled_world(const std::string& folder, StoreAccess access) {
-  auto store = open_world(folder, access);
+std::unique_ptr<Store> peopled_world(const std::string& place, StoreAccess access) {
+  auto store = open_world(place, access);
   if (!store) FAIL(store.error().message());
   return *std::move(store);
 }
 
-void delete_row(const TempFolder& folder, const std::string& from) {
-  REQUIRE(raw_sql(folder / "world.sqlite", "DELETE FROM " + from + "; SELECT changes()") == "1");
+void delete_row(TempPlace& place, const std::string& from) {
+  REQUIRE(raw_sql(place / "world.sqlite", "DELETE FROM " + from + "; SELECT changes()") == "1");
 }
 
 constexpr const char* kOneWatermark =
@@ -44,17 +44,17 @@ constexpr const char* kOneWatermark =
 /// Returns the cause in the error about a table that does not have the rows that `meta` counts.
 std::string wrong_rows(const std::string& counts) {
   return "rows vanished, appeared or changed: " + counts +
-         ". Put the world's folder back from a backup, or start the server once with "
+         ". Put the world back from a backup, or start the server once with "
          "--accept-losses";
 }
 
 }  // namespace
 
 TEST_CASE("a missing player is noticed and named, and the number stays taken", "[store][loss]") {
-  const TempFolder folder;
-  make_peopled_world(folder.path());
-  delete_row(folder, "player WHERE author = 2");
-  const auto store = peopled_world(folder.path(), StoreAccess::read_write);
+  TempPlace place;
+  make_peopled_world(place.path());
+  delete_row(place, "player WHERE author = 2");
+  const auto store = peopled_world(place.path(), StoreAccess::read_write);
   const auto players = store->players();
   REQUIRE_FALSE(players.has_value());
   CHECK(players.error().kind == StoreError::Kind::corrupt);
@@ -67,19 +67,19 @@ TEST_CASE("a missing player is noticed and named, and the number stays taken", "
 }
 
 TEST_CASE("a missing player whose edits were compacted away is noticed", "[store][loss]") {
-  const TempFolder folder;
-  make_peopled_world(folder.path());
-  compact_by_hand(folder / "world.sqlite", {{1, kLostPlayerEdits}, 1}, {});
-  delete_row(folder, "player WHERE author = 1");
-  const auto store = peopled_world(folder.path(), StoreAccess::read_only);
+  TempPlace place;
+  make_peopled_world(place.path());
+  compact_by_hand(place / "world.sqlite", {{1, kLostPlayerEdits}, 1}, {});
+  delete_row(place, "player WHERE author = 1");
+  const auto store = peopled_world(place.path(), StoreAccess::read_only);
   const auto players = store->players();
   REQUIRE_FALSE(players.has_value());
   CHECK(players.error().what == wrong_rows("1 rows, meta counts 2"));
 }
 
 TEST_CASE("a player's row in an older state is noticed", "[store][loss]") {
-  const TempFolder folder, before_renaming;
-  make_peopled_world(folder.path());
+  TempPlace place, before_renaming;
+  make_peopled_world(place.path());
   {
     const auto store = *create_world(before_renaming.path(), sample_meta());
     const PlayerRow player = sample_player(2);
@@ -87,22 +87,22 @@ TEST_CASE("a player's row in an older state is noticed", "[store][loss]") {
   }
   const std::string checksum =
       raw_sql(before_renaming / "world.sqlite", "SELECT checksum FROM player");
-  REQUIRE(raw_sql(folder / "world.sqlite",
+  REQUIRE(raw_sql(place / "world.sqlite",
                   "UPDATE player SET name = 'builder 2', checksum = " + checksum +
                       " WHERE author = 2; SELECT changes()") == "1");
-  const auto players = peopled_world(folder.path(), StoreAccess::read_only)->players();
+  const auto players = peopled_world(place.path(), StoreAccess::read_only)->players();
   REQUIRE_FALSE(players.has_value());
   CHECK(players.error().where == "player");
   CHECK(players.error().what.find("2 rows, meta counts 2") != std::string::npos);
 }
 
 TEST_CASE("a missing watermark is noticed, also without its edits in the log", "[store][loss]") {
-  const TempFolder folder;
-  make_peopled_world(folder.path());
-  compact_by_hand(folder / "world.sqlite", {{1, kLostPlayerEdits}, 1}, {});
-  CHECK(peopled_world(folder.path(), StoreAccess::read_only)->high_waters()->size() == 4);
-  delete_row(folder, kOneWatermark);
-  const auto store = peopled_world(folder.path(), StoreAccess::read_write);
+  TempPlace place;
+  make_peopled_world(place.path());
+  compact_by_hand(place / "world.sqlite", {{1, kLostPlayerEdits}, 1}, {});
+  CHECK(peopled_world(place.path(), StoreAccess::read_only)->high_waters()->size() == 4);
+  delete_row(place, kOneWatermark);
+  const auto store = peopled_world(place.path(), StoreAccess::read_write);
   const auto marks = store->high_waters();
   REQUIRE_FALSE(marks.has_value());
   CHECK(marks.error().where == "player_instance");
@@ -110,13 +110,13 @@ TEST_CASE("a missing watermark is noticed, also without its edits in the log", "
 }
 
 TEST_CASE("lost rows are accepted once: watermarks come back from the log", "[store][loss]") {
-  const TempFolder folder;
-  make_peopled_world(folder.path());
-  const auto before = *peopled_world(folder.path(), StoreAccess::read_only)->high_waters();
-  delete_row(folder, "player WHERE author = 2");
-  delete_row(folder, kOneWatermark);
+  TempPlace place;
+  make_peopled_world(place.path());
+  const auto before = *peopled_world(place.path(), StoreAccess::read_only)->high_waters();
+  delete_row(place, "player WHERE author = 2");
+  delete_row(place, kOneWatermark);
   {
-    const auto store = peopled_world(folder.path(), StoreAccess::repair);
+    const auto store = peopled_world(place.path(), StoreAccess::repair);
     const auto lost = store->accept_losses();
     REQUIRE(lost.has_value());
     REQUIRE(lost->size() == 2);
@@ -124,7 +124,7 @@ TEST_CASE("lost rows are accepted once: watermarks come back from the log", "[st
     CHECK(lost->at(1).find("player_instance: rows vanished") != std::string::npos);
     CHECK(store->accept_losses()->empty());
   }
-  const auto store = peopled_world(folder.path(), StoreAccess::read_write);
+  const auto store = peopled_world(place.path(), StoreAccess::read_write);
   REQUIRE(store->players().has_value());
   CHECK(store->players()->size() == 1);
   CHECK(store->author_max() == 2);
@@ -141,10 +141,10 @@ TEST_CASE("lost rows are accepted once: watermarks come back from the log", "[st
 }
 
 TEST_CASE("a batch that is refused changes no fold", "[store][loss]") {
-  const TempFolder folder;
-  make_peopled_world(folder.path());
+  TempPlace place;
+  make_peopled_world(place.path());
   SplitMix64 rng(9);
-  const auto store = peopled_world(folder.path(), StoreAccess::read_write);
+  const auto store = peopled_world(place.path(), StoreAccess::read_write);
   const std::vector<PlayerRow> players = {sample_player(3), sample_player(0)};  // 0 is the server
   REQUIRE_FALSE(
       store->append(players, sample_records(rng, 1, kLostPlayerEdits + 1, 3)).has_value());

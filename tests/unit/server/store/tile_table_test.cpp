@@ -8,7 +8,7 @@
 #include "server/store/store.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temp_place.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
@@ -33,11 +33,11 @@ struct TiledWorld {
     const KeyedChunks chunks = {{{0, at}, sample_chunk(rng, version)}};
     REQUIRE(store->save_snapshots(chunks, std::nullopt).has_value());
   }
-  std::string file() const { return folder / "world.sqlite"; }
+  std::string file() { return place / "world.sqlite"; }
 
   SplitMix64 rng{4};
-  TempFolder folder;
-  std::unique_ptr<Store> store = *create_world(folder.path(), sample_meta());
+  TempPlace place;
+  std::unique_ptr<Store> store = *create_world(place.path(), sample_meta());
 };
 
 /// Takes from a closed world what format 4 added.
@@ -111,7 +111,7 @@ TEST_CASE("a tile that cannot be stored is refused, and nothing is written", "[s
 }
 
 TEST_CASE("a damaged column of a tile is an error that names file, table and tile",
-          "[store][tiles][damage]") {
+          "[store][tiles][damage][sqlite]") {
   TiledWorld world;
   world.save_tile({2, {1, -2, 3}}, {1, 5});
   for (const char* change :
@@ -131,8 +131,8 @@ TEST_CASE("a damaged column of a tile is an error that names file, table and til
 
 TEST_CASE("an import of base chunks and an accepted loss delete all tiles", "[store][tiles]") {
   SECTION("import") {
-    const TempFolder folder;
-    const auto store = *create_world(folder.path(), sample_meta());
+    TempPlace place;
+    const auto store = *create_world(place.path(), sample_meta());
     SplitMix64 rng(5);
     const KeyedChunks tiles = {{{1, {0, 0, 0}}, sample_chunk(rng, {})}};
     REQUIRE(store->save_tiles(tiles).has_value());
@@ -166,7 +166,7 @@ TEST_CASE("a compaction deletes the tiles that are older than the snapshots it m
 }
 
 TEST_CASE("tiles of other rules are not there for a reader, and a writer deletes them",
-          "[store][tiles]") {
+          "[store][tiles][sqlite]") {
   // A world of format 4, one that is as it was, and one of format 5 that lost the row.
   const char* const changes[] = {
       "DELETE FROM meta WHERE key = 'tile_rules'; PRAGMA user_version = 4; SELECT 'done'", nullptr,
@@ -179,12 +179,12 @@ TEST_CASE("tiles of other rules are not there for a reader, and a writer deletes
     if (change != nullptr) REQUIRE(raw_sql(file, change) == "done");
     const std::size_t left = change != nullptr ? 0 : 1;
     {
-      const auto reader = *open_world(world.folder.path(), StoreAccess::read_only);
+      const auto reader = *open_world(world.place.path(), StoreAccess::read_only);
       CHECK(reader->tile_keys()->size() == left);
       CHECK(reader->load_tile({1, {0, 0, 0}})->has_value() == (left == 1));
     }
     CHECK(raw_sql(file, "SELECT count(*) FROM tile") == "1");  // a reader deletes nothing
-    world.store = *open_world(world.folder.path(), StoreAccess::read_write);
+    world.store = *open_world(world.place.path(), StoreAccess::read_write);
     CHECK(world.store->tile_keys()->size() == left);
     CHECK(raw_sql(file, "SELECT value FROM meta WHERE key = 'tile_rules'") ==
           std::to_string(kTileRules));
@@ -194,19 +194,19 @@ TEST_CASE("tiles of other rules are not there for a reader, and a writer deletes
 }
 
 TEST_CASE("a world of format 3 has no tiles for a reader, and gets the table from a writer",
-          "[store][tiles]") {
+          "[store][tiles][sqlite]") {
   TiledWorld world;
   world.save_tile({1, {0, 0, 0}}, {1, 6});
   world.store.reset();
   make_format_3(world.file());
   {
-    const auto reader = *open_world(world.folder.path(), StoreAccess::read_only);
+    const auto reader = *open_world(world.place.path(), StoreAccess::read_only);
     CHECK(reader->tile_keys()->empty());
     CHECK_FALSE(reader->load_tile({1, {0, 0, 0}})->has_value());
     CHECK(reader->check().has_value());
   }
   CHECK(raw_sql(world.file(), "PRAGMA user_version") == "3");  // a reader converts nothing
-  world.store = *open_world(world.folder.path(), StoreAccess::read_write);
+  world.store = *open_world(world.place.path(), StoreAccess::read_write);
   CHECK(raw_sql(world.file(), "PRAGMA user_version") == "5");
   world.save_tile({1, {0, 0, 0}}, {1, 6});
   CHECK(world.store->tile_keys()->size() == 1);

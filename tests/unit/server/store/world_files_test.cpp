@@ -31,7 +31,7 @@ std::vector<char> bytes_of(const std::string& file) {
 }  // namespace
 
 TEST_CASE("a new world is for its owner alone, and a folder that is there stays as it is",
-          "[store]") {
+          "[store][sqlite]") {
   using std::filesystem::perms;
   const auto mode = [](const std::string& path) {
     return std::filesystem::status(path).permissions();
@@ -62,7 +62,8 @@ TEST_CASE("a new world is for its owner alone, and a folder that is there stays 
   CHECK(mode(given + "/world.sqlite") == own_file);
 }
 
-TEST_CASE("a world of a newer format is refused and its bytes stay as they are", "[store]") {
+TEST_CASE("a world of a newer format is refused and its bytes stay as they are",
+          "[store][sqlite]") {
   const TempFolder folder;
   create(folder.path());
   const std::string file = folder / "world.sqlite";
@@ -87,7 +88,7 @@ TEST_CASE("a world of a newer format is refused and its bytes stay as they are",
         StoreError::Kind::corrupt);
 }
 
-TEST_CASE("a file that is not a world is refused and does not change", "[store]") {
+TEST_CASE("a file that is not a world is refused and does not change", "[store][sqlite]") {
   const TempFolder folder;
   const std::string file = folder / "world.sqlite";
   const auto kind = [&] { return open_world(folder.path(), StoreAccess::read_write).error().kind; };
@@ -106,7 +107,7 @@ TEST_CASE("a file that is not a world is refused and does not change", "[store]"
   CHECK(kind() == StoreError::Kind::not_a_world);
 }
 
-TEST_CASE("a world is created once and only from meta that can be read back", "[store]") {
+TEST_CASE("a world is created once and only from meta that can be read back", "[store][sqlite]") {
   const TempFolder folder;
   WorldMeta meta = sample_meta();
   meta.chunk_edge = 48;
@@ -117,7 +118,7 @@ TEST_CASE("a world is created once and only from meta that can be read back", "[
   CHECK(open_world(folder.path(), StoreAccess::read_write).has_value());
 }
 
-TEST_CASE("a WAL without its world is not replaced by a new world", "[store]") {
+TEST_CASE("a WAL without its world is not replaced by a new world", "[store][sqlite]") {
   const TempFolder folder;
   const std::string wal = folder / "world.sqlite-wal";
   std::ofstream(wal) << "edits";
@@ -129,7 +130,7 @@ TEST_CASE("a WAL without its world is not replaced by a new world", "[store]") {
   CHECK_FALSE(std::filesystem::exists(folder / "world.sqlite"));
 }
 
-TEST_CASE("a folder that cannot be written is reported", "[store]") {
+TEST_CASE("a folder that cannot be written is reported", "[store][sqlite]") {
   // Root cannot make a folder there either, so the test holds in containers too.
   const auto made = create_world("/proc/runstone-world", sample_meta());
   REQUIRE_FALSE(made.has_value());

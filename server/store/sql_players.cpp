@@ -1,4 +1,4 @@
-// The part of SqliteStore that reads, writes and repairs players, names, rights and watermarks.
+// The part of SqlStore that reads, writes and repairs players, names, rights and watermarks.
 // `meta` holds a fold of each of these tables but `player_name`, which detects rows that are lost.
 #include <algorithm>
 #include <set>
@@ -7,8 +7,9 @@
 #include "common/core/epoch_branch.hpp"
 #include "common/names/folded_name.hpp"
 #include "server/store/loss_advice.hpp"
-#include "server/store/sqlite_result.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sql_result.hpp"
+#include "server/store/sql_store.hpp"
+#include "server/store/world_schema.hpp"
 
 namespace runstone {
 namespace {
@@ -25,8 +26,8 @@ std::string fold_key_of(const std::string& table) { return table + "_fold"; }
 
 }  // namespace
 
-StoreResult<void> SqliteStore::check_fold(const std::string& table, const RowFold& found,
-                                          const std::string& more) {
+StoreResult<void> SqlStore::check_fold(const std::string& table, const RowFold& found,
+                                       const std::string& more) {
   const auto expected = meta_table_.fold(fold_key_of(table));
   if (!expected) return failed(expected.error());
   if (found == *expected) return {};
@@ -36,7 +37,7 @@ StoreResult<void> SqliteStore::check_fold(const std::string& table, const RowFol
            " rows, meta counts " + std::to_string(expected->count) + more + ". " + kLossAdvice}};
 }
 
-StoreResult<void> SqliteStore::check_players(const FoldedRows<PlayerRow>& players) {
+StoreResult<void> SqlStore::check_players(const FoldedRows<PlayerRow>& players) {
   if (auto sound = check_fold(kPlayers, players.fold); sound) return sound;
   const auto missing = log_.authors_without(players.rows);
   if (!missing) return failed(missing.error());
@@ -45,7 +46,7 @@ StoreResult<void> SqliteStore::check_players(const FoldedRows<PlayerRow>& player
   return check_fold(kPlayers, players.fold, more);
 }
 
-StoreResult<std::vector<PlayerRow>> SqliteStore::players() {
+StoreResult<std::vector<PlayerRow>> SqlStore::players() {
   return at_one_moment<std::vector<PlayerRow>>([&]() -> StoreResult<std::vector<PlayerRow>> {
     auto players = player_table_.players();
     if (!players) return failed(players.error());
@@ -54,9 +55,9 @@ StoreResult<std::vector<PlayerRow>> SqliteStore::players() {
   });
 }
 
-StoreResult<std::vector<UsedName>> SqliteStore::player_names() { return names_.names(); }
+StoreResult<std::vector<UsedName>> SqlStore::player_names() { return names_.names(); }
 
-StoreResult<std::vector<NameClaim>> SqliteStore::name_claims() {
+StoreResult<std::vector<NameClaim>> SqlStore::name_claims() {
   if (!claims_) return std::vector<NameClaim>();
   return at_one_moment<std::vector<NameClaim>>([&]() -> StoreResult<std::vector<NameClaim>> {
     auto claims = claims_->claims();
@@ -66,7 +67,7 @@ StoreResult<std::vector<NameClaim>> SqliteStore::name_claims() {
   });
 }
 
-StoreResult<void> SqliteStore::change_names(std::span<const NameChange> changes) {
+StoreResult<void> SqlStore::change_names(std::span<const NameChange> changes) {
   return write([&]() -> StoreResult<void> {
     auto fold = meta_table_.fold(fold_key_of(kClaims));
     if (!fold) return failed(fold.error());
@@ -85,14 +86,14 @@ StoreResult<void> SqliteStore::change_names(std::span<const NameChange> changes)
   });
 }
 
-StoreResult<void> SqliteStore::add_claims() {
+StoreResult<void> SqlStore::add_claims() {
   const auto players = player_table_.players();
   if (!players) return failed(players.error());
   // A world that lacks players stays as it is, until its losses are accepted.
   if (access_ == StoreAccess::read_write) {
     if (auto sound = check_players(*players); !sound) return sound;
   }
-  auto table = ClaimTable::open(*database_);
+  auto table = ClaimTable::open(database());
   if (!table) return failed(table.error());
   RowFold fold;
   std::set<std::string> claimed;
@@ -105,16 +106,16 @@ StoreResult<void> SqliteStore::add_claims() {
   return meta_table_.put_fold(fold_key_of(kClaims), fold);
 }
 
-StoreResult<void> SqliteStore::convert_to_format_3() {
-  if (auto made = add_tables_of_format_3(*database_); !made) return made;
+StoreResult<void> SqlStore::convert_to_format_3() {
+  if (auto made = add_tables_of_format_3(database()); !made) return made;
   if (auto added = add_claims(); !added) return added;
-  auto rights = RightsTable::open(*database_);
+  auto rights = RightsTable::open(database());
   if (!rights) return failed(rights.error());
   rights_ = *std::move(rights);
   return meta_table_.put_fold(fold_key_of(kRights), {});
 }
 
-StoreResult<void> SqliteStore::read_rights(const EachRecord& each) {
+StoreResult<void> SqlStore::read_rights(const EachRecord& each) {
   return at_one_moment<void>([&]() -> StoreResult<void> {
     if (rights_) {
       const auto compacted = rights_->records();
@@ -130,7 +131,7 @@ StoreResult<void> SqliteStore::read_rights(const EachRecord& each) {
   });
 }
 
-StoreResult<void> SqliteStore::keep_rights(Sequence last) {
+StoreResult<void> SqlStore::keep_rights(Sequence last) {
   auto fold = meta_table_.fold(fold_key_of(kRights));
   if (!fold) return failed(fold.error());
   LogQuery in_log;
@@ -146,7 +147,7 @@ StoreResult<void> SqliteStore::keep_rights(Sequence last) {
   return meta_table_.put_fold(fold_key_of(kRights), *fold);
 }
 
-StoreResult<std::vector<HighWater>> SqliteStore::high_waters() {
+StoreResult<std::vector<HighWater>> SqlStore::high_waters() {
   return at_one_moment<std::vector<HighWater>>([&]() -> StoreResult<std::vector<HighWater>> {
     auto marks = player_table_.high_waters();
     if (!marks) return failed(marks.error());
@@ -155,7 +156,7 @@ StoreResult<std::vector<HighWater>> SqliteStore::high_waters() {
   });
 }
 
-StoreResult<void> SqliteStore::put_players(std::span<const PlayerRow> players) {
+StoreResult<void> SqlStore::put_players(std::span<const PlayerRow> players) {
   if (players.empty()) return {};
   auto fold = meta_table_.fold(fold_key_of(kPlayers));
   if (!fold) return failed(fold.error());
@@ -167,7 +168,7 @@ StoreResult<void> SqliteStore::put_players(std::span<const PlayerRow> players) {
   return meta_table_.put_fold(fold_key_of(kPlayers), *fold);
 }
 
-void SqliteStore::raise(Watermarks& marks, const EditRecord& record) {
+void SqlStore::raise(Watermarks& marks, const EditRecord& record) {
   const auto [author, instance, seq] = record.op;
   HighWater& mark =
       marks.try_emplace({author, instance}, HighWater{author, instance, seq, record.time_us})
@@ -176,7 +177,7 @@ void SqliteStore::raise(Watermarks& marks, const EditRecord& record) {
   mark.last_us = std::max(mark.last_us, record.time_us);
 }
 
-StoreResult<void> SqliteStore::raise_watermarks(const Watermarks& marks) {
+StoreResult<void> SqlStore::raise_watermarks(const Watermarks& marks) {
   if (marks.empty()) return {};
   auto fold = meta_table_.fold(fold_key_of(kWatermarks));
   if (!fold) return failed(fold.error());
@@ -186,7 +187,7 @@ StoreResult<void> SqliteStore::raise_watermarks(const Watermarks& marks) {
   return meta_table_.put_fold(fold_key_of(kWatermarks), *fold);
 }
 
-StoreResult<void> SqliteStore::accept_lost_rows(std::vector<std::string>& lost) {
+StoreResult<void> SqlStore::accept_lost_rows(std::vector<std::string>& lost) {
   const auto players = player_table_.players();
   if (!players) return failed(players.error());
   if (const auto sound = check_players(*players); !sound) {
@@ -219,12 +220,12 @@ StoreResult<void> SqliteStore::accept_lost_rows(std::vector<std::string>& lost) 
   return read ? raise_watermarks(marks) : read;
 }
 
-StoreResult<std::vector<std::string>> SqliteStore::accept_losses() {
+StoreResult<std::vector<std::string>> SqlStore::accept_losses() {
   std::vector<std::string> lost;
   if (loss_) lost.push_back(loss_->message());
   if (is_mark_damaged_) state_.epoch += kEpochsSkipped;
   // The lost sequences go to other edits. Every epoch that is lost is on the old branch.
-  if (loss_) state_.epoch = next_branch(state_.epoch, 0);
+  if (loss_ || !backend_->has_mark()) state_.epoch = next_branch(state_.epoch, 0);
   const auto written = write([&]() -> StoreResult<void> {
     if (auto put = meta_table_.put("epoch", std::int64_t{state_.epoch}); !put) return put;
     if (auto put = meta_table_.put("author_max", std::int64_t{state_.author_max}); !put) return put;
@@ -232,7 +233,7 @@ StoreResult<std::vector<std::string>> SqliteStore::accept_losses() {
     return accept_lost_rows(lost);
   });
   if (!written) return failed(written.error());
-  database_->keep_wal_on_close(false);
+  backend_->keep_on_close(false);
   return lost;
 }
 

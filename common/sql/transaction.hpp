@@ -1,12 +1,12 @@
 // sql::Transaction: a write transaction that is rolled back unless it was committed.
 #pragma once
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 
 namespace runstone::sql {
 
 class Transaction {
  public:
-  /// Begins a transaction and takes the write lock at once (BEGIN IMMEDIATE).
+  /// Begins a transaction and takes the write lock at once, if the database has one.
   static Result<Transaction> begin(Database& database);
   Transaction(Transaction&& other) noexcept : database_(other.database_) {
     other.database_ = nullptr;

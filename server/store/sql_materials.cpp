@@ -1,14 +1,14 @@
-// The part of SqliteStore that knows the material table: `meta` has the table before the first edit
+// The part of SqlStore that knows the material table: `meta` has the table before the first edit
 // of the log, and records of the log append to it.
 #include <string>
 #include <utility>
 
-#include "server/store/sqlite_result.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sql_result.hpp"
+#include "server/store/sql_store.hpp"
 
 namespace runstone {
 
-StoreResult<MaterialTable> SqliteStore::materials(Sequence at) {
+StoreResult<MaterialTable> SqlStore::materials(Sequence at) {
   return at_one_moment<MaterialTable>([&]() -> StoreResult<MaterialTable> {
     // The row is read anew: since this store was opened, a compaction may have moved records into it.
     const auto rows = meta_table_.read_all();
@@ -33,8 +33,7 @@ StoreResult<MaterialTable> SqliteStore::materials(Sequence at) {
   });
 }
 
-StoreResult<void> SqliteStore::append_materials(const EditRecord& record,
-                                                MaterialTable& table) const {
+StoreResult<void> SqlStore::append_materials(const EditRecord& record, MaterialTable& table) const {
   const AddedMaterials& added = *added_materials_of(record.edit);
   const auto appended = table.append(added.first, added.rows);
   if (appended) return {};
@@ -43,7 +42,7 @@ StoreResult<void> SqliteStore::append_materials(const EditRecord& record,
                                  appended.error().what}};
 }
 
-StoreResult<void> SqliteStore::check_continues_materials(std::span<const EditRecord> records) {
+StoreResult<void> SqlStore::check_continues_materials(std::span<const EditRecord> records) {
   std::optional<MaterialTable> table;
   for (const EditRecord& record : records) {
     if (added_materials_of(record.edit) == nullptr) continue;
@@ -58,7 +57,7 @@ StoreResult<void> SqliteStore::check_continues_materials(std::span<const EditRec
   return {};
 }
 
-StoreResult<MaterialTable> SqliteStore::keep_materials(Sequence last) {
+StoreResult<MaterialTable> SqlStore::keep_materials(Sequence last) {
   auto table = materials(last);
   if (!table) return table;
   if (const auto put = meta_table_.put("materials", to_toml(*table)); !put)

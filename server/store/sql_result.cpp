@@ -1,4 +1,4 @@
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 
 namespace runstone {
 namespace {

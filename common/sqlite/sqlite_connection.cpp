@@ -1,8 +1,8 @@
-#include "common/sqlite/database.hpp"
+#include "common/sqlite/sqlite_connection.hpp"
 
 #include <sqlite3.h>
 
-#include <utility>
+#include "common/sqlite/sqlite_file.hpp"
 
 namespace runstone::sql {
 namespace {
@@ -41,22 +41,22 @@ Result<bool> file_exists(const std::string& file, const std::string& vfs) {
   return there != 0;
 }
 
-void Database::Close::operator()(sqlite3* handle) const { sqlite3_close_v2(handle); }
+void SqliteConnection::Close::operator()(sqlite3* handle) const { sqlite3_close_v2(handle); }
 
-Result<Database> Database::open(const std::string& file, Mode mode, const std::string& vfs) {
+Result<Database> open_sqlite(const std::string& file, SqliteMode mode, const std::string& vfs) {
   int flags = SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
   std::string uri = uri_of(file);
   switch (mode) {
-    case Mode::read:
+    case SqliteMode::read:
       flags |= SQLITE_OPEN_READONLY;
       break;
-    case Mode::write:
+    case SqliteMode::write:
       flags |= SQLITE_OPEN_READWRITE;
       break;
-    case Mode::create:
+    case SqliteMode::create:
       flags |= SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
       break;
-    case Mode::header:
+    case SqliteMode::header:
       flags |= SQLITE_OPEN_READONLY;
       uri += "?immutable=1";
       break;
@@ -64,7 +64,7 @@ Result<Database> Database::open(const std::string& file, Mode mode, const std::s
   sqlite3* handle = nullptr;
   const int code =
       sqlite3_open_v2(uri.c_str(), &handle, flags, vfs.empty() ? nullptr : vfs.c_str());
-  Database database(file, handle);
+  Database database(std::make_unique<SqliteConnection>(file, handle));
   if (code != SQLITE_OK) {
     auto error = failure(handle, code);
     error.error.file = file;
@@ -74,53 +74,34 @@ Result<Database> Database::open(const std::string& file, Mode mode, const std::s
   return database;
 }
 
-Result<void> Database::run(const char* sql) {
+Result<void> SqliteConnection::run(const char* sql) {
   const int code = sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) return failure(handle_.get(), code);
   return {};
 }
 
-Result<Statement> Database::prepare(std::string_view sql) {
+Result<Statement> SqliteConnection::prepare(std::string_view sql) {
   sqlite3_stmt* statement = nullptr;
   const int code = sqlite3_prepare_v3(handle_.get(), sql.data(), static_cast<int>(sql.size()),
                                       SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
   if (code != SQLITE_OK) return failure(handle_.get(), code);
-  return Statement(statement);
+  return Statement(std::make_unique<SqliteStatement>(statement));
 }
 
-Result<Statement> Database::first_row(std::string_view sql) {
-  auto statement = prepare(sql);
-  if (!statement) return statement;
-  const auto row = statement->step();
-  if (!row) return Unexpected<Error>{row.error()};
-  if (!*row) return failure(handle_.get(), SQLITE_CORRUPT);
-  return statement;
+std::int64_t SqliteConnection::changes() { return sqlite3_changes64(handle_.get()); }
+
+void keep_wal_on_close(Database& database, bool keep) {
+  sqlite3_db_config(sqlite_handle(database), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0,
+                    nullptr);
 }
 
-Result<std::int64_t> Database::integer(std::string_view sql) {
-  const auto row = first_row(sql);
-  if (!row) return Unexpected<Error>{row.error()};
-  return row->integer(0);
-}
-
-Result<std::string> Database::text(std::string_view sql) {
-  const auto row = first_row(sql);
-  if (!row) return Unexpected<Error>{row.error()};
-  return std::string(row->text(0));
-}
-
-std::int64_t Database::changes() const { return sqlite3_changes64(handle_.get()); }
-
-void Database::keep_wal_on_close(bool keep) {
-  sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
-}
-
-std::optional<std::array<std::uint8_t, 100>> Database::header() {
+std::optional<std::array<std::uint8_t, 100>> file_header(Database& database) {
   // The bytes are read through SQLite's descriptor. Closing another descriptor of the file would
   // drop this process's locks on it (POSIX).
   sqlite3_file* file = nullptr;
   std::array<std::uint8_t, 100> bytes{};
-  if (sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK ||
+  if (sqlite3_file_control(sqlite_handle(database), "main", SQLITE_FCNTL_FILE_POINTER, &file) !=
+          SQLITE_OK ||
       file->pMethods == nullptr ||
       file->pMethods->xRead(file, bytes.data(), static_cast<int>(bytes.size()), 0) != SQLITE_OK) {
     return std::nullopt;

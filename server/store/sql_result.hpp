@@ -1,8 +1,8 @@
-// Conversions from errors of the database to errors of the store, for the tables and SqliteStore.
+// Conversions from errors of the database to errors of the store, for the tables and SqlStore.
 #pragma once
 #include <utility>
 
-#include "common/sqlite/sql_error.hpp"
+#include "common/sql/sql_error.hpp"
 #include "server/store/store_error.hpp"
 
 namespace runstone {

@@ -1,5 +1,6 @@
-// SqliteStore: a world in one SQLite database (WAL, synchronous FULL). It enforces the rules of
-// Store; the tables know only their rows. docs/edit-log.md, "The database", describes the file.
+// SqlStore: a world in the tables of an SQL database. It enforces the rules of Store; the tables know
+// only their rows, and the backend knows the database system. docs/edit-log.md, "The database",
+// describes the tables.
 #pragma once
 #include <map>
 #include <memory>
@@ -8,11 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/os/file_lock.hpp"
-#include "common/sqlite/database.hpp"
+#include "common/sql/database.hpp"
 #include "server/store/chunk_table.hpp"
 #include "server/store/claim_table.hpp"
-#include "server/store/durable_mark.hpp"
+#include "server/store/durable_state.hpp"
 #include "server/store/keyframe_table.hpp"
 #include "server/store/log_table.hpp"
 #include "server/store/meta_table.hpp"
@@ -20,36 +20,23 @@
 #include "server/store/player_table.hpp"
 #include "server/store/rights_table.hpp"
 #include "server/store/segment_table.hpp"
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 #include "server/store/store.hpp"
 #include "server/store/tile_table.hpp"
+#include "server/store/world_backend.hpp"
 
 namespace runstone {
 
-struct SqliteOptions {
-  std::string vfs;  // name of an SQLite VFS; empty: the default one
-  /// False for one test only: it proves that the power-loss test detects a missing fsync.
-  bool sync = true;
-};
-
-/// Do the same as create_world() and open_world(), with options.
-StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder,
-                                                        const WorldMeta& meta,
-                                                        const SqliteOptions& options);
-StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder, StoreAccess access,
-                                                      const SqliteOptions& options);
-
-class SqliteStore final : public Store {
+class SqlStore final : public Store {
  public:
-  /// Opens the database. Marks, meta rows and log ids are checked before the object exists.
-  static StoreResult<std::unique_ptr<SqliteStore>> open(const std::string& folder,
-                                                        StoreAccess access,
-                                                        const SqliteOptions& options,
-                                                        FileLock lock);
+  /// Opens a world. Converts an older format if it is open for writing. Checks meta rows and log ids,
+  /// and whether the log is as long as it was durable.
+  static StoreResult<std::unique_ptr<SqlStore>> open(std::unique_ptr<WorldBackend> backend,
+                                                     StoreAccess access);
 
   // WorldInfo
   const WorldMeta& meta() const override { return meta_; }
-  const std::string& file() const override { return database_->file(); }
+  const std::string& file() const override { return backend_->database().file(); }
 
   // LogReader
   StoreResult<LogRange> log_range() override;
@@ -130,10 +117,11 @@ class SqliteStore final : public Store {
     ChunkTable base, snapshots;
     KeyframeTable keyframes;
     std::optional<TileTable> tiles;
-    static StoreResult<Tables> open(sql::Database& database);
+    static StoreResult<Tables> open(WorldBackend& backend);
   };
-  SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
-              Tables tables, WorldMeta meta, std::unique_ptr<DurableMark> mark);
+  SqlStore(std::unique_ptr<WorldBackend> backend, StoreAccess access, Tables tables,
+           WorldMeta meta);
+  sql::Database& database() { return backend_->database(); }
   /// Converts a world of an older format, in one transaction.
   StoreResult<void> convert();
   /// Deletes the tiles that were made by other rules (kTileRules). A reader does not see them.
@@ -144,13 +132,18 @@ class SqliteStore final : public Store {
   /// with one name the oldest. The log of such a world has no changes of rights.
   StoreResult<void> convert_to_format_3();
   StoreResult<void> add_claims();
-  /// Reads the durable mark, then the numbers of the database, and compares them. Sets loss_. Fails
+  /// Reads the mark, then the numbers of the database, and compares them. Sets loss_. Fails
   /// if the database cannot be repaired, unless it is open for reading only.
   StoreResult<void> read_state();
   /// Makes `epoch` the world's, in database and mark. Both are on disk on return.
   StoreResult<Epoch> set_epoch(Epoch epoch);
   /// Follows a commit that changed the state. A mark that cannot be written lags.
   void committed(const DurableState& state);
+  /// Forgets what the tables keep in memory of a transaction that was rolled back.
+  void forget_uncommitted() {
+    segments_.forget();
+    player_table_.forget();
+  }
   /// Calls `body` in one transaction and commits. If the disk is full, nothing is written, and the
   /// call may be repeated. After any other failed commit the state of the disk is unknown, so every
   /// later write is refused.
@@ -197,10 +190,7 @@ class SqliteStore final : public Store {
   StoreResult<void> check_keyframes();
   Unexpected<StoreError> refuse(std::string where, std::string what) const;
 
-  // The order matters: statements are destroyed before their database, and mark and database are
-  // closed before the lock is released.
-  FileLock lock_;
-  std::unique_ptr<sql::Database> database_;
+  std::unique_ptr<WorldBackend> backend_;  // is destroyed after the statements of the tables
   MetaTable meta_table_;
   PlayerTable player_table_;
   NameTable names_;
@@ -216,7 +206,6 @@ class SqliteStore final : public Store {
   StoreAccess access_;
   RowCheck row_check_ = RowCheck::voxels;
   WorldMeta meta_;
-  std::unique_ptr<DurableMark> mark_;
   /// The greatest numbers of database and mark.
   DurableState state_;
   std::optional<StoreError> loss_;
@@ -225,12 +214,12 @@ class SqliteStore final : public Store {
 };
 
 template <class T>
-StoreResult<T> SqliteStore::at_one_moment(const std::function<StoreResult<T>()>& body) {
-  if (const auto begun = database_->run("SAVEPOINT moment"); !begun) {
+StoreResult<T> SqlStore::at_one_moment(const std::function<StoreResult<T>()>& body) {
+  if (const auto begun = database().begin_reads(); !begun) {
     return failed(begun.error());
   }
   auto result = body();
-  if (const auto ended = database_->run("RELEASE moment"); !ended && result) {
+  if (const auto ended = database().end_reads(); !ended && result) {
     return failed(ended.error());
   }
   return result;

@@ -1,5 +1,5 @@
-#include "server/store/sqlite_store.hpp"
-#include "common/sqlite/transaction.hpp"
+#include "server/store/sql_store.hpp"
+#include "common/sql/transaction.hpp"
 
 #include <algorithm>
 #include <map>
@@ -8,15 +8,14 @@
 #include "common/core/epoch_branch.hpp"
 #include "common/core/key_text.hpp"
 #include "server/store/log_search.hpp"
-#include "server/store/sqlite_result.hpp"
+#include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
 
-SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
-                         Tables tables, WorldMeta meta, std::unique_ptr<DurableMark> mark)
-    : lock_(std::move(lock)),
-      database_(std::move(database)),
+SqlStore::SqlStore(std::unique_ptr<WorldBackend> backend, StoreAccess access, Tables tables,
+                   WorldMeta meta)
+    : backend_(std::move(backend)),
       meta_table_(std::move(tables.meta)),
       player_table_(std::move(tables.players)),
       names_(std::move(tables.names)),
@@ -29,28 +28,29 @@ SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock,
       keyframes_(std::move(tables.keyframes)),
       tiles_(std::move(tables.tiles)),
       access_(access),
-      meta_(std::move(meta)),
-      mark_(std::move(mark)) {}
+      meta_(std::move(meta)) {}
 
-Unexpected<StoreError> SqliteStore::refuse(std::string where, std::string what) const {
+Unexpected<StoreError> SqlStore::refuse(std::string where, std::string what) const {
   return {{StoreError::Kind::bad_request, file(), std::move(where), std::move(what)}};
 }
 
-StoreResult<void> SqliteStore::write(const std::function<StoreResult<void>()>& body) {
+StoreResult<void> SqlStore::write(const std::function<StoreResult<void>()>& body) {
   if (access_ == StoreAccess::read_only) return refuse("", "is open for reading only");
   if (broken_) {
     return Unexpected<StoreError>{
         {StoreError::Kind::io, file(), "", "an earlier commit failed; open the world again"}};
   }
-  auto transaction = sql::Transaction::begin(*database_);
+  auto transaction = sql::Transaction::begin(database());
   if (!transaction) return failed(transaction.error());
-  if (auto done = body(); !done) {
-    segments_.forget();
+  auto done = body();
+  if (done) done = store_result(database().flush());
+  if (!done) {
+    forget_uncommitted();
     return done;
   }
   auto committed = store_result(transaction->commit());
   if (!committed) {
-    segments_.forget();
+    forget_uncommitted();
     // A full disk fails a write to the WAL, before the fsync. SQLite knows then that nothing was
     // committed, and the next transaction overwrites what was written.
     broken_ = committed.error().kind != StoreError::Kind::full;
@@ -58,30 +58,30 @@ StoreResult<void> SqliteStore::write(const std::function<StoreResult<void>()>& b
   return committed;
 }
 
-void SqliteStore::committed(const DurableState& state) {
+void SqlStore::committed(const DurableState& state) {
   state_ = state;
-  static_cast<void>(mark_->write(state).has_value());
+  static_cast<void>(backend_->write_mark(state).has_value());
 }
 
-StoreResult<Epoch> SqliteStore::raise_epoch() { return set_epoch(state_.epoch + 1); }
+StoreResult<Epoch> SqlStore::raise_epoch() { return set_epoch(state_.epoch + 1); }
 
-StoreResult<Epoch> SqliteStore::begin_branch(TimeUs now_us) {
+StoreResult<Epoch> SqlStore::begin_branch(TimeUs now_us) {
   return set_epoch(next_branch(state_.epoch, now_us));
 }
 
-StoreResult<Epoch> SqliteStore::set_epoch(Epoch epoch) {
+StoreResult<Epoch> SqlStore::set_epoch(Epoch epoch) {
   DurableState next = state_;
   next.epoch = epoch;
   const auto written = write([&] { return meta_table_.put("epoch", std::int64_t{next.epoch}); });
   if (!written) return failed(written.error());
   state_ = next;
   // A world whose mark cannot be written is not started.
-  if (auto marked = mark_->write(next); !marked) return failed(marked.error());
-  if (auto synced = mark_->sync(); !synced) return failed(synced.error());
+  if (auto marked = backend_->write_mark(next); !marked) return failed(marked.error());
+  if (auto synced = backend_->sync_mark(); !synced) return failed(synced.error());
   return next.epoch;
 }
 
-StoreResult<LogRange> SqliteStore::log_range() {
+StoreResult<LogRange> SqlStore::log_range() {
   return at_one_moment<LogRange>([&]() -> StoreResult<LogRange> {
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());
@@ -89,7 +89,7 @@ StoreResult<LogRange> SqliteStore::log_range() {
   });
 }
 
-StoreResult<Sequence> SqliteStore::checkpoint() {
+StoreResult<Sequence> SqlStore::checkpoint() {
   const auto checkpoint = meta_table_.counter("checkpoint");
   if (!checkpoint) return checkpoint;
   const auto range = log_range();
@@ -103,15 +103,15 @@ StoreResult<Sequence> SqliteStore::checkpoint() {
                                  log + " the checkpoint seq=" + std::to_string(*checkpoint)}};
 }
 
-StoreResult<LogEnd> SqliteStore::log_head() { return meta_table_.log_head(); }
+StoreResult<LogEnd> SqlStore::log_head() { return meta_table_.log_head(); }
 
-StoreResult<bool> SqliteStore::has_base() {
+StoreResult<bool> SqlStore::has_base() {
   const auto fold = meta_table_.fold(base_.fold_key());
   if (!fold) return failed(fold.error());
   return fold->count != 0;
 }
 
-StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> records, bool history) {
+StoreResult<void> SqlStore::check_continues(std::span<const EditRecord> records, bool history) {
   const auto range = log_range();
   if (!range) return failed(range.error());
   Sequence expected = range->last.version.seq;
@@ -132,8 +132,8 @@ StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> recor
   return check_continues_materials(records);
 }
 
-StoreResult<void> SqliteStore::append(std::span<const PlayerRow> players,
-                                      std::span<const EditRecord> records) {
+StoreResult<void> SqlStore::append(std::span<const PlayerRow> players,
+                                   std::span<const EditRecord> records) {
   DurableState next;
   auto written = write([&]() -> StoreResult<void> {
     if (auto continues = check_continues(records, false); !continues) return continues;
@@ -143,8 +143,8 @@ StoreResult<void> SqliteStore::append(std::span<const PlayerRow> players,
   return written;
 }
 
-StoreResult<void> SqliteStore::append_history(std::span<const PlayerRow> players,
-                                              std::span<const EditRecord> records) {
+StoreResult<void> SqlStore::append_history(std::span<const PlayerRow> players,
+                                           std::span<const EditRecord> records) {
   DurableState next;
   auto written = write([&]() -> StoreResult<void> {
     if (auto continues = check_continues(records, true); !continues) return continues;
@@ -156,15 +156,15 @@ StoreResult<void> SqliteStore::append_history(std::span<const PlayerRow> players
   return written;
 }
 
-StoreResult<void> SqliteStore::insert(std::span<const PlayerRow> players,
-                                      std::span<const EditRecord> records, DurableState& next) {
+StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
+                                   std::span<const EditRecord> records, DurableState& next) {
   next = state_;
   if (auto put = put_players(players); !put) return put;
   for (const PlayerRow& player : players)
     next.author_max = std::max(next.author_max, player.author);
   Watermarks marks;
+  if (auto inserted = log_.insert(records); !inserted) return inserted;
   for (const EditRecord& record : records) {
-    if (auto inserted = log_.insert(record); !inserted) return inserted;
     if (auto added = segments_.add(record); !added) return added;
     raise(marks, record);
     next.author_max = std::max(next.author_max, record.op.author);
@@ -180,7 +180,7 @@ StoreResult<void> SqliteStore::insert(std::span<const PlayerRow> players,
   return segments_.flush();
 }
 
-StoreResult<void> SqliteStore::save_chunks(ChunkTable& table, ChunkSpan chunks) {
+StoreResult<void> SqlStore::save_chunks(ChunkTable& table, ChunkSpan chunks) {
   if (chunks.empty()) return {};
   auto fold = meta_table_.fold(table.fold_key());
   if (!fold) return failed(fold.error());
@@ -190,8 +190,7 @@ StoreResult<void> SqliteStore::save_chunks(ChunkTable& table, ChunkSpan chunks) 
   return meta_table_.put_fold(table.fold_key(), *fold);
 }
 
-StoreResult<void> SqliteStore::save_snapshots(ChunkSpan chunks,
-                                              std::optional<Sequence> checkpoint) {
+StoreResult<void> SqlStore::save_snapshots(ChunkSpan chunks, std::optional<Sequence> checkpoint) {
   auto written = write([&]() -> StoreResult<void> {
     const auto range = log_range();
     if (!range) return failed(range.error());
@@ -214,11 +213,11 @@ StoreResult<void> SqliteStore::save_snapshots(ChunkSpan chunks,
     return meta_table_.put("checkpoint", static_cast<std::int64_t>(*checkpoint));
   });
   // A mark that cannot be synced may lag after a power failure.
-  if (written && checkpoint) static_cast<void>(mark_->sync().has_value());
+  if (written && checkpoint) static_cast<void>(backend_->sync_mark().has_value());
   return written;
 }
 
-StoreResult<void> SqliteStore::save_base(ChunkSpan chunks) {
+StoreResult<void> SqlStore::save_base(ChunkSpan chunks) {
   return write([&]() -> StoreResult<void> {
     const auto last = last_sequence();
     if (!last) return failed(last.error());
@@ -232,7 +231,7 @@ StoreResult<void> SqliteStore::save_base(ChunkSpan chunks) {
   });
 }
 
-StoreResult<void> SqliteStore::save_tiles(ChunkSpan tiles) {
+StoreResult<void> SqlStore::save_tiles(ChunkSpan tiles) {
   return write([&]() -> StoreResult<void> {
     const auto range = log_range();
     if (!range) return failed(range.error());
@@ -246,46 +245,46 @@ StoreResult<void> SqliteStore::save_tiles(ChunkSpan tiles) {
   });
 }
 
-StoreResult<void> SqliteStore::begin_reads() {
-  if (const auto begun = database_->run("SAVEPOINT reads"); !begun) return failed(begun.error());
+StoreResult<void> SqlStore::begin_reads() {
+  if (const auto begun = database().begin_reads(); !begun) return failed(begun.error());
   return {};
 }
 
-StoreResult<void> SqliteStore::end_reads() {
-  if (const auto ended = database_->run("RELEASE reads"); !ended) return failed(ended.error());
+StoreResult<void> SqlStore::end_reads() {
+  if (const auto ended = database().end_reads(); !ended) return failed(ended.error());
   return {};
 }
 
-StoreResult<std::optional<Chunk>> SqliteStore::load_tile(const ChunkKey& key) {
+StoreResult<std::optional<Chunk>> SqlStore::load_tile(const ChunkKey& key) {
   if (!tiles_) return std::optional<Chunk>();
   return tiles_->load(key, meta_.chunk_edge, row_check_);
 }
 
-StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::tile_keys() {
+StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqlStore::tile_keys() {
   if (!tiles_) return std::vector<std::pair<ChunkKey, Version>>();
   return tiles_->keys();
 }
 
-StoreResult<std::vector<std::string>> SqliteStore::rows_of_no_tile() {
+StoreResult<std::vector<std::string>> SqlStore::rows_of_no_tile() {
   if (!tiles_) return std::vector<std::string>();
   return tiles_->rows_of_no_tile();
 }
 
-StoreResult<std::optional<Chunk>> SqliteStore::load_snapshot(const ChunkKey& key) {
+StoreResult<std::optional<Chunk>> SqlStore::load_snapshot(const ChunkKey& key) {
   return snapshots_.load(key, meta_.chunk_edge, row_check_);
 }
 
-StoreResult<std::optional<Chunk>> SqliteStore::load_base(const ChunkKey& key) {
+StoreResult<std::optional<Chunk>> SqlStore::load_base(const ChunkKey& key) {
   return base_.load(key, meta_.chunk_edge, row_check_);
 }
 
-StoreResult<void> SqliteStore::read_log(Sequence first, Sequence last, const EachRecord& each) {
+StoreResult<void> SqlStore::read_log(Sequence first, Sequence last, const EachRecord& each) {
   const auto range = log_range();
   if (!range) return failed(range.error());
   return log_.read(*range, first, last, each);
 }
 
-StoreResult<void> SqliteStore::query_log(const LogQuery& query, const EachRecord& each) {
+StoreResult<void> SqlStore::query_log(const LogQuery& query, const EachRecord& each) {
   return at_one_moment<void>([&]() -> StoreResult<void> {
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());
@@ -294,7 +293,7 @@ StoreResult<void> SqliteStore::query_log(const LogQuery& query, const EachRecord
     auto reader = log_.reader();
     if (!reader) return failed(reader.error());
     StoreResult<void> read;
-    auto searched = LogSearch(*database_, segments_, *range).run(query, [&](Sequence seq) {
+    auto searched = LogSearch(database(), segments_, *range).run(query, [&](Sequence seq) {
       const auto record = log_.read_one(*reader, seq);
       if (!record) read = failed(record.error());
       return record.has_value() && each(*record);
@@ -303,7 +302,7 @@ StoreResult<void> SqliteStore::query_log(const LogQuery& query, const EachRecord
   });
 }
 
-StoreResult<Sequence> SqliteStore::sequence_at(TimeUs time_us) {
+StoreResult<Sequence> SqlStore::sequence_at(TimeUs time_us) {
   return at_one_moment<Sequence>([&]() -> StoreResult<Sequence> {
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());
@@ -314,14 +313,14 @@ StoreResult<Sequence> SqliteStore::sequence_at(TimeUs time_us) {
                                     ": what was before that time was compacted away");
     }
     if (range->last.time_us <= time_us) return range->last.version.seq;
-    const auto behind = LogSearch(*database_, segments_, *range)
+    const auto behind = LogSearch(database(), segments_, *range)
                             .first_at(time_us + 1, range->first, range->last.version.seq);
     if (!behind) return behind;
     return *behind - 1;
   });
 }
 
-StoreResult<std::vector<StoredChunk>> SqliteStore::rows_of(ChunkTable& table) {
+StoreResult<std::vector<StoredChunk>> SqlStore::rows_of(ChunkTable& table) {
   return at_one_moment<std::vector<StoredChunk>>([&]() -> StoreResult<std::vector<StoredChunk>> {
     const auto fold = meta_table_.fold(table.fold_key());
     if (!fold) return failed(fold.error());
@@ -329,7 +328,7 @@ StoreResult<std::vector<StoredChunk>> SqliteStore::rows_of(ChunkTable& table) {
   });
 }
 
-StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::snapshot_keys() {
+StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqlStore::snapshot_keys() {
   const auto rows = rows_of(snapshots_);
   if (!rows) return failed(rows.error());
   std::vector<std::pair<ChunkKey, Version>> keys;

@@ -1,9 +1,9 @@
-#include "common/sqlite/sql_error.hpp"
-
 #include <sqlite3.h>
 
 #include <cerrno>
 #include <utility>
+
+#include "common/sqlite/sqlite_connection.hpp"
 
 namespace runstone::sql {
 namespace {

@@ -1,22 +1,22 @@
-// The part of SqliteStore that reads and writes stored moments: keyframes, and the base that a
+// The part of SqlStore that reads and writes stored moments: keyframes, and the base that a
 // compaction completed.
 #include <utility>
 
 #include "common/core/key_text.hpp"
-#include "server/store/sqlite_result.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sql_result.hpp"
+#include "server/store/sql_store.hpp"
 
 namespace runstone {
 
-StoreResult<std::vector<Keyframe>> SqliteStore::keyframes() { return keyframes_.all(); }
+StoreResult<std::vector<Keyframe>> SqlStore::keyframes() { return keyframes_.all(); }
 
-StoreResult<std::vector<StoredChunk>> SqliteStore::keyframe_chunks() {
+StoreResult<std::vector<StoredChunk>> SqlStore::keyframe_chunks() {
   return keyframes_.rows(kSequenceMax);
 }
 
-StoreResult<std::vector<StoredChunk>> SqliteStore::base_chunks() { return rows_of(base_); }
+StoreResult<std::vector<StoredChunk>> SqlStore::base_chunks() { return rows_of(base_); }
 
-StoreResult<std::vector<StoredChunk>> SqliteStore::completed(const LogEnd& head) {
+StoreResult<std::vector<StoredChunk>> SqlStore::completed(const LogEnd& head) {
   // An import may have made very many base chunks. None contains an edit until the first
   // compaction.
   if (head.version.seq == 0) return std::vector<StoredChunk>();
@@ -25,7 +25,7 @@ StoreResult<std::vector<StoredChunk>> SqliteStore::completed(const LogEnd& head)
   return rows;
 }
 
-StoreResult<StoredMoment> SqliteStore::stored_moment(Sequence at) {
+StoreResult<StoredMoment> SqlStore::stored_moment(Sequence at) {
   return at_one_moment<StoredMoment>([&]() -> StoreResult<StoredMoment> {
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());
@@ -50,7 +50,7 @@ StoreResult<StoredMoment> SqliteStore::stored_moment(Sequence at) {
   });
 }
 
-StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& chunk) {
+StoreResult<std::optional<Chunk>> SqlStore::load_stored(const StoredChunk& chunk) {
   auto loaded = chunk.is_base
                     ? load_base(chunk.key)
                     : keyframes_.load(chunk.key, chunk.version.seq, meta_.chunk_edge, row_check_);
@@ -64,11 +64,11 @@ StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& ch
        "has another digest than its moment"}};
 }
 
-StoreResult<std::optional<Chunk>> SqliteStore::load_kept(const ChunkKey& key, Sequence at) {
+StoreResult<std::optional<Chunk>> SqlStore::load_kept(const ChunkKey& key, Sequence at) {
   return keyframes_.newest(key, at, meta_.chunk_edge, row_check_);
 }
 
-StoreResult<void> SqliteStore::check_keyframe(const Keyframe& keyframe, const LogRange& range) {
+StoreResult<void> SqlStore::check_keyframe(const Keyframe& keyframe, const LogRange& range) {
   const Sequence seq = keyframe.at.version.seq;
   std::string what;
   if (seq < range.first || seq > range.last.version.seq) {
@@ -86,8 +86,8 @@ StoreResult<void> SqliteStore::check_keyframe(const Keyframe& keyframe, const Lo
       {StoreError::Kind::corrupt, file(), "keyframe seq=" + std::to_string(seq), std::move(what)}};
 }
 
-StoreResult<void> SqliteStore::save_keyframe(ChunkSpan chunks,
-                                             const std::optional<Keyframe>& keyframe) {
+StoreResult<void> SqlStore::save_keyframe(ChunkSpan chunks,
+                                          const std::optional<Keyframe>& keyframe) {
   return write([&]() -> StoreResult<void> {
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());

@@ -1,4 +1,4 @@
-// The part of SqliteStore that shortens the log: the edits are applied to the base, then they are
+// The part of SqlStore that shortens the log: the edits are applied to the base, then they are
 // deleted.
 #include <map>
 #include <memory>
@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "common/core/key_text.hpp"
-#include "server/store/sqlite_result.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sql_result.hpp"
+#include "server/store/sql_store.hpp"
 
 namespace runstone {
 
-StoreResult<void> SqliteStore::delete_up_to(const char* text, Sequence last) {
-  auto statement = database_->prepare(text);
+StoreResult<void> SqlStore::delete_up_to(const char* text, Sequence last) {
+  auto statement = database().prepare(text);
   if (!statement) return failed(statement.error());
   return store_result(statement->bind(1, static_cast<std::int64_t>(last)).run());
 }
 
-StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
+StoreResult<void> SqlStore::complete_base(const StoredMoment& moment) {
   auto base_fold = meta_table_.fold(base_.fold_key());
   if (!base_fold) return failed(base_fold.error());
   auto snapshot_fold = meta_table_.fold(snapshots_.fold_key());
@@ -55,7 +55,7 @@ StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
   return meta_table_.put_fold(snapshots_.fold_key(), *snapshot_fold);
 }
 
-StoreResult<void> SqliteStore::compact(Sequence keyframe) {
+StoreResult<void> SqlStore::compact(Sequence keyframe) {
   MaterialTable materials;
   auto compacted = write([&]() -> StoreResult<void> {
     const auto moment = stored_moment(keyframe);  // its digest is checked
@@ -93,10 +93,9 @@ StoreResult<void> SqliteStore::compact(Sequence keyframe) {
   return compacted;
 }
 
-StoreResult<void> SqliteStore::shrink() {
+StoreResult<void> SqlStore::shrink() {
   if (access_ == StoreAccess::read_only) return refuse("", "is open for reading only");
-  if (auto done = database_->run("VACUUM"); !done) return failed(done.error());
-  return store_result(database_->run("PRAGMA wal_checkpoint(TRUNCATE)"));
+  return backend_->shrink();
 }
 
 }  // namespace runstone

@@ -1,33 +1,35 @@
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
+
+#include <sqlite3.h>
 
 #include <catch2/catch.hpp>
 #include <map>
 
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temp_place.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
 
 namespace {
 
-std::unique_ptr<Store> created(const std::string& folder) {
-  auto store = create_world(folder, sample_meta());
+std::unique_ptr<Store> created(const std::string& place) {
+  auto store = create_world(place, sample_meta());
   if (!store) FAIL(store.error().message());
   return *std::move(store);
 }
 
-std::unique_ptr<Store> opened(const std::string& folder,
+std::unique_ptr<Store> opened(const std::string& place,
                               StoreAccess access = StoreAccess::read_write) {
-  auto store = open_world(folder, access);
+  auto store = open_world(place, access);
   if (!store) FAIL(store.error().message());
   return *std::move(store);
 }
 
 /// Makes a world that was started once and holds `count` records.
-std::unique_ptr<Store> filled(const std::string& folder, SplitMix64& rng, std::size_t count) {
-  auto store = created(folder);
+std::unique_ptr<Store> filled(const std::string& place, SplitMix64& rng, std::size_t count) {
+  auto store = created(place);
   REQUIRE(store->raise_epoch().has_value());
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
   REQUIRE(store->append(players, sample_records(rng, 1, 1, count)).has_value());
@@ -47,12 +49,12 @@ std::vector<EditRecord> log_of(Store& store, Sequence first = 1, Sequence last =
 }  // namespace
 
 TEST_CASE("a new world opens again with everything that creation pinned", "[store]") {
-  const TempFolder folder;
-  const std::string world = folder / "a/b";
+  TempPlace place;
+  const std::string world = place / "a/b";
   created(world);
   const auto store = opened(world);
   const WorldMeta expected = sample_meta();
-  CHECK(store->file() == world + "/world.sqlite");
+  CHECK(store->file() == file_of(world));
   CHECK(store->meta().world_id == expected.world_id);
   CHECK(store->meta().chunk_edge == expected.chunk_edge);
   CHECK(store->meta().generator == expected.generator);
@@ -69,25 +71,25 @@ TEST_CASE("a new world opens again with everything that creation pinned", "[stor
 }
 
 TEST_CASE("the epoch rises by one at each start and stays", "[store]") {
-  const TempFolder folder;
-  CHECK(*created(folder.path())->raise_epoch() == 1);
-  CHECK(*opened(folder.path())->raise_epoch() == 2);
-  CHECK(opened(folder.path())->epoch() == 2);
+  TempPlace place;
+  CHECK(*created(place.path())->raise_epoch() == 1);
+  CHECK(*opened(place.path())->raise_epoch() == 2);
+  CHECK(opened(place.path())->epoch() == 2);
 }
 
 TEST_CASE("records, players and marks come back as they were appended", "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(1);
   const auto first = sample_records(rng, 1, 1, 40);
   const auto second = sample_records(rng, 2, 41, 25);
   {
-    auto store = created(folder.path());
+    auto store = created(place.path());
     REQUIRE(*store->raise_epoch() == 1);
     const std::vector<PlayerRow> players = {sample_player(2), sample_player(1)};
     REQUIRE(store->append(players, first).has_value());
     CHECK(log_of(*store) == first);
   }
-  auto store = opened(folder.path());
+  auto store = opened(place.path());
   REQUIRE(*store->raise_epoch() == 2);
   PlayerRow renamed = sample_player(1);
   renamed.name = "new name";
@@ -123,7 +125,7 @@ TEST_CASE("records, players and marks come back as they were appended", "[store]
 }
 
 TEST_CASE("the last 16 names of each player are kept in the order of their first use", "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   const auto text_of_names = [](Store& store) {
     std::string text;
     const auto names = store.player_names();
@@ -137,14 +139,14 @@ TEST_CASE("the last 16 names of each player are kept in the order of their first
     REQUIRE(store.append({&row, 1}, {}).has_value());
   };
   {
-    auto store = created(folder.path());
+    auto store = created(place.path());
     REQUIRE(store->raise_epoch().has_value());
     for (const char* name : {"ana", "mole", "ana"}) rename(*store, 7, name);
     rename(*store, 3, "ana");
     CHECK(text_of_names(*store) == "3 ana;7 ana;7 mole;");
     for (int i = 1; i <= 15; ++i) rename(*store, 7, "n" + std::to_string(i));
   }
-  auto store = opened(folder.path());
+  auto store = opened(place.path());
   const std::string after = text_of_names(*store);
   CHECK(after.starts_with("3 ana;7 mole;7 n1;7 n2;"));
   CHECK(after.ends_with("7 n14;7 n15;"));
@@ -153,9 +155,9 @@ TEST_CASE("the last 16 names of each player are kept in the order of their first
 }
 
 TEST_CASE("a mark never falls when an older client sequence is logged later", "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(2);
-  auto store = created(folder.path());
+  auto store = created(place.path());
   REQUIRE(store->raise_epoch().has_value());
   auto records = sample_records(rng, 1, 1, 2);
   records[0].op = {1, 5, 90};
@@ -169,9 +171,9 @@ TEST_CASE("a mark never falls when an older client sequence is logged later", "[
 }
 
 TEST_CASE("a read of the log stops when its callback returns false, and may be nested", "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(3);
-  auto store = filled(folder.path(), rng, 10);
+  auto store = filled(place.path(), rng, 10);
   std::size_t outer = 0, inner = 0;
   REQUIRE(store
               ->read_log(1, 10,
@@ -185,9 +187,9 @@ TEST_CASE("a read of the log stops when its callback returns false, and may be n
 }
 
 TEST_CASE("a batch that does not continue the log changes nothing", "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(4);
-  auto store = filled(folder.path(), rng, 5);
+  auto store = filled(place.path(), rng, 5);
   const auto refused = [&](std::vector<EditRecord> records) {
     const PlayerRow player = sample_player(9);
     const auto result = store->append({&player, 1}, records);
@@ -207,10 +209,27 @@ TEST_CASE("a batch that does not continue the log changes nothing", "[store]") {
   CHECK(store->append({}, sample_records(rng, 1, 6, 1)).has_value());
 }
 
+TEST_CASE("a player whose key is taken is refused, and the store goes on", "[store]") {
+  TempPlace place;
+  SplitMix64 rng(14);
+  auto store = filled(place.path(), rng, 5);
+  PlayerRow twin = sample_player(7);
+  twin.key = sample_player(1).key;
+  const auto records = sample_records(rng, 1, 6, 4);
+  const auto refused = store->append({&twin, 1}, records);
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(refused.error().kind == StoreError::Kind::bad_request);
+  CHECK(*store->last_sequence() == 5);
+  CHECK(store->check().has_value());
+  REQUIRE(store->append({}, records).has_value());
+  CHECK(*store->last_sequence() == 9);
+  CHECK(store->check().has_value());
+}
+
 TEST_CASE("a record with numbers that no log can hold is refused", "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(11);
-  auto store = filled(folder.path(), rng, 5);
+  auto store = filled(place.path(), rng, 5);
   const auto reason = [&](const auto& spoil) {
     auto records = sample_records(rng, 1, 6, 2);
     spoil(records[1]);
@@ -236,13 +255,13 @@ TEST_CASE("a record with numbers that no log can hold is refused", "[store]") {
 }
 
 TEST_CASE("snapshots replace each other and move the checkpoint", "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(5);
   const ChunkKey a{0, {1, 0, -3}}, b{2, {-7, 4, 9}};
   const ChunkPtr a1 = sample_chunk(rng, {1, 3}), a2 = sample_chunk(rng, {1, 8}),
                  b1 = sample_chunk(rng, {1, 5});
   {
-    auto store = filled(folder.path(), rng, 10);
+    auto store = filled(place.path(), rng, 10);
     const std::vector<std::pair<ChunkKey, ChunkPtr>> first = {{a, a1}, {b, b1}};
     REQUIRE(store->save_snapshots(first, std::nullopt).has_value());
     CHECK(*store->checkpoint() == 0);
@@ -251,7 +270,7 @@ TEST_CASE("snapshots replace each other and move the checkpoint", "[store]") {
     REQUIRE(store->save_snapshots(second, 8).has_value());
     REQUIRE(store->save_snapshots({}, 9).has_value());
   }
-  auto store = opened(folder.path());
+  auto store = opened(place.path());
   CHECK(*store->checkpoint() == 9);
   const auto chunk = store->load_snapshot(a);
   REQUIRE(chunk->has_value());
@@ -270,9 +289,9 @@ TEST_CASE("snapshots replace each other and move the checkpoint", "[store]") {
 
 TEST_CASE("a snapshot that would harm the world is refused and nothing of its job is kept",
           "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(6);
-  auto store = filled(folder.path(), rng, 10);
+  auto store = filled(place.path(), rng, 10);
   const ChunkKey key{0, {1, 2, 3}}, other{0, {4, 5, 6}};
   const auto where_refused = [&](const Chunk& chunk, std::optional<Sequence> checkpoint) {
     const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {
@@ -306,9 +325,9 @@ TEST_CASE("a snapshot that would harm the world is refused and nothing of its jo
 }
 
 TEST_CASE("base chunks are taken once, and only while the log is empty", "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(7);
-  auto store = created(folder.path());
+  auto store = created(place.path());
   const ChunkKey a{0, {0, -1, 5}}, b{0, {0, 0, 0}};
   const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{b, sample_chunk(rng, {})},
                                                              {a, sample_chunk(rng, {})}};
@@ -331,16 +350,16 @@ TEST_CASE("base chunks are taken once, and only while the log is empty", "[store
 }
 
 TEST_CASE("a second writer is refused while readers come and go", "[store]") {
-  const TempFolder folder;
+  TempPlace place;
   SplitMix64 rng(8);
-  auto writer = filled(folder.path(), rng, 3);
-  const auto second = open_world(folder.path(), StoreAccess::read_write);
+  auto writer = filled(place.path(), rng, 3);
+  const auto second = open_world(place.path(), StoreAccess::read_write);
   REQUIRE_FALSE(second.has_value());
   CHECK(second.error().kind == StoreError::Kind::locked);
-  CHECK(second.error().message() ==
-        folder / "world.sqlite: another program is writing this world (it holds world.lock)");
+  CHECK(second.error().message().starts_with(file_of(place.path()) +
+                                             ": another program is writing this world (it holds "));
 
-  auto reader = opened(folder.path(), StoreAccess::read_only);
+  auto reader = opened(place.path(), StoreAccess::read_only);
   CHECK(*reader->last_sequence() == 3);
   REQUIRE(writer->append({}, sample_records(rng, 1, 4, 2)).has_value());
   CHECK(*reader->last_sequence() == 5);
@@ -351,16 +370,16 @@ TEST_CASE("a second writer is refused while readers come and go", "[store]") {
   CHECK(reader->save_snapshots({}, 1).error().kind == StoreError::Kind::bad_request);
   writer.reset();
   CHECK(*reader->last_sequence() == 5);
-  CHECK(open_world(folder.path(), StoreAccess::read_write).has_value());
+  CHECK(open_world(place.path(), StoreAccess::read_write).has_value());
 }
 
-TEST_CASE("a write that another program blocks is reported and works later", "[store]") {
-  const TempFolder folder;
+TEST_CASE("a write that another program blocks is reported and works later", "[store][sqlite]") {
+  TempPlace place;
   SplitMix64 rng(9);
-  auto store = filled(folder.path(), rng, 3);
+  auto store = filled(place.path(), rng, 3);
   // Another connection holds the write lock longer than the store waits.
   sqlite3* other = nullptr;
-  REQUIRE(sqlite3_open((folder / "world.sqlite").c_str(), &other) == SQLITE_OK);
+  REQUIRE(sqlite3_open((place / "world.sqlite").c_str(), &other) == SQLITE_OK);
   REQUIRE(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr) == SQLITE_OK);
   const auto blocked = store->append({}, sample_records(rng, 1, 4, 1));
   CHECK(blocked.error().kind == StoreError::Kind::locked);
@@ -369,8 +388,8 @@ TEST_CASE("a write that another program blocks is reported and works later", "[s
   CHECK(store->append({}, sample_records(rng, 1, 4, 1)).has_value());
 }
 
-TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") {
-  const TempFolder folder;
+TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store][sqlite]") {
+  TempPlace place;
   SplitMix64 rng(10);
   std::string file;
   const auto bytes_of_file = [&] {
@@ -380,7 +399,7 @@ TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") 
   long before = 0;
   constexpr Sequence kEdits = 20'000;
   {
-    auto store = filled(folder.path(), rng, 1);
+    auto store = filled(place.path(), rng, 1);
     file = store->file();
     before = bytes_of_file();
     for (Sequence seq = 2; seq < 2 + kEdits; seq += 100) {

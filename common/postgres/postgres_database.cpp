@@ -1,0 +1,94 @@
+#include "common/postgres/postgres_database.hpp"
+
+#include <libpq-fe.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "common/postgres/postgres_connection.hpp"
+
+namespace runstone::sql {
+namespace {
+
+void ignore_notice(void*, const PGresult*) {}
+
+/// Fails if the database stores texts otherwise than in UTF-8, or commits before the disk has the
+/// data.
+Result<void> set_up(Database& database, PostgresMode mode) {
+  const auto encoding = database.text("SELECT current_setting('server_encoding')");
+  if (!encoding) return Unexpected<Error>{encoding.error()};
+  if (*encoding != "UTF8") {
+    return Unexpected<Error>{{Error::Kind::io, database.file(),
+                              "the encoding of the database is " + *encoding + ", not UTF8"}};
+  }
+  const auto commits = database.text("SELECT current_setting('synchronous_commit')");
+  if (!commits) return Unexpected<Error>{commits.error()};
+  if (*commits == "off") {
+    if (auto set = database.run("SET synchronous_commit = on"); !set) return set;
+  }
+  if (mode == PostgresMode::read) return database.run("SET default_transaction_read_only = on");
+  // The server, too, notices that this machine vanished, and gives its locks back.
+  return database.run(
+      "SET tcp_keepalives_idle = 5; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 2; "
+      "SET tcp_user_timeout = 15000");
+}
+
+}  // namespace
+
+bool is_postgres_url(const std::string& text) {
+  return text.starts_with("postgresql://") || text.starts_with("postgres://");
+}
+
+std::string without_password(const std::string& url) {
+  PQconninfoOption* const options = PQconninfoParse(url.c_str(), nullptr);
+  if (options == nullptr) return "postgresql://...";
+  std::map<std::string, std::string> values;
+  for (const PQconninfoOption* option = options; option->keyword != nullptr; ++option) {
+    if (option->val != nullptr) values[option->keyword] = option->val;
+  }
+  PQconninfoFree(options);
+  const auto part = [&](const char* before, const char* key, const char* after) {
+    const std::string& value = values[key];
+    return value.empty() ? std::string() : before + value + after;
+  };
+  const bool is_socket = values["host"].starts_with('/');
+  return "postgresql://" + part("", "user", "@") + (is_socket ? "" : part("", "host", "")) +
+         part(":", "port", "") + part("/", "dbname", "") +
+         (is_socket ? part("?host=", "host", "") : "") +
+         part(is_socket ? "&options=" : "?options=", "options", "");
+}
+
+Result<Database> open_postgres(const std::string& url, PostgresMode mode) {
+  // What the address says itself comes later and replaces these values. A peer that vanished is
+  // noticed after a quarter of a minute.
+  constexpr std::array kKeys = {
+      "connect_timeout",  "keepalives_idle",  "keepalives_interval",
+      "keepalives_count", "tcp_user_timeout", "application_name",
+      "client_encoding",  "dbname",           static_cast<const char*>(nullptr)};
+  const std::array values = {"10",   "5",         "5",
+                             "2",    "15000",     "runstone",
+                             "UTF8", url.c_str(), static_cast<const char*>(nullptr)};
+  const std::string name = without_password(url);
+  // libpq's message about an address that it cannot read quotes it, with its password.
+  if (PQconninfoOption* const options = PQconninfoParse(url.c_str(), nullptr)) {
+    PQconninfoFree(options);
+  } else {
+    return Unexpected<Error>{
+        {Error::Kind::io, name, "is no address like postgresql://USER@HOST:PORT/DATABASE"}};
+  }
+  PGconn* const handle = PQconnectdbParams(kKeys.data(), values.data(), 1);
+  if (handle == nullptr) return Unexpected<Error>{{Error::Kind::io, name, "out of memory"}};
+  Database database(std::make_unique<PostgresConnection>(name, handle));
+  if (PQstatus(handle) != CONNECTION_OK) {
+    return Unexpected<Error>{{Error::Kind::io, name, connection_message(handle)}};
+  }
+  PQsetNoticeReceiver(handle, &ignore_notice, nullptr);
+  if (auto ready = set_up(database, mode); !ready) return Unexpected<Error>{ready.error()};
+  return database;
+}
+
+}  // namespace runstone::sql

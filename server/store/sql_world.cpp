@@ -1,0 +1,180 @@
+// Opening of a world on any backend, and its conversion to the present format. sql_store.cpp has the
+// calls on an open world.
+#include <algorithm>
+#include <utility>
+
+#include "common/tiles/tile_rules.hpp"
+#include "server/store/loss_advice.hpp"
+#include "server/store/sql_result.hpp"
+#include "server/store/sql_store.hpp"
+#include "server/store/world_schema.hpp"
+
+namespace runstone {
+
+namespace {
+
+/// Returns the error about a log that ends elsewhere than `meta` says. SQLite may have copied a whole
+/// WAL into the main file before a frame of it is damaged. The frames before the damage then hide
+/// newer pages of the main file. The page of `meta` is among them, because every commit of edits
+/// writes it; the last page of the log may not be.
+StoreError mixture(const std::string& file, const std::string& advice, Sequence found,
+                   Sequence expected) {
+  return {StoreError::Kind::corrupt, file, "edit_log",
+          "ends at seq=" + std::to_string(found) +
+              ", but meta says seq=" + std::to_string(expected) + ": " + advice};
+}
+
+/// Returns the error about a world that was durable up to `durable` and holds `found`.
+StoreError loss_of(const std::string& file, const DurableState& found,
+                   const DurableState& durable) {
+  std::string what = "ends at seq=" + std::to_string(found.seq) + ", but ";
+  if (found.seq < durable.seq) {
+    what += "seq=" + std::to_string(durable.seq) +
+            " was durable: the edits seq=" + std::to_string(found.seq + 1) +
+            " to seq=" + std::to_string(durable.seq) + " are lost";
+  } else {
+    what += "epoch=" + std::to_string(durable.epoch) +
+            " was durable: the database has epoch=" + std::to_string(found.epoch) +
+            ", so its newest changes are lost";
+  }
+  what += ", because world.sqlite-wal was lost or damaged, or an older world.sqlite was put back. ";
+  return {StoreError::Kind::corrupt, file, "edit_log", what + kLossAdvice};
+}
+
+}  // namespace
+
+StoreResult<SqlStore::Tables> SqlStore::Tables::open(WorldBackend& backend) {
+  sql::Database& database = backend.database();
+  auto meta = MetaTable::open(database);
+  if (!meta) return failed(meta.error());
+  auto players = PlayerTable::open(database);
+  if (!players) return failed(players.error());
+  auto names = NameTable::open(database);
+  if (!names) return failed(names.error());
+  const auto version = backend.format();
+  if (!version) return failed(version.error());
+  std::optional<ClaimTable> claims;
+  std::optional<RightsTable> rights;
+  if (*version >= 3) {
+    auto claims_opened = ClaimTable::open(database);
+    if (!claims_opened) return failed(claims_opened.error());
+    claims = *std::move(claims_opened);
+    auto rights_opened = RightsTable::open(database);
+    if (!rights_opened) return failed(rights_opened.error());
+    rights = *std::move(rights_opened);
+  }
+  auto log = LogTable::open(database);
+  if (!log) return failed(log.error());
+  auto segments = SegmentTable::open(database);
+  if (!segments) return failed(segments.error());
+  auto base = ChunkTable::open(database, ChunkTable::Kind::base);
+  if (!base) return failed(base.error());
+  auto snapshots = ChunkTable::open(database, ChunkTable::Kind::snapshot);
+  if (!snapshots) return failed(snapshots.error());
+  auto keyframes = KeyframeTable::open(database);
+  if (!keyframes) return failed(keyframes.error());
+  std::optional<TileTable> tiles;
+  if (*version >= 4) {
+    auto tiles_opened = TileTable::open(database);
+    if (!tiles_opened) return failed(tiles_opened.error());
+    tiles = *std::move(tiles_opened);
+  }
+  return Tables{*std::move(meta),      *std::move(players), *std::move(names),
+                std::move(claims),     std::move(rights),   *std::move(log),
+                *std::move(segments),  *std::move(base),    *std::move(snapshots),
+                *std::move(keyframes), std::move(tiles)};
+}
+
+StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBackend> backend,
+                                                      StoreAccess access) {
+  const std::string file = backend->database().file();
+  auto tables = Tables::open(*backend);
+  if (!tables) return failed(tables.error());
+  const auto rows = tables->meta.read_all();
+  if (!rows) return failed(rows.error());
+  auto meta = meta_of(*rows);
+  if (!meta) {
+    return Unexpected<StoreError>{{StoreError::Kind::corrupt, file, "meta key=" + meta.error(),
+                                   "is missing or has an impossible value"}};
+  }
+  std::unique_ptr<SqlStore> store(
+      new SqlStore(std::move(backend), access, *std::move(tables), *std::move(meta)));
+  if (const auto read = store->read_state(); !read) return failed(read.error());
+  if (store->loss_ && access == StoreAccess::read_write) return failed(*store->loss_);
+  if (!store->tiles_ && access != StoreAccess::read_only) {
+    if (const auto converted = store->convert(); !converted) return failed(converted.error());
+  }
+  const auto rules = rows->find("tile_rules");
+  const bool are_tiles_current =
+      rules != rows->end() && rules->second == MetaValue{std::int64_t{kTileRules}};
+  // A world that lacks edits stays as it is, until its losses are accepted.
+  if (!are_tiles_current && !store->loss_) {
+    if (const auto left = store->leave_tiles_of_other_rules(); !left) return failed(left.error());
+  }
+  store->backend_->keep_on_close(store->loss_.has_value());
+  return store;
+}
+
+StoreResult<void> SqlStore::convert() {
+  return write([&]() -> StoreResult<void> {
+    if (!claims_) {
+      if (auto added = convert_to_format_3(); !added) return added;
+    }
+    if (auto made = add_tables_of_format_4(database()); !made) return made;
+    if (auto marked = backend_->set_format(); !marked) return marked;
+    auto tiles = TileTable::open(database());
+    if (!tiles) return failed(tiles.error());
+    tiles_ = *std::move(tiles);
+    return {};
+  });
+}
+
+StoreResult<void> SqlStore::leave_tiles_of_other_rules() {
+  if (access_ == StoreAccess::read_only) {
+    tiles_.reset();
+    return {};
+  }
+  return write([&] { return delete_tiles(); });
+}
+
+StoreResult<void> SqlStore::delete_tiles() {
+  if (auto cleared = tiles_->clear(); !cleared) return cleared;
+  if (auto marked = backend_->set_format(); !marked) return marked;
+  return meta_table_.put("tile_rules", std::int64_t{kTileRules});
+}
+
+StoreResult<void> SqlStore::read_state() {
+  // The mark is read before the numbers that it is compared with, because a running server raises
+  // the numbers first.
+  const auto marked = backend_->read_mark(meta_.world_id);
+  std::optional<Sequence> end;  // every use of a log without an end fails and names the damage
+  auto read = at_one_moment<void>([&]() -> StoreResult<void> {
+    const auto epoch = meta_table_.counter("epoch");
+    if (!epoch) return failed(epoch.error());
+    const auto author_max = meta_table_.counter("author_max");
+    if (!author_max) return failed(author_max.error());
+    const auto log_last = meta_table_.counter("log_last");
+    if (!log_last) return failed(log_last.error());
+    state_ = {static_cast<Epoch>(*epoch), *log_last, static_cast<AuthorId>(*author_max)};
+    if (const auto range = log_range()) end = range->last.version.seq;
+    return {};
+  });
+  if (!read) return read;
+  if (end && *end != state_.seq) {
+    loss_ = mixture(file(), backend_->mixture_advice(), *end, state_.seq);
+    if (access_ != StoreAccess::read_only) return failed(*loss_);
+  } else if (!marked) {
+    is_mark_damaged_ = true;
+    loss_ = marked.error();
+    loss_->what += std::string(". ") + kLossAdvice;
+  } else if (*marked) {
+    const DurableState found = state_, durable = **marked;
+    state_.epoch = std::max(found.epoch, durable.epoch);
+    state_.author_max = std::max(found.author_max, durable.author_max);
+    if (found.seq < durable.seq || found.epoch < durable.epoch)
+      loss_ = loss_of(file(), found, durable);
+  }
+  return {};
+}
+
+}  // namespace runstone

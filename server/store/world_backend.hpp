@@ -1,0 +1,51 @@
+// WorldBackend: what a world needs of its database system besides rows: the lock of its writer, the
+// number of its format, the mark of how far its log was durable, and the upkeep of the database.
+// Threads: the one that owns the store.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "common/sql/database.hpp"
+#include "server/store/durable_state.hpp"
+#include "server/store/store_error.hpp"
+
+namespace runstone {
+
+/// Makes the tables of a new world and writes its rows, in the transaction that creates the world.
+using FillWorld = std::function<StoreResult<void>(sql::Database&)>;
+
+class WorldBackend {
+ public:
+  virtual ~WorldBackend() = default;
+
+  virtual sql::Database& database() = 0;
+  /// Returns the world format that the database names (kWorldFormat).
+  virtual StoreResult<std::uint32_t> format() = 0;
+  /// Makes it kWorldFormat, in the caller's transaction.
+  virtual StoreResult<void> set_format() = 0;
+
+  /// Returns true if the backend keeps a mark of how far the log was durable outside the database. Without
+  /// it nobody notices that a database was put back from a backup: its rows fit each other.
+  virtual bool has_mark() const = 0;
+  // These calls do nothing if there is no mark.
+
+  /// Reads the mark of this world, or nullopt if there is none. Call it before the next two.
+  virtual StoreResult<std::optional<DurableState>> read_mark(const WorldId& world) = 0;
+  /// Writes a state that is on disk. A write that fails leaves the older mark.
+  virtual StoreResult<void> write_mark(const DurableState& state) = 0;
+  /// Returns when all that was written is on disk.
+  virtual StoreResult<void> sync_mark() = 0;
+
+  /// Returns how rows can come to be a mixture of old and new ones, and what to do then.
+  virtual std::string mixture_advice() const = 0;
+  /// If `keep` is true, closing the database changes nothing in it.
+  virtual void keep_on_close(bool keep) = 0;
+  /// Runs the database's own check. Fails (corrupt) with what it found.
+  virtual StoreResult<void> check() = 0;
+  /// See Maintenance::shrink().
+  virtual StoreResult<void> shrink() = 0;
+};
+
+}  // namespace runstone
