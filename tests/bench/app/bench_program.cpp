@@ -10,6 +10,7 @@
 #include "tests/bench/client/client_bench.hpp"
 #include "tests/bench/edits/edit_bench.hpp"
 #include "tests/bench/edits/log_bench.hpp"
+#include "tests/bench/edits/store_bench.hpp"
 #include "tests/bench/frames/frames_bench.hpp"
 #include "tests/bench/harness/machine_json.hpp"
 #include "tests/bench/map/map_bench.hpp"
@@ -89,6 +90,13 @@ int edits(const BenchOptions& options, std::ostream& out, std::ostream& err) {
 
 int log(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   return finish(run_log_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(this_machine(), out);
+    write_table(result, out);
+  });
+}
+
+int stores(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_store_bench(options, err), options, err, [&](const auto& result) {
     write_machine(this_machine(), out);
     write_table(result, out);
   });
@@ -208,6 +216,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return map(options.bench, out, err);
     case Command::log:
       return log(options.bench, out, err);
+    case Command::stores:
+      return stores(options.bench, out, err);
     case Command::edits:
       return edits(options.bench, out, err);
     case Command::net:

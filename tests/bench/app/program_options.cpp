@@ -29,11 +29,12 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 13> kSubcommands = {
+constexpr std::array<Subcommand, 14> kSubcommands = {
     {{Command::mesh, add_mesh_command},
      {Command::chunk_edge, add_chunk_edge_command},
      {Command::edits, add_edits_command},
      {Command::log, add_log_command},
+     {Command::stores, add_stores_command},
      {Command::bytes, add_bytes_command},
      {Command::bytes_to_quads, add_bytes_to_quads_command},
      {Command::storage, add_storage_command},

@@ -17,6 +17,7 @@ enum class Command {
   mesh_once,
   edits,
   log,
+  stores,
   bytes,
   bytes_to_quads,
   storage,

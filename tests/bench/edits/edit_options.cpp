@@ -30,4 +30,14 @@ CLI::App* add_log_command(CLI::App& app, BenchOptions& options) {
   return log;
 }
 
+CLI::App* add_stores_command(CLI::App& app, BenchOptions& options) {
+  CLI::App* stores =
+      app.add_subcommand("stores", "durable edits in a world on SQLite and in one on PostgreSQL");
+  stores->add_option("--postgres", options.postgres, "address of a database: postgresql://...")
+      ->required();
+  add_repetitions_option(*stores, options, "--min-runs", "commits of each size and database");
+  stores->add_option("--json", options.json, "write all figures to this file");
+  return stores;
+}
+
 }  // namespace runstone::bench

@@ -13,7 +13,7 @@
 #include "server/history/keyframe_maker.hpp"
 #include "server/rollback/restore_plan.hpp"
 #include "server/rollback/selection.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/bench/harness/statistics.hpp"
 #include "tests/support/builder_session.hpp"
 #include "tests/support/temp_folder.hpp"

@@ -14,7 +14,7 @@
 #include "common/runs/chunk.hpp"
 #include "common/runs/reorder.hpp"
 #include "server/replay/replayer.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/bench/harness/clocks.hpp"
 #include "tests/support/builder_session.hpp"
 

@@ -17,6 +17,7 @@ struct BenchOptions {
   std::string csv, json;                                // files to write; empty: none
   unsigned repetitions = 30;
   std::size_t edits = 200'000;  // length of the log
+  std::string postgres;         // address of a PostgreSQL database
 };
 
 }  // namespace runstone::bench

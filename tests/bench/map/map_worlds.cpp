@@ -8,7 +8,7 @@
 #include "common/runs/reorder.hpp"
 #include "server/history/keyframe_maker.hpp"
 #include "server/import/import_luanti.hpp"
-#include "server/store/sqlite_store.hpp"
+#include "server/store/sqlite_backend.hpp"
 #include "tests/support/builder_session.hpp"
 
 namespace runstone::bench {
