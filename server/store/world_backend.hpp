@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/sql/database.hpp"
+#include "protocol/codec/messages.hpp"
 #include "server/store/durable_state.hpp"
 #include "server/store/store_error.hpp"
 
