@@ -116,7 +116,7 @@ class PostgresStatement final : public StatementHandle {
   PostgresConnection& connection_;
   const PreparedText& text_;
   std::vector<Value> values_;  // by parameter
-  bool has_bad_bind_ = false;  // a parameter that the statement has not
+  bool has_bad_bind_ = false;  // bind() was called with a number that no parameter has
   PostgresResult result_;
   int row_ = -1;
 };

@@ -13,10 +13,10 @@
 
 namespace runstone::sql {
 
-/// Which SQL a database understands, where systems differ.
+/// The database systems, whose SQL differs in some places.
 enum class Dialect { sqlite, postgres };
 
-/// What a database system does for a Database, which documents the calls.
+/// The interface that a database system implements. Database has the same calls and documents them.
 class Connection {
  public:
   virtual ~Connection() = default;

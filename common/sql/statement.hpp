@@ -13,7 +13,7 @@ namespace runstone::sql {
 
 enum class Type { integer, text, blob, other };
 
-/// What a database system does for a Statement, which documents the calls.
+/// The interface that a database system implements. Statement has the same calls and documents them.
 class StatementHandle {
  public:
   virtual ~StatementHandle() = default;

@@ -23,7 +23,7 @@ Result<Database> open_sqlite(const std::string& file, SqliteMode mode, const std
 /// Returns true if a VFS has a file of this name. `vfs` as for open_sqlite().
 Result<bool> file_exists(const std::string& file, const std::string& vfs);
 
-// Those below require a database of open_sqlite().
+// The functions below require a database that open_sqlite() has returned.
 
 /// If `keep` is true, closing the last connection leaves the WAL as it is. Otherwise closing
 /// writes the WAL into the main file and deletes it.

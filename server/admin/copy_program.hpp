@@ -12,7 +12,8 @@ struct CopyRequest {
   bool progress = false;  // print progress even if standard error is no terminal
 };
 
-/// Copies and verifies a world (copy_stored_world()), and prints how many rows it has. The error is one line.
+/// Copies and verifies a world (copy_stored_world()), and prints how many rows it has. The error is
+/// one line.
 Result<void, std::string> copy_between(const CopyRequest& request, std::ostream& out);
 
 }  // namespace runstone

@@ -23,7 +23,7 @@ struct StoredChunk {
   friend bool operator==(const StoredChunk&, const StoredChunk&) = default;
 };
 
-/// What a read checks before it returns the chunk or tile of a row.
+/// The checks that a read makes before it returns a chunk or a tile.
 enum class RowCheck {
   voxels,  // the checksum of the row, and that its digest is that of its voxels
   bytes    // the checksum: it finds damage, but not a chunk that was written with a wrong digest

@@ -20,8 +20,8 @@ using CopyProgress = std::function<void(std::uint64_t rows, std::uint64_t all)>;
 /// `from` and `to` are places, see create_world(). The copy is the same world: its id, its keys and its
 /// log are those of the original, so only one of the two may go on. Fails
 ///   - as open_world() of `from`;
-///   - as create_world() of `to`. A copy that does not end leaves nothing in a database, and in a folder a
-///     file that is no world;
+///   - as create_world() of `to`. A copy that is interrupted leaves nothing in a database. In a folder
+///     it leaves a file that is no world;
 ///   - as WorldReader::check() if the original is damaged. The copy then stays, with the same damage.
 /// `progress` is called with the rows so far and the number of all. Blocks.
 StoreResult<CopiedWorld> copy_stored_world(const std::string& from, const std::string& to,

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kOpenMax = 1024;  // authors with an open segment; bounds the memory
 
-// What the index by space of PostgreSQL understands. The numbers of the box are those of find().
+// A condition for PostgreSQL, which uses the index `log_box_space` for it. Its parameters are those
+// of the box in find().
 constexpr const char* kPostgresInBox =
     " AND int8range(min_x, max_x, '[]') && int8range(?5, ?4, '[]')"
     " AND int8range(min_y, max_y, '[]') && int8range(?7, ?6, '[]')"

@@ -5,9 +5,9 @@
 //   - WorldSink is what the log writer of a running server calls;
 //   - ImportSink fills a new world;
 //   - Maintenance shortens the log of a world that no server runs.
-// SqlStore implements it on SQLite and on PostgreSQL. Every call blocks on the disk or the network, so the
-// world strand makes none: one writer thread owns a Store, and readers open their own. These rules
-// keep a world safe:
+// SqlStore implements it on SQLite and on PostgreSQL. Every call blocks on the disk or the network, so
+// the world strand makes none: one writer thread owns a Store, and readers open their own. These
+// rules keep a world safe:
 //   - append() returns after the data is on disk: what it has written is durable;
 //   - a snapshot may only be saved at a version that is durable;
 //   - a row that does not decode, or whose checksum is wrong, is an error that names file, table

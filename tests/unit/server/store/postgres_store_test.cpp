@@ -1,4 +1,5 @@
-// What only a world in PostgreSQL has. These cases need a server, see postgres_database_test.cpp.
+// Properties of a world in PostgreSQL that one in a file does not have. The cases need a server, as
+// those of postgres_database_test.cpp.
 #include <catch2/catch.hpp>
 
 #include "common/core/epoch_branch.hpp"
