@@ -257,6 +257,18 @@ bool UiContext::types() const {
   return ImGui::GetIO().WantTextInput;
 }
 
+std::string UiContext::field_text() const {
+  ImGui::SetCurrentContext(context_.get());
+  const ImGuiInputTextState* const state = ImGui::GetInputTextState(ImGui::GetActiveID());
+  if (state == nullptr || state->ID == 0) return {};
+  const ImWchar* const begin = state->TextW.Data;
+  std::string out(
+      static_cast<std::size_t>(ImTextCountUtf8BytesFromStr(begin, begin + state->CurLenW)), '\0');
+  // The function writes a terminating zero, for which a string has room.
+  ImTextStrToUtf8(out.data(), static_cast<int>(out.size()) + 1, begin, begin + state->CurLenW);
+  return out;
+}
+
 bool UiContext::over_window() const {
   ImGui::SetCurrentContext(context_.get());
   return ImGui::GetIO().WantCaptureMouse;

@@ -52,6 +52,8 @@ class UiContext {
 
   /// Returns true if, after the last frame, a text field had the keyboard.
   bool types() const;
+  /// Returns the text of that field in UTF-8, or an empty one if no field has the keyboard.
+  std::string field_text() const;
   /// Returns true if, after the last frame, the cursor was over a window.
   bool over_window() const;
   /// Returns true if, after the last frame, a window that takes the mouse was at this pixel.

@@ -34,6 +34,8 @@ void page_players(int count, const char* names);
 void page_walking(int is_walking);
 /// Captures the mouse, or frees it.
 void page_capture(int is_captured);
+/// Tells the page whether a field of a window has the keyboard.
+void page_typing(int is_typing);
 /// Loads the font of the windows. The page calls web_font() with its bytes, or with none if it has
 /// no font.
 void page_load_font(void);

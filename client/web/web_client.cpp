@@ -97,6 +97,7 @@ void WebClient::turn(TimeUs now_us, bool draws) {
   } else {
     drawn_us_.reset();
   }
+  share_keyboard();
   show_state(now_us);
 }
 
@@ -232,6 +233,11 @@ void WebClient::handle_input(TimeUs now_us) {
   }
   share_mouse();
   if (!routed.player.actions.empty() || routed.player.scroll != 0) pipeline_.moved();
+}
+
+void WebClient::share_keyboard() {
+  const bool types = windows_.focus().types;
+  if (std::exchange(types_, types) != types) page_typing(types ? 1 : 0);
 }
 
 void WebClient::share_mouse() {

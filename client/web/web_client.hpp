@@ -77,6 +77,8 @@ class WebClient {
   const WorldPanels& panels() const { return panels_; }
   bool is_captured() const { return input_.is_captured(); }
   ShownPanels shown_panels() const { return windows_.shown(); }
+  /// See UiContext.
+  std::string field_text() const { return windows_.field_text(); }
   const WebSession& network() const { return network_; }
   const MeshPipeline& pipeline() const { return pipeline_; }
   std::optional<Material> shown_at(VoxelPos at) const { return session_.replica().shown_at(at); }
@@ -97,6 +99,8 @@ class WebClient {
   void handle_input(TimeUs now_us);
   /// Frees the mouse for windows that were opened, and captures it again when they are closed.
   void share_mouse();
+  /// Tells the page whether a field of a window has the keyboard.
+  void share_keyboard();
   void follow_player(TimeUs now_us);
   /// Sends what is queued, and meshes until this time, one chunk at least.
   void mesh_until(TimeUs until_us);
@@ -131,6 +135,7 @@ class WebClient {
   std::array<int, 2> size_{640, 360};  // of the canvas, pixels
   double page_width_ = 640;            // of the canvas, pixels of the page
   std::optional<int> window_touch_;    // the touch that began on a window
+  bool types_ = false;                 // the page knows that a field of a window has the keyboard
   TimeUs windows_us_ = 0;              // when the windows were made last
   std::optional<WorldId> world_;       // whose materials the hotbar has
   std::size_t pins_kept_ = 0;          // server keys that the page keeps

@@ -147,6 +147,11 @@ EMSCRIPTEN_KEEPALIVE void web_key(const char* code, const char* text, int is_pre
     client->push(CharacterEvent{static_cast<char32_t>(character)});
 }
 
+/// A character that no key has typed, such as one of an input method.
+EMSCRIPTEN_KEEPALIVE void web_character(std::uint32_t character) {
+  if (client) client->push(CharacterEvent{static_cast<char32_t>(character)});
+}
+
 /// `x` and `y` are a place of the page.
 EMSCRIPTEN_KEEPALIVE void web_mouse(double x, double y, double dx, double dy) {
   if (client) client->move_mouse(x, y, dx, dy);
@@ -303,6 +308,11 @@ EMSCRIPTEN_KEEPALIVE const char* web_windows() {
               ", \"phase\": " + std::to_string(static_cast<int>(state.rollback.phase)) +
               ", \"voxels\": " + std::to_string(state.rollback.voxels) +
               ", \"ghosts\": " + std::to_string(client->panels().rollback().ghosts().size()) + "}");
+}
+
+/// Returns the text of the field of a window that has the keyboard, or an empty one.
+EMSCRIPTEN_KEEPALIVE const char* web_field() {
+  return kept(client ? client->field_text() : std::string());
 }
 
 EMSCRIPTEN_KEEPALIVE const char* web_report() {

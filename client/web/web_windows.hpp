@@ -33,6 +33,8 @@ class WebWindows {
   UiFocus focus() const;
   /// Returns true if a window is at this pixel of the frame.
   bool has_window_at(double x, double y) const;
+  /// See UiContext.
+  std::string field_text() const { return context_ ? context_->field_text() : std::string(); }
   void feed(const std::vector<InputEvent>& events);
   /// Makes the next frame of `size` pixels, `seconds` after the last one. Returns null if it has no
   /// window.

@@ -312,6 +312,7 @@ async function showTime() {
 function show(seq) {
   at = seq >= state.last.seq ? null : Math.max(seq, state.first.seq);
   if (at === null) playing = false;
+  hideBuilders();  // they are those of the moment before
   showTime();
   remember();
   redraw();
@@ -344,6 +345,11 @@ function line(tag, text, parent) {
 
 let looks = 0;  // at builders; the answer of an older one is ignored
 
+function hideBuilders() {
+  ++looks;
+  el('builders').hidden = true;
+}
+
 async function showBuilders(x, z) {
   if (!state.look_back) return;
   const look = ++looks;
@@ -367,7 +373,7 @@ async function showBuilders(x, z) {
   }
 }
 
-el('close').addEventListener('click', () => { el('builders').hidden = true; });
+el('close').addEventListener('click', hideBuilders);
 
 // Pointer and keys -------------------------------------------------------------------------------
 

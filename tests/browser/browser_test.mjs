@@ -8,6 +8,7 @@ import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
 import { addCacheCases } from "./cache_cases.mjs";
+import { addMapCases } from "./map_cases.mjs";
 import { differenceOf, sideBySide } from "./pictures.mjs";
 import { ABOVE, Player, until } from "./player.mjs";
 import { addWindowCases } from "./window_cases.mjs";
@@ -428,6 +429,7 @@ test("a program that has failed is called no more", async () => {
 });
 
 addWindowCases({ test, bin, files, out, somebody, world: () => world });
+addMapCases({ test, bin, files, out, somebody });
 addCacheCases({ test, bin, files, measured, somebody, world: () => world });
 
 test("the page is small", async () => {

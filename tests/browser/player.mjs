@@ -70,6 +70,10 @@ export class Player {
   windows() {
     return this.page.evaluate(() => JSON.parse(runstone.ccall("web_windows", "string", [], [])));
   }
+  // The text of the window's field that has the keyboard.
+  fieldText() {
+    return this.page.evaluate(() => runstone.ccall("web_field", "string", [], []));
+  }
   report() {
     return this.page.evaluate(() => JSON.parse(runstone.ccall("web_report", "string", [], [])));
   }

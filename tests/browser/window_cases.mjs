@@ -161,6 +161,49 @@ export function addWindowCases({ test, bin, files, out, somebody, world }) {
     await player.page.close();
   });
 
+  test("a field of a window takes the text of a phone's keyboard and of an input method", async () => {
+    const flat = await World.open(bin, files, ["--generator", "flat"]);
+    try {
+      flat.control("role default moderator");
+      const player = await Player.open(await somebody(), flat.address,
+        { width: 390, height: 780, touch: true });
+      await player.joined("typer");
+      await player.complete();
+      await player.page.tap("#rollback");
+      await until("the window is drawn", () => player.hasWindowAt(60, 100));
+      const focused = () => player.page.evaluate(() => document.activeElement.id);
+      assert.notEqual(await focused(), "typed");
+      for (let y = 60; y < 400 && (await focused()) !== "typed"; y += 6) {
+        await player.page.touchscreen.tap(60, y);
+        await new Promise((resolve) => setTimeout(resolve, 250));
+      }
+      assert.equal(await focused(), "typed");
+      const shows = (text) => until(`the field shows '${text}'`, async () => (await player.fieldText()) === text);
+      await shows("60"); // minutes
+      const keyboard = await player.page.createCDPSession();
+      // The field has its whole text selected, so the first character replaces it.
+      await keyboard.send("Input.insertText", { text: "12" });
+      await shows("12");
+      // A word that is composed, changed and then confirmed.
+      await keyboard.send("Input.imeSetComposition", { text: "34", selectionStart: 2, selectionEnd: 2 });
+      await shows("1234");
+      await keyboard.send("Input.imeSetComposition", { text: "35", selectionStart: 2, selectionEnd: 2 });
+      await shows("1235");
+      await keyboard.send("Input.insertText", { text: "36" });
+      await shows("1236");
+      // The key for deleting as a phone reports it: the page sees only that the text changes.
+      await player.page.evaluate(() => document.execCommand("delete"));
+      await shows("123");
+      await player.page.screenshot({ path: join(out, "phone-typing.png") });
+      await player.page.keyboard.press("Enter"); // a key as those of a computer
+      await until("the canvas has the focus again", async () => (await focused()) === "canvas");
+      assert.deepEqual(player.errors, []);
+      await player.page.close();
+    } finally {
+      await flat.close();
+    }
+  });
+
   test("on a phone, a touch on a window is the window's", async () => {
     const player = await Player.open(await somebody(), world().address,
       { width: 390, height: 780, touch: true });

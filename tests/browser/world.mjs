@@ -40,7 +40,8 @@ export class World {
     out.worldFlags = world;
     await out.startServer(true);
     out.web = await start(join(bin, "runstone-web"),
-      ["--listen", "127.0.0.1:0", "--gateway-socket", out.socket, "--client-files", page],
+      ["--listen", "127.0.0.1:0", "--gateway-socket", out.socket, "--client-files", page, "--world",
+        join(out.folder, "world")],
       join(out.folder, "web.port"));
     return out;
   }

@@ -44,6 +44,9 @@ mergeInto(LibraryManager.library, {
   page_capture: function (isCaptured) {
     Module.page.capture(isCaptured !== 0);
   },
+  page_typing: function (isTyping) {
+    Module.page.typing(isTyping !== 0);
+  },
   page_load_font: function () {
     Module.page.loadFont();
   },

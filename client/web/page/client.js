@@ -123,6 +123,7 @@ const page = {
     if (!isCaptured) release();
     else if (!document.body.classList.contains("touch")) capture();
   },
+  typing: Typing.set,
   async loadFont() {
     let font = new ArrayBuffer(0);
     try {
@@ -236,12 +237,12 @@ async function join(event) {
 
 // Input.
 
-const isTyping = (target) => (target instanceof HTMLInputElement && target.type !== "range") ||
-  target instanceof HTMLSelectElement;
+const isTyping = (target) => target !== Typing.field && ((target instanceof HTMLInputElement && target.type !== "range") ||
+  target instanceof HTMLSelectElement);
 const modifiers = (event) => (event.ctrlKey ? 1 : 0) | (event.shiftKey ? 2 : 0) | (event.altKey ? 4 : 0);
 
 function onKey(event) {
-  if (!isPlaying || isTyping(event.target) || event.isComposing) return;
+  if (!isPlaying || isTyping(event.target) || Typing.writesLater(event)) return;
   // With the key of the system held, as on a Mac, the releases of other keys are not reported.
   if (event.metaKey || event.key === "Meta") return Program.call("web_focus_lost");
   // The browser keeps these keys.
@@ -304,6 +305,9 @@ function onTouch(event) {
   const phase = { touchstart: 0, touchmove: 1, touchend: 2, touchcancel: 3 }[event.type];
   for (const { identifier, clientX, clientY } of event.changedTouches)
     Program.call("web_touch", identifier, phase, clientX, clientY);
+  const { clientX, clientY } = event.changedTouches[0];
+  if (event.type === "touchend" && Program.call("web_has_window_at", clientX, clientY) !== 0)
+    Typing.touched(clientX, clientY);
 }
 
 // A button that is a key as long as it is held.
