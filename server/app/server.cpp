@@ -5,6 +5,7 @@
 #include <asio/executor_work_guard.hpp>
 #include <asio/io_context.hpp>
 #include <asio/thread_pool.hpp>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -98,6 +99,16 @@ Server::~Server() {
   if (parts_->is_running) stop();
 }
 
+Result<void, std::string> Server::can_start(const ServerConfig& config) {
+  const auto address = can_listen(config.listen);
+  if (!address) return failure(address.error());
+  if (const auto allowed = may_listen_at(*address, config); !allowed)
+    return failure(allowed.error());
+  if (const auto certificate = configured_certificate(config); !certificate)
+    return failure(certificate.error());
+  return can_listen_for_gateway(config);
+}
+
 Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& config,
                                                            const WorldCreation& creation,
                                                            std::function<void()> on_failure,
@@ -106,21 +117,18 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
   // A start that fails must neither make a new world nor raise the epoch, so the address and the
   // certificate are checked first.
-  const auto address = can_listen(config.listen);
-  if (!address) return failure(address.error());
-  if (const auto allowed = may_listen_at(*address, config); !allowed)
-    return failure(allowed.error());
+  if (const auto can = can_start(config); !can) return failure(can.error());
   const auto certificate = configured_certificate(config);
   if (!certificate) return failure(certificate.error());
-  if (const auto gateway = can_listen_for_gateway(config); !gateway)
-    return failure(gateway.error());
   FileLock local_lock;
   if (!config.store.empty()) {
     auto taken = take_local_folder(config.world);
     if (!taken) return failure(taken.error());
     local_lock = *std::move(taken);
   }
-  auto world = open_or_create_world(world_place(config), creation, accept_losses);
+  LeaseTerms lease;
+  lease.length = std::chrono::seconds(config.lease_s);
+  auto world = open_or_create_world(world_place(config), creation, accept_losses, lease);
   if (!world) return Unexpected<std::string>{world.error()};
   if (accept_losses) log_losses(world->losses);
   auto parts = std::make_unique<Parts>();

@@ -17,6 +17,9 @@ namespace runstone {
 
 class Server {
  public:
+  /// Returns why a server with these settings cannot start, as far as that shows before the world is
+  /// opened.
+  static Result<void, std::string> can_start(const ServerConfig& config);
   /// Opens or makes the world, binds the port, recovers, and runs. The error is one line for the
   /// operator; after an error nothing was overwritten. `on_failure` is called once, from another
   /// thread, if the log cannot be written any more; the caller then stops the server. `actions` are

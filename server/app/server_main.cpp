@@ -8,6 +8,7 @@
 #include <asio/io_context.hpp>
 #include <asio/post.hpp>
 #include <asio/signal_set.hpp>
+#include <asio/steady_timer.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -32,6 +33,7 @@
 #include "server/app/new_world.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
+#include "server/app/standby.hpp"
 #include "server/runtime/logging.hpp"
 
 namespace runstone {
@@ -88,6 +90,21 @@ class Signals {
         stop_(loop, SIGINT, SIGTERM),
         counters_(loop, SIGUSR1),
         reload_(loop, SIGHUP) {}
+
+  /// Waits. Returns true at once if a signal to stop comes.
+  bool stops_within(std::chrono::milliseconds time) {
+    bool stops = false;
+    asio::steady_timer timer(loop_, time);
+    stop_.async_wait([&](const asio::error_code& error, int /*signal*/) {
+      stops = !error;
+      timer.cancel();
+    });
+    timer.async_wait([&](const asio::error_code& /*error*/) { stop_.cancel(); });
+    loop_.restart();
+    loop_.run();
+    loop_.restart();
+    return stops;
+  }
 
   /// Runs until a signal comes or the failure callback stops the loop.
   void wait_for_the_end(Server& server, const std::function<void()>& reload) {
@@ -159,6 +176,11 @@ int run(const ServerOptions& options) {
     std::cout << to_toml(*config);
     return kStopped;
   }
+  if (config->standby) {
+    if (config->store.empty())
+      return cannot_start("standby: only a world in a database can be taken over, see `store`");
+    if (const auto can = Server::can_start(*config); !can) return cannot_start(can.error());
+  }
   if (const auto allowed = allow_new_world(world_place(*config), options.create); !allowed) {
     return cannot_start(allowed.error());
   }
@@ -186,8 +208,15 @@ int run(const ServerOptions& options) {
       return refuse(reply, "the world is in PostgreSQL: back it up with pg_dump");
     backup.start(folder, std::move(reply));
   };
-  auto server = Server::start(*config, options.creation, end, actions, options.accept_losses);
+  const auto start = [&] {
+    return Server::start(*config, options.creation, end, actions, options.accept_losses);
+  };
+  const auto stops_within = [&](std::chrono::milliseconds time) {
+    return signals.stops_within(time);
+  };
+  auto server = config->standby ? start_as_standby(config->store, stops_within, start) : start();
   if (!server) return cannot_start(server.error());
+  if (*server == nullptr) return kStopped;
   running = *std::move(server);
   if (running->is_unclaimed() && config->operators.empty()) welcome_administrator(*running);
   std::unique_ptr<InputEnd> input;

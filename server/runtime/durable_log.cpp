@@ -17,7 +17,7 @@ constexpr std::chrono::milliseconds kCommitInterval{50};
 
 DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string& folder,
                        const Generator& generator, const Options& options, Events events)
-    : strand_(strand), events_(std::move(events)), durable_(options.durable) {
+    : strand_(strand), store_(store), events_(std::move(events)), durable_(options.durable) {
   LogWriter::Callbacks callbacks;
   callbacks.on_durable = [this](Sequence seq) { on_durable(seq); };
   callbacks.on_snapshots_saved = [this](const LogWriter::SnapshotChunks& /*chunks*/,
@@ -40,6 +40,7 @@ DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string&
   if (options.keyframes) {
     keyframes_ = std::make_unique<KeyframeThread>(folder, generator, *options.keyframes, *writer_);
   }
+  store_.watch_ownership([this](const StoreError& error) { on_failed(error); });
 }
 
 void DurableLog::on_durable(Sequence seq) {
@@ -53,8 +54,9 @@ void DurableLog::on_durable(Sequence seq) {
 }
 
 void DurableLog::on_failed(const StoreError& error) {
+  // A writer that meets the new owner's lease and the watch of the lease both report it.
+  if (has_failed_.exchange(true)) return;
   logger("store").error("{}", error.message());
-  has_failed_.store(true);
   strand_.post([this] { events_.on_failed(); });
   events_.on_failed_in_writer();
 }
@@ -78,6 +80,7 @@ void DurableLog::on_space(DiskSpace space, const std::string& reason) {
 }
 
 void DurableLog::stop() {
+  store_.watch_ownership({});
   if (keyframes_) keyframes_->stop();
   writer_->stop();
 }

@@ -35,9 +35,10 @@ class DurableLog {
     std::function<void()> on_snapshots_saved;
     /// Reports that the disk has no more space for new edits, or has space again.
     std::function<void(DiskSpace)> on_space;
-    /// Reports, at most once, that the log cannot be written any more.
+    /// Reports, at most once, that the log cannot be written any more, or that another program owns the
+    /// world.
     std::function<void()> on_failed;
-    /// Reports the same, at once and on the writer's thread.
+    /// Reports the same, at once and on any thread.
     std::function<void()> on_failed_in_writer;
   };
 
@@ -64,6 +65,7 @@ class DurableLog {
   void on_space(DiskSpace space, const std::string& reason);
 
   WorldStrand& strand_;
+  WorldSink& store_;
   const Events events_;
   std::atomic<Sequence> durable_;
   std::atomic<bool> is_report_posted_{false};

@@ -232,7 +232,7 @@ StoreResult<CopiedWorld> copy_stored_world(const std::string& from, const std::s
     if (const auto ended = tables->end_reads(); !ended && copied) return failed(ended.error());
     return copied;
   };
-  auto made = sql::is_postgres_url(to) ? create_postgres_world(to, fill)
+  auto made = sql::is_postgres_url(to) ? create_postgres_world(to, fill, {})
                                        : create_sqlite_world(to, fill, {});
   if (!made) return failed(made.error());
   if (auto sound = (*made)->check(); !sound) return failed(sound.error());

@@ -27,6 +27,7 @@ LogWriter::LogWriter(WorldSink& world, Callbacks callbacks, Limits limits)
 LogWriter::~LogWriter() { stop(); }
 
 bool LogWriter::has_room(std::size_t records) const {
+  if (!world_.is_owned()) return false;
   const std::lock_guard guard(mutex_);
   return !failed_ && !stopping_ && space_ == DiskSpace::enough &&
          room_taken_ + records <= limits_.queued_records_max;

@@ -13,6 +13,8 @@
 //     there is room. has_room() returns false meanwhile. It also returns false while less space is
 //     free than the reserve: the reserve is for what is queued already. Jobs for keyframes and tiles
 //     end with an error while the disk is full, because they hold nothing that the log does not.
+//   - A world in a database has an owner (WorldSink::is_owned()). has_room() returns false while
+//     another program may own it.
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
 //     batches are dropped. They were never acknowledged. The program must end and recover from the
 //     log. A keyframe or a tile that cannot be written ends only its job.
@@ -83,7 +85,8 @@ class LogWriter {
 
   /// Returns true if append() may be called with this many records now. Only append() reduces the
   /// room of the queue, so the thread that appends can rely on the answer, even if the disk space
-  /// changes before it appends. Returns false after a failure and after stop().
+  /// changes before it appends. Returns false after a failure, after stop(), and while another program
+  /// may own the world.
   bool has_room(std::size_t records) const;
   /// Queues one batch. It becomes durable as a whole. It takes room for its records; a batch of
   /// players only takes room for one record. Requires has_room() for that. A writer that has failed

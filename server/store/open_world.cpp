@@ -13,14 +13,14 @@ std::string place_name(const std::string& place) {
 }
 
 StoreResult<std::unique_ptr<Store>> create_world(const std::string& place, const WorldMeta& meta,
-                                                 const std::string& vfs) {
-  if (is_database(place)) return create_postgres_world(place, meta);
+                                                 const std::string& vfs, const LeaseTerms& lease) {
+  if (is_database(place)) return create_postgres_world(place, meta, lease);
   return create_sqlite_world(place, meta, {vfs, true});
 }
 
 StoreResult<std::unique_ptr<Store>> open_world(const std::string& place, StoreAccess access,
-                                               const std::string& vfs) {
-  if (is_database(place)) return open_postgres_world(place, access);
+                                               const std::string& vfs, const LeaseTerms& lease) {
+  if (is_database(place)) return open_postgres_world(place, access, lease);
   return open_sqlite_world(place, access, {vfs, true});
 }
 

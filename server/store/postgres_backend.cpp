@@ -1,8 +1,6 @@
 #include "server/store/postgres_backend.hpp"
 
-#include <chrono>
 #include <limits>
-#include <thread>
 
 #include "common/postgres/postgres_database.hpp"
 #include "common/sql/transaction.hpp"
@@ -17,9 +15,6 @@ namespace {
 // Its row tells the world's schema from others, as the marks in the header of an SQLite file do.
 constexpr const char* kMakeMark =
     "CREATE TABLE runstone_world(application BIGINT NOT NULL, format BIGINT NOT NULL)";
-
-constexpr int kLockTries = 11;
-constexpr auto kLockPause = std::chrono::milliseconds(100);
 
 Unexpected<StoreError> fail_as(StoreError::Kind kind, const sql::Database& database,
                                std::string what) {
@@ -49,36 +44,22 @@ StoreResult<std::uint32_t> format_in(sql::Database& database) {
   return format < 0 || format > kMax ? kMax : static_cast<std::uint32_t>(format);
 }
 
-/// Locks the world for its only writer, until the connection ends. So a writer whose connection was
-/// lost cannot write any more when the next one begins.
-StoreResult<void> lock(sql::Database& database) {
-  const auto schema = database.text("SELECT coalesce(current_schema(), '')");
-  if (!schema) return failed(schema.error());
-  if (schema->empty()) {
-    return fail_as(StoreError::Kind::not_a_world, database,
-                   "the first schema of its search_path does not exist");
-  }
-  // The connection of a writer that was killed may last some milliseconds longer.
-  for (int i = 0; i < kLockTries; ++i) {
-    if (i > 0) std::this_thread::sleep_for(kLockPause);
-    const auto is_locked = database.integer(
-        "SELECT pg_try_advisory_lock(" + std::to_string(kApplicationId) +
-        ", (SELECT oid::int FROM pg_catalog.pg_namespace WHERE nspname = current_schema()))");
-    if (!is_locked) return failed(is_locked.error());
-    if (*is_locked != 0) return {};
-  }
-  return fail_as(StoreError::Kind::locked, database,
-                 "another program is writing this world (it holds the advisory lock " +
-                     std::to_string(kApplicationId) + " of schema " + *schema + ")");
-}
-
 StoreResult<sql::Database> connect(const std::string& url, StoreAccess access) {
   return store_result(sql::open_postgres(
       url, access == StoreAccess::read_only ? sql::PostgresMode::read : sql::PostgresMode::write));
 }
 
-StoreResult<std::unique_ptr<Store>> open_in(sql::Database database, StoreAccess access) {
-  auto store = SqlStore::open(std::make_unique<PostgresBackend>(std::move(database)), access);
+/// Takes the lease of a world for a connection that writes. It is given back when the backend ends.
+StoreResult<std::unique_ptr<PostgresBackend>> owned(const std::string& url, sql::Database database,
+                                                    const LeaseTerms& terms) {
+  auto lease = PostgresLease::take(url, database, terms);
+  if (!lease) return failed(lease.error());
+  return std::make_unique<PostgresBackend>(std::move(database), *std::move(lease));
+}
+
+StoreResult<std::unique_ptr<Store>> open_in(std::unique_ptr<PostgresBackend> backend,
+                                            StoreAccess access) {
+  auto store = SqlStore::open(std::move(backend), access);
   if (!store) return failed(store.error());
   return std::unique_ptr<Store>(*std::move(store));
 }
@@ -86,8 +67,15 @@ StoreResult<std::unique_ptr<Store>> open_in(sql::Database database, StoreAccess 
 }  // namespace
 
 PostgresBackend::~PostgresBackend() {
+  if (lease_) lease_->release(database_);
   static_cast<void>(database_.run("SELECT pg_advisory_unlock_all()").has_value());
 }
+
+void PostgresBackend::watch_ownership(std::function<void(const StoreError&)> on_lost) {
+  if (lease_) lease_->watch(std::move(on_lost));
+}
+
+StoreResult<void> PostgresBackend::confirm_ownership() { return lease_->confirm(database_); }
 
 StoreResult<std::uint32_t> PostgresBackend::format() { return format_in(database_); }
 
@@ -110,48 +98,60 @@ StoreResult<void> PostgresBackend::shrink() {
 }
 
 StoreResult<std::unique_ptr<Store>> create_postgres_world(const std::string& url,
-                                                          const WorldMeta& meta) {
+                                                          const WorldMeta& meta,
+                                                          const LeaseTerms& lease) {
   if (auto fits = check_new_meta(meta, sql::without_password(url)); !fits)
     return failed(fits.error());
   return create_postgres_world(
-      url, [&](sql::Database& database) { return fill_new_world(database, meta); });
+      url, [&](sql::Database& database) { return fill_new_world(database, meta); }, lease);
 }
 
 StoreResult<std::unique_ptr<Store>> create_postgres_world(const std::string& url,
-                                                          const FillWorld& fill) {
-  auto database = connect(url, StoreAccess::read_write);
-  if (!database) return failed(database.error());
-  if (auto locked = lock(*database); !locked) return failed(locked.error());
-  const auto there = has_world_in(*database);
+                                                          const FillWorld& fill,
+                                                          const LeaseTerms& terms) {
+  auto connected = connect(url, StoreAccess::read_write);
+  if (!connected) return failed(connected.error());
+  const auto there = has_world_in(*connected);
   if (!there) return failed(there.error());
-  if (*there) return fail_as(StoreError::Kind::exists, *database, "is there already");
+  if (*there) return fail_as(StoreError::Kind::exists, *connected, "is there already");
+  auto backend = owned(url, *std::move(connected), terms);
+  if (!backend) return failed(backend.error());
+  sql::Database& database = (*backend)->database();
   {
-    auto transaction = sql::Transaction::begin(*database);
+    auto transaction = sql::Transaction::begin(database);
     if (!transaction) return failed(transaction.error());
-    if (auto made = database->run(kMakeMark); !made) return failed(made.error());
+    if (auto made = database.run(kMakeMark); !made) return failed(made.error());
     const std::string mark = "INSERT INTO runstone_world VALUES(" + std::to_string(kApplicationId) +
                              ", " + std::to_string(kWorldFormat) + ")";
-    if (auto marked = database->run(mark.c_str()); !marked) return failed(marked.error());
-    if (auto filled = fill(*database); !filled) return failed(filled.error());
+    if (auto marked = database.run(mark.c_str()); !marked) return failed(marked.error());
+    if (auto filled = fill(database); !filled) return failed(filled.error());
+    if (auto confirmed = (*backend)->confirm_ownership(); !confirmed)
+      return failed(confirmed.error());
     if (auto done = transaction->commit(); !done) return failed(done.error());
   }
-  return open_in(*std::move(database), StoreAccess::read_write);
+  return open_in(*std::move(backend), StoreAccess::read_write);
 }
 
-StoreResult<std::unique_ptr<Store>> open_postgres_world(const std::string& url,
-                                                        StoreAccess access) {
+StoreResult<std::unique_ptr<Store>> open_postgres_world(const std::string& url, StoreAccess access,
+                                                        const LeaseTerms& terms) {
   auto database = connect(url, access);
   if (!database) return failed(database.error());
   const auto there = has_world_in(*database);
   if (!there) return failed(there.error());
   if (!*there) return fail_as(StoreError::Kind::not_a_world, *database, "holds no Runstone world");
-  if (access != StoreAccess::read_only) {
-    if (auto locked = lock(*database); !locked) return failed(locked.error());
+  if (access == StoreAccess::read_only) {
+    const auto format = format_in(*database);
+    if (!format) return failed(format.error());
+    if (auto known = check_format(database->file(), *format); !known) return failed(known.error());
+    return open_in(std::make_unique<PostgresBackend>(*std::move(database), nullptr), access);
   }
-  const auto format = format_in(*database);
+  auto backend = owned(url, *std::move(database), terms);
+  if (!backend) return failed(backend.error());
+  const auto format = (*backend)->format();
   if (!format) return failed(format.error());
-  if (auto known = check_format(database->file(), *format); !known) return failed(known.error());
-  return open_in(*std::move(database), access);
+  const std::string& name = (*backend)->database().file();
+  if (auto known = check_format(name, *format); !known) return failed(known.error());
+  return open_in(*std::move(backend), access);
 }
 
 StoreResult<bool> has_postgres_world(const std::string& url) {

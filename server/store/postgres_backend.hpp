@@ -1,12 +1,15 @@
 // PostgresBackend: a world in one schema of a PostgreSQL database. docs/edit-log.md, "A world in
 // PostgreSQL", describes it.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "common/sql/database.hpp"
+#include "server/store/lease_terms.hpp"
+#include "server/store/postgres_lease.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_backend.hpp"
 
@@ -15,20 +18,29 @@ namespace runstone {
 /// Do the same as create_world() and open_world() for an address of a PostgreSQL database. The
 /// database and the schema must exist.
 StoreResult<std::unique_ptr<Store>> create_postgres_world(const std::string& url,
-                                                          const WorldMeta& meta);
+                                                          const WorldMeta& meta,
+                                                          const LeaseTerms& lease);
 StoreResult<std::unique_ptr<Store>> create_postgres_world(const std::string& url,
-                                                          const FillWorld& fill);
-StoreResult<std::unique_ptr<Store>> open_postgres_world(const std::string& url, StoreAccess access);
+                                                          const FillWorld& fill,
+                                                          const LeaseTerms& lease);
+StoreResult<std::unique_ptr<Store>> open_postgres_world(const std::string& url, StoreAccess access,
+                                                        const LeaseTerms& lease);
 /// Returns true if the schema holds a world. Fails if the database does not answer.
 StoreResult<bool> has_postgres_world(const std::string& url);
 
 class PostgresBackend final : public WorldBackend {
  public:
-  explicit PostgresBackend(sql::Database database) : database_(std::move(database)) {}
-  /// Gives the writer's lock back at once. PostgreSQL itself does so a little after the connection ends.
+  /// `lease` is null if the world is open for reading only.
+  PostgresBackend(sql::Database database, std::unique_ptr<PostgresLease> lease)
+      : database_(std::move(database)), lease_(std::move(lease)) {}
+  /// Gives the lease and the writer's lock back at once. PostgreSQL itself frees the lock a little after
+  /// the connection ends.
   ~PostgresBackend() override;
 
   sql::Database& database() override { return database_; }
+  bool is_owned() const override { return lease_ && lease_->is_valid(); }
+  void watch_ownership(std::function<void(const StoreError&)> on_lost) override;
+  StoreResult<void> confirm_ownership() override;
   StoreResult<std::uint32_t> format() override;
   StoreResult<void> set_format() override;
   bool has_mark() const override { return false; }
@@ -44,6 +56,7 @@ class PostgresBackend final : public WorldBackend {
 
  private:
   sql::Database database_;
+  std::unique_ptr<PostgresLease> lease_;
 };
 
 }  // namespace runstone

@@ -43,6 +43,8 @@ StoreResult<void> SqlStore::write(const std::function<StoreResult<void>()>& body
   auto transaction = sql::Transaction::begin(database());
   if (!transaction) return failed(transaction.error());
   auto done = body();
+  // At the end, so that a long transaction does not keep the lease from being renewed.
+  if (done) done = backend_->confirm_ownership();
   if (done) done = store_result(database().flush());
   if (!done) {
     forget_uncommitted();

@@ -2,6 +2,7 @@
 // only their rows, and the backend knows the database system. docs/edit-log.md, "The database",
 // describes the tables.
 #pragma once
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -81,6 +82,10 @@ class SqlStore final : public Store {
   StoreResult<void> check() override;
 
   // WorldSink
+  bool is_owned() const override { return backend_->is_owned(); }
+  void watch_ownership(std::function<void(const StoreError&)> on_lost) override {
+    backend_->watch_ownership(std::move(on_lost));
+  }
   StoreResult<void> append(std::span<const PlayerRow> players,
                            std::span<const EditRecord> records) override;
   StoreResult<void> change_names(std::span<const NameChange> changes) override;

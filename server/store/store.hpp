@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "server/store/lease_terms.hpp"
 #include "server/store/world_reader.hpp"
 #include "server/store/world_sink.hpp"
 
@@ -86,9 +87,10 @@ bool is_database(const std::string& place);
 std::string place_name(const std::string& place);
 
 /// Creates a world and opens it for writing. A folder is made if it does not exist. Fails if the place
-/// holds a world already.
+/// holds a world already. `lease` matters for a database only.
 StoreResult<std::unique_ptr<Store>> create_world(const std::string& place, const WorldMeta& meta,
-                                                 const std::string& vfs = "");
+                                                 const std::string& vfs = "",
+                                                 const LeaseTerms& lease = {});
 
 enum class StoreAccess {
   read_only,
@@ -96,9 +98,11 @@ enum class StoreAccess {
   repair       // writes, also if the world has a loss
 };
 /// Opens an existing world. Fails (locked) if another program has it open for writing, and `access`
-/// is not read_only. `vfs` is the name of an SQLite VFS, for tests; an empty name means the default
+/// is not read_only; if that program has ended without giving the lease of a database back, waits until
+/// the lease has run out. `vfs` is the name of an SQLite VFS, for tests; an empty name means the default
 /// one.
 StoreResult<std::unique_ptr<Store>> open_world(const std::string& place, StoreAccess access,
-                                               const std::string& vfs = "");
+                                               const std::string& vfs = "",
+                                               const LeaseTerms& lease = {});
 
 }  // namespace runstone

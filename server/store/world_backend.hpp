@@ -22,6 +22,12 @@ class WorldBackend {
   virtual ~WorldBackend() = default;
 
   virtual sql::Database& database() = 0;
+  /// See WorldSink.
+  virtual bool is_owned() const { return true; }
+  virtual void watch_ownership(std::function<void(const StoreError&)> /*on_lost*/) {}
+  /// Fails (locked) if another program owns the world. Otherwise none does until the caller's
+  /// transaction is over.
+  virtual StoreResult<void> confirm_ownership() { return {}; }
   /// Returns the world format that the database names (kWorldFormat).
   virtual StoreResult<std::uint32_t> format() = 0;
   /// Makes it kWorldFormat, in the caller's transaction.

@@ -73,7 +73,7 @@ Result<std::unique_ptr<Generator>, std::string> generator_of(const WorldInfo& wo
 
 Result<OpenedWorld, std::string> open_or_create_world(const std::string& place,
                                                       const WorldCreation& creation,
-                                                      bool accept_losses) {
+                                                      bool accept_losses, const LeaseTerms& lease) {
   OpenedWorld opened;
   opened.is_new = !has_world(place);
   // There is no such file if the place is a database.
@@ -87,11 +87,12 @@ Result<OpenedWorld, std::string> open_or_create_world(const std::string& place,
   if (opened.is_new) {
     const auto meta = new_meta(creation);
     if (!meta) return failure(meta.error());
-    auto store = create_world(place, *meta);
+    auto store = create_world(place, *meta, "", lease);
     if (!store) return failure(store.error().message());
     opened.store = *std::move(store);
   } else {
-    auto store = open_world(place, accept_losses ? StoreAccess::repair : StoreAccess::read_write);
+    auto store =
+        open_world(place, accept_losses ? StoreAccess::repair : StoreAccess::read_write, "", lease);
     if (!store) return failure(store.error().message());
     opened.store = *std::move(store);
     if (accept_losses) {

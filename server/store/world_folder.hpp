@@ -45,7 +45,8 @@ void draw_identity(WorldMeta& meta);
 ///   - the place cannot be written.
 Result<OpenedWorld, std::string> open_or_create_world(const std::string& place,
                                                       const WorldCreation& creation,
-                                                      bool accept_losses = false);
+                                                      bool accept_losses = false,
+                                                      const LeaseTerms& lease = {});
 /// Returns the generator that a world pins.
 Result<std::unique_ptr<Generator>, std::string> generator_of(const WorldInfo& world);
 

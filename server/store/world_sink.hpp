@@ -1,6 +1,7 @@
 // WorldSink: the writes of a running server: edits, names, snapshots, keyframes and tiles. Each call
-// is one transaction.
+// is one transaction. It fails (locked) and writes nothing if another program owns the world.
 #pragma once
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -20,6 +21,12 @@ class WorldSink {
  public:
   virtual ~WorldSink() = default;
 
+  /// Returns false while another program may own the world. Then no edit may be ordered, because it may
+  /// never be written. Thread: any.
+  virtual bool is_owned() const { return true; }
+  /// `on_lost` is called once, on another thread, when another program owns the world: no write
+  /// succeeds from then on. An empty function ends the watch; no call is under way when this returns.
+  virtual void watch_ownership(std::function<void(const StoreError&)> /*on_lost*/) {}
   /// Writes new players, then records, then the watermarks that the records imply. All of it is
   /// durable on return. Fails (bad_request) and writes nothing if
   ///   - the records do not continue the log without a gap;

@@ -153,6 +153,12 @@ test("what one builds and digs, the other sees, and a reload finds", async () =>
   const placed = await bob.place();
   assert.notDeepEqual(placed.slice(0, 3), ground.slice(0, 3));
   await until("eve sees what bob placed", async () => (await eve.voxel(...placed.slice(0, 3))) === placed[3]);
+  await eve.page.bringToFront();
+  await eve.camera(placed[0] - 9.5, placed[1] + 8, placed[2] - 9.5, Math.PI / 4, -0.45);
+  await eve.drawn();
+  await new Promise((resolve) => setTimeout(resolve, 500));
+  await eve.page.screenshot({ path: join(out, "together.png") });
+  await bob.page.bringToFront();
   await bob.click("left");
   await until("bob removed it", async () => (await bob.voxel(...placed.slice(0, 3))) === 0);
   await bob.click("left");

@@ -7,10 +7,13 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstdio>
 #include <functional>
 #include <string>
+#include <thread>
 
+#include "server/app/standby.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 
 namespace runstone::test {
@@ -52,6 +55,11 @@ class ServerProcess {
     return WIFSIGNALED(status) ? "signal " + std::to_string(WTERMSIG(status))
                                : "exit code " + std::to_string(WEXITSTATUS(status));
   }
+  /// Stops the process as a frozen machine, and lets it go on.
+  void pause() { ::kill(child_, SIGSTOP); }
+  void resume() { ::kill(child_, SIGCONT); }
+  /// Waits until the server ends by itself. Returns true if its log had failed. Call it at most once.
+  bool fails() { return wait() != 0; }
   /// Kills the process as `kill -9` does. It may be called again.
   void kill() {
     if (child_ <= 0) return;
@@ -72,7 +80,14 @@ class ServerProcess {
   static int run(const std::function<ServerConfig()>& config, int socket) {
     const ServerConfig values = config();
     start_logging(values.log_level);
-    auto server = Server::start(values, flat_creation());
+    // A server that has failed ends as if the parent had asked for it.
+    const auto on_failure = [socket] { ::shutdown(socket, SHUT_RD); };
+    const auto start = [&] { return Server::start(values, flat_creation(), on_failure); };
+    const auto stops_within = [](std::chrono::milliseconds time) {
+      std::this_thread::sleep_for(time);
+      return false;
+    };
+    auto server = values.standby ? start_as_standby(values.store, stops_within, start) : start();
     if (!server) {
       std::fprintf(stderr, "%s\n", server.error().c_str());
       return 1;

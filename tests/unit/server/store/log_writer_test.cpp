@@ -24,6 +24,7 @@ class FakeSink final : public WorldSink {
     std::vector<NameChange> names = {};
   };
 
+  bool is_owned() const override { return owned.load(); }
   StoreResult<void> append(std::span<const PlayerRow> players,
                            std::span<const EditRecord> records) override {
     return commit({{players.begin(), players.end()}, {records.begin(), records.end()}, 0, {}});
@@ -42,6 +43,7 @@ class FakeSink final : public WorldSink {
     commits.push_back(std::move(commit));
     return {};
   }
+  std::atomic<bool> owned{true};
   /// Lets all writes pass from now on.
   void open_gate() { gate.release(1 << 20); }
   Sequence last() const {
@@ -161,6 +163,22 @@ TEST_CASE("a full queue has no room until a commit is done", "[store][log-writer
   writer.stop();
   CHECK_FALSE(writer.has_room(1));
   CHECK(sink.last() == 8);
+}
+
+TEST_CASE("while another program may own the world there is no room, and what is queued is written",
+          "[store][log-writer]") {
+  FakeSink sink;
+  SplitMix64 rng(3);
+  LogWriter writer(sink, {});
+  writer.append({}, sample_records(rng, 1, 1, 3));
+  sink.owned = false;
+  CHECK_FALSE(writer.has_room(1));
+  sink.owned = true;
+  CHECK(writer.has_room(1));
+  sink.owned = false;
+  sink.open_gate();
+  writer.stop();
+  CHECK(sink.last() == 3);
 }
 
 TEST_CASE("players without records are written, and take the room of one record until then",

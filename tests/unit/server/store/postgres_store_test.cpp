@@ -1,6 +1,7 @@
 // Properties of a world in PostgreSQL that one in a file does not have. The cases need a server, as
 // those of postgres_database_test.cpp.
 #include <catch2/catch.hpp>
+#include <chrono>
 
 #include "common/core/epoch_branch.hpp"
 #include "tests/support/raw_sql.hpp"
@@ -40,7 +41,7 @@ TEST_CASE("a schema without a world, of another program or of a newer one is ref
 TEST_CASE("a store whose connection has ended writes nothing more", "[.postgres-server]") {
   TempPlace place;
   SplitMix64 rng(1);
-  auto store = *create_world(place.path(), sample_meta());
+  auto store = *create_world(place.path(), sample_meta(), "", {"", std::chrono::milliseconds(200)});
   REQUIRE(store->raise_epoch().has_value());
   REQUIRE(store->append({}, sample_records(rng, 1, 1, 3)).has_value());
   raw_sql(place.path(),
@@ -49,7 +50,8 @@ TEST_CASE("a store whose connection has ended writes nothing more", "[.postgres-
   const auto next = sample_records(rng, 1, 4, 2);
   CHECK(store->append({}, next).error().kind == StoreError::Kind::io);
   CHECK(store->append({}, next).error().kind == StoreError::Kind::io);
-  auto other = *open_world(place.path(), StoreAccess::read_write);  // the lock is free
+  store.reset();
+  auto other = *open_world(place.path(), StoreAccess::read_write);
   CHECK(*other->last_sequence() == 3);
   CHECK(other->check().has_value());
 }

@@ -357,7 +357,7 @@ TEST_CASE("a second writer is refused while readers come and go", "[store]") {
   REQUIRE_FALSE(second.has_value());
   CHECK(second.error().kind == StoreError::Kind::locked);
   CHECK(second.error().message().starts_with(file_of(place.path()) +
-                                             ": another program is writing this world (it holds "));
+                                             ": another program is writing this world"));
 
   auto reader = opened(place.path(), StoreAccess::read_only);
   CHECK(*reader->last_sequence() == 3);

@@ -1,0 +1,21 @@
+// What a program says when it takes the lease of a world in a database.
+#pragma once
+#include <chrono>
+#include <string>
+
+namespace runstone {
+
+struct LeaseTerms {
+  /// Names the program in messages to others. An empty name stands for the machine and the process.
+  std::string owner;
+  /// After this time without a renewal, another program may take the world over.
+  std::chrono::milliseconds length{5'000};
+};
+
+/// Who holds the lease of a world.
+struct LeaseHolder {
+  std::string owner;
+  std::chrono::milliseconds left{0};  // until the lease ends, unless it is renewed
+};
+
+}  // namespace runstone

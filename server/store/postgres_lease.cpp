@@ -1,0 +1,293 @@
+#include "server/store/postgres_lease.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/os/boot_clock.hpp"
+#include "common/postgres/postgres_database.hpp"
+#include "server/store/sql_result.hpp"
+#include "server/store/world_schema.hpp"
+
+namespace runstone {
+namespace {
+
+using std::chrono::milliseconds;
+
+// A world has one lease. The column has room for a world whose parts have different owners.
+constexpr const char* kMakeTable =
+    "CREATE TABLE IF NOT EXISTS lease(shard BIGINT NOT NULL PRIMARY KEY, owner TEXT NOT NULL, "
+    "term BIGINT NOT NULL, expires_us BIGINT NOT NULL)";
+constexpr const char* kMakeRow =
+    "INSERT INTO lease VALUES(0, '', 0, 0) ON CONFLICT (shard) DO NOTHING";
+// clock_timestamp() is the time of the call, now() that of the begin of the transaction.
+#define RUNSTONE_NOW_US "(extract(epoch FROM clock_timestamp()) * 1000000)::bigint"
+constexpr const char* kRead =
+    "SELECT owner, term, expires_us, expires_us - " RUNSTONE_NOW_US " FROM lease WHERE shard = 0";
+constexpr const char* kConfirm = "SELECT owner, term, expires_us, expires_us - " RUNSTONE_NOW_US
+                                 " FROM lease WHERE shard = 0 FOR SHARE";
+constexpr const char* kTake =
+    // Also in a database that was put back from a backup, no term is given twice.
+    "UPDATE lease SET owner = ?1, term = greatest(term + 1, " RUNSTONE_NOW_US
+    "), expires_us = " RUNSTONE_NOW_US " + ?2 WHERE shard = 0 AND expires_us <= " RUNSTONE_NOW_US
+    " RETURNING term";
+constexpr const char* kRenew = "UPDATE lease SET expires_us = " RUNSTONE_NOW_US
+                               " + ?2 WHERE shard = 0 AND term = ?1 RETURNING term";
+constexpr const char* kRelease = "UPDATE lease SET expires_us = 0 WHERE shard = 0 AND term = ?1";
+
+// The writer's advisory lock has two numbers: that of the application (?1), and that of the schema.
+#define RUNSTONE_SCHEMA \
+  "(SELECT oid::int FROM pg_catalog.pg_namespace WHERE nspname = current_schema())"
+constexpr const char* kLock = "SELECT pg_try_advisory_lock(?1::bigint::int, " RUNSTONE_SCHEMA ")";
+// It looks again whether the lease has run out, because the owner may have renewed it meanwhile.
+constexpr const char* kEndHolder =
+    "SELECT count(pg_terminate_backend(pid)) FROM pg_catalog.pg_locks WHERE locktype = 'advisory' "
+    "AND database = (SELECT oid FROM pg_catalog.pg_database WHERE datname = current_database()) "
+    "AND classid = ?1::bigint::oid AND objid = " RUNSTONE_SCHEMA
+    "::oid AND objsubid = 2 AND granted AND pid <> pg_backend_pid() AND EXISTS(SELECT 1 FROM lease "
+    "WHERE shard = 0 AND expires_us <= " RUNSTONE_NOW_US ")";
+constexpr const char* kHasTable =
+    "SELECT count(*) FROM pg_catalog.pg_class WHERE relname = 'lease' AND "
+    "relnamespace = " RUNSTONE_SCHEMA "::oid";
+#undef RUNSTONE_SCHEMA
+#undef RUNSTONE_NOW_US
+
+constexpr int kLockTries = 50;
+constexpr milliseconds kPause{100};
+
+/// The row of the lease.
+struct Row {
+  std::string owner;
+  std::int64_t term = 0, expires_us = 0, left_us = 0;
+};
+
+std::int64_t us_of(milliseconds time) { return std::chrono::microseconds(time).count(); }
+
+std::string name_of(const LeaseTerms& terms) {
+  if (!terms.owner.empty()) return terms.owner;
+  std::array<char, 256> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '?';
+  return std::string(host.data()) + " (process " + std::to_string(::getpid()) + ")";
+}
+
+StoreResult<Row> read_row(sql::Database& database, const char* text) {
+  auto row = database.prepare(text);
+  if (!row) return failed(row.error());
+  const auto is_there = row->step();
+  if (!is_there) return failed(is_there.error());
+  if (!*is_there) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::corrupt, database.file(), "lease", "has no row"}};
+  }
+  return Row{std::string(row->text(0)), row->integer(1), row->integer(2), row->integer(3)};
+}
+
+/// Returns the first number of the first row of a statement, or nullopt if it has no row.
+StoreResult<std::optional<std::int64_t>> number_of(
+    sql::Database& database, const char* text, const std::function<void(sql::Statement&)>& bind) {
+  auto statement = database.prepare(text);
+  if (!statement) return failed(statement.error());
+  bind(*statement);
+  const auto is_there = statement->step();
+  if (!is_there) return failed(is_there.error());
+  return *is_there ? std::optional(statement->integer(0)) : std::nullopt;
+}
+
+StoreResult<std::optional<std::int64_t>> renewed_term(sql::Database& database, std::int64_t term,
+                                                      milliseconds length) {
+  return number_of(database, kRenew, [&](sql::Statement& statement) {
+    statement.bind(1, term).bind(2, us_of(length));
+  });
+}
+
+StoreError taken_by(const sql::Database& database, const std::string& owner) {
+  return {StoreError::Kind::locked, database.file(), "lease",
+          owner + " has taken this world over: this program may not write it any more"};
+}
+
+StoreResult<void> make_table(sql::Database& writer) {
+  const auto schema = writer.text("SELECT coalesce(current_schema(), '')");
+  if (!schema) return failed(schema.error());
+  if (schema->empty()) {
+    return Unexpected<StoreError>{{StoreError::Kind::not_a_world, writer.file(), "",
+                                   "the first schema of its search_path does not exist"}};
+  }
+  // Of two programs that make the table at the same time, one fails, and then it is there.
+  if (!writer.run(kMakeTable)) {
+    if (auto made = writer.run(kMakeTable); !made) return failed(made.error());
+  }
+  return store_result(writer.run(kMakeRow));
+}
+
+/// Ends the connection of an owner whose lease has run out, and takes its lock.
+StoreResult<void> take_lock(sql::Database& writer) {
+  for (int i = 0; i < kLockTries; ++i) {
+    if (i > 0) std::this_thread::sleep_for(kPause);
+    const auto bind = [](sql::Statement& statement) {
+      statement.bind(1, std::int64_t{kApplicationId});
+    };
+    const auto is_locked = number_of(writer, kLock, bind);
+    if (!is_locked) return failed(is_locked.error());
+    if (*is_locked != 0) return {};
+    if (const auto ended = number_of(writer, kEndHolder, bind); !ended)
+      return failed(ended.error());
+  }
+  return Unexpected<StoreError>{{StoreError::Kind::locked, writer.file(), "lease",
+                                 "another connection keeps the advisory lock " +
+                                     std::to_string(kApplicationId) +
+                                     " of this schema, and does not end"}};
+}
+
+}  // namespace
+
+StoreResult<std::unique_ptr<PostgresLease>> PostgresLease::take(const std::string& url,
+                                                                sql::Database& writer,
+                                                                const LeaseTerms& terms) {
+  if (auto made = make_table(writer); !made) return failed(made.error());
+  LeaseTerms own = terms;
+  own.owner = name_of(terms);
+  std::optional<Row> first;
+  for (;;) {
+    const auto row = read_row(writer, kRead);
+    if (!row) return failed(row.error());
+    if (row->left_us > 0) {
+      if (!first) first = *row;
+      if (row->expires_us > first->expires_us || row->term != first->term) {
+        return Unexpected<StoreError>{{StoreError::Kind::locked, writer.file(), "",
+                                       "another program is writing this world: " + row->owner}};
+      }
+      std::this_thread::sleep_for(std::min<std::chrono::microseconds>(
+          kPause, std::chrono::microseconds(row->left_us + 1'000)));
+      continue;
+    }
+    if (auto locked = take_lock(writer); !locked) return failed(locked.error());
+    const TimeUs asked_us = boot_now_us();
+    const auto term = number_of(writer, kTake, [&](sql::Statement& statement) {
+      statement.bind(1, std::string_view(own.owner)).bind(2, us_of(own.length));
+    });
+    if (!term) return failed(term.error());
+    if (*term) {
+      return std::unique_ptr<PostgresLease>(
+          new PostgresLease(url, **term, std::move(own), asked_us));
+    }
+    // Another program was faster.
+    if (const auto unlocked = writer.run("SELECT pg_advisory_unlock_all()"); !unlocked)
+      return failed(unlocked.error());
+  }
+}
+
+PostgresLease::PostgresLease(std::string url, std::int64_t term, LeaseTerms terms, TimeUs asked_us)
+    : url_(std::move(url)), term_(term), terms_(std::move(terms)), valid_until_us_(0) {
+  on_renewed(asked_us);
+  renewals_ = std::thread([this] { run(); });
+}
+
+PostgresLease::~PostgresLease() { stop_renewals(); }
+
+void PostgresLease::stop_renewals() {
+  {
+    const std::lock_guard guard(mutex_);
+    is_stopping_ = true;
+  }
+  stop_.notify_all();
+  if (renewals_.joinable()) renewals_.join();
+}
+
+bool PostgresLease::is_valid() const { return boot_now_us() < valid_until_us_.load(); }
+
+void PostgresLease::on_renewed(TimeUs asked_us) {
+  // A tenth is for clocks of different speed.
+  valid_until_us_.store(asked_us + us_of(terms_.length) * 9 / 10);
+}
+
+void PostgresLease::watch(std::function<void(const StoreError&)> on_lost) {
+  const std::lock_guard guard(mutex_);
+  on_lost_ = std::move(on_lost);
+  if (lost_ && on_lost_) on_lost_(*lost_);
+}
+
+std::optional<milliseconds> PostgresLease::renew() {
+  const milliseconds soon = terms_.length / 20;
+  if (!connection_) {
+    auto opened = sql::open_postgres(url_, sql::PostgresMode::write);
+    if (!opened) return soon;
+    connection_ = *std::move(opened);
+  }
+  const TimeUs asked_us = boot_now_us();
+  const auto term = renewed_term(*connection_, term_, terms_.length);
+  if (!term) {
+    connection_.reset();
+    return soon;
+  }
+  if (*term) {
+    on_renewed(asked_us);
+    return terms_.length / 3;
+  }
+  const auto row = read_row(*connection_, kRead);
+  const std::lock_guard guard(mutex_);
+  valid_until_us_.store(0);
+  lost_ = taken_by(*connection_, row ? row->owner : "another program");
+  if (on_lost_) on_lost_(*lost_);
+  return std::nullopt;
+}
+
+void PostgresLease::run() {
+  milliseconds pause = terms_.length / 3;
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      if (stop_.wait_for(lock, pause, [this] { return is_stopping_; })) return;
+    }
+    const auto next = renew();
+    if (!next) return;
+    pause = *next;
+  }
+}
+
+StoreResult<void> PostgresLease::confirm(sql::Database& writer) {
+  const auto row = read_row(writer, kConfirm);
+  if (!row) return failed(row.error());
+  if (row->term != term_) return Unexpected<StoreError>{taken_by(writer, row->owner)};
+  if (row->left_us > 0) return {};
+  const TimeUs asked_us = boot_now_us();
+  const auto renewed = renewed_term(writer, term_, terms_.length);
+  if (!renewed) return failed(renewed.error());
+  if (*renewed) on_renewed(asked_us);
+  return {};
+}
+
+void PostgresLease::release(sql::Database& writer) {
+  stop_renewals();
+  valid_until_us_.store(0);
+  const auto is_released = [this](sql::Database& database) {
+    auto statement = database.prepare(kRelease);
+    return statement && statement->bind(1, term_).run();
+  };
+  // If the writer's connection has ended, the other one may be alive. If not, the lease runs out.
+  if (!is_released(writer) && connection_) static_cast<void>(is_released(*connection_));
+}
+
+StoreResult<std::optional<LeaseHolder>> LeaseWatch::ask(sql::Database& database) {
+  const auto is_there = database.integer(kHasTable);
+  if (!is_there) return failed(is_there.error());
+  if (*is_there == 0) return std::optional<LeaseHolder>();
+  const auto row = read_row(database, kRead);
+  if (!row) return failed(row.error());
+  if (row->left_us <= 0) return std::optional<LeaseHolder>();
+  return std::optional(LeaseHolder{row->owner, milliseconds(row->left_us / 1'000 + 1)});
+}
+
+StoreResult<std::optional<LeaseHolder>> LeaseWatch::holder() {
+  if (!connection_) {
+    auto opened = sql::open_postgres(url_, sql::PostgresMode::read);
+    if (!opened) return failed(opened.error());
+    connection_ = *std::move(opened);
+  }
+  auto found = ask(*connection_);
+  if (!found) connection_.reset();
+  return found;
+}
+
+}  // namespace runstone

@@ -1,0 +1,93 @@
+// PostgresLease: the right of one program at a time to write a world in PostgreSQL (Gray and Cheriton,
+// "Leases", 1989). A row of the table `lease` says who has it and until when, by the clock of the
+// database alone.
+//   - Whoever takes the lease raises its `term`. Every transaction confirms before its commit that the
+//     row still has the term of its program, and holds the row until it is over. So a program that was
+//     stopped for too long, or cut off, changes nothing afterwards: neither its own clock nor its
+//     belief matters.
+//   - A thread renews the lease on a connection of its own three times in its length.
+//   - The owner counts the time of its lease from before it asks, on a clock that no operator sets and
+//     that goes on while the machine is suspended. So is_valid() is false before the lease can have
+//     run out.
+//   - The writer's connection holds an advisory lock. Whoever takes over ends that connection: a
+//     transaction that its program never finished would else keep its rows locked.
+// Threads: take(), confirm(), release() and the destructor: the one that owns the store. Others: any.
+#pragma once
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "common/core/ids.hpp"
+#include "common/sql/database.hpp"
+#include "server/store/lease_terms.hpp"
+#include "server/store/store_error.hpp"
+
+namespace runstone {
+
+class PostgresLease {
+ public:
+  /// Takes the lease of the world in the first schema of `writer`, a connection to `url`. Waits if the
+  /// lease of an earlier owner has still to run out. Fails (locked) if that owner renews it.
+  static StoreResult<std::unique_ptr<PostgresLease>> take(const std::string& url,
+                                                          sql::Database& writer,
+                                                          const LeaseTerms& terms);
+  /// Ends the renewals. The lease then runs out, unless release() was called.
+  ~PostgresLease();
+  PostgresLease(const PostgresLease&) = delete;
+  PostgresLease& operator=(const PostgresLease&) = delete;
+
+  /// Returns true if nobody else can have the lease now.
+  bool is_valid() const;
+  /// `on_lost` is called once, on another thread, when somebody else has the lease. An empty function
+  /// ends the watch; no call is under way then when this returns.
+  void watch(std::function<void(const StoreError&)> on_lost);
+  /// Confirms in the caller's transaction that this program has the lease, and keeps others from
+  /// taking it until the transaction is over. A lease that ran out and that nobody took is renewed.
+  /// Fails (locked) if somebody else has taken it.
+  StoreResult<void> confirm(sql::Database& writer);
+  /// Ends renewals and lease, so that the next program need not wait.
+  void release(sql::Database& writer);
+
+ private:
+  PostgresLease(std::string url, std::int64_t term, LeaseTerms terms, TimeUs asked_us);
+  void stop_renewals();
+  void run();
+  /// Renews once and returns the time until the next renewal, or nullopt if the lease is lost.
+  std::optional<std::chrono::milliseconds> renew();
+  void on_renewed(TimeUs asked_us);
+
+  const std::string url_;
+  const std::int64_t term_;
+  const LeaseTerms terms_;
+  std::atomic<TimeUs> valid_until_us_;  // boot_now_us()
+  std::mutex mutex_;
+  std::condition_variable stop_;
+  bool is_stopping_ = false;                        // guarded by mutex_
+  std::function<void(const StoreError&)> on_lost_;  // guarded by mutex_, also while it is called
+  std::optional<StoreError> lost_;                  // guarded by mutex_
+  std::optional<sql::Database> connection_;         // of the thread of renewals, while it runs
+  std::thread renewals_;
+};
+
+/// Asks who has the lease of a world, again and again. Thread: one at a time.
+class LeaseWatch {
+ public:
+  /// `url` is the address of a database.
+  explicit LeaseWatch(std::string url) : url_(std::move(url)) {}
+  /// Returns who has the lease, or nullopt if nobody has. Connects if it has no connection.
+  StoreResult<std::optional<LeaseHolder>> holder();
+
+ private:
+  StoreResult<std::optional<LeaseHolder>> ask(sql::Database& database);
+
+  std::string url_;
+  std::optional<sql::Database> connection_;
+};
+
+}  // namespace runstone

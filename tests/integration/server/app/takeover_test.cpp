@@ -1,0 +1,171 @@
+// Servers of one world in PostgreSQL: one writes it, and the next one takes over when it stops, is killed
+// or stands still. The cases need a PostgreSQL server, see scripts/check-postgres.
+#include <catch2/catch.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "tests/integration/server/app/server_process.hpp"
+#include "tests/support/raw_client.hpp"
+#include "tests/support/raw_sql.hpp"
+#include "tests/support/temp_place.hpp"
+
+namespace runstone::test {
+namespace {
+
+VoxelPos voxel_of(ClientSequence seq) {
+  const auto n = static_cast<std::int32_t>(seq);
+  return {n % 16, n / 256 % 16, n / 16 % 16};
+}
+
+/// A player who builds on one server after the other.
+class Builder {
+ public:
+  /// Joins, and offers the edits again that may not be durable.
+  void join(const ServerProcess& server) {
+    client_ = std::make_unique<RawClient>(server.port());
+    const auto accepted = client_->join(1, kInstance);
+    REQUIRE(accepted.has_value());
+    CHECK(accepted->resolved >= durable_);
+    for (ClientSequence seq = accepted->resolved + 1; seq <= sent_; ++seq) send(seq);
+  }
+  Epoch epoch() const { return client_->welcome.epoch; }
+  /// Sends so many edits, of one voxel each.
+  void build(ClientSequence edits) {
+    for (; edits > 0; --edits) send(++sent_);
+  }
+  /// Waits until so many edits are durable. Nobody else edits the world.
+  void wait_durable(Sequence edits) {
+    while (durable_ < edits) {
+      const auto message = client_->next_of<Durable>();
+      REQUIRE(message.has_value());
+      durable_ = message->seq;
+    }
+  }
+  ClientSequence sent() const { return sent_; }
+
+ private:
+  static constexpr ClientInstance kInstance = 7;
+
+  void send(ClientSequence seq) {
+    const auto material = static_cast<Material>(1 + seq % 5);
+    client_->send(EditRequest{seq, 0, {SetVoxel{voxel_of(seq)}, {}, material}});
+  }
+
+  std::unique_ptr<RawClient> client_;
+  ClientSequence sent_ = 0;
+  Sequence durable_ = 0;
+};
+
+struct Cluster {
+  TempPlace place;
+  TempFolder folders;
+  Cluster() { REQUIRE(place.is_postgres()); }
+
+  /// Returns the settings of a server with this name, for ServerProcess.
+  std::function<ServerConfig()> server(const std::string& name, bool is_standby) const {
+    return [this, name, is_standby] {
+      ServerConfig config = quiet_config(folders / name);
+      config.store = place.path();
+      config.standby = is_standby;
+      config.lease_s = 2;
+      return config;
+    };
+  }
+  /// Checks that the world is sound and that its log has each edit of the player once, in order.
+  void check_log(const Builder& builder) const {
+    const auto store = open_world(place.path(), StoreAccess::read_only);
+    REQUIRE(store.has_value());
+    CHECK((*store)->check().has_value());
+    ClientSequence edits = 0;
+    bool is_in_order = true;
+    Epoch epoch = 0;
+    const auto read = (*store)->read_log(1, kSequenceMax, [&](const EditRecord& record) {
+      is_in_order = is_in_order && record.op.seq == ++edits && record.version.epoch >= epoch;
+      epoch = record.version.epoch;
+      return is_in_order;
+    });
+    CHECK(read.has_value());
+    CHECK(is_in_order);
+    CHECK(edits == builder.sent());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a standby takes a world over from a server that stops, and from one that is killed",
+          "[.postgres-server]") {
+  const Cluster cluster;
+  Builder builder;
+  ServerProcess first(cluster.server("first", false));
+  REQUIRE(first.port() != 0);
+  builder.join(first);
+  builder.build(300);
+  builder.wait_durable(300);
+  CHECK(first.stop());
+
+  ServerProcess second(cluster.server("second", true));
+  REQUIRE(second.port() != 0);
+  builder.join(second);
+  CHECK(builder.epoch() == 2);
+  builder.build(300);
+  builder.wait_durable(310);
+  second.kill();
+
+  ServerProcess third(cluster.server("third", true));
+  REQUIRE(third.port() != 0);
+  builder.join(third);
+  CHECK(builder.epoch() == 3);
+  builder.build(10);
+  builder.wait_durable(610);
+  CHECK(third.stop());
+  cluster.check_log(builder);
+}
+
+TEST_CASE("a server that stood still beyond its lease adds nothing to the log, and ends",
+          "[.postgres-server]") {
+  const Cluster cluster;
+  Builder builder;
+  ServerProcess first(cluster.server("first", false));
+  REQUIRE(first.port() != 0);
+  builder.join(first);
+  builder.build(2'000);
+  builder.wait_durable(100);  // others are under way
+  first.pause();
+
+  ServerProcess second(cluster.server("second", true));
+  REQUIRE(second.port() != 0);
+  builder.join(second);
+  CHECK(builder.epoch() == 2);
+  builder.build(50);
+  first.resume();
+  CHECK(first.fails());
+  builder.wait_durable(2'050);
+  CHECK(second.stop());
+  cluster.check_log(builder);
+}
+
+TEST_CASE("a server whose database drops its connections ends, and the next start has every edit",
+          "[.postgres-server]") {
+  const Cluster cluster;
+  Builder builder;
+  ServerProcess first(cluster.server("first", false));
+  REQUIRE(first.port() != 0);
+  builder.join(first);
+  builder.build(500);
+  builder.wait_durable(50);
+  raw_sql(cluster.place.path(),
+          "SELECT count(pg_terminate_backend(pid, 5000)) FROM pg_stat_activity "
+          "WHERE application_name = 'runstone'");
+  builder.build(10);
+  CHECK(first.fails());
+
+  ServerProcess again(cluster.server("first", false));
+  REQUIRE(again.port() != 0);
+  builder.join(again);
+  builder.wait_durable(510);
+  CHECK(again.stop());
+  cluster.check_log(builder);
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,176 @@
+// The lease of a world in PostgreSQL: one program at a time writes it. The cases need a server, as those
+// of postgres_database_test.cpp.
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <functional>
+#include <future>
+#include <thread>
+
+#include "server/store/postgres_lease.hpp"
+#include "server/store/world_schema.hpp"
+#include "tests/support/raw_sql.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_place.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+using std::chrono::milliseconds;
+
+namespace {
+
+const LeaseTerms kLong{"first", milliseconds(600'000)};  // is not renewed during a case
+const LeaseTerms kShort{"second", milliseconds(200)};
+constexpr const char* kEnd = "UPDATE lease SET expires_us = 0";
+
+std::unique_ptr<Store> create_as(const std::string& place, const LeaseTerms& lease) {
+  auto store = create_world(place, sample_meta(), "", lease);
+  INFO((store ? std::string() : store.error().message()));
+  REQUIRE(store.has_value());
+  return *std::move(store);
+}
+std::unique_ptr<Store> open_as(const std::string& place, const LeaseTerms& lease) {
+  auto store = open_world(place, StoreAccess::read_write, "", lease);
+  INFO((store ? std::string() : store.error().message()));
+  REQUIRE(store.has_value());
+  return *std::move(store);
+}
+
+bool comes_true(const std::function<bool()>& ask) {
+  for (int i = 0; i < 6'000 && !ask(); ++i) std::this_thread::sleep_for(milliseconds(10));
+  return ask();
+}
+
+}  // namespace
+
+TEST_CASE("the owner of a world is named, and gives the world back", "[.postgres-server]") {
+  TempPlace place;
+  LeaseWatch watch(place.path());
+  CHECK_FALSE(watch.holder()->has_value());
+  auto store = create_as(place.path(), {"first", milliseconds(5'000)});
+  CHECK(store->is_owned());
+  REQUIRE(watch.holder()->has_value());
+  CHECK((*watch.holder())->owner == "first");
+  CHECK((*watch.holder())->left <= milliseconds(5'001));
+  const auto other = open_world(place.path(), StoreAccess::read_write, "", kShort);
+  REQUIRE_FALSE(other.has_value());
+  CHECK(other.error().kind == StoreError::Kind::locked);
+  CHECK(other.error().message().find("is writing this world: first") != std::string::npos);
+  CHECK(open_world(place.path(), StoreAccess::read_only).has_value());
+  store.reset();
+  CHECK_FALSE(watch.holder()->has_value());
+}
+
+TEST_CASE("the lease of a program that has ended runs out", "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  const std::string term = raw_sql(place.path(), "SELECT term FROM lease");
+  raw_sql(place.path(),
+          "UPDATE lease SET owner = 'ghost', expires_us = "
+          "(extract(epoch FROM clock_timestamp()) * 1000000)::bigint + 300000");
+  const auto store = open_as(place.path(), kLong);
+  CHECK(std::stoll(raw_sql(place.path(), "SELECT term FROM lease")) > std::stoll(term));
+  CHECK(raw_sql(place.path(), "SELECT owner FROM lease") == "first");
+}
+
+TEST_CASE("a program that was paused beyond its lease writes nothing more", "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  SplitMix64 rng(1);
+  auto paused = open_as(place.path(), kLong);
+  REQUIRE(*paused->raise_epoch() == 1);
+  REQUIRE(paused->append({}, sample_records(rng, 1, 1, 3)).has_value());
+  raw_sql(place.path(), kEnd);
+  auto next = open_as(place.path(), kLong);
+  REQUIRE(*next->raise_epoch() == 2);
+  REQUIRE(next->append({}, sample_records(rng, 2, 4, 2)).has_value());
+  CHECK_FALSE(paused->append({}, sample_records(rng, 1, 4, 5)).has_value());
+  CHECK_FALSE(paused->raise_epoch().has_value());
+  paused.reset();  // does not give the lease of the other back
+  CHECK(next->append({}, sample_records(rng, 2, 6, 1)).has_value());
+  CHECK(*next->last_sequence() == 6);
+  CHECK(next->check().has_value());
+}
+
+TEST_CASE("every write confirms the lease, also on a connection that is alive",
+          "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  SplitMix64 rng(1);
+  auto store = open_as(place.path(), kLong);
+  REQUIRE(store->raise_epoch().has_value());
+  const auto records = sample_records(rng, 1, 1, 3);
+  raw_sql(place.path(), "UPDATE lease SET owner = 'other', term = term + 1");
+  const auto refused = [](const StoreResult<void>& written) {
+    REQUIRE_FALSE(written.has_value());
+    CHECK(written.error().kind == StoreError::Kind::locked);
+    CHECK(written.error().message().find("other has taken this world over") != std::string::npos);
+  };
+  refused(store->append({}, records));
+  refused(store->save_snapshots({}, Sequence{0}));
+  refused(store->save_tiles({}));
+  refused(store->save_keyframe({}, std::nullopt));
+  CHECK_FALSE(store->raise_epoch().has_value());
+  CHECK(*store->last_sequence() == 0);
+}
+
+TEST_CASE("a lease that ran out and that nobody took goes on with the next write",
+          "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  SplitMix64 rng(1);
+  auto store = open_as(place.path(), kLong);
+  REQUIRE(store->raise_epoch().has_value());
+  raw_sql(place.path(), kEnd);
+  CHECK(store->append({}, sample_records(rng, 1, 1, 3)).has_value());
+  CHECK(raw_sql(place.path(), "SELECT expires_us > 0 FROM lease") == "t");
+}
+
+TEST_CASE("an owner hears that its world was taken over", "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  auto store = open_as(place.path(), {"first", milliseconds(300)});
+  std::promise<std::string> told;
+  store->watch_ownership([&](const StoreError& error) { told.set_value(error.message()); });
+  raw_sql(place.path(), "UPDATE lease SET owner = 'other', term = term + 1");
+  auto words = told.get_future();
+  REQUIRE(words.wait_for(std::chrono::minutes(1)) == std::future_status::ready);
+  CHECK(words.get().find("other has taken this world over") != std::string::npos);
+  CHECK_FALSE(store->is_owned());
+  int calls = 0;
+  store->watch_ownership([&](const StoreError&) { ++calls; });
+  CHECK(calls == 1);
+  store->watch_ownership({});
+}
+
+TEST_CASE(
+    "an owner that cannot renew its lease stops before it can have run out, and goes on later",
+    "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  auto store = open_as(place.path(), kShort);
+  CHECK(comes_true([&] { return store->is_owned(); }));
+  raw_sql(place.path(), "ALTER TABLE lease RENAME TO hidden");
+  CHECK(comes_true([&] { return !store->is_owned(); }));
+  raw_sql(place.path(), "ALTER TABLE hidden RENAME TO lease");
+  CHECK(comes_true([&] { return store->is_owned(); }));
+}
+
+TEST_CASE("a transaction that its program never ends does not keep others out",
+          "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  auto stuck = *sql::open_postgres(place.path(), sql::PostgresMode::write);
+  const std::string lock =
+      "SELECT pg_advisory_lock(" + std::to_string(kApplicationId) +
+      ", (SELECT oid::int FROM pg_namespace WHERE nspname = current_schema()))";
+  REQUIRE(stuck.run(lock.c_str()).has_value());
+  REQUIRE(stuck
+              .run("BEGIN; SELECT * FROM lease FOR SHARE; "
+                   "INSERT INTO edit_log SELECT 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, '', 0")
+              .has_value());
+  SplitMix64 rng(1);
+  auto store = open_as(place.path(), kLong);
+  REQUIRE(store->raise_epoch().has_value());
+  CHECK(store->append({}, sample_records(rng, 1, 1, 3)).has_value());
+  CHECK_FALSE(stuck.run("COMMIT").has_value());
+}
