@@ -1,0 +1,69 @@
+"""A runstone-server of the test, with its wire to the database. It is started again when it has ended."""
+import pathlib
+import random
+import re
+import signal
+import subprocess
+import time
+
+
+class GameServer:
+    def __init__(self, program, folder, name, wire, url):
+        self.folder = pathlib.Path(folder) / name
+        self.name, self.wire = name, wire
+        self.port_file = self.folder.with_suffix(".port")
+        self.log = self.folder.with_suffix(".log")
+        self.command = [program, "--world", self.folder, "--store", url, "--standby", "--lease-s", "2", "--listen",
+                        "127.0.0.1:0", "--port-file", self.port_file, "--sessions-per-address", "0",
+                        "--budgets-per-address", "0", "--connections-per-second", "0", "--stop-s", "20"]
+        self.process = None
+        self.start_at = 0.0
+        self.is_paused = False
+
+    def create(self):
+        """Makes the world, with this server as its first owner."""
+        self._start("--create", "--generator", "flat")
+
+    def _start(self, *more):
+        with open(self.log, "ab") as log:
+            self.process = subprocess.Popen([*self.command, *more], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                            stderr=log)
+
+    def step(self):
+        """Starts it again, a moment after it has ended, as a service manager does."""
+        if self.process is not None and self.process.poll() is not None:
+            self.process = None
+            self.start_at = time.monotonic() + random.uniform(0.1, 1)
+        if self.process is None and time.monotonic() >= self.start_at:
+            self._start()
+
+    def signal(self, number):
+        if self.process is not None and self.process.poll() is None:
+            self.process.send_signal(number)
+
+    def pause(self):
+        self.is_paused = True
+        self.signal(signal.SIGSTOP)
+
+    def resume(self):
+        self.is_paused = False
+        self.signal(signal.SIGCONT)
+
+    def stop(self):
+        """Returns the exit code of a stop in order."""
+        self.signal(signal.SIGTERM)
+        return self.process.wait(timeout=60)
+
+    def port(self):
+        """Returns since when it listens, and its port; None if it does not listen."""
+        if self.process is None or self.process.poll() is not None:
+            return None
+        try:
+            text = self.port_file.read_text()
+            return (self.port_file.stat().st_mtime, int(text)) if text else None
+        except FileNotFoundError:
+            return None
+
+    def epochs(self):
+        """Returns the epoch of each start that took the world over."""
+        return [int(epoch) for epoch in re.findall(r" epoch=(\d+) seq=", self.log.read_text())]
