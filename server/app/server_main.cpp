@@ -179,6 +179,10 @@ int run(const ServerOptions& options) {
   if (config->standby) {
     if (config->store.empty())
       return cannot_start("standby: only a world in a database can be taken over, see `store`");
+    if (options.stop_with_input) {
+      return cannot_start(
+          "standby: a server that waits does not watch its input: leave --stop-with-input out");
+    }
     if (const auto can = Server::can_start(*config); !can) return cannot_start(can.error());
   }
   if (const auto allowed = allow_new_world(world_place(*config), options.create); !allowed) {

@@ -12,9 +12,9 @@ constexpr std::chrono::milliseconds kPause{250};
 
 /// Returns why the standby waits, or an empty text if nobody writes the world.
 std::string reason_to_wait(LeaseWatch& lease) {
-  const auto holder = lease.holder();
-  if (!holder) return holder.error().message();
-  return *holder ? (*holder)->owner + " writes the world" : std::string();
+  const auto owner = lease.owner();
+  if (!owner) return owner.error().message();
+  return *owner ? (*owner)->name + " writes the world" : std::string();
 }
 
 }  // namespace
@@ -30,7 +30,8 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
       logger("app").info("STANDBY: nobody writes the world: taking it over");
       auto started = start();
       if (started) return started;
-      // Another standby was faster, or the database went away.
+      // Another standby was faster, or the database went away. It may show a moment later.
+      if (stops_within(kPause)) return std::unique_ptr<Server>();
       if (reason_to_wait(lease).empty()) return started;
     } else if (reason != told) {
       logger("app").info("STANDBY: waiting, because {}", reason);

@@ -43,10 +43,14 @@ class DurableLog {
   };
 
   /// Starts the threads. `strand`, `store` and `generator` must outlive the object. Only the writer
-  /// uses `store` until stop() has returned. `folder`: of the world; the keyframe thread opens its
+  /// writes `store` until stop() has returned. `folder`: of the world; the keyframe thread opens its
   /// own reader there.
   DurableLog(WorldStrand& strand, WorldSink& store, const std::string& folder,
              const Generator& generator, const Options& options, Events events);
+
+  ~DurableLog() { stop(); }
+  DurableLog(const DurableLog&) = delete;
+  DurableLog& operator=(const DurableLog&) = delete;
 
   LogWriter& writer() { return *writer_; }
   /// Thread: any.

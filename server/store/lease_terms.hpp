@@ -1,4 +1,5 @@
-// What a program says when it takes the lease of a world in a database.
+// LeaseTerms and LeaseOwner: the lease of a world in a database, as its owner asks for it and as others
+// see it (server/store/postgres_lease.hpp).
 #pragma once
 #include <chrono>
 #include <string>
@@ -12,9 +13,8 @@ struct LeaseTerms {
   std::chrono::milliseconds length{5'000};
 };
 
-/// Who holds the lease of a world.
-struct LeaseHolder {
-  std::string owner;
+struct LeaseOwner {
+  std::string name;
   std::chrono::milliseconds left{0};  // until the lease ends, unless it is renewed
 };
 

@@ -74,7 +74,7 @@ class LogWriter {
     std::size_t queued_records = 0;                                        // now
   };
 
-  /// Starts the thread, which alone uses `world` from now until stop() has returned.
+  /// Starts the thread, which alone writes `world` from now until stop() has returned.
   LogWriter(WorldSink& world, Callbacks callbacks, Limits limits);
   LogWriter(WorldSink& world, Callbacks callbacks)
       : LogWriter(world, std::move(callbacks), Limits{}) {}

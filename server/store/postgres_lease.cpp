@@ -37,17 +37,27 @@ constexpr const char* kRenew = "UPDATE lease SET expires_us = " RUNSTONE_NOW_US
                                " + ?2 WHERE shard = 0 AND term = ?1 RETURNING term";
 constexpr const char* kRelease = "UPDATE lease SET expires_us = 0 WHERE shard = 0 AND term = ?1";
 
-// The writer's advisory lock has two numbers: that of the application (?1), and that of the schema.
+// The advisory lock of the writer has two numbers: that of the application (?1), and that of the schema.
 #define RUNSTONE_SCHEMA \
   "(SELECT oid::int FROM pg_catalog.pg_namespace WHERE nspname = current_schema())"
 constexpr const char* kLock = "SELECT pg_try_advisory_lock(?1::bigint::int, " RUNSTONE_SCHEMA ")";
 // It looks again whether the lease has run out, because the owner may have renewed it meanwhile.
-constexpr const char* kEndHolder =
+constexpr const char* kEndOwner =
     "SELECT count(pg_terminate_backend(pid)) FROM pg_catalog.pg_locks WHERE locktype = 'advisory' "
     "AND database = (SELECT oid FROM pg_catalog.pg_database WHERE datname = current_database()) "
     "AND classid = ?1::bigint::oid AND objid = " RUNSTONE_SCHEMA
     "::oid AND objsubid = 2 AND granted AND pid <> pg_backend_pid() AND EXISTS(SELECT 1 FROM lease "
     "WHERE shard = 0 AND expires_us <= " RUNSTONE_NOW_US ")";
+// As the lock of the writer, while a program takes the lease. So programs that take it at the same time do
+// not end each other.
+constexpr const char* kLockTaking =
+    "SELECT pg_try_advisory_lock(?1::bigint::int + 1, " RUNSTONE_SCHEMA ")";
+constexpr const char* kUnlockTaking =
+    "SELECT pg_advisory_unlock(?1::bigint::int + 1, " RUNSTONE_SCHEMA ")";
+constexpr const char* kHasWriter =
+    "SELECT count(*) FROM pg_catalog.pg_locks WHERE locktype = 'advisory' AND classid = "
+    "?1::bigint::oid AND objid = " RUNSTONE_SCHEMA
+    "::oid AND objsubid = 2 AND granted AND pid = ?2::bigint::int";
 constexpr const char* kHasTable =
     "SELECT count(*) FROM pg_catalog.pg_class WHERE relname = 'lease' AND "
     "relnamespace = " RUNSTONE_SCHEMA "::oid";
@@ -121,23 +131,39 @@ StoreResult<void> make_table(sql::Database& writer) {
   return store_result(writer.run(kMakeRow));
 }
 
-/// Ends the connection of an owner whose lease has run out, and takes its lock.
-StoreResult<void> take_lock(sql::Database& writer) {
+void bind_application(sql::Statement& statement) {
+  statement.bind(1, std::int64_t{kApplicationId});
+}
+
+/// Ends the connection of an owner whose lease has run out, and takes its lock. Returns false if the lease
+/// has not run out.
+StoreResult<bool> take_lock(sql::Database& writer) {
   for (int i = 0; i < kLockTries; ++i) {
     if (i > 0) std::this_thread::sleep_for(kPause);
-    const auto bind = [](sql::Statement& statement) {
-      statement.bind(1, std::int64_t{kApplicationId});
-    };
-    const auto is_locked = number_of(writer, kLock, bind);
+    const auto row = read_row(writer, kRead);
+    if (!row) return failed(row.error());
+    if (row->left_us > 0) return false;
+    const auto is_locked = number_of(writer, kLock, bind_application);
     if (!is_locked) return failed(is_locked.error());
-    if (*is_locked != 0) return {};
-    if (const auto ended = number_of(writer, kEndHolder, bind); !ended)
+    if (*is_locked != 0) return true;
+    if (const auto ended = number_of(writer, kEndOwner, bind_application); !ended)
       return failed(ended.error());
   }
   return Unexpected<StoreError>{{StoreError::Kind::locked, writer.file(), "lease",
                                  "another connection keeps the advisory lock " +
                                      std::to_string(kApplicationId) +
                                      " of this schema, and does not end"}};
+}
+
+/// Takes a lease that has run out, and the lock. Returns the term, or nullopt if it has not run out.
+StoreResult<std::optional<std::int64_t>> take_expired(sql::Database& writer,
+                                                      const LeaseTerms& terms) {
+  const auto is_locked = take_lock(writer);
+  if (!is_locked) return failed(is_locked.error());
+  if (!*is_locked) return std::optional<std::int64_t>();
+  return number_of(writer, kTake, [&](sql::Statement& statement) {
+    statement.bind(1, std::string_view(terms.owner)).bind(2, us_of(terms.length));
+  });
 }
 
 }  // namespace
@@ -162,24 +188,35 @@ StoreResult<std::unique_ptr<PostgresLease>> PostgresLease::take(const std::strin
           kPause, std::chrono::microseconds(row->left_us + 1'000)));
       continue;
     }
-    if (auto locked = take_lock(writer); !locked) return failed(locked.error());
+    const auto is_taking = number_of(writer, kLockTaking, bind_application);
+    if (!is_taking) return failed(is_taking.error());
+    if (*is_taking == 0) {
+      std::this_thread::sleep_for(kPause);
+      continue;
+    }
     const TimeUs asked_us = boot_now_us();
-    const auto term = number_of(writer, kTake, [&](sql::Statement& statement) {
-      statement.bind(1, std::string_view(own.owner)).bind(2, us_of(own.length));
-    });
+    const auto term = take_expired(writer, own);
     if (!term) return failed(term.error());
     if (*term) {
+      if (const auto unlocked = number_of(writer, kUnlockTaking, bind_application); !unlocked)
+        return failed(unlocked.error());
+      const auto process = writer.integer("SELECT pg_backend_pid()");
+      if (!process) return failed(process.error());
       return std::unique_ptr<PostgresLease>(
-          new PostgresLease(url, **term, std::move(own), asked_us));
+          new PostgresLease(url, **term, *process, std::move(own), asked_us));
     }
-    // Another program was faster.
     if (const auto unlocked = writer.run("SELECT pg_advisory_unlock_all()"); !unlocked)
       return failed(unlocked.error());
   }
 }
 
-PostgresLease::PostgresLease(std::string url, std::int64_t term, LeaseTerms terms, TimeUs asked_us)
-    : url_(std::move(url)), term_(term), terms_(std::move(terms)), valid_until_us_(0) {
+PostgresLease::PostgresLease(std::string url, std::int64_t term, std::int64_t writer,
+                             LeaseTerms terms, TimeUs asked_us)
+    : url_(std::move(url)),
+      term_(term),
+      writer_(writer),
+      terms_(std::move(terms)),
+      valid_until_us_(0) {
   on_renewed(asked_us);
   renewals_ = std::thread([this] { run(); });
 }
@@ -221,16 +258,33 @@ std::optional<milliseconds> PostgresLease::renew() {
     connection_.reset();
     return soon;
   }
-  if (*term) {
-    on_renewed(asked_us);
-    return terms_.length / 3;
+  if (!*term) {
+    const auto row = read_row(*connection_, kRead);
+    on_lost(taken_by(*connection_, row ? row->owner : "another program"));
+    return std::nullopt;
   }
-  const auto row = read_row(*connection_, kRead);
+  const auto has_writer = number_of(*connection_, kHasWriter, [this](sql::Statement& statement) {
+    bind_application(statement);
+    statement.bind(2, writer_);
+  });
+  if (!has_writer) {
+    connection_.reset();
+    return soon;
+  }
+  if (*has_writer == 0) {
+    on_lost({StoreError::Kind::io, connection_->file(), "lease",
+             "the connection that writes this world has ended"});
+    return std::nullopt;
+  }
+  on_renewed(asked_us);
+  return terms_.length / 3;
+}
+
+void PostgresLease::on_lost(const StoreError& error) {
   const std::lock_guard guard(mutex_);
   valid_until_us_.store(0);
-  lost_ = taken_by(*connection_, row ? row->owner : "another program");
-  if (on_lost_) on_lost_(*lost_);
-  return std::nullopt;
+  lost_ = error;
+  if (on_lost_) on_lost_(error);
 }
 
 void PostgresLease::run() {
@@ -269,17 +323,17 @@ void PostgresLease::release(sql::Database& writer) {
   if (!is_released(writer) && connection_) static_cast<void>(is_released(*connection_));
 }
 
-StoreResult<std::optional<LeaseHolder>> LeaseWatch::ask(sql::Database& database) {
+StoreResult<std::optional<LeaseOwner>> LeaseWatch::ask(sql::Database& database) {
   const auto is_there = database.integer(kHasTable);
   if (!is_there) return failed(is_there.error());
-  if (*is_there == 0) return std::optional<LeaseHolder>();
+  if (*is_there == 0) return std::optional<LeaseOwner>();
   const auto row = read_row(database, kRead);
   if (!row) return failed(row.error());
-  if (row->left_us <= 0) return std::optional<LeaseHolder>();
-  return std::optional(LeaseHolder{row->owner, milliseconds(row->left_us / 1'000 + 1)});
+  if (row->left_us <= 0) return std::optional<LeaseOwner>();
+  return std::optional(LeaseOwner{row->owner, milliseconds(row->left_us / 1'000 + 1)});
 }
 
-StoreResult<std::optional<LeaseHolder>> LeaseWatch::holder() {
+StoreResult<std::optional<LeaseOwner>> LeaseWatch::owner() {
   if (!connection_) {
     auto opened = sql::open_postgres(url_, sql::PostgresMode::read);
     if (!opened) return failed(opened.error());

@@ -3,14 +3,14 @@
 // database alone.
 //   - Whoever takes the lease raises its `term`. Every transaction confirms before its commit that the
 //     row still has the term of its program, and holds the row until it is over. So a program that was
-//     stopped for too long, or cut off, changes nothing afterwards: neither its own clock nor its
-//     belief matters.
+//     stopped for too long, or cut off, changes nothing afterwards.
 //   - A thread renews the lease on a connection of its own three times in its length.
 //   - The owner counts the time of its lease from before it asks, on a clock that no operator sets and
 //     that goes on while the machine is suspended. So is_valid() is false before the lease can have
 //     run out.
 //   - The writer's connection holds an advisory lock. Whoever takes over ends that connection: a
-//     transaction that its program never finished would else keep its rows locked.
+//     transaction that its program never finished would else keep its rows locked. An owner whose
+//     connection was ended notices it with the next renewal, also if it has nothing to write.
 // Threads: take(), confirm(), release() and the destructor: the one that owns the store. Others: any.
 #pragma once
 #include <atomic>
@@ -44,8 +44,9 @@ class PostgresLease {
 
   /// Returns true if nobody else can have the lease now.
   bool is_valid() const;
-  /// `on_lost` is called once, on another thread, when somebody else has the lease. An empty function
-  /// ends the watch; no call is under way then when this returns.
+  /// `on_lost` is called once, when somebody else has the lease or the writer's connection has ended: on
+  /// the thread of renewals, or in this call if it happened before. An empty function ends the watch; no
+  /// call is under way when this returns.
   void watch(std::function<void(const StoreError&)> on_lost);
   /// Confirms in the caller's transaction that this program has the lease, and keeps others from
   /// taking it until the transaction is over. A lease that ran out and that nobody took is renewed.
@@ -55,15 +56,17 @@ class PostgresLease {
   void release(sql::Database& writer);
 
  private:
-  PostgresLease(std::string url, std::int64_t term, LeaseTerms terms, TimeUs asked_us);
+  PostgresLease(std::string url, std::int64_t term, std::int64_t writer, LeaseTerms terms,
+                TimeUs asked_us);
   void stop_renewals();
   void run();
   /// Renews once and returns the time until the next renewal, or nullopt if the lease is lost.
   std::optional<std::chrono::milliseconds> renew();
   void on_renewed(TimeUs asked_us);
+  void on_lost(const StoreError& error);
 
   const std::string url_;
-  const std::int64_t term_;
+  const std::int64_t term_, writer_;  // the process of PostgreSQL that serves the writer
   const LeaseTerms terms_;
   std::atomic<TimeUs> valid_until_us_;  // boot_now_us()
   std::mutex mutex_;
@@ -81,10 +84,10 @@ class LeaseWatch {
   /// `url` is the address of a database.
   explicit LeaseWatch(std::string url) : url_(std::move(url)) {}
   /// Returns who has the lease, or nullopt if nobody has. Connects if it has no connection.
-  StoreResult<std::optional<LeaseHolder>> holder();
+  StoreResult<std::optional<LeaseOwner>> owner();
 
  private:
-  StoreResult<std::optional<LeaseHolder>> ask(sql::Database& database);
+  StoreResult<std::optional<LeaseOwner>> ask(sql::Database& database);
 
   std::string url_;
   std::optional<sql::Database> connection_;

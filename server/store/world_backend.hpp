@@ -1,6 +1,6 @@
 // WorldBackend: what a world needs of its database system besides rows: the lock of its writer, the
 // number of its format, the mark of how far its log was durable, and the upkeep of the database.
-// Threads: the one that owns the store.
+// Threads: the one that owns the store; is_owned() and watch_ownership(): any.
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -24,8 +24,10 @@ class WorldSink {
   /// Returns false while another program may own the world. Then no edit may be ordered, because it may
   /// never be written. Thread: any.
   virtual bool is_owned() const { return true; }
-  /// `on_lost` is called once, on another thread, when another program owns the world: no write
-  /// succeeds from then on. An empty function ends the watch; no call is under way when this returns.
+  /// `on_lost` is called once, when another program owns the world or the connection to its database has
+  /// ended: no write succeeds from then on. It is called on another thread, or in this call if it
+  /// happened before. An empty function ends the watch; no call is under way when this returns. Thread:
+  /// any.
   virtual void watch_ownership(std::function<void(const StoreError&)> /*on_lost*/) {}
   /// Writes new players, then records, then the watermarks that the records imply. All of it is
   /// durable on return. Fails (bad_request) and writes nothing if

@@ -46,7 +46,7 @@ ServerEditsResult order_server_edits(WorldState& world, const std::vector<EditOf
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player);
     if (!world.environment.log_has_room(world.authority.queue().size() + 1)) {
-      out.reason = world.disk_is_full ? kDiskIsFull : "the log is full (log_queue_records)";
+      out.reason = world.disk_is_full ? kDiskIsFull : "the log has no room now (log_queue_records)";
       break;
     }
     if (is_memory_full(world)) {

@@ -97,6 +97,14 @@ export function addWindowCases({ test, bin, files, out, somebody, world }) {
         await player.page.keyboard.press("KeyH");
         await player.page.keyboard.up("Control");
       }, 40, 140);
+      const focused = () => player.page.evaluate(() => document.activeElement.id);
+      const field = await clickUntil(player, "a field has the keyboard", downward(60, 130, 240), async () =>
+        (await focused()) === "typed");
+      await player.page.mouse.click(field.x, field.y, { delay: 80 });
+      await player.drawn();
+      assert.equal(await focused(), "typed"); // also after a second click
+      await player.page.mouse.click(200, 130, { delay: 80 }); // the title
+      await until("the world has the keyboard", async () => (await focused()) === "canvas");
       let bottom = 140;
       while (await player.hasWindowAt(40, bottom)) ++bottom;
       const phase = async (wanted) => (await player.windows()).phase === wanted;
@@ -169,6 +177,16 @@ export function addWindowCases({ test, bin, files, out, somebody, world }) {
         { width: 390, height: 780, touch: true });
       await player.joined("typer");
       await player.complete();
+      // Without a field, a dead key is the key that it is in the world.
+      const walks = () => player.text("#walk");
+      const before = await walks();
+      await player.page.evaluate(() => {
+        for (const type of ["keydown", "keyup"]) {
+          document.getElementById("canvas").dispatchEvent(
+            new KeyboardEvent(type, { key: "Dead", code: "KeyF", bubbles: true }));
+        }
+      });
+      await until("the player walks or flies", async () => (await walks()) !== before);
       await player.page.tap("#rollback");
       await until("the window is drawn", () => player.hasWindowAt(60, 100));
       const focused = () => player.page.evaluate(() => document.activeElement.id);

@@ -106,6 +106,10 @@ class Run:
         self.servers[0].create()
         if not self.wait(30, self.listening):
             return ["no server has taken the world"]
+        self.wait(2)
+        # Before the world was there, the others could not start.
+        for server in self.servers:
+            server.failed_starts.clear()
         keys, report = self.folder / "keys", self.folder / "bots.json"
         keys.mkdir()
         with open(self.folder / "bots.log", "wb") as log:
@@ -148,6 +152,9 @@ class Run:
         durable, kept_max = self.edits["durable"], self.edits["submitted"] - self.edits["rejected"]
         if not durable <= self.logged <= kept_max:
             wrong.append(f"{self.logged} edits are in the log: {durable} were called durable, and {kept_max} not refused")
+        for server in self.servers:
+            if server.failed_starts:
+                wrong.append(f"{server.name} could not start: exit codes {server.failed_starts}")
         epochs = [epoch for server in self.servers for epoch in server.epochs()]
         self.takeovers = len(epochs)
         if len(set(epochs)) != len(epochs):

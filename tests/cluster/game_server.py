@@ -19,6 +19,7 @@ class GameServer:
         self.process = None
         self.start_at = 0.0
         self.is_paused = False
+        self.failed_starts = []  # exit codes of starts that gave up
 
     def create(self):
         """Makes the world, with this server as its first owner."""
@@ -31,7 +32,10 @@ class GameServer:
 
     def step(self):
         """Starts it again, a moment after it has ended, as a service manager does."""
-        if self.process is not None and self.process.poll() is not None:
+        if self.process is not None and (code := self.process.poll()) is not None:
+            # 0: it was stopped. 1: it lost the world or the database. A signal: it was killed.
+            if code > 1:
+                self.failed_starts.append(code)
             self.process = None
             self.start_at = time.monotonic() + random.uniform(0.1, 1)
         if self.process is None and time.monotonic() >= self.start_at:

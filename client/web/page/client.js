@@ -49,7 +49,7 @@ const page = {
     isPlaying = true;
     $("door").hidden = true;
     $("hud").hidden = false;
-    $("canvas").focus();
+    Typing.focus();
     for (const notice of early.splice(0)) page.notice(...notice);
   },
   state(text) {
@@ -88,7 +88,7 @@ const page = {
     button.onclick = () => {
       Program.call("web_hold", id);
       $("palette").hidden = true;
-      $("canvas").focus();
+      Typing.focus();
     };
     $("palette").append(button);
   },
@@ -242,7 +242,8 @@ const isTyping = (target) => target !== Typing.field && ((target instanceof HTML
 const modifiers = (event) => (event.ctrlKey ? 1 : 0) | (event.shiftKey ? 2 : 0) | (event.altKey ? 4 : 0);
 
 function onKey(event) {
-  if (!isPlaying || isTyping(event.target) || Typing.writesLater(event)) return;
+  if (!isPlaying || isTyping(event.target) || event.isComposing) return;
+  if (event.target === Typing.field && Typing.writesLater(event)) return;
   // With the key of the system held, as on a Mac, the releases of other keys are not reported.
   if (event.metaKey || event.key === "Meta") return Program.call("web_focus_lost");
   // The browser keeps these keys.
@@ -275,7 +276,7 @@ function onButton(event) {
   event.preventDefault();
   const isPressed = event.type === "mousedown";
   if (isPressed) {
-    $("canvas").focus();
+    Typing.focus();
     const isForWindow = Program.call("web_has_window_at", event.clientX, event.clientY) !== 0;
     if (document.pointerLockElement === null && !isForWindow) capture();
   }
@@ -346,7 +347,7 @@ function listen() {
     if (event.key === "Enter") Program.call("web_say", $("say").value);
     $("say").value = "";
     $("say").hidden = true;
-    $("canvas").focus();
+    Typing.focus();
   });
   for (let slot = 0; slot < 9; ++slot) {
     const button = document.createElement("button");
@@ -355,7 +356,7 @@ function listen() {
     button.append(number);
     button.onclick = () => {
       Program.call("web_choose_slot", slot);
-      canvas.focus();
+      Typing.focus();
     };
     $("slots").append(button);
   }

@@ -5,7 +5,7 @@
 "use strict";
 
 const Typing = (() => {
-  // So that the field has something that the key for deleting deletes.
+  // The field is never empty, because the key for deleting changes nothing in an empty field.
   const START = "\u200b";
   const field = document.getElementById("typed");
   let isOpen = false; // a field of a window has the keyboard
@@ -31,12 +31,16 @@ const Typing = (() => {
     if (!event.isComposing) reset(); // a reset would end the composition of a word
   }
 
-  // Takes the focus if a field of a window has the keyboard, and gives it back to the canvas if not.
+  // Gives the keyboard of the page to the field, or to the world if no window has the keyboard.
+  function focus() {
+    (isOpen ? field : document.getElementById("canvas")).focus();
+  }
+  // A field of a window has the keyboard from now on, or none has.
   function set(isOpenNow) {
     isOpen = isOpenNow;
     field.hidden = !isOpen;
     reset();
-    (isOpen ? field : document.getElementById("canvas")).focus();
+    focus();
   }
   // A touch on a window ended here. The browser scrolls the place of the field into sight when the
   // keyboard opens. The keyboard may have been closed by hand, and some browsers open it only in the
@@ -50,6 +54,7 @@ const Typing = (() => {
   }
 
   field.addEventListener("input", passChange);
-  field.addEventListener("compositionend", reset);
-  return { field, writesLater, set, touched };
+  // Some browsers report the end of a composition before its last change, and others after it.
+  field.addEventListener("compositionend", passChange);
+  return { field, writesLater, focus, set, touched };
 })();

@@ -82,7 +82,7 @@ TEST_CASE("a job whose slice has more edits than the log has room for writes it 
     b.step();  // the log is full
     CHECK(b.bench.environment.records.size() == std::min<std::size_t>(before + room, 10));
     if (b.job.state() == RestoreJob::State::applying)
-      CHECK(b.job.progress().waits_for == "the log is full (log_queue_records)");
+      CHECK(b.job.progress().waits_for == "the log has no room now (log_queue_records)");
     b.write_log();
   }
   CHECK(b.job.state() == RestoreJob::State::done);

@@ -4,7 +4,9 @@
 #include <chrono>
 #include <functional>
 #include <future>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "server/store/postgres_lease.hpp"
 #include "server/store/world_schema.hpp"
@@ -45,19 +47,19 @@ bool comes_true(const std::function<bool()>& ask) {
 TEST_CASE("the owner of a world is named, and gives the world back", "[.postgres-server]") {
   TempPlace place;
   LeaseWatch watch(place.path());
-  CHECK_FALSE(watch.holder()->has_value());
+  CHECK_FALSE(watch.owner()->has_value());
   auto store = create_as(place.path(), {"first", milliseconds(5'000)});
   CHECK(store->is_owned());
-  REQUIRE(watch.holder()->has_value());
-  CHECK((*watch.holder())->owner == "first");
-  CHECK((*watch.holder())->left <= milliseconds(5'001));
+  REQUIRE(watch.owner()->has_value());
+  CHECK((*watch.owner())->name == "first");
+  CHECK((*watch.owner())->left <= milliseconds(5'001));
   const auto other = open_world(place.path(), StoreAccess::read_write, "", kShort);
   REQUIRE_FALSE(other.has_value());
   CHECK(other.error().kind == StoreError::Kind::locked);
   CHECK(other.error().message().find("is writing this world: first") != std::string::npos);
   CHECK(open_world(place.path(), StoreAccess::read_only).has_value());
   store.reset();
-  CHECK_FALSE(watch.holder()->has_value());
+  CHECK_FALSE(watch.owner()->has_value());
 }
 
 TEST_CASE("the lease of a program that has ended runs out", "[.postgres-server]") {
@@ -153,6 +155,46 @@ TEST_CASE(
   CHECK(comes_true([&] { return !store->is_owned(); }));
   raw_sql(place.path(), "ALTER TABLE hidden RENAME TO lease");
   CHECK(comes_true([&] { return store->is_owned(); }));
+}
+
+TEST_CASE("an owner that has nothing to write hears that its connection was ended",
+          "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  auto store = open_as(place.path(), kShort);
+  std::promise<std::string> told;
+  store->watch_ownership([&](const StoreError& error) { told.set_value(error.message()); });
+  raw_sql(place.path(),
+          "SELECT count(pg_terminate_backend(pid)) FROM pg_locks WHERE locktype = 'advisory' AND "
+          "objid = (SELECT oid FROM pg_namespace WHERE nspname = current_schema())");
+  auto words = told.get_future();
+  REQUIRE(words.wait_for(std::chrono::minutes(1)) == std::future_status::ready);
+  CHECK(words.get().find("the connection that writes this world has ended") != std::string::npos);
+  CHECK_FALSE(store->is_owned());
+}
+
+TEST_CASE("of programs that take a world at the same time, one gets it and the others hear of it",
+          "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  for (int round = 0; round < 5; ++round) {
+    std::vector<std::future<StoreResult<std::unique_ptr<Store>>>> programs;
+    for (int i = 0; i < 4; ++i) {
+      programs.push_back(std::async(std::launch::async, [&, i] {
+        const LeaseTerms terms{std::to_string(i), milliseconds(600)};
+        return open_world(place.path(), StoreAccess::read_write, "", terms);
+      }));
+    }
+    std::vector<StoreResult<std::unique_ptr<Store>>> results;
+    for (auto& program : programs) results.push_back(program.get());
+    int owners = 0;
+    for (auto& result : results) {
+      owners += result ? 1 : 0;
+      if (!result) CHECK(result.error().kind == StoreError::Kind::locked);
+      if (result) CHECK((*result)->raise_epoch().has_value());
+    }
+    CHECK(owners == 1);
+  }
 }
 
 TEST_CASE("a transaction that its program never ends does not keep others out",
