@@ -100,7 +100,8 @@ Result<void> PostgresConnection::begin_write() {
   // PostgreSQL would only warn, and the end of the inner transaction would commit the outer one.
   if (is_writing_ || reads_ > 0)
     return Unexpected<Error>{{Error::Kind::bad_statement, name_, "a transaction is open already"}};
-  // Whatever the default of the database is: a lease that was renewed meanwhile must be seen.
+  // At other levels, PostgreSQL refuses to read a row that was changed after the begin, such as a lease
+  // that was renewed. The database may have another level as its default.
   auto begun = run("BEGIN ISOLATION LEVEL READ COMMITTED");
   is_writing_ = begun.has_value();
   return begun;

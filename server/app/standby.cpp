@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kPause{250};
 std::string reason_to_wait(LeaseWatch& lease) {
   const auto owner = lease.owner();
   if (!owner) return owner.error().message();
-  return *owner ? (*owner)->name + " writes the world" : std::string();
+  return *owner ? **owner + " writes the world" : std::string();
 }
 
 }  // namespace

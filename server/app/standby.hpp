@@ -10,8 +10,8 @@
 
 namespace runstone {
 
-/// Starts the server by `start` as soon as nobody writes the world. Goes on waiting if another standby is
-/// faster, and while the database does not answer. `stops_within` waits, and returns true if the
+/// Starts the server by `start` as soon as nobody writes the world. Goes on waiting if another standby
+/// is faster, and while the database does not answer. `stops_within` waits, and returns true if the
 /// program has to stop meanwhile. Returns null then. Fails if `start` fails for another reason.
 /// Requires start_logging(), and that `place` is a database.
 Result<std::unique_ptr<Server>, std::string> start_as_standby(

@@ -48,8 +48,8 @@ constexpr const char* kEndOwner =
     "AND classid = ?1::bigint::oid AND objid = " RUNSTONE_SCHEMA
     "::oid AND objsubid = 2 AND granted AND pid <> pg_backend_pid() AND EXISTS(SELECT 1 FROM lease "
     "WHERE shard = 0 AND expires_us <= " RUNSTONE_NOW_US ")";
-// As the lock of the writer, while a program takes the lease. So programs that take it at the same time do
-// not end each other.
+// A second advisory lock, which a program holds while it takes the lease. So programs that take the
+// lease at the same time do not end each other's connections.
 constexpr const char* kLockTaking =
     "SELECT pg_try_advisory_lock(?1::bigint::int + 1, " RUNSTONE_SCHEMA ")";
 constexpr const char* kUnlockTaking =
@@ -124,7 +124,8 @@ StoreResult<void> make_table(sql::Database& writer) {
     return Unexpected<StoreError>{{StoreError::Kind::not_a_world, writer.file(), "",
                                    "the first schema of its search_path does not exist"}};
   }
-  // Of two programs that make the table at the same time, one fails, and then it is there.
+  // PostgreSQL can refuse this if another program makes the table at the same moment. The table is there
+  // at the second try.
   if (!writer.run(kMakeTable)) {
     if (auto made = writer.run(kMakeTable); !made) return failed(made.error());
   }
@@ -135,8 +136,8 @@ void bind_application(sql::Statement& statement) {
   statement.bind(1, std::int64_t{kApplicationId});
 }
 
-/// Ends the connection of an owner whose lease has run out, and takes its lock. Returns false if the lease
-/// has not run out.
+/// Ends the connection of an owner whose lease has run out, and takes its lock. Returns false if the
+/// lease has not run out.
 StoreResult<bool> take_lock(sql::Database& writer) {
   for (int i = 0; i < kLockTries; ++i) {
     if (i > 0) std::this_thread::sleep_for(kPause);
@@ -305,10 +306,9 @@ StoreResult<void> PostgresLease::confirm(sql::Database& writer) {
   if (!row) return failed(row.error());
   if (row->term != term_) return Unexpected<StoreError>{taken_by(writer, row->owner)};
   if (row->left_us > 0) return {};
-  const TimeUs asked_us = boot_now_us();
+  // is_valid() does not follow, because the caller's transaction may still be rolled back.
   const auto renewed = renewed_term(writer, term_, terms_.length);
   if (!renewed) return failed(renewed.error());
-  if (*renewed) on_renewed(asked_us);
   return {};
 }
 
@@ -323,17 +323,17 @@ void PostgresLease::release(sql::Database& writer) {
   if (!is_released(writer) && connection_) static_cast<void>(is_released(*connection_));
 }
 
-StoreResult<std::optional<LeaseOwner>> LeaseWatch::ask(sql::Database& database) {
+StoreResult<std::optional<std::string>> LeaseWatch::ask(sql::Database& database) {
   const auto is_there = database.integer(kHasTable);
   if (!is_there) return failed(is_there.error());
-  if (*is_there == 0) return std::optional<LeaseOwner>();
+  if (*is_there == 0) return std::optional<std::string>();
   const auto row = read_row(database, kRead);
   if (!row) return failed(row.error());
-  if (row->left_us <= 0) return std::optional<LeaseOwner>();
-  return std::optional(LeaseOwner{row->owner, milliseconds(row->left_us / 1'000 + 1)});
+  if (row->left_us <= 0) return std::optional<std::string>();
+  return std::optional(row->owner);
 }
 
-StoreResult<std::optional<LeaseOwner>> LeaseWatch::owner() {
+StoreResult<std::optional<std::string>> LeaseWatch::owner() {
   if (!connection_) {
     auto opened = sql::open_postgres(url_, sql::PostgresMode::read);
     if (!opened) return failed(opened.error());

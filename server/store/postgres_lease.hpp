@@ -83,11 +83,11 @@ class LeaseWatch {
  public:
   /// `url` is the address of a database.
   explicit LeaseWatch(std::string url) : url_(std::move(url)) {}
-  /// Returns who has the lease, or nullopt if nobody has. Connects if it has no connection.
-  StoreResult<std::optional<LeaseOwner>> owner();
+  /// Returns the name of the program that has the lease, or nullopt if none has. Connects if it has no connection.
+  StoreResult<std::optional<std::string>> owner();
 
  private:
-  StoreResult<std::optional<LeaseOwner>> ask(sql::Database& database);
+  StoreResult<std::optional<std::string>> ask(sql::Database& database);
 
   std::string url_;
   std::optional<sql::Database> connection_;

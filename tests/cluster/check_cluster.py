@@ -5,6 +5,8 @@ Several servers stand by for one world, bots build on whichever has it, and serv
 fail at random. Then every edit that was called durable must be in the log once, the log must be in order,
 no two starts may have had the same epoch, and every digest must be equal.
 
+A seed decides which faults are made, not at which step of a program they come: two runs of a seed differ.
+
 The bots are the first half of the check: they verify each message, count violations of the protocol, and
 look at each voxel that they have set. SQL and runstone-replay are the other half.
 """

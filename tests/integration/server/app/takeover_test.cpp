@@ -1,7 +1,6 @@
 // Servers of one world in PostgreSQL: one writes it, and the next one takes over when it stops, is killed
 // or stands still. The cases need a PostgreSQL server, see scripts/check-postgres.
 #include <catch2/catch.hpp>
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -62,15 +61,17 @@ struct Cluster {
   TempFolder folders;
   Cluster() { REQUIRE(place.is_postgres()); }
 
-  /// Returns the settings of a server with this name, for ServerProcess.
-  std::function<ServerConfig()> server(const std::string& name, bool is_standby) const {
-    return [this, name, is_standby] {
+  /// Starts a server with a folder of this name, and waits until it listens.
+  std::unique_ptr<ServerProcess> start(const std::string& name, bool is_standby) const {
+    auto server = std::make_unique<ServerProcess>([&] {
       ServerConfig config = quiet_config(folders / name);
       config.store = place.path();
       config.standby = is_standby;
       config.lease_s = 2;
       return config;
-    };
+    });
+    REQUIRE(server->port() != 0);
+    return server;
   }
   /// Checks that the world is sound and that its log has each edit of the player once, in order.
   void check_log(const Builder& builder) const {
@@ -97,28 +98,25 @@ TEST_CASE("a standby takes a world over from a server that stops, and from one t
           "[.postgres-server]") {
   const Cluster cluster;
   Builder builder;
-  ServerProcess first(cluster.server("first", false));
-  REQUIRE(first.port() != 0);
-  builder.join(first);
+  const auto first = cluster.start("first", false);
+  builder.join(*first);
   builder.build(300);
   builder.wait_durable(300);
-  CHECK(first.stop());
+  CHECK(first->stop());
 
-  ServerProcess second(cluster.server("second", true));
-  REQUIRE(second.port() != 0);
-  builder.join(second);
+  const auto second = cluster.start("second", true);
+  builder.join(*second);
   CHECK(builder.epoch() == 2);
   builder.build(300);
   builder.wait_durable(310);
-  second.kill();
+  second->kill();
 
-  ServerProcess third(cluster.server("third", true));
-  REQUIRE(third.port() != 0);
-  builder.join(third);
+  const auto third = cluster.start("third", true);
+  builder.join(*third);
   CHECK(builder.epoch() == 3);
   builder.build(10);
   builder.wait_durable(610);
-  CHECK(third.stop());
+  CHECK(third->stop());
   cluster.check_log(builder);
 }
 
@@ -126,22 +124,20 @@ TEST_CASE("a server that stood still beyond its lease adds nothing to the log, a
           "[.postgres-server]") {
   const Cluster cluster;
   Builder builder;
-  ServerProcess first(cluster.server("first", false));
-  REQUIRE(first.port() != 0);
-  builder.join(first);
+  const auto first = cluster.start("first", false);
+  builder.join(*first);
   builder.build(2'000);
   builder.wait_durable(100);  // others are under way
-  first.pause();
+  first->pause();
 
-  ServerProcess second(cluster.server("second", true));
-  REQUIRE(second.port() != 0);
-  builder.join(second);
+  const auto second = cluster.start("second", true);
+  builder.join(*second);
   CHECK(builder.epoch() == 2);
   builder.build(50);
-  first.resume();
-  CHECK(first.fails());
+  first->resume();
+  CHECK(first->fails());
   builder.wait_durable(2'050);
-  CHECK(second.stop());
+  CHECK(second->stop());
   cluster.check_log(builder);
 }
 
@@ -149,22 +145,20 @@ TEST_CASE("a server whose database drops its connections ends, and the next star
           "[.postgres-server]") {
   const Cluster cluster;
   Builder builder;
-  ServerProcess first(cluster.server("first", false));
-  REQUIRE(first.port() != 0);
-  builder.join(first);
+  const auto first = cluster.start("first", false);
+  builder.join(*first);
   builder.build(500);
   builder.wait_durable(50);
   raw_sql(cluster.place.path(),
           "SELECT count(pg_terminate_backend(pid, 5000)) FROM pg_stat_activity "
           "WHERE application_name = 'runstone'");
   builder.build(10);
-  CHECK(first.fails());
+  CHECK(first->fails());
 
-  ServerProcess again(cluster.server("first", false));
-  REQUIRE(again.port() != 0);
-  builder.join(again);
+  const auto again = cluster.start("first", false);
+  builder.join(*again);
   builder.wait_durable(510);
-  CHECK(again.stop());
+  CHECK(again->stop());
   cluster.check_log(builder);
 }
 

@@ -37,6 +37,14 @@ std::unique_ptr<Store> open_as(const std::string& place, const LeaseTerms& lease
   return *std::move(store);
 }
 
+/// Makes a world and opens it again under this lease, as a server does.
+std::unique_ptr<Store> start_as(const std::string& place, const LeaseTerms& lease) {
+  create_as(place, lease).reset();
+  auto store = open_as(place, lease);
+  REQUIRE(*store->raise_epoch() == 1);
+  return store;
+}
+
 bool comes_true(const std::function<bool()>& ask) {
   for (int i = 0; i < 6'000 && !ask(); ++i) std::this_thread::sleep_for(milliseconds(10));
   return ask();
@@ -51,8 +59,7 @@ TEST_CASE("the owner of a world is named, and gives the world back", "[.postgres
   auto store = create_as(place.path(), {"first", milliseconds(5'000)});
   CHECK(store->is_owned());
   REQUIRE(watch.owner()->has_value());
-  CHECK((*watch.owner())->name == "first");
-  CHECK((*watch.owner())->left <= milliseconds(5'001));
+  CHECK(**watch.owner() == "first");
   const auto other = open_world(place.path(), StoreAccess::read_write, "", kShort);
   REQUIRE_FALSE(other.has_value());
   CHECK(other.error().kind == StoreError::Kind::locked);
@@ -76,10 +83,8 @@ TEST_CASE("the lease of a program that has ended runs out", "[.postgres-server]"
 
 TEST_CASE("a program that was paused beyond its lease writes nothing more", "[.postgres-server]") {
   TempPlace place;
-  create_as(place.path(), kLong).reset();
   SplitMix64 rng(1);
-  auto paused = open_as(place.path(), kLong);
-  REQUIRE(*paused->raise_epoch() == 1);
+  auto paused = start_as(place.path(), kLong);
   REQUIRE(paused->append({}, sample_records(rng, 1, 1, 3)).has_value());
   raw_sql(place.path(), kEnd);
   auto next = open_as(place.path(), kLong);
@@ -96,10 +101,8 @@ TEST_CASE("a program that was paused beyond its lease writes nothing more", "[.p
 TEST_CASE("every write confirms the lease, also on a connection that is alive",
           "[.postgres-server]") {
   TempPlace place;
-  create_as(place.path(), kLong).reset();
   SplitMix64 rng(1);
-  auto store = open_as(place.path(), kLong);
-  REQUIRE(store->raise_epoch().has_value());
+  auto store = start_as(place.path(), kLong);
   const auto records = sample_records(rng, 1, 1, 3);
   raw_sql(place.path(), "UPDATE lease SET owner = 'other', term = term + 1");
   const auto refused = [](const StoreResult<void>& written) {
@@ -118,10 +121,8 @@ TEST_CASE("every write confirms the lease, also on a connection that is alive",
 TEST_CASE("a lease that ran out and that nobody took goes on with the next write",
           "[.postgres-server]") {
   TempPlace place;
-  create_as(place.path(), kLong).reset();
   SplitMix64 rng(1);
-  auto store = open_as(place.path(), kLong);
-  REQUIRE(store->raise_epoch().has_value());
+  auto store = start_as(place.path(), kLong);
   raw_sql(place.path(), kEnd);
   CHECK(store->append({}, sample_records(rng, 1, 1, 3)).has_value());
   CHECK(raw_sql(place.path(), "SELECT expires_us > 0 FROM lease") == "t");
