@@ -26,10 +26,15 @@ inline constexpr std::uint64_t kFeatureLogMarks = 128;    // LogMarksRequest and
 inline constexpr std::uint64_t kFeatureRestorePreview = 256;  // RestorePreview
 inline constexpr std::uint64_t kFeaturePreviews = 512;        // PreviewShare and PlayerPreview
 inline constexpr std::uint64_t kFeatureTiles = 1024;  // View.levels, and chunks with a level
+inline constexpr std::uint64_t kFeatureResume =
+    4096;  // Resume, Resumed; a Durable may raise the epoch
+// Only for a client that has the world's own key: another server of the same world.
+inline constexpr std::uint64_t kFeatureServers = 2048;  // FollowRequest to RelayCharge
+// Those that a server offers to players.
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
-    kFeaturePreviews | kFeatureTiles;
+    kFeaturePreviews | kFeatureTiles | kFeatureResume;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -127,10 +132,22 @@ inline constexpr std::size_t kRestorePreviewBytesMax =
     256 * 1024;  // of their descriptors, together
 static_assert(kDescriptorBytesMax <= kRestorePreviewBytesMax, "every descriptor fits a preview");
 
+// Between servers.
+inline constexpr std::size_t kLogPartRecordsMax = 4096;
+inline constexpr std::size_t kLogPartRowsMax = 4096;  // players; likewise names
+inline constexpr std::size_t kFoldedNameBytesMax = 512;
+inline constexpr std::size_t kRelaySessionsMax = 4096;  // that one message is for
+/// Of the body of a relayed message; the rest is for the list of sessions.
+inline constexpr std::size_t kRelayBodyBytesMax = kServerEditBytesMax - 64 * 1024;
+static_assert(kRelaySessionsMax * 4 + 512 <= kServerEditBytesMax - kRelayBodyBytesMax);
+/// Records in one LogPart take so many bytes at most, beyond a single one.
+inline constexpr std::size_t kLogPartBytesMax = 256 * 1024;
+
 // Commands.
 inline constexpr std::size_t kCommandBytesMax = 1024;      // one line
 inline constexpr std::size_t kCommandLinesMax = 64;        // per output message
 inline constexpr std::size_t kCommandLineBytesMax = 1024;  // per line of output
-static_assert(kDescriptorBytesMax + 256 <= kClientEditBytesMax, "every descriptor fits a request");
+static_assert(kDescriptorBytesMax + 512 <= kClientEditBytesMax,
+              "every descriptor fits a request, also one that a server passes on");
 
 }  // namespace runstone

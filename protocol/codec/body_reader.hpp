@@ -1,7 +1,7 @@
 // BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier
 // cannot check. Internal to the message decoder. The readers are in session_bodies.cpp,
 // chunk_bodies.cpp, edit_bodies.cpp, rights_bodies.cpp, chat_bodies.cpp, key_transfer_bodies.cpp,
-// material_bodies.cpp and preview_bodies.cpp.
+// material_bodies.cpp, preview_bodies.cpp and server_bodies.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -67,6 +67,8 @@ struct BodyReader {
   Result<Message> read(const wire::Commit& t) const;
   Result<Message> read(const wire::Reject& t) const;
   Result<Message> read(const wire::Durable& t) const;
+  Result<Message> read(const wire::Resume& t) const;
+  Result<Message> read(const wire::Resumed& t) const;
 
   // ---- rights_bodies.cpp
   Result<Message> read(const wire::Permissions& t) const;
@@ -95,6 +97,15 @@ struct BodyReader {
   // ---- preview_bodies.cpp
   Result<Message> read(const wire::PreviewShare& t) const;
   Result<Message> read(const wire::PlayerPreview& t) const;
+
+  // ---- server_bodies.cpp
+  Result<Message> read(const wire::FollowRequest& t) const;
+  Result<Message> read(const wire::FollowAnswer& t) const;
+  Result<Message> read(const wire::LogPart& t) const;
+  Result<Message> read(const wire::RelayOpen& t) const;
+  Result<Message> read(const wire::Relay& t) const;
+  Result<Message> read(const wire::RelayClose& t) const;
+  Result<Message> read(const wire::RelayCharge& t) const;
 
   using TakeEdit = std::function<Result<void>()>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then

@@ -69,4 +69,11 @@ Result<Message> BodyReader::read(const wire::Durable& t) const {
   return Durable{t.epoch(), t.seq(), t.is_read_only()};
 }
 
+Result<Message> BodyReader::read(const wire::Resume& t) const {
+  if (t.resolved() > kSequenceMax) return bad("resume: client sequence exceeds 63 bits");
+  return Resume{t.resolved()};
+}
+
+Result<Message> BodyReader::read(const wire::Resumed& /*t*/) const { return Resumed{}; }
+
 }  // namespace runstone

@@ -20,7 +20,9 @@ using Bodies =
                wire::ProtectedGround, wire::ChatRequest, wire::ChatLines, wire::KeyRequest,
                wire::SealedKey, wire::KeyDeposit, wire::KeyDeposited, wire::MaterialsAdded,
                wire::LogMarksRequest, wire::LogMarks, wire::RestorePreview, wire::PreviewShare,
-               wire::PlayerPreview>;
+               wire::PlayerPreview, wire::FollowRequest, wire::FollowAnswer, wire::LogPart,
+               wire::RelayOpen, wire::Relay, wire::RelayClose, wire::RelayCharge, wire::Resume,
+               wire::Resumed>;
 static_assert(std::tuple_size_v<Bodies> == kMessageKindCount);
 
 using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);

@@ -276,6 +276,66 @@ struct BodyBuilder {
   Offset<wire::PlayerPreview> operator()(const PlayerPreview& m) {
     return wire::CreatePlayerPreview(b, m.author, preview_list(m.edits));
   }
+
+  Offset<wire::Resume> operator()(const Resume& m) { return wire::CreateResume(b, m.resolved); }
+  Offset<wire::Resumed> operator()(const Resumed& /*m*/) { return wire::CreateResumed(b); }
+
+  Offset<wire::FollowRequest> operator()(const FollowRequest& m) {
+    return wire::CreateFollowRequest(b, m.after.epoch, m.after.seq);
+  }
+  Offset<wire::FollowAnswer> operator()(const FollowAnswer& m) {
+    return wire::CreateFollowAnswer(b, m.head);
+  }
+  Offset<wire::LogPart> operator()(const LogPart& m) {
+    RUNSTONE_ASSERT(m.records.size() <= kLogPartRecordsMax);
+    RUNSTONE_ASSERT(m.players.size() <= kLogPartRowsMax && m.names.size() <= kLogPartRowsMax);
+    std::vector<Offset<wire::LogPlayer>> players;
+    players.reserve(m.players.size());
+    for (const LogPlayer& player : m.players) {
+      const auto key = bytes_of(b, player.key);
+      players.push_back(wire::CreateLogPlayer(b, player.author, key, b.CreateString(player.name)));
+    }
+    std::vector<Offset<wire::LogName>> names;
+    names.reserve(m.names.size());
+    for (const LogName& name : m.names) {
+      const auto folded = b.CreateString(name.folded);
+      const auto shown = b.CreateString(name.name);
+      const auto key = bytes_of(b, name.key);
+      names.push_back(wire::CreateLogName(b, folded, shown, key, name.is_release));
+    }
+    std::vector<Offset<wire::LogRecordBytes>> records;
+    records.reserve(m.records.size());
+    for (const LogPartRecord& part : m.records) {
+      const auto record = bytes_of(b, encode_record(part.record));
+      records.push_back(wire::CreateLogRecordBytes(b, record, part.submitted_us));
+    }
+    const auto players_at = b.CreateVector(players);
+    const auto names_at = b.CreateVector(names);
+    return wire::CreateLogPart(b, m.epoch, players_at, names_at, b.CreateVector(records));
+  }
+  Offset<wire::RelayOpen> operator()(const RelayOpen& m) {
+    RUNSTONE_ASSERT(!m.name.empty() && m.name.size() <= kPlayerNameBytesMax);
+    const auto key = bytes_of(b, m.key);
+    const auto name = b.CreateString(m.name);
+    const Offset<flatbuffers::String> ticket = m.ticket.empty() ? 0 : b.CreateString(m.ticket);
+    const auto password_key = optional_bytes(m.password_key);
+    const wire::Pose pose = pose_of(m.pose);
+    return wire::CreateRelayOpen(b, m.session, m.address, m.is_encrypted, key, m.instance, name,
+                                 m.features, m.author, &pose, ticket, password_key);
+  }
+  Offset<wire::Relay> operator()(const Relay& m) {
+    RUNSTONE_ASSERT(!m.sessions.empty() && m.sessions.size() <= kRelaySessionsMax);
+    const auto sessions = b.CreateVector(m.sessions);
+    const auto body = bytes_of(b, *m.message.bytes);
+    return wire::CreateRelay(b, sessions, wire_number(m.message.kind), body);
+  }
+  Offset<wire::RelayClose> operator()(const RelayClose& m) {
+    return wire::CreateRelayClose(b, m.session, m.reason, text(m.text));
+  }
+  Offset<wire::RelayCharge> operator()(const RelayCharge& m) {
+    return wire::CreateRelayCharge(b, m.session, m.bytes);
+  }
+
   Offset<flatbuffers::Vector<std::uint8_t>> preview_list(const std::vector<EditDescriptor>& edits) {
     const Bytes list = encode_preview(edits);
     RUNSTONE_ASSERT(edits.size() <= kPreviewEditsMax && list.size() <= kPreviewListBytesMax);

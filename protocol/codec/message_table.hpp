@@ -84,6 +84,15 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"RestorePreview", server, kControl, open, kFeatureRestorePreview},
       {"PreviewShare", client, kControl, open, kFeaturePreviews},
       {"PlayerPreview", server, kControl, open, kFeaturePreviews},
+      {"FollowRequest", client, kEdits, open, kFeatureServers},
+      {"FollowAnswer", server, kEdits, open, kFeatureServers},
+      {"LogPart", server, kEdits, open, kFeatureServers},
+      {"RelayOpen", client, kEdits, open, kFeatureServers},
+      {"Relay", both, kEdits, open, kFeatureServers},
+      {"RelayClose", both, kEdits, open, kFeatureServers},
+      {"RelayCharge", server, kControl, open, kFeatureServers},
+      {"Resume", server, kEdits, open, kFeatureResume},
+      {"Resumed", client, kEdits, open, kFeatureResume},
   }};
 }();
 

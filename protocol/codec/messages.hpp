@@ -32,9 +32,11 @@
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/key_transfer_messages.hpp"
 #include "protocol/codec/log_mark_messages.hpp"
+#include "protocol/codec/pose.hpp"
 #include "protocol/codec/preview_messages.hpp"
 #include "protocol/codec/restore_preview_messages.hpp"
 #include "protocol/codec/rights_messages.hpp"
+#include "protocol/codec/server_messages.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -45,13 +47,6 @@ using WorldId = std::array<std::uint8_t, kWorldIdBytes>;
 /// Made from a password and a salt (password_key.hpp). Whoever has it can join like somebody who
 /// knows the password, in worlds with this salt.
 using PasswordKey = std::array<std::uint8_t, kPasswordKeyBytes>;
-
-struct Pose {
-  WorldPos at;
-  std::uint16_t yaw = 0;   // 65536 is a turn; 0 looks along +z; grows towards +x
-  std::int16_t pitch = 0;  // 32768 is 180 degrees; positive looks up
-  friend bool operator==(const Pose&, const Pose&) = default;
-};
 
 struct Hello {
   std::uint32_t protocol = kProtocolVersion;
@@ -440,6 +435,17 @@ struct MaterialsAdded {
   friend bool operator==(const MaterialsAdded&, const MaterialsAdded&) = default;
 };
 
+/// Another server orders the edits of the session from now on. What the client sent before may be lost.
+/// The client answers with Resumed, and offers the edits again that have no answer.
+struct Resume {
+  ClientSequence resolved = 0;  // as SessionAccepted::resolved
+  friend bool operator==(const Resume&, const Resume&) = default;
+};
+/// Answers a Resume. Edits that precede it are ignored.
+struct Resumed {
+  friend bool operator==(const Resumed&, const Resumed&) = default;
+};
+
 /// The order is that of the enum Kind in the schema.
 using Message =
     std::variant<Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, Chunks,
@@ -448,7 +454,8 @@ using Message =
                  CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified,
                  Permissions, ProtectedGround, ChatRequest, ChatLines, KeyRequest, SealedKey,
                  KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest, LogMarks,
-                 RestorePreview, PreviewShare, PlayerPreview>;
+                 RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
+                 RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

@@ -1,13 +1,16 @@
 #include "tests/support/random_message.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <utility>
 
 #include "common/core/m61.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
 #include "tests/support/random_look.hpp"
+#include "tests/support/random_rights.hpp"
 
 namespace runstone::test {
 namespace {
@@ -462,6 +465,79 @@ RestorePreview any_restore_preview(SplitMix64& rng) {
   return m;
 }
 
+/// Returns a record of the log at this version. It may change voxels, rights or materials.
+EditRecord any_record(SplitMix64& rng, Version version) {
+  EditRecord record;
+  record.version = version;
+  record.op = {rng.below(1000), rng.next(), any64(rng) >> 1};
+  record.time_us = any_time(rng);
+  record.cause = static_cast<Cause>(rng.below(kCauseMax + 1u));
+  if (record.cause == Cause::rights) {
+    record.edit = rights_edit(random_rights_change(rng));
+  } else if (record.cause == Cause::materials) {
+    MaterialsAdded added = any_materials_added(rng);
+    record.edit = materials_edit({added.first, std::move(added.rows)});
+  } else {
+    record.edit = any_edit(rng);
+  }
+  if (rng.below(2) == 0) record.subject = any64(rng) % version.seq;
+  if (rng.below(4) == 0) record.log = rng.below(1000);
+  return record;
+}
+
+LogPart any_log_part(SplitMix64& rng) {
+  LogPart m;
+  m.epoch = 1 + rng.below(1'000'000);
+  m.players.resize(rng.below(5));
+  for (LogPlayer& player : m.players) {
+    player.author = 1 + rng.below(1000);
+    draw(rng, player.key);
+    player.name = any_name(rng);
+  }
+  m.names.resize(rng.below(5));
+  for (LogName& name : m.names) {
+    name.folded = any_text(rng, 1, rng.below(8) == 0 ? kFoldedNameBytesMax : kPlayerNameBytesMax);
+    name.name = any_name(rng);
+    draw(rng, name.key);
+    name.is_release = rng.below(2) == 0;
+  }
+  Version version{1 + rng.below(m.epoch), any64(rng) >> 2};
+  for (std::uint32_t left = rng.below(5); left != 0; --left) {
+    ++version.seq;
+    if (rng.below(4) == 0) version.epoch += rng.below(m.epoch - version.epoch + 1);
+    m.records.push_back({any_record(rng, version), rng.below(2) == 0 ? 0 : any_time(rng)});
+  }
+  return m;
+}
+
+RelayOpen any_relay_open(SplitMix64& rng) {
+  RelayOpen m;
+  m.session = static_cast<SessionId>(any64(rng));
+  m.address = any64(rng);
+  m.is_encrypted = rng.below(2) == 0;
+  draw(rng, m.key);
+  m.instance = any64(rng);
+  m.name = any_name(rng);
+  m.features = any64(rng);
+  m.author = rng.below(2) == 0 ? 0 : rng.below(1000);
+  m.pose = any_pose(rng);
+  if (rng.below(2) == 0) m.ticket = any_text(rng, 1, kTicketBytesMax);
+  if (rng.below(2) == 0) draw(rng, m.password_key.emplace());
+  return m;
+}
+
+/// Wraps a message that is small enough for a client's limit, whichever side sends it.
+Relay any_relay(SplitMix64& rng) {
+  constexpr MessageKind kSmall[] = {
+      kKindOf<EditRequest>,  kKindOf<Move>,   kKindOf<CommandRequest>,  kKindOf<ChatRequest>,
+      kKindOf<PreviewShare>, kKindOf<Reject>, kKindOf<SessionAccepted>, kKindOf<PlayerPoses>};
+  const auto count = static_cast<std::uint32_t>(std::size(kSmall));
+  Relay m{{}, encode_message(random_message(rng, kSmall[rng.below(count)]))};
+  m.sessions.resize(rng.below(2) == 0 ? 1 : 1 + rng.below(20));
+  for (SessionId& session : m.sessions) session = static_cast<SessionId>(any64(rng));
+  return m;
+}
+
 }  // namespace
 
 std::vector<EditDescriptor> any_preview(SplitMix64& rng) {
@@ -571,9 +647,29 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_restore_preview(rng);
     case kKindOf<PreviewShare>:
       return PreviewShare{any_preview(rng)};
-    default:
-      RUNSTONE_ASSERT(kind == kKindOf<PlayerPreview>);
+    case kKindOf<PlayerPreview>:
       return PlayerPreview{rng.below(1000), any_preview(rng)};
+    case kKindOf<FollowRequest>:
+      return FollowRequest{any_version(rng)};
+    case kKindOf<FollowAnswer>:
+      return FollowAnswer{any64(rng) >> 1};
+    case kKindOf<LogPart>:
+      return any_log_part(rng);
+    case kKindOf<RelayOpen>:
+      return any_relay_open(rng);
+    case kKindOf<Relay>:
+      return any_relay(rng);
+    case kKindOf<RelayClose>:
+      return RelayClose{static_cast<SessionId>(any64(rng)),
+                        static_cast<std::uint8_t>(1 + rng.below(kGoodbyeReasonMax)),
+                        any_text(rng, 0, kTextBytesMax)};
+    case kKindOf<RelayCharge>:
+      return RelayCharge{static_cast<SessionId>(any64(rng)), any64(rng)};
+    case kKindOf<Resume>:
+      return Resume{any64(rng) >> 1};
+    default:
+      RUNSTONE_ASSERT(kind == kKindOf<Resumed>);
+      return Resumed{};
   }
 }
 

@@ -36,6 +36,8 @@ const char* text_of_feature(std::uint64_t feature) {
   if (feature == kFeatureLogMarks) return "log marks";
   if (feature == kFeatureRestorePreview) return "restore preview";
   if (feature == kFeaturePreviews) return "previews";
+  if (feature == kFeatureServers) return "servers";
+  if (feature == kFeatureResume) return "resume";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 
@@ -91,7 +93,7 @@ TEST_CASE("an encoded message has its kind, and the kind decides the class", "[p
   }
   CHECK(kKindOf<Hello> == 0);
   CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
-  CHECK(kKindOf<PlayerPreview> == kMessageKindCount - 1);
+  CHECK(kKindOf<Resumed> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {
@@ -99,7 +101,23 @@ TEST_CASE("every client message fits a class that clients may use", "[protocol]"
     CAPTURE(info.name);
     if (may_send(info, Sender::client))
       CHECK(message_bytes_max(Sender::client, info.frame_class) != 0);
-    CHECK((info.feature & ~kFeaturesKnown) == 0);
+    CHECK((info.feature & ~(kFeaturesKnown | kFeatureServers)) == 0);
+  }
+}
+
+TEST_CASE("players are not offered the messages between servers", "[protocol]") {
+  CHECK((kFeaturesKnown & kFeatureServers) == 0);
+  for (const MessageInfo& info : kMessageTable) {
+    CAPTURE(info.name);
+    if (info.feature != kFeatureServers) continue;
+    for (const Sender sender : {Sender::client, Sender::server}) {
+      const auto refusal_with = [&](std::uint64_t features) {
+        return refusal_of(info, sender, SessionStage::open, features);
+      };
+      CHECK(refusal_with(kFeatureServers).has_value() != may_send(info, sender));
+      REQUIRE(refusal_with(kFeaturesKnown).has_value());
+      CHECK(refusal_with(kFeaturesKnown)->reason == GoodbyeReason::unexpected_message);
+    }
   }
 }
 
@@ -162,6 +180,13 @@ TEST_CASE("a message needs its feature in force, on both sides", "[protocol]") {
   CHECK(reason(ReceiveAck{}, Sender::client, kOpen, kFeatureReceiveAck) == std::nullopt);
   CHECK(reason(ReceiveAck{}, Sender::client, kOpen, kFeatureCommands) == kUnexpected);
   CHECK(reason(Ping{}, Sender::client, kOpen, 0) == std::nullopt);
+  for (const Sender sender : {Sender::client, Sender::server}) {
+    CHECK(reason(Relay{}, sender, kOpen, kFeatureServers) == std::nullopt);
+    CHECK(reason(RelayClose{}, sender, kOpen, kFeatureServers) == std::nullopt);
+    CHECK(reason(Relay{}, sender, kOpen, kFeaturesKnown) == kUnexpected);
+  }
+  CHECK(reason(FollowRequest{}, Sender::client, kOpen, kFeatureServers) == std::nullopt);
+  CHECK(reason(FollowRequest{}, Sender::server, kOpen, kFeatureServers) == kUnexpected);
 }
 
 }  // namespace runstone::test
