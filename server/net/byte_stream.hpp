@@ -85,10 +85,18 @@ std::unique_ptr<ByteStream> make_local_stream(asio::local::stream_protocol::sock
                                               const asio::ip::tcp::endpoint& client,
                                               AddressForm log_form);
 
-/// Makes a stream over TLS and TCP. The costly steps of the handshake run on `handshakes`. A peer
-/// that does not speak TLS gets `plain_answer`, unencrypted.
+/// Makes the server's end of a stream over TLS and TCP. The costly steps of the handshake run on
+/// `handshakes`. A peer that does not speak TLS gets `plain_answer`, unencrypted.
 std::unique_ptr<ByteStream> make_tls_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
                                             AddressForm log_form, const TlsContext& context,
                                             asio::any_io_executor handshakes, Bytes plain_answer);
+
+/// Makes the client's end of a stream over TLS and TCP. `host`: the name or the address of the
+/// server, see TlsChannel::connect().
+std::unique_ptr<ByteStream> make_tls_client_stream(asio::ip::tcp::socket socket,
+                                                   std::size_t notsent_bytes, AddressForm log_form,
+                                                   const TlsContext& context,
+                                                   const std::string& host,
+                                                   asio::any_io_executor handshakes);
 
 }  // namespace runstone

@@ -48,14 +48,22 @@ asio::steady_timer::time_point time_point_of(TimeUs us) {
   return asio::steady_timer::time_point(std::chrono::microseconds(us));
 }
 
+SendLimits trusted(SendLimits limits) {
+  limits.edit_bytes = TrustedLimits::kEditBytes;
+  limits.edit_count = TrustedLimits::kEditCount;
+  limits.control_count = TrustedLimits::kControlCount;
+  return limits;
+}
+
 }  // namespace
 
 NetSession::NetSession(SessionId id, asio::io_context& io, asio::any_io_executor decoders,
                        std::unique_ptr<ByteStream> stream, const NetLimits& limits,
                        std::uint16_t chunk_edge, ByteBudget& budget,
                        std::shared_ptr<ByteBudget> address_reads, NetEvents& events,
-                       NetCounters& counters)
+                       NetCounters& counters, Sender peer)
     : id_(id),
+      sender_(peer),
       limits_(limits),
       chunk_edge_(chunk_edge),
       events_(events),
@@ -73,10 +81,11 @@ NetSession::NetSession(SessionId id, asio::io_context& io, asio::any_io_executor
       linger_(strand_),
       read_budget_(limits.read_bytes_per_second),
       address_reads_(std::move(address_reads)),
-      reader_(Sender::client),
+      reader_(peer),
       messages_(limits.messages_per_second, limits.message_burst) {
   // The timer never expires. Cancelling it wakes the loop that waits on it.
   read_wake_.expires_at(asio::steady_timer::time_point::max());
+  if (peer == Sender::server) trust();
 }
 
 void NetSession::start() { asio::co_spawn(strand_, run(shared_from_this()), asio::detached); }
@@ -97,7 +106,9 @@ asio::awaitable<void> NetSession::run(std::shared_ptr<NetSession> self) {
   } else {
     const std::string why =
         started == StreamStart::not_encrypted ? "no TLS" : self->stream_->failure();
-    log_failed_handshake(self->id_, self->peer_, why);
+    // Whoever made an outgoing connection gets the reason and logs it.
+    if (self->sender_ == Sender::client) log_failed_handshake(self->id_, self->peer_, why);
+    self->close(GoodbyeReason::closing, why);
   }
   if (!is_wanted) {
     self->stream_->close();
@@ -185,14 +196,28 @@ EndCause NetSession::end() {
   return end_;
 }
 
+void NetSession::trust() {
+  {
+    const std::lock_guard lock(mutex_);
+    queue_.set_limits(trusted(limits_.send));
+  }
+  is_trusted_ = true;
+  wake_reader();
+}
+
 bool NetSession::drops_input() {
-  if (has_said_goodbye_) return true;
+  // A goodbye may overtake edits, and those of a server must not be lost.
+  if (has_said_goodbye_ && !is_trusted_) return true;
   const std::lock_guard lock(mutex_);
   return closing_ && (!is_authenticated_ || is_broken_rule(end_.reason));
 }
 
 void NetSession::handled(std::size_t message_bytes) {
   unhandled_.fetch_sub(message_bytes + kMessageBytes);
+  wake_reader();
+}
+
+void NetSession::wake_reader() {
   if (!reader_paused_.load() || must_pause()) return;
   const auto wake = [self = shared_from_this()] { self->read_wake_.cancel(); };
   asio::post(strand_, wake);
@@ -245,6 +270,7 @@ void NetSession::close_stream() {
 // Handling a message costs more than sending it. So each session is read no faster than a regular
 // client sends, and TCP makes the others wait.
 asio::awaitable<void> NetSession::wait_for_read_budget(std::size_t bytes_read) {
+  if (is_trusted_) co_return;
   const TimeUs now_us = steady_now_us();
   const std::size_t bytes = bytes_read + charged_.exchange(0);
   const TimeUs slot_us =
@@ -276,11 +302,11 @@ asio::awaitable<Result<void>> NetSession::feed(std::shared_ptr<NetSession> self,
 
 Result<void> NetSession::decode(MessageKind kind, ByteView body) {
   counters_.messages_in.fetch_add(1, std::memory_order_relaxed);
-  if (!messages_.take(1, steady_now_us())) {
+  if (!is_trusted_ && !messages_.take(1, steady_now_us())) {
     broken_rule_ = GoodbyeReason::flooding;
     return fail(ErrorCode::limit_exceeded, "more messages than the rate allows");
   }
-  auto message = decode_message(Sender::client, kind, body, chunk_edge_);
+  auto message = decode_message(sender_, kind, body, chunk_edge_);
   if (!message) {
     broken_rule_ = GoodbyeReason::malformed_message;
     return Unexpected<Error>{message.error()};
@@ -367,7 +393,7 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
     }
     self->reader_paused_.store(false);
   }
-  // The client has closed the connection, so nobody reads what is queued.
+  // The peer has closed the connection, so nobody reads what is queued.
   self->close(GoodbyeReason::closing,
               self->has_said_goodbye_ ? "the client said goodbye" : "end of stream");
   self->loop_ended();

@@ -1,11 +1,13 @@
-// NetSession: one connection. It reads frames, verifies messages and reports them to NetEvents; it
-// sends queued messages by priority; it ends with a numbered goodbye. A client that breaks a rule
-// ends its own session only.
+// NetSession: one connection, with a client or with a server. It reads frames, verifies messages and
+// reports them to NetEvents; it sends queued messages by priority; it ends with a numbered goodbye. A
+// client that breaks a rule ends its own session only.
+// Bounds: NetLimits. Another server of the same world is trusted: TrustedLimits hold instead, and it
+// may send messages and bytes at any rate.
 // Threads: the two loops run on the session's strand. A read that may complete a large message is
 // decoded on a thread of `decoders`, so that the I/O threads are free for the small messages of
 // others; the read loop waits for it. send(), reserve_chunk(), fill_chunk(),
-// forget_outside(), close(), abort(), handled(), set_encodings() and set_features() may be called
-// from any thread and return at once.
+// forget_outside(), close(), abort(), handled(), trust(), set_encodings() and set_features() may be
+// called from any thread and return at once.
 #pragma once
 #include <asio/any_io_executor.hpp>
 #include <asio/io_context.hpp>
@@ -54,6 +56,15 @@ struct NetLimits {
   AddressForm log_addresses = AddressForm::full;
 };
 
+/// The bounds of a session with another server of the same world, in place of those in NetLimits.
+/// They are sized for bursts: a follower gets the records of everything that all players do.
+struct TrustedLimits {
+  static constexpr std::size_t kEditBytes = 64 * 1024 * 1024;  // of the send queue
+  static constexpr std::size_t kEditCount = 256 * 1024;
+  static constexpr std::size_t kControlCount = 16 * 1024;
+  static constexpr std::size_t kUnhandledBytes = 4 * 1024 * 1024;
+};
+
 struct NetCounters {
   std::atomic<std::uint64_t> connections{0}, refused{0}, bytes_in{0}, bytes_out{0}, messages_in{0},
       malformed{0};
@@ -83,11 +94,12 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
  public:
   /// `budget` (of the server), `limits`, `events` and `counters` must outlive the session, and the
   /// threads of `decoders` those of `io`. `chunk_edge`: of the world. `address_reads`: the budget of
-  /// reading that the sessions of an address share.
+  /// reading that the sessions of an address share. `peer`: what is at the other end. A server is
+  /// trusted from the start.
   NetSession(SessionId id, asio::io_context& io, asio::any_io_executor decoders,
              std::unique_ptr<ByteStream> stream, const NetLimits& limits, std::uint16_t chunk_edge,
              ByteBudget& budget, std::shared_ptr<ByteBudget> address_reads, NetEvents& events,
-             NetCounters& counters);
+             NetCounters& counters, Sender peer = Sender::client);
 
   SessionId id() const { return id_; }
   const std::string& peer() const { return peer_; }
@@ -98,7 +110,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
     const TimeUs began_us = write_began_us_.load();
     return began_us == 0 ? 0 : now_us - began_us;
   }
-  /// Returns why close() was called first, or the default if it was not called. Thread: any.
+  /// Returns why close() was called first, or the default if it was not called. If the stream could
+  /// not be opened, the text says why. Thread: any.
   EndCause end();
 
   /// Opens the stream, reports on_connected() and starts both loops. Call it once.
@@ -126,6 +139,10 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// Reports that the client has authenticated. What it sends while it is being closed is then read
   /// until the linger time ends, so that the goodbye is not lost. Thread: any.
   void authenticated() { is_authenticated_ = true; }
+  /// Reports that the client has proved to be another server of the same world. From now on
+  /// TrustedLimits hold, it may send messages and bytes at any rate, and what follows its goodbye is
+  /// read too. Thread: any.
+  void trust();
   /// Reports that a message of NetEvents::on_message() was handled.
   void handled(std::size_t message_bytes);
   /// Counts further bytes as read, for a message that cost more than its size says. Reading pauses
@@ -154,12 +171,18 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   Result<void> on_receive_ack(const ReceiveAck& ack);
   void refuse(const Error& error);
   /// Returns true if input is to be dropped and only a little of it read: the session is being closed
-  /// because the client broke a rule or did not authenticate, or the client has said goodbye.
+  /// because the peer broke a rule or did not authenticate, or a client has said goodbye.
   bool drops_input();
   asio::awaitable<void> wait_for_read_budget(std::size_t bytes_read);
   /// Waits until close_stream() was called.
   static asio::awaitable<void> wait_for_close(std::shared_ptr<NetSession> self);
-  bool must_pause() const { return unhandled_.load() >= limits_.unhandled_bytes_max; }
+  bool must_pause() const {
+    const std::size_t most =
+        is_trusted_ ? TrustedLimits::kUnhandledBytes : limits_.unhandled_bytes_max;
+    return unhandled_.load() >= most;
+  }
+  /// Wakes a paused reader if it need not pause any more.
+  void wake_reader();
   bool has_chunk();
   void wake_writer();
   /// Returns true if the caller must call post_wake() because the writer is idle. Requires the
@@ -169,6 +192,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   void loop_ended();
 
   const SessionId id_;
+  const Sender sender_;  // the peer
   const NetLimits& limits_;
   const std::uint16_t chunk_edge_;
   NetEvents& events_;
@@ -183,6 +207,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::atomic<std::size_t> charged_{0};    // bytes to be added to the next read
   std::atomic<bool> reader_paused_{false};
   std::atomic<bool> is_authenticated_{false};
+  std::atomic<bool> is_trusted_{false};
   std::atomic<TimeUs> write_began_us_{0};  // 0: no write is under way
 
   std::mutex mutex_;  // a leaf: guards the next seven
@@ -210,7 +235,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   GoodbyeReason broken_rule_ = GoodbyeReason::malformed_frame;  // of the error that feed() returns
   int loops_ = 0;
   bool linger_started_ = false;
-  bool has_said_goodbye_ = false;  // the client
+  bool has_said_goodbye_ = false;  // the peer
   bool reads_no_more_ = false;     // the stream was closed; on the strand
 };
 

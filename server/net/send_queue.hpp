@@ -39,6 +39,8 @@ using ChunkPlace = std::uint64_t;
 class SendQueue {
  public:
   explicit SendQueue(const SendLimits& limits) : limits_(limits) {}
+  /// Replaces the limits. What is queued stays.
+  void set_limits(const SendLimits& limits) { limits_ = limits; }
 
   /// Queues a message. Returns false if its class is full. An empty class accepts a message of any
   /// size.

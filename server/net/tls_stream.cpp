@@ -15,10 +15,11 @@ namespace runstone {
 namespace {
 
 constexpr auto kCanRead = asio::ip::tcp::socket::wait_read;
-/// The first byte of a TLS connection: a record of the type handshake (RFC 8446, 5.1). A client that
-/// does not speak TLS begins with the size of its Hello, which is neither 22 nor 278 bytes.
-constexpr std::uint8_t kHandshakeRecord = 22;
-/// What a step of the handshake reads at most. An honest client's has two or three steps.
+/// The first byte of a TLS connection: a record of the type handshake (RFC 8446, 5.1), or alert if a
+/// server refuses. A client that does not speak TLS begins with the size of its Hello, which is neither
+/// 22 nor 278 bytes.
+constexpr std::uint8_t kHandshakeRecord = 22, kAlertRecord = 21;
+/// What a step of the handshake reads at most. An honest peer's has two or three steps.
 constexpr std::size_t kHandshakeBytes = 4 * 1024;
 constexpr unsigned kHandshakeStepsMax = 32;
 /// What is read of a client that does not speak TLS. Unread input would make the kernel reset the
@@ -64,61 +65,16 @@ class RecordText {
   Bytes& text_ = scratch.text;
 };
 
-class TlsStream final : public ByteStream {
+/// Either end after the handshake. The two ends differ in open() only.
+class TlsStream : public ByteStream {
  public:
   TlsStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes, AddressForm log_form,
-            const TlsContext& context, asio::any_io_executor handshakes, Bytes plain_answer)
+            const TlsContext& context, asio::any_io_executor handshakes)
       : tcp_(std::move(socket), notsent_bytes, log_form),
         source_(tcp_.socket().native_handle()),
         context_(context),
-        handshakes_(std::move(handshakes)),
-        plain_answer_(std::move(plain_answer)) {}
+        handshakes_(std::move(handshakes)) {}
 
-  asio::awaitable<StreamStart> open() override {
-    const asio::any_io_executor strand = co_await asio::this_coro::executor;
-    for (unsigned step = 0; step < kHandshakeStepsMax; ++step) {
-      const auto [error] = co_await tcp_.socket().async_wait(kCanRead, kTuple);
-      if (error || !tcp_.socket().is_open()) {
-        failure_ = "it was closed or took too long";
-        co_return StreamStart::failed;
-      }
-      if (!channel_) {
-        asio::error_code missing;
-        const std::uint8_t first = first_byte(missing);
-        if (missing == asio::error::would_block) continue;
-        if (missing) {
-          failure_ = "it was closed before its first byte";
-          co_return StreamStart::failed;
-        }
-        if (first != kHandshakeRecord) {
-          co_await answer_plain();
-          co_return StreamStart::not_encrypted;
-        }
-        // A connection that sends nothing costs no memory of TLS.
-        channel_.emplace(TlsChannel::accept(context_, source_));
-      }
-      source_.hold(kHandshakeBytes);
-      co_await asio::post(asio::bind_executor(handshakes_, asio::use_awaitable));
-      // Many may wait for a thread here. Those that were closed meanwhile cost no signature.
-      const TlsChannel::Status status =
-          is_closed_ ? TlsChannel::Status::failed : channel_->handshake();
-      co_await asio::post(asio::bind_executor(strand, asio::use_awaitable));
-      source_.release();
-      co_await flush();
-      if (status == TlsChannel::Status::done) {
-        plain_answer_ = {};
-        binding_ = channel_->binding();
-        co_return StreamStart::open;
-      }
-      const asio::error_code broken = is_closed_ ? asio::error::operation_aborted : source_broke();
-      if (status != TlsChannel::Status::wants_input || broken) {
-        failure_ = broken ? broken.message() : channel_->error();
-        co_return StreamStart::failed;
-      }
-    }
-    failure_ = "it came in too many pieces";
-    co_return StreamStart::failed;
-  }
   std::string failure() const override { return failure_; }
   std::optional<ChannelBinding> binding() const override { return binding_; }
 
@@ -188,25 +144,75 @@ class TlsStream final : public ByteStream {
   std::string peer() const override { return tcp_.peer(); }
   AddressBlock address() const override { return tcp_.address(); }
 
- private:
-  /// Returns the first byte of the connection and leaves it where it is. At the end of the stream it
-  /// sets the error eof.
-  std::uint8_t first_byte(asio::error_code& error) {
-    std::uint8_t first = 0;
-    tcp_.socket().receive(asio::buffer(&first, 1), asio::socket_base::message_peek, error);
-    return first;
+ protected:
+  // The functions that open() needs. Each sets failure_ before it reports a failure.
+
+  StreamStart fail_open(std::string why) {
+    failure_ = std::move(why);
+    return StreamStart::failed;
   }
-  asio::awaitable<void> answer_plain() {
-    buffers_.assign(1, asio::buffer(plain_answer_));
-    co_await tcp_.write(buffers_, 0);
-    tcp_.shutdown_send();
-    Bytes buffer(1024);
-    for (std::size_t got = 0; got < kPlainBytes;) {
-      const IoResult read = co_await tcp_.read_some(asio::buffer(buffer));
-      if (read.error) break;
-      got += read.bytes;
+  /// Waits for bytes of the peer. Returns false if the stream was closed.
+  asio::awaitable<bool> wait_input() {
+    const auto [error] = co_await tcp_.socket().async_wait(kCanRead, kTuple);
+    if (!error && tcp_.socket().is_open()) co_return true;
+    fail_open("it was closed or took too long");
+    co_return false;
+  }
+  /// Waits for the first byte of the connection, returns it and leaves it where it is. Returns nullopt
+  /// after a failure.
+  asio::awaitable<std::optional<std::uint8_t>> first_byte() {
+    for (;;) {
+      const bool has_input = co_await wait_input();
+      if (!has_input) co_return std::nullopt;
+      std::uint8_t first = 0;
+      asio::error_code missing;
+      tcp_.socket().receive(asio::buffer(&first, 1), asio::socket_base::message_peek, missing);
+      if (!missing) co_return first;
+      if (missing == asio::error::would_block) continue;
+      fail_open("it was closed before its first byte");
+      co_return std::nullopt;
     }
   }
+  /// Continues the handshake with what has arrived, and sends the output. Returns how the handshake
+  /// ended, or nullopt if it needs more input.
+  asio::awaitable<std::optional<StreamStart>> continue_handshake() {
+    const asio::any_io_executor strand = co_await asio::this_coro::executor;
+    source_.hold(kHandshakeBytes);
+    co_await asio::post(asio::bind_executor(handshakes_, asio::use_awaitable));
+    // Many may wait for a thread here. Those that were closed meanwhile cost no signature.
+    const TlsChannel::Status status =
+        is_closed_ ? TlsChannel::Status::failed : channel_->handshake();
+    co_await asio::post(asio::bind_executor(strand, asio::use_awaitable));
+    source_.release();
+    co_await flush();
+    if (status == TlsChannel::Status::done) {
+      binding_ = channel_->binding();
+      co_return StreamStart::open;
+    }
+    const asio::error_code broken = is_closed_ ? asio::error::operation_aborted : source_broke();
+    if (status == TlsChannel::Status::wants_input && !broken) co_return std::nullopt;
+    co_return fail_open(broken ? broken.message() : channel_->error());
+  }
+  /// Continues the handshake, for which input has arrived, to its end.
+  asio::awaitable<StreamStart> finish_handshake() {
+    for (unsigned step = 0; step < kHandshakeStepsMax; ++step) {
+      if (step > 0) {
+        const bool has_input = co_await wait_input();
+        if (!has_input) co_return StreamStart::failed;
+      }
+      const std::optional<StreamStart> end = co_await continue_handshake();
+      if (end) co_return *end;
+    }
+    co_return fail_open("it came in too many pieces");
+  }
+
+  TcpStream tcp_;
+  SocketSource source_;
+  const TlsContext context_;
+  std::optional<TlsChannel> channel_;
+  std::vector<asio::const_buffer> buffers_;  // of the write under way
+
+ private:
   asio::error_code source_broke() const {
     if (source_.is_at_end()) return asio::error::eof;
     return source_.error();
@@ -234,17 +240,70 @@ class TlsStream final : public ByteStream {
     co_return result;
   }
 
-  TcpStream tcp_;
-  SocketSource source_;
-  const TlsContext context_;
-  std::optional<TlsChannel> channel_;  // from the first byte on
   const asio::any_io_executor handshakes_;
-  Bytes plain_answer_;
   Bytes sending_;
-  std::vector<asio::const_buffer> buffers_;  // of the write under way
-  std::atomic<bool> is_closed_{false};       // read by a thread of handshakes_
+  std::atomic<bool> is_closed_{false};  // read by a thread of handshakes_
   std::optional<ChannelBinding> binding_;
   std::string failure_;
+};
+
+class TlsServerStream final : public TlsStream {
+ public:
+  TlsServerStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes, AddressForm log_form,
+                  const TlsContext& context, asio::any_io_executor handshakes, Bytes plain_answer)
+      : TlsStream(std::move(socket), notsent_bytes, log_form, context, std::move(handshakes)),
+        plain_answer_(std::move(plain_answer)) {}
+
+  asio::awaitable<StreamStart> open() override {
+    const std::optional<std::uint8_t> first = co_await first_byte();
+    if (!first) co_return StreamStart::failed;
+    if (*first != kHandshakeRecord) {
+      co_await answer_plain();
+      co_return StreamStart::not_encrypted;
+    }
+    plain_answer_ = {};
+    // A connection that sends nothing costs no memory of TLS.
+    channel_.emplace(TlsChannel::accept(context_, source_));
+    const StreamStart end = co_await finish_handshake();
+    co_return end;
+  }
+
+ private:
+  asio::awaitable<void> answer_plain() {
+    buffers_.assign(1, asio::buffer(plain_answer_));
+    co_await tcp_.write(buffers_, 0);
+    tcp_.shutdown_send();
+    Bytes buffer(1024);
+    for (std::size_t got = 0; got < kPlainBytes;) {
+      const IoResult read = co_await tcp_.read_some(asio::buffer(buffer));
+      if (read.error) break;
+      got += read.bytes;
+    }
+  }
+
+  Bytes plain_answer_;
+};
+
+class TlsClientStream final : public TlsStream {
+ public:
+  TlsClientStream(asio::ip::tcp::socket socket, std::size_t notsent_bytes, AddressForm log_form,
+                  const TlsContext& context, const std::string& host,
+                  asio::any_io_executor handshakes)
+      : TlsStream(std::move(socket), notsent_bytes, log_form, context, std::move(handshakes)) {
+    channel_.emplace(TlsChannel::connect(context_, source_, host));
+  }
+
+  asio::awaitable<StreamStart> open() override {
+    // The client speaks first.
+    const std::optional<StreamStart> end = co_await continue_handshake();
+    if (end) co_return *end;
+    const std::optional<std::uint8_t> first = co_await first_byte();
+    if (!first) co_return StreamStart::failed;
+    if (*first != kHandshakeRecord && *first != kAlertRecord)
+      co_return fail_open("the server does not speak TLS");
+    const StreamStart answered = co_await finish_handshake();
+    co_return answered;
+  }
 };
 
 }  // namespace
@@ -252,8 +311,17 @@ class TlsStream final : public ByteStream {
 std::unique_ptr<ByteStream> make_tls_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
                                             AddressForm log_form, const TlsContext& context,
                                             asio::any_io_executor handshakes, Bytes plain_answer) {
-  return std::make_unique<TlsStream>(std::move(socket), notsent_bytes, log_form, context,
-                                     std::move(handshakes), std::move(plain_answer));
+  return std::make_unique<TlsServerStream>(std::move(socket), notsent_bytes, log_form, context,
+                                           std::move(handshakes), std::move(plain_answer));
+}
+
+std::unique_ptr<ByteStream> make_tls_client_stream(asio::ip::tcp::socket socket,
+                                                   std::size_t notsent_bytes, AddressForm log_form,
+                                                   const TlsContext& context,
+                                                   const std::string& host,
+                                                   asio::any_io_executor handshakes) {
+  return std::make_unique<TlsClientStream>(std::move(socket), notsent_bytes, log_form, context,
+                                           host, std::move(handshakes));
 }
 
 }  // namespace runstone

@@ -331,3 +331,32 @@ TEST_CASE("a session says for how long its client has read nothing", "[net]") {
   CHECK(waited >= kLater);
   CHECK(waited < 2 * kLater);
 }
+
+TEST_CASE("a session that is trusted reads at any rate, also behind a goodbye", "[net]") {
+  NetLimits limits;
+  limits.messages_per_second = 1;
+  limits.message_burst = 10;
+  limits.read_bytes_per_second = limits.read_bytes_per_address = 1'000;
+  Bench bench({}, {}, limits);
+  bench.session->trust();
+  bench.stream->feed(frames_of(Ping{1}, 20'000));
+  bench.io.poll();
+  CHECK(bench.world.received == 20'000);
+  CHECK(bench.world.most == 20'000);
+
+  Bench leaving(frames_of(Goodbye{GoodbyeReason::closing, "bye"}, 1));
+  leaving.session->trust();
+  Bytes behind = frames_of(Ping{1}, 1'001);
+  behind.erase(behind.begin(), behind.begin() + static_cast<std::ptrdiff_t>(behind.size() / 1'001));
+  leaving.stream->feed(behind);  // its first counter is 1
+  leaving.io.poll();
+  CHECK(leaving.world.received == 1'001);
+}
+
+TEST_CASE("a session that pauses reads on when it is trusted", "[net]") {
+  Bench bench(frames_of(Ping{1}, 2'000));
+  CHECK(bench.world.received < 1'000);
+  bench.session->trust();
+  bench.io.poll();
+  CHECK(bench.world.received == 2'000);
+}
