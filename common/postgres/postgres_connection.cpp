@@ -41,6 +41,8 @@ Unexpected<Error> PostgresConnection::failure(const PGresult* result) const {
   return {Error{kind_of_state(state == nullptr ? "" : state), name_, std::move(what)}};
 }
 
+bool PostgresConnection::is_connected() const { return PQstatus(handle_.get()) == CONNECTION_OK; }
+
 Result<void> PostgresConnection::take(const PGresult* result) {
   const ExecStatusType status = PQresultStatus(result);
   if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK) return failure(result);

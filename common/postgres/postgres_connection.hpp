@@ -54,6 +54,7 @@ class PostgresConnection final : public Connection {
   Result<void> roll_back() override;
   Result<void> begin_reads() override;
   Result<void> end_reads() override;
+  bool is_connected() const override;
 
   /// Carries out a prepared statement and returns its result, after all statements that were sent
   /// before.

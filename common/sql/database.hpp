@@ -31,6 +31,7 @@ class Connection {
   virtual Result<void> roll_back() = 0;
   virtual Result<void> begin_reads() = 0;
   virtual Result<void> end_reads() = 0;
+  virtual bool is_connected() const { return true; }
 };
 
 class Database {
@@ -58,6 +59,10 @@ class Database {
   /// transaction they are parts of it.
   Result<void> begin_reads() { return connection_->begin_reads(); }
   Result<void> end_reads() { return connection_->end_reads(); }
+
+  /// Returns false if the connection was lost: every call fails from then on. A loss is known after the
+  /// first call that fails.
+  bool is_connected() const { return connection_->is_connected(); }
 
   /// The calls of the database system itself.
   Connection& connection() { return *connection_; }

@@ -6,6 +6,7 @@
 #include "common/core/assert.hpp"
 #include "common/core/hex.hpp"
 #include "common/core/tile_keys.hpp"
+#include "common/os/host_port.hpp"
 #include "protocol/rules/chat_text.hpp"
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
@@ -93,6 +94,18 @@ FormField builder_budget_field() {
           [](const ServerConfig& config) { return text_of(config.builder_budget); }};
 }
 
+FormField peer_address_field() {
+  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+            if (!text.empty()) {
+              const auto address = parse_host_port(text, kDefaultPort);
+              if (!address) return address.error();
+            }
+            config.peer_address = text;
+            return std::nullopt;
+          },
+          [](const ServerConfig& config) { return config.peer_address; }};
+}
+
 FormField message_of_the_day_field() {
   return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
             auto line = text.empty() ? Result<std::string, std::string>(text) : chat_text(text);
@@ -137,10 +150,15 @@ const SettingsTable<ServerConfig>& settings() {
           text("world", "folder of the world", &C::world),
           optional("store", "address of a PostgreSQL database for the world: postgresql://...",
                    &C::store),
-          flag("standby", "wait until nobody else writes the world of `store`, then take it over",
-               &C::standby),
+          flag(
+              "standby",
+              "follow the server that owns the world of `store`, and take the world over when it ends",
+              &C::standby),
           number("lease_s", &C::lease_s, 2, 60,
                  "seconds without an answer of `store` until another server may take over"),
+          form("peer_address",
+               "HOST or HOST:PORT at which other servers of the world of `store` reach this one",
+               peer_address_field()),
           text("listen", "HOST, HOST:PORT, [V6]:PORT or :PORT; port 0 takes a free one",
                &C::listen),
           flag("insecure", "connections are not encrypted; for 127.0.0.1 and [::1] only",

@@ -30,10 +30,13 @@ struct ServerConfig {
   /// `world` then holds the log of the chat and the socket of `runstone-server control`. Empty: the world
   /// is a file in the folder.
   std::string store;
-  /// Wait at the start until nobody else writes the world of `store`, and take it over then.
+  /// Follow the server that owns the world of `store`, and take the world over when it ends.
   bool standby = false;
   std::uint64_t lease_s =
       5;  // seconds without an answer of `store` until another may take over, 2..60
+  /// HOST, HOST:PORT or [V6]:PORT, at which other servers of the world of `store` reach this one. Empty:
+  /// see peer_address_of().
+  std::string peer_address;
   // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
   std::string listen = "0.0.0.0:" + std::to_string(kDefaultPort);
   /// Connections are not encrypted. Only for an address of this machine, unless `i_know` is set.

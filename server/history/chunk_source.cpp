@@ -23,6 +23,7 @@ StoreResult<std::unique_ptr<WorldReader>> ChunkSource::borrow() {
 }
 
 void ChunkSource::give_back(std::unique_ptr<WorldReader> reader) {
+  if (!reader->is_usable()) return;  // the next call opens another one
   const std::lock_guard lock(mutex_);
   idle_.push_back(std::move(reader));
 }

@@ -66,13 +66,19 @@ StoreResult<std::unique_ptr<Store>> open_in(std::unique_ptr<PostgresBackend> bac
 
 }  // namespace
 
-PostgresBackend::~PostgresBackend() {
+PostgresBackend::~PostgresBackend() { give_up(); }
+
+void PostgresBackend::give_up() {
   if (lease_) lease_->release(database_);
   static_cast<void>(database_.run("SELECT pg_advisory_unlock_all()").has_value());
 }
 
 void PostgresBackend::watch_ownership(std::function<void(const StoreError&)> on_lost) {
   if (lease_) lease_->watch(std::move(on_lost));
+}
+
+StoreResult<void> PostgresBackend::publish_address(const std::string& address) {
+  return lease_->publish(database_, address);
 }
 
 StoreResult<void> PostgresBackend::confirm_ownership() { return lease_->confirm(database_); }

@@ -40,6 +40,9 @@ class PostgresBackend final : public WorldBackend {
   sql::Database& database() override { return database_; }
   bool is_owned() const override { return lease_ && lease_->is_valid(); }
   void watch_ownership(std::function<void(const StoreError&)> on_lost) override;
+  /// Requires a world that is open for writing.
+  StoreResult<void> publish_address(const std::string& address) override;
+  void give_up() override;
   StoreResult<void> confirm_ownership() override;
   StoreResult<std::uint32_t> format() override;
   StoreResult<void> set_format() override;

@@ -19,22 +19,31 @@ using std::chrono::milliseconds;
 // A world has one lease. The column has room for a world whose parts have different owners.
 constexpr const char* kMakeTable =
     "CREATE TABLE IF NOT EXISTS lease(shard BIGINT NOT NULL PRIMARY KEY, owner TEXT NOT NULL, "
-    "term BIGINT NOT NULL, expires_us BIGINT NOT NULL)";
+    "term BIGINT NOT NULL, expires_us BIGINT NOT NULL, address TEXT NOT NULL DEFAULT '')";
+// A table that an older program made has no address.
+constexpr const char* kHasAddress =
+    "SELECT count(*) FROM lease WHERE to_jsonb(lease)->'address' IS NOT NULL";
+constexpr const char* kAddAddress =
+    "ALTER TABLE lease ADD COLUMN IF NOT EXISTS address TEXT NOT NULL DEFAULT ''";
 constexpr const char* kMakeRow =
     "INSERT INTO lease VALUES(0, '', 0, 0) ON CONFLICT (shard) DO NOTHING";
 // clock_timestamp() is the time of the call, now() that of the begin of the transaction.
 #define RUNSTONE_NOW_US "(extract(epoch FROM clock_timestamp()) * 1000000)::bigint"
+#define RUNSTONE_ROW "SELECT owner, term, expires_us, expires_us - " RUNSTONE_NOW_US
+// The address is empty if the table has no such column.
 constexpr const char* kRead =
-    "SELECT owner, term, expires_us, expires_us - " RUNSTONE_NOW_US " FROM lease WHERE shard = 0";
-constexpr const char* kConfirm = "SELECT owner, term, expires_us, expires_us - " RUNSTONE_NOW_US
-                                 " FROM lease WHERE shard = 0 FOR SHARE";
+    RUNSTONE_ROW ", coalesce(to_jsonb(lease)->>'address', '') FROM lease WHERE shard = 0";
+constexpr const char* kConfirm = RUNSTONE_ROW ", address FROM lease WHERE shard = 0 FOR SHARE";
+#undef RUNSTONE_ROW
 constexpr const char* kTake =
     // Also in a database that was put back from a backup, no term is given twice.
-    "UPDATE lease SET owner = ?1, term = greatest(term + 1, " RUNSTONE_NOW_US
+    "UPDATE lease SET owner = ?1, address = '', term = greatest(term + 1, " RUNSTONE_NOW_US
     "), expires_us = " RUNSTONE_NOW_US " + ?2 WHERE shard = 0 AND expires_us <= " RUNSTONE_NOW_US
     " RETURNING term";
 constexpr const char* kRenew = "UPDATE lease SET expires_us = " RUNSTONE_NOW_US
                                " + ?2 WHERE shard = 0 AND term = ?1 RETURNING term";
+constexpr const char* kPublish =
+    "UPDATE lease SET address = ?2 WHERE shard = 0 AND term = ?1 RETURNING term";
 constexpr const char* kRelease = "UPDATE lease SET expires_us = 0 WHERE shard = 0 AND term = ?1";
 
 // The advisory lock of the writer has two numbers: that of the application (?1), and that of the schema.
@@ -71,6 +80,7 @@ constexpr milliseconds kPause{100};
 struct Row {
   std::string owner;
   std::int64_t term = 0, expires_us = 0, left_us = 0;
+  std::string address;
 };
 
 std::int64_t us_of(milliseconds time) { return std::chrono::microseconds(time).count(); }
@@ -91,7 +101,8 @@ StoreResult<Row> read_row(sql::Database& database, const char* text) {
     return Unexpected<StoreError>{
         {StoreError::Kind::corrupt, database.file(), "lease", "has no row"}};
   }
-  return Row{std::string(row->text(0)), row->integer(1), row->integer(2), row->integer(3)};
+  return Row{std::string(row->text(0)), row->integer(1), row->integer(2), row->integer(3),
+             std::string(row->text(4))};
 }
 
 /// Returns the first number of the first row of a statement, or nullopt if it has no row.
@@ -156,12 +167,23 @@ StoreResult<bool> take_lock(sql::Database& writer) {
                                      " of this schema, and does not end"}};
 }
 
+/// Adds the column of the address if the table lacks it. Requires the lock: no transaction of an earlier
+/// owner is under way then, which the change of the table would wait for.
+StoreResult<void> add_address(sql::Database& writer) {
+  // PostgreSQL locks the table also if it has the column. Behind a long backup, for example, that would
+  // keep the lease from being renewed.
+  const auto is_there = writer.integer(kHasAddress);
+  if (!is_there) return failed(is_there.error());
+  return *is_there != 0 ? StoreResult<void>() : store_result(writer.run(kAddAddress));
+}
+
 /// Takes a lease that has run out, and the lock. Returns the term, or nullopt if it has not run out.
 StoreResult<std::optional<std::int64_t>> take_expired(sql::Database& writer,
                                                       const LeaseTerms& terms) {
   const auto is_locked = take_lock(writer);
   if (!is_locked) return failed(is_locked.error());
   if (!*is_locked) return std::optional<std::int64_t>();
+  if (const auto added = add_address(writer); !added) return failed(added.error());
   return number_of(writer, kTake, [&](sql::Statement& statement) {
     statement.bind(1, std::string_view(terms.owner)).bind(2, us_of(terms.length));
   });
@@ -312,6 +334,17 @@ StoreResult<void> PostgresLease::confirm(sql::Database& writer) {
   return {};
 }
 
+StoreResult<void> PostgresLease::publish(sql::Database& writer, const std::string& address) {
+  const auto term = number_of(writer, kPublish, [&](sql::Statement& statement) {
+    statement.bind(1, term_).bind(2, std::string_view(address));
+  });
+  if (!term) return failed(term.error());
+  if (*term) return {};
+  const auto row = read_row(writer, kRead);
+  if (!row) return failed(row.error());
+  return Unexpected<StoreError>{taken_by(writer, row->owner)};
+}
+
 void PostgresLease::release(sql::Database& writer) {
   stop_renewals();
   valid_until_us_.store(0);
@@ -323,17 +356,17 @@ void PostgresLease::release(sql::Database& writer) {
   if (!is_released(writer) && connection_) static_cast<void>(is_released(*connection_));
 }
 
-StoreResult<std::optional<std::string>> LeaseWatch::ask(sql::Database& database) {
+StoreResult<std::optional<LeaseOwner>> LeaseWatch::ask(sql::Database& database) {
   const auto is_there = database.integer(kHasTable);
   if (!is_there) return failed(is_there.error());
-  if (*is_there == 0) return std::optional<std::string>();
-  const auto row = read_row(database, kRead);
+  if (*is_there == 0) return std::optional<LeaseOwner>();
+  auto row = read_row(database, kRead);
   if (!row) return failed(row.error());
-  if (row->left_us <= 0) return std::optional<std::string>();
-  return std::optional(row->owner);
+  if (row->left_us <= 0) return std::optional<LeaseOwner>();
+  return std::optional(LeaseOwner{std::move(row->owner), std::move(row->address), row->term});
 }
 
-StoreResult<std::optional<std::string>> LeaseWatch::owner() {
+StoreResult<std::optional<LeaseOwner>> LeaseWatch::owner() {
   if (!connection_) {
     auto opened = sql::open_postgres(url_, sql::PostgresMode::read);
     if (!opened) return failed(opened.error());

@@ -11,10 +11,14 @@
 //   - The writer's connection holds an advisory lock. Whoever takes over ends that connection: a
 //     transaction that its program never finished would else keep its rows locked. An owner whose
 //     connection was ended notices it with the next renewal, also if it has nothing to write.
-// Threads: take(), confirm(), release() and the destructor: the one that owns the store. Others: any.
+//   - The owner writes its address to the row, so that other servers of the world find it. Whoever takes
+//     the lease removes the address of the earlier owner.
+// Threads: take(), confirm(), publish(), release() and the destructor: the one that owns the store.
+// Others: any.
 #pragma once
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -52,6 +56,9 @@ class PostgresLease {
   /// taking it until the transaction is over. A lease that ran out and that nobody took is renewed.
   /// Fails (locked) if somebody else has taken it.
   StoreResult<void> confirm(sql::Database& writer);
+  /// Writes the address at which other servers of the world reach this one: HOST:PORT. Fails (locked) and
+  /// writes nothing if somebody else has taken the lease.
+  StoreResult<void> publish(sql::Database& writer, const std::string& address);
   /// Ends renewals and lease, so that the next program need not wait.
   void release(sql::Database& writer);
 
@@ -78,16 +85,24 @@ class PostgresLease {
   std::thread renewals_;
 };
 
+/// The program that has the lease of a world.
+struct LeaseOwner {
+  std::string name;     // for messages
+  std::string address;  // HOST:PORT for other servers of the world; empty: not known yet
+  std::int64_t term = 0;
+  friend bool operator==(const LeaseOwner&, const LeaseOwner&) = default;
+};
+
 /// Asks who has the lease of a world, again and again. Thread: one at a time.
 class LeaseWatch {
  public:
   /// `url` is the address of a database.
   explicit LeaseWatch(std::string url) : url_(std::move(url)) {}
-  /// Returns the name of the program that has the lease, or nullopt if none has. Connects if it has no connection.
-  StoreResult<std::optional<std::string>> owner();
+  /// Returns the program that has the lease, or nullopt if none has. Connects if it has no connection.
+  StoreResult<std::optional<LeaseOwner>> owner();
 
  private:
-  StoreResult<std::optional<std::string>> ask(sql::Database& database);
+  StoreResult<std::optional<LeaseOwner>> ask(sql::Database& database);
 
   std::string url_;
   std::optional<sql::Database> connection_;

@@ -60,6 +60,11 @@ StoreResult<void> SqlStore::write(const std::function<StoreResult<void>()>& body
   return committed;
 }
 
+StoreResult<void> SqlStore::publish_address(const std::string& address) {
+  if (access_ == StoreAccess::read_only) return refuse("", "is open for reading only");
+  return backend_->publish_address(address);
+}
+
 void SqlStore::committed(const DurableState& state) {
   state_ = state;
   static_cast<void>(backend_->write_mark(state).has_value());

@@ -86,6 +86,9 @@ class SqlStore final : public Store {
   void watch_ownership(std::function<void(const StoreError&)> on_lost) override {
     backend_->watch_ownership(std::move(on_lost));
   }
+  StoreResult<void> publish_address(const std::string& address) override;
+  void give_up() override { backend_->give_up(); }
+  bool is_usable() const override { return backend_->database().is_connected(); }
   StoreResult<void> append(std::span<const PlayerRow> players,
                            std::span<const EditRecord> records) override;
   StoreResult<void> change_names(std::span<const NameChange> changes) override;

@@ -25,6 +25,8 @@ class WorldBackend {
   /// See WorldSink.
   virtual bool is_owned() const { return true; }
   virtual void watch_ownership(std::function<void(const StoreError&)> /*on_lost*/) {}
+  virtual StoreResult<void> publish_address(const std::string& /*address*/) { return {}; }
+  virtual void give_up() {}
   /// Fails (locked) if another program owns the world. Otherwise none does until the caller's
   /// transaction is over.
   virtual StoreResult<void> confirm_ownership() { return {}; }

@@ -18,6 +18,9 @@ class WorldReader : public LogReader,
   /// Returns the error if the world, when it was opened, lacked edits that had been durable, or if
   /// that cannot be known. Returns nullopt if the log is whole.
   virtual const std::optional<StoreError>& loss() const = 0;
+  /// Returns false if the connection with the database was lost: every read fails from then on. A loss is
+  /// known after the first read that fails.
+  virtual bool is_usable() const { return true; }
   /// Begins reads that see one moment of the world until end_reads(). Each of them costs less,
   /// because it takes and leaves no lock. Few at a time: meanwhile a server that runs the world
   /// cannot move its write-ahead log into the database. Do not nest them, and write nothing before

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "common/core/ids.hpp"
@@ -29,6 +30,11 @@ class WorldSink {
   /// happened before. An empty function ends the watch; no call is under way when this returns. Thread:
   /// any.
   virtual void watch_ownership(std::function<void(const StoreError&)> /*on_lost*/) {}
+  /// Publishes the address at which other servers of the world reach this one: HOST:PORT. A world that only
+  /// one machine can reach has no place for it: the call then does nothing.
+  virtual StoreResult<void> publish_address(const std::string& /*address*/) { return {}; }
+  /// Gives the world up, so that another program need not wait. No write succeeds from then on.
+  virtual void give_up() {}
   /// Writes new players, then records, then the watermarks that the records imply. All of it is
   /// durable on return. Fails (bad_request) and writes nothing if
   ///   - the records do not continue the log without a gap;

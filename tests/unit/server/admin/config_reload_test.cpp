@@ -13,11 +13,13 @@ TEST_CASE("a reload takes what a running server may change, and names the rest",
   read.log_level = LogLevel::debug;
   read.idle_s = 30;
   read.operators.insert(PublicKey{1, 2, 3});
+  read.peer_address = "one.example";
   read.listen = "127.0.0.1:1";
   read.memory_mib = 64;
   const ConfigReload reloaded = reload_config(running, read);
   CHECK(reloaded.text() ==
-        "reloaded: log_level, idle_s, operators; after a restart: listen, memory_mib");
+        "reloaded: log_level, idle_s, operators; after a restart: peer_address, listen, "
+        "memory_mib");
   ServerConfig expected = running;
   expected.log_level = LogLevel::debug;
   expected.idle_s = 30;

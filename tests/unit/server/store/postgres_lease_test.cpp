@@ -45,6 +45,20 @@ std::unique_ptr<Store> start_as(const std::string& place, const LeaseTerms& leas
   return store;
 }
 
+/// Returns the connection of an owner that stands still in a transaction.
+sql::Database stuck_owner(const std::string& place) {
+  auto stuck = *sql::open_postgres(place, sql::PostgresMode::write);
+  const std::string lock =
+      "SELECT pg_advisory_lock(" + std::to_string(kApplicationId) +
+      ", (SELECT oid::int FROM pg_namespace WHERE nspname = current_schema()))";
+  REQUIRE(stuck.run(lock.c_str()).has_value());
+  REQUIRE(stuck
+              .run("BEGIN; SELECT * FROM lease FOR SHARE; "
+                   "INSERT INTO edit_log SELECT 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, '', 0")
+              .has_value());
+  return stuck;
+}
+
 bool comes_true(const std::function<bool()>& ask) {
   for (int i = 0; i < 6'000 && !ask(); ++i) std::this_thread::sleep_for(milliseconds(10));
   return ask();
@@ -59,7 +73,8 @@ TEST_CASE("the owner of a world is named, and gives the world back", "[.postgres
   auto store = create_as(place.path(), {"first", milliseconds(5'000)});
   CHECK(store->is_owned());
   REQUIRE(watch.owner()->has_value());
-  CHECK(**watch.owner() == "first");
+  CHECK((*watch.owner())->name == "first");
+  CHECK(std::to_string((*watch.owner())->term) == raw_sql(place.path(), "SELECT term FROM lease"));
   const auto other = open_world(place.path(), StoreAccess::read_write, "", kShort);
   REQUIRE_FALSE(other.has_value());
   CHECK(other.error().kind == StoreError::Kind::locked);
@@ -79,6 +94,94 @@ TEST_CASE("the lease of a program that has ended runs out", "[.postgres-server]"
   const auto store = open_as(place.path(), kLong);
   CHECK(std::stoll(raw_sql(place.path(), "SELECT term FROM lease")) > std::stoll(term));
   CHECK(raw_sql(place.path(), "SELECT owner FROM lease") == "first");
+}
+
+TEST_CASE("others find the address that the owner publishes, until another takes the world",
+          "[.postgres-server]") {
+  TempPlace place;
+  LeaseWatch watch(place.path());
+  const auto address = [&] {
+    const auto owner = watch.owner();
+    REQUIRE(owner.has_value());
+    REQUIRE(owner->has_value());
+    return (*owner)->address;
+  };
+  auto store = start_as(place.path(), kLong);
+  const std::int64_t term = (*watch.owner())->term;
+  CHECK(address().empty());
+  REQUIRE(store->publish_address("one.example:4747").has_value());
+  CHECK(**watch.owner() == LeaseOwner{"first", "one.example:4747", term});
+  REQUIRE(store->publish_address("[2001:db8::7]:5000").has_value());
+  CHECK(address() == "[2001:db8::7]:5000");
+  SplitMix64 rng(1);
+  CHECK(store->append({}, sample_records(rng, 1, 1, 3)).has_value());
+  CHECK(address() == "[2001:db8::7]:5000");
+
+  const auto reader = open_world(place.path(), StoreAccess::read_only);
+  REQUIRE(reader.has_value());
+  CHECK((*reader)->publish_address("reader.example:1").error().kind ==
+        StoreError::Kind::bad_request);
+  CHECK(address() == "[2001:db8::7]:5000");
+
+  store.reset();
+  CHECK_FALSE(watch.owner()->has_value());
+  store = open_as(place.path(), kLong);
+  CHECK(address().empty());
+  CHECK((*watch.owner())->term > term);
+}
+
+TEST_CASE("a program that lost the lease publishes no address", "[.postgres-server]") {
+  TempPlace place;
+  LeaseWatch watch(place.path());
+  auto paused = start_as(place.path(), kLong);
+  raw_sql(place.path(), "UPDATE lease SET owner = 'other', term = term + 1");
+  const auto published = paused->publish_address("one.example:4747");
+  REQUIRE_FALSE(published.has_value());
+  CHECK(published.error().kind == StoreError::Kind::locked);
+  CHECK(published.error().message().find("other has taken this world over") != std::string::npos);
+  CHECK((*watch.owner())->address.empty());
+}
+
+TEST_CASE("a table of the lease without the address is read, and gets it with the next owner",
+          "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  raw_sql(place.path(),
+          "DROP TABLE lease; CREATE TABLE lease(shard BIGINT NOT NULL PRIMARY KEY, "
+          "owner TEXT NOT NULL, term BIGINT NOT NULL, expires_us BIGINT NOT NULL); "
+          "INSERT INTO lease SELECT 0, 'older', 7, "
+          "(extract(epoch FROM clock_timestamp()) * 1000000)::bigint + 600000000");
+  LeaseWatch watch(place.path());
+  REQUIRE(watch.owner().has_value());
+  REQUIRE(watch.owner()->has_value());
+  CHECK(**watch.owner() == LeaseOwner{"older", "", 7});
+  raw_sql(place.path(), kEnd);
+  auto stuck = stuck_owner(place.path());
+  auto store = open_as(place.path(), kLong);
+  CHECK_FALSE(stuck.run("COMMIT").has_value());
+  REQUIRE(watch.owner()->has_value());
+  CHECK((*watch.owner())->name == "first");
+  CHECK((*watch.owner())->address.empty());
+  CHECK(store->raise_epoch().has_value());
+  REQUIRE(store->publish_address("one.example:4747").has_value());
+  CHECK((*watch.owner())->address == "one.example:4747");
+}
+
+TEST_CASE("a long read of the lease's table, as of a backup, does not delay the next owner",
+          "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  auto backup = *sql::open_postgres(place.path(), sql::PostgresMode::read);
+  REQUIRE(backup.run("BEGIN; SELECT * FROM lease").has_value());
+  auto opened = std::async(std::launch::async, [&] {
+    return open_world(place.path(), StoreAccess::read_write, "", kLong);
+  });
+  const bool is_open = opened.wait_for(std::chrono::seconds(30)) == std::future_status::ready;
+  CHECK(is_open);
+  REQUIRE(backup.run("COMMIT").has_value());
+  const auto store = opened.get();
+  REQUIRE(store.has_value());
+  CHECK((*store)->is_owned());
 }
 
 TEST_CASE("a program that was paused beyond its lease writes nothing more", "[.postgres-server]") {
@@ -202,15 +305,7 @@ TEST_CASE("a transaction that its program never ends does not keep others out",
           "[.postgres-server]") {
   TempPlace place;
   create_as(place.path(), kLong).reset();
-  auto stuck = *sql::open_postgres(place.path(), sql::PostgresMode::write);
-  const std::string lock =
-      "SELECT pg_advisory_lock(" + std::to_string(kApplicationId) +
-      ", (SELECT oid::int FROM pg_namespace WHERE nspname = current_schema()))";
-  REQUIRE(stuck.run(lock.c_str()).has_value());
-  REQUIRE(stuck
-              .run("BEGIN; SELECT * FROM lease FOR SHARE; "
-                   "INSERT INTO edit_log SELECT 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, '', 0")
-              .has_value());
+  auto stuck = stuck_owner(place.path());
   SplitMix64 rng(1);
   auto store = open_as(place.path(), kLong);
   REQUIRE(store->raise_epoch().has_value());

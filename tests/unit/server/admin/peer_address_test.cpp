@@ -1,0 +1,60 @@
+#include "server/admin/peer_address.hpp"
+
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+
+using namespace runstone;
+
+namespace {
+
+std::string peer_address(const std::string& setting, const std::string& listen) {
+  ServerConfig config;
+  REQUIRE(set_config(config, "peer_address", setting).has_value());
+  REQUIRE(set_config(config, "listen", listen).has_value());
+  return peer_address_of(config, 5000);
+}
+
+}  // namespace
+
+TEST_CASE("the setting peer_address gets the server's port if it has none", "[config]") {
+  const std::string listen = "192.0.2.1:4000";
+  CHECK(peer_address("one.example", listen) == "one.example:5000");
+  CHECK(peer_address("one.example:6000", listen) == "one.example:6000");
+  CHECK(peer_address("192.0.2.7", listen) == "192.0.2.7:5000");
+  CHECK(peer_address("2001:db8::7", listen) == "[2001:db8::7]:5000");
+  CHECK(peer_address("[2001:db8::7]", listen) == "[2001:db8::7]:5000");
+  CHECK(peer_address("[2001:db8::7]:6000", listen) == "[2001:db8::7]:6000");
+}
+
+TEST_CASE("without peer_address the address is that of listen, if it is a single one", "[config]") {
+  CHECK(peer_address("", "192.0.2.1:4000") == "192.0.2.1:5000");
+  CHECK(peer_address("", "192.0.2.1:0") == "192.0.2.1:5000");
+  CHECK(peer_address("", "one.example") == "one.example:5000");
+  CHECK(peer_address("", "[::1]:4000") == "[::1]:5000");
+  CHECK(peer_address("", "2001:db8::7") == "[2001:db8::7]:5000");
+}
+
+TEST_CASE("a server that listens at every address is reached by the machine's name", "[config]") {
+  std::array<char, 256> name{};
+  REQUIRE(::gethostname(name.data(), name.size() - 1) == 0);
+  const std::string expected = std::string(name.data()) + ":5000";
+  for (const char* listen :
+       {"0.0.0.0:4000", "0.0.0.0", ":4000", "[::]:4000", "::", "[0::0]:0", "*:4000", "*"}) {
+    CAPTURE(listen);
+    CHECK(peer_address("", listen) == expected);
+  }
+}
+
+TEST_CASE("a peer_address that is no address is an error", "[config]") {
+  ServerConfig config;
+  for (const char* bad : {":5000", "one.example:", "one.example:0", "one.example:65536",
+                          "one.example:x", "[one.example]", "[::1"}) {
+    CAPTURE(bad);
+    const auto set = set_config(config, "peer_address", bad);
+    REQUIRE_FALSE(set.has_value());
+    CHECK(set.error().find("peer_address") != std::string::npos);
+    CHECK(config.peer_address.empty());
+  }
+}
