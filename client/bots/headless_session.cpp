@@ -80,6 +80,8 @@ void HeadlessSession::receive(Message message, const Arrival& arrival) {
           versions_.receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, Reject>) {
           on_reject(m);
+        } else if constexpr (std::is_same_v<T, Resume>) {
+          on_resume(m);
         } else if constexpr (std::is_same_v<T, Durable>) {
           on_durable(m);
         } else {
@@ -128,6 +130,13 @@ void HeadlessSession::on_session_accepted(const SessionAccepted& accepted, TimeU
   }
   local_edits_.retire(durable_);
   tick(now_us);
+}
+
+void HeadlessSession::on_resume(const Resume& resume) {
+  connection_.send(Resumed{});
+  local_edits_.resume(resume.resolved);
+  for (const ClientSequence seq : local_edits_.unanswered())
+    connection_.send_edit(seq, *local_edits_.find(seq));
 }
 
 // While open.
@@ -230,6 +239,7 @@ void HeadlessSession::on_durable(const Durable& durable) {
     return;
   }
   durable_ = durable.seq;
+  versions_.raise_epoch(durable.epoch);
   local_edits_.retire(durable_);
 }
 

@@ -79,6 +79,7 @@ class HeadlessSession {
   void on_uniform_chunks(const UniformChunks& uniform, TimeUs now_us);
   void on_view_state(const ViewState& state);
   void on_reject(const Reject& reject);
+  void on_resume(const Resume& resume);
   void on_durable(const Durable& durable);
   Result<void> on_edit(const WalkedEdit& edit);
   void on_local_edit(const WalkedEdit& edit);

@@ -71,6 +71,8 @@ class VersionTracker {
  public:
   /// Opens a connection. All chunks of the view that the world has are expected again.
   void open(Epoch epoch, CoordLimit world);
+  /// Another server has taken the world over, and chunks may be of this epoch from now on.
+  void raise_epoch(Epoch epoch) { epoch_ = epoch; }
   /// Forgets the chunks outside of the view. The view was sent with its number.
   void set_view(const View& view);
 

@@ -197,8 +197,14 @@ void Replica::receive(const Reject& reject, TimeUs now_us) {
   changes_.reject({reject.client_seq, reject.reason, reject.detail});
 }
 
+std::vector<ClientSequence> Replica::resume(ClientSequence resolved) {
+  local_edits_.resume(resolved);
+  return local_edits_.unanswered();
+}
+
 void Replica::receive(const Durable& durable) {
-  if (!parameters_ || durable.epoch != parameters_->epoch) return;
+  if (!parameters_ || durable.epoch < parameters_->epoch) return;
+  parameters_->epoch = durable.epoch;
   durable_ = std::max(durable_, durable.seq);
   newest_ = std::max(newest_, durable.seq);
   retire_durable();

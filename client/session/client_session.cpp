@@ -93,6 +93,9 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
         } else if constexpr (std::is_same_v<T, Durable>) {
           is_server_read_only_ = m.is_read_only;
           replica_->receive(m);
+        } else if constexpr (std::is_same_v<T, Resume>) {
+          connection_.send(Resumed{});
+          waiting_ = replica_->resume(m.resolved);
         } else if constexpr (std::is_same_v<T, ViewState>) {
           on_view_state(m);
         } else if constexpr (std::is_same_v<T, PlayerPoses>) {

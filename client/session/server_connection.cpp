@@ -65,6 +65,11 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
   }
   if (const auto* added = std::get_if<MaterialsAdded>(&message); added != nullptr && is_open())
     return on_materials(*added);
+  if (const auto* durable = std::get_if<Durable>(&message); durable != nullptr && is_open()) {
+    // Another server has taken the world over, and nothing is lost.
+    if ((welcome_->features & kFeatureResume) != 0)
+      welcome_->epoch = std::max(welcome_->epoch, durable->epoch);
+  }
   return Dispatch::for_session;
 }
 
