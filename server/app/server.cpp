@@ -5,6 +5,7 @@
 #include <asio/executor_work_guard.hpp>
 #include <asio/io_context.hpp>
 #include <asio/thread_pool.hpp>
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/control_socket.hpp"
+#include "server/admin/peer_address.hpp"
 #include "server/runtime/encryption.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/runtime/low_priority_threads.hpp"
@@ -60,6 +62,12 @@ Result<FileLock, std::string> take_local_folder(const std::string& folder) {
                                                 : "/world.lock: " + lock.error().what));
 }
 
+LeaseTerms lease_of(const ServerConfig& config) {
+  LeaseTerms lease;
+  lease.length = std::chrono::seconds(config.lease_s);
+  return lease;
+}
+
 Result<void, std::string> can_listen_for_gateway(const ServerConfig& config) {
   if (config.gateway_socket.empty()) return {};
   for (const std::string& path : {config.gateway_socket, status_path(config)}) {
@@ -82,6 +90,7 @@ struct Server::Parts {
   ServerConfig config;
   FileLock local_lock;  // of the folder `world`, if the world is in a database
   OpenedWorld world;
+  std::unique_ptr<Store> writer;  // of a server that has taken the world over; null otherwise
   asio::io_context io;
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
   std::unique_ptr<asio::thread_pool> workers, decoders;
@@ -91,6 +100,59 @@ struct Server::Parts {
   std::unique_ptr<ServerCore> core;
   bool is_unclaimed = false;
   bool is_running = false;
+  std::atomic<bool> is_following{false};
+
+  /// The store that has the lease, unless this server follows.
+  Store& owned_store() { return writer ? *writer : *world.store; }
+  /// Makes the core, and binds the addresses.
+  Result<void, std::string> prepare(const std::optional<TlsContext>& certificate,
+                                    std::function<void()> on_failure, OperatorActions actions) {
+    workers = low_priority_threads(config.worker_threads);
+    decoders = low_priority_threads(config.io_threads);
+    core =
+        std::make_unique<ServerCore>(ServerThreads{io, *workers, *decoders}, config, *world.store,
+                                     *world.generator, std::move(on_failure), std::move(actions));
+    if (!config.insecure) use_certificate(*core, certificate, world);
+    if (auto bound = core->listen(config.listen); !bound) return bound;
+    if (config.gateway_socket.empty()) return {};
+    const auto bound = core->listen_for_gateway(config.gateway_socket, config.gateway_group);
+    if (!bound) return failure("gateway_socket: " + bound.error());
+    return {};
+  }
+  /// Tells the other servers where the owner is. `store` has the lease.
+  Result<void, std::string> publish(Store& store) const {
+    const auto published = store.publish_address(peer_address_of(config, core->port()));
+    if (!published) return failure(published.error().message());
+    return {};
+  }
+  /// Starts the threads and the sockets for questions and commands.
+  Result<void, std::string> run() {
+    if (!config.gateway_socket.empty()) {
+      auto listening =
+          ControlSocket::listen_at(io, status_path(config), config.gateway_group,
+                                   [this](const std::string& question, CommandReply reply) {
+                                     core->answer_gateway(question, std::move(reply));
+                                   });
+      if (!listening) return failure("gateway_socket = " + listening.error());
+      status = *std::move(listening);
+    }
+    work.emplace(io.get_executor());
+    core->start();
+    auto listening = ControlSocket::listen(io, config.world,
+                                           [this](const std::string& line, CommandReply reply) {
+                                             core->command(line, std::move(reply));
+                                           });
+    if (listening) {
+      control = *std::move(listening);
+    } else {
+      logger("app").warn("no control socket: {}", listening.error());
+    }
+    for (std::uint64_t i = 0; i < config.io_threads; ++i) {
+      io_threads.emplace_back([this] { io.run(); });
+    }
+    is_running = true;
+    return {};
+  }
 };
 
 Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -126,56 +188,20 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
     if (!taken) return failure(taken.error());
     local_lock = *std::move(taken);
   }
-  LeaseTerms lease;
-  lease.length = std::chrono::seconds(config.lease_s);
-  auto world = open_or_create_world(world_place(config), creation, accept_losses, lease);
+  auto world = open_or_create_world(world_place(config), creation, accept_losses, lease_of(config));
   if (!world) return Unexpected<std::string>{world.error()};
   if (accept_losses) log_losses(world->losses);
   auto parts = std::make_unique<Parts>();
   parts->config = config;
   parts->local_lock = std::move(local_lock);
   parts->world = *std::move(world);
-  parts->workers = low_priority_threads(config.worker_threads);
-  parts->decoders = low_priority_threads(config.io_threads);
-  parts->core = std::make_unique<ServerCore>(
-      ServerThreads{parts->io, *parts->workers, *parts->decoders}, parts->config,
-      *parts->world.store, *parts->world.generator, std::move(on_failure), std::move(actions));
-  if (!config.insecure) use_certificate(*parts->core, *certificate, parts->world);
-  if (const auto bound = parts->core->listen(config.listen); !bound)
-    return Unexpected<std::string>{bound.error()};
-  if (!config.gateway_socket.empty()) {
-    const auto bound = parts->core->listen_for_gateway(config.gateway_socket, config.gateway_group);
-    if (!bound) return failure("gateway_socket: " + bound.error());
-  }
-  if (const auto recovered = parts->core->recover(); !recovered) {
-    return Unexpected<std::string>{recovered.error()};
-  }
-  if (!config.gateway_socket.empty()) {
-    auto status = ControlSocket::listen_at(
-        parts->io, status_path(config), config.gateway_group,
-        [core = parts->core.get()](const std::string& question, CommandReply reply) {
-          core->answer_gateway(question, std::move(reply));
-        });
-    if (!status) return failure("gateway_socket = " + status.error());
-    parts->status = *std::move(status);
-  }
+  const auto prepared = parts->prepare(*certificate, std::move(on_failure), std::move(actions));
+  if (!prepared) return failure(prepared.error());
+  if (const auto recovered = parts->core->recover(); !recovered) return failure(recovered.error());
   parts->is_unclaimed = parts->core->is_unclaimed();
-  parts->work.emplace(parts->io.get_executor());
-  parts->core->start();
-  auto control = ControlSocket::listen(
-      parts->io, config.world,
-      [core = parts->core.get()](const std::string& line, CommandReply reply) {
-        core->command(line, std::move(reply));
-      });
-  if (control) {
-    parts->control = *std::move(control);
-  } else {
-    logger("app").warn("no control socket: {}", control.error());
-  }
-  for (std::uint64_t i = 0; i < config.io_threads; ++i) {
-    parts->io_threads.emplace_back([&io = parts->io] { io.run(); });
-  }
-  parts->is_running = true;
+  if (const auto published = parts->publish(*parts->world.store); !published)
+    return failure(published.error());
+  if (const auto running = parts->run(); !running) return failure(running.error());
   if (!parts->world.is_new && creation != WorldCreation{}) {
     logger("app").warn("world={} exists: the flags that say how to make one are ignored",
                        config.world);
@@ -195,6 +221,50 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   logger("app").info("listening port={} encryption={} world={} new={}", parts->core->port(),
                      config.insecure ? "none" : "tls", config.world, parts->world.is_new);
   return std::unique_ptr<Server>(new Server(std::move(parts)));
+}
+
+Result<std::unique_ptr<Server>, std::string> Server::follow(const ServerConfig& config,
+                                                            std::function<void()> on_failure,
+                                                            OperatorActions actions) {
+  if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
+  if (const auto can = can_start(config); !can) return failure(can.error());
+  const auto certificate = configured_certificate(config);
+  if (!certificate) return failure(certificate.error());
+  auto local_lock = take_local_folder(config.world);
+  if (!local_lock) return failure(local_lock.error());
+  auto store = open_world(world_place(config), StoreAccess::read_only);
+  if (!store) return failure(store.error().message());
+  auto generator = generator_of(**store);
+  if (!generator) return failure(generator.error());
+  auto parts = std::make_unique<Parts>();
+  parts->config = config;
+  parts->local_lock = *std::move(local_lock);
+  parts->world.store = *std::move(store);
+  parts->world.generator = *std::move(generator);
+  parts->is_following = true;
+  const auto prepared = parts->prepare(*certificate, std::move(on_failure), std::move(actions));
+  if (!prepared) return failure(prepared.error());
+  if (const auto begun = parts->core->follow(); !begun) return failure(begun.error());
+  if (const auto running = parts->run(); !running) return failure(running.error());
+  logger("app").info("STANDBY: listening port={} encryption={} world={}", parts->core->port(),
+                     config.insecure ? "none" : "tls", config.world);
+  return std::unique_ptr<Server>(new Server(std::move(parts)));
+}
+
+void Server::connect_to(const std::string& owner) { parts_->core->connect_to(owner); }
+ServerCore::FollowState Server::follow_state() const { return parts_->core->follow_state(); }
+bool Server::is_following() const { return parts_->is_following; }
+
+Result<void, std::string> Server::take_over() {
+  Parts& parts = *parts_;
+  auto writer =
+      open_world(world_place(parts.config), StoreAccess::read_write, "", lease_of(parts.config));
+  if (!writer) return failure(writer.error().message());
+  parts.writer = *std::move(writer);
+  parts.is_following = false;
+  if (auto published = parts.publish(*parts.writer); !published) return published;
+  if (auto taken = parts.core->take_over(*parts.writer); !taken) return taken;
+  return {};
 }
 
 std::uint16_t Server::port() const { return parts_->core->port(); }
@@ -226,6 +296,11 @@ StopReport Server::stop() {
       steady_now_us() + static_cast<TimeUs>(parts.config.stop_s) * std::int64_t{1'000'000};
   parts.core->begin_stop().wait();
   parts.core->stop_writer();
+  const bool hands_over = !parts.is_following && parts.core->hands_over();
+  if (hands_over) {
+    parts.owned_store().give_up();
+    logger("app").info("HANDED OVER: another server takes the world over");
+  }
   parts.workers->stop();  // nobody waits for the chunks that they have not begun
   parts.workers->join();
   parts.core->log_counters();
@@ -237,7 +312,13 @@ StopReport Server::stop() {
   const StopState state = parts.core->stop_state();
   const auto live = parts.core->edited_chunks();
   parts.core.reset();
-  return sum_up(*parts.world.store, live, state, [due_us] { return steady_now_us() < due_us; });
+  if (parts.is_following) return {};
+  // Once the world is handed over, its rows are those of another server.
+  StopReport report = sum_up(parts.owned_store(), live, state, [due_us, hands_over] {
+    return !hands_over && steady_now_us() < due_us;
+  });
+  report.hands_over = hands_over;
+  return report;
 }
 
 }  // namespace runstone

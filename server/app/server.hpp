@@ -11,6 +11,7 @@
 #include "server/admin/server_config.hpp"
 #include "server/app/stop_report.hpp"
 #include "server/rollback/rollback_service.hpp"
+#include "server/runtime/server_core.hpp"
 #include "server/store/world_folder.hpp"
 
 namespace runstone {
@@ -30,6 +31,12 @@ class Server {
       const ServerConfig& config, const WorldCreation& creation,
       std::function<void()> on_failure = [] {}, OperatorActions actions = {},
       bool accept_losses = false);
+  /// Opens the world for reading, binds the port, and follows the server that owns the world: it serves
+  /// players as well, as docs/cluster.md says. Requires a world in a database. The arguments are as for
+  /// start(). Call connect_to() as long as it follows, until take_over().
+  static Result<std::unique_ptr<Server>, std::string> follow(const ServerConfig& config,
+                                                             std::function<void()> on_failure,
+                                                             OperatorActions actions);
   /// Calls stop() unless it was called.
   ~Server();
 
@@ -37,6 +44,15 @@ class Server {
   /// Returns true if before this start no role was ever granted and no invite ever made, as in a new
   /// or an imported world.
   bool is_unclaimed() const;
+  /// Connects a server that follows to the owner at HOST:PORT, unless it is connected.
+  void connect_to(const std::string& owner);
+  /// How a server that follows gets on.
+  ServerCore::FollowState follow_state() const;
+  /// Takes the lease of the world, and makes a server that follows its owner. Players stay. Blocks on
+  /// the database. After an error the server must be stopped, unless is_following(): somebody else has
+  /// the lease then.
+  Result<void, std::string> take_over();
+  bool is_following() const;
   void log_counters();
   /// Carries out a command as an operator. Replies come from another thread; the last one has
   /// is_done. A server that stops may leave out replies.

@@ -149,7 +149,9 @@ void log_stop(const StopReport& report, const ServerConfig& config) {
         "them offer them again",
         report.state.lost_edits);
   }
-  if (report.state.chunks_left > 0) {
+  if (report.hands_over) {
+    logger("app").info("every edit is in the log, and the next owner takes them from there");
+  } else if (report.state.chunks_left > 0) {
     logger("store").warn(
         "chunks_left={} after stop_s={}: every edit is in the log, and the next start takes their "
         "edits from there",
@@ -218,10 +220,14 @@ int run(const ServerOptions& options) {
   const auto stops_within = [&](std::chrono::milliseconds time) {
     return signals.stops_within(time);
   };
-  auto server = config->standby ? start_as_standby(config->store, stops_within, start) : start();
+  const auto follow = [&] { return Server::follow(*config, end, actions); };
+  auto server =
+      config->standby ? start_as_standby(config->store, stops_within, start, follow) : start();
   if (!server) return cannot_start(server.error());
   if (*server == nullptr) return kStopped;
   running = *std::move(server);
+  std::optional<TakeoverWatch> watch;
+  if (running->is_following()) watch.emplace(config->store, *running, end);
   if (running->is_unclaimed() && config->operators.empty()) welcome_administrator(*running);
   std::unique_ptr<InputEnd> input;
   if (options.stop_with_input) {
@@ -248,10 +254,16 @@ int run(const ServerOptions& options) {
   signals.wait_for_the_end(*running, [&] {
     running->reload(read_config(options), [](const CommandAnswer& /*the log has it*/) {});
   });
+  watch.reset();
   backup.stop();
   if (console) console->close();
   logger("app").info("stopping");
+  const bool has_followed = running->is_following();
   const StopReport report = running->stop();
+  if (has_followed) {
+    std::cout << "stopped, and another server owns the world\n";
+    return kStopped;
+  }
   log_stop(report, *config);
   bool is_written = true;
   if (!options.digests_file.empty()) {

@@ -1,44 +1,114 @@
 #include "server/app/standby.hpp"
 
-#include <optional>
+#include <utility>
 
 #include "server/runtime/logging.hpp"
-#include "server/store/postgres_lease.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr std::chrono::milliseconds kPause{250};
-
-/// Returns why the standby waits, or an empty text if nobody writes the world.
-std::string reason_to_wait(LeaseWatch& lease) {
-  const auto owner = lease.owner();
-  if (!owner) return owner.error().message();
-  return *owner ? **owner + " writes the world" : std::string();
-}
+// An owner that stops lets go of the connection first, and of the lease a moment later. Edits of players
+// wait meanwhile.
+constexpr std::chrono::milliseconds kShortPause{10};
+constexpr int kShortPauses = 200;
 
 }  // namespace
 
 Result<std::unique_ptr<Server>, std::string> start_as_standby(
     const std::string& place, const std::function<bool(std::chrono::milliseconds)>& stops_within,
-    const std::function<Result<std::unique_ptr<Server>, std::string>()>& start) {
+    const StartServer& start, const StartServer& follow) {
   LeaseWatch lease(place);
+  const auto is_free = [&] {
+    const auto owner = lease.owner();
+    return owner && !*owner;
+  };
   std::string told;
   for (;;) {
-    const std::string reason = reason_to_wait(lease);
-    if (reason.empty()) {
-      logger("app").info("STANDBY: nobody writes the world: taking it over");
+    const auto owner = lease.owner();
+    std::string reason;
+    if (!owner) {
+      reason = owner.error().message();
+    } else if (*owner) {
+      auto followed = follow();
+      if (followed) return followed;
+      reason = (*owner)->name + " owns the world, and cannot be followed: " + followed.error();
+    } else {
+      logger("app").info("STANDBY: nobody owns the world: taking it over");
       auto started = start();
       if (started) return started;
       // Another standby was faster, or the database went away. It may show a moment later.
       if (stops_within(kPause)) return std::unique_ptr<Server>();
-      if (reason_to_wait(lease).empty()) return started;
-    } else if (reason != told) {
-      logger("app").info("STANDBY: waiting, because {}", reason);
-      told = reason;
+      if (is_free()) return started;
     }
+    if (reason != told) logger("app").info("STANDBY: waiting, because {}", reason);
+    told = reason;
     if (stops_within(kPause)) return std::unique_ptr<Server>();
   }
+}
+
+TakeoverWatch::TakeoverWatch(const std::string& place, Server& server,
+                             std::function<void()> on_failure)
+    : lease_(place),
+      server_(server),
+      on_failure_(std::move(on_failure)),
+      thread_([this] { run(); }) {}
+
+TakeoverWatch::~TakeoverWatch() {
+  {
+    const std::lock_guard guard(mutex_);
+    is_stopping_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void TakeoverWatch::run() {
+  const auto stops_within = [this](std::chrono::milliseconds pause) {
+    std::unique_lock lock(mutex_);
+    return wake_.wait_for(lock, pause, [this] { return is_stopping_; });
+  };
+  int short_pauses = 0;
+  while (look()) {
+    auto left = kPause;
+    do {
+      const bool is_live = server_.follow_state().is_live;
+      if (is_live) short_pauses = kShortPauses;
+      if (stops_within(kShortPause)) return;
+      left -= kShortPause;
+      if (!is_live && short_pauses > 0) {
+        --short_pauses;
+        break;
+      }
+    } while (left > kShortPause);
+  }
+}
+
+bool TakeoverWatch::look() {
+  if (server_.follow_state().has_forked) {
+    fail("the owner has other edits than this server: start it again");
+    return false;
+  }
+  const auto owner = lease_.owner();
+  if (!owner) return true;  // the database does not answer
+  if (*owner) {
+    if (!(*owner)->address.empty()) server_.connect_to((*owner)->address);
+    return true;
+  }
+  logger("app").info("STANDBY: nobody owns the world: taking it over");
+  const auto taken = server_.take_over();
+  if (taken) return false;
+  if (server_.is_following()) {
+    logger("app").info("STANDBY: not taken over: {}", taken.error());
+    return true;
+  }
+  fail(taken.error());
+  return false;
+}
+
+void TakeoverWatch::fail(const std::string& why) {
+  logger("app").error("STANDBY: {}", why);
+  on_failure_();
 }
 
 }  // namespace runstone

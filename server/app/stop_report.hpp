@@ -15,7 +15,8 @@ namespace runstone {
 
 struct StopReport {
   StopState state;
-  bool is_clean = false;  // every ordered edit is in the log and in snapshots
+  bool is_clean = false;    // every ordered edit is in the log and in snapshots
+  bool hands_over = false;  // another server takes the world over
   bool is_summed = true;  // the time was enough to read every snapshot; if not, `digests` is empty
   Digest world_digest;    // of `digests`; it is the world's digest only if the stop was clean
   /// After a clean stop, the list has all chunks ever edited: those in memory recomputed from their

@@ -1,15 +1,56 @@
 #include "server/runtime/recovery.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <utility>
 
 namespace runstone {
-namespace {}  // namespace
+namespace {
+
+/// Fails if the log and the records of a server that follows differ where both have one. `parts`: those
+/// of the server that may not be in the log. `last`: its last record. `end`: of the log.
+Result<void, std::string> is_prefix(LogReader& store, const std::vector<LogPart>& parts,
+                                    Version last, Sequence end) {
+  Version common = last;
+  for (const LogPart& part : parts) {
+    for (const LogPartRecord& mine : part.records) {
+      if (mine.record.version.seq == end) common = mine.record.version;
+    }
+  }
+  // Records before those of `parts` are durable, and durable ones do not change.
+  if (common.seq == 0 || common.seq > end) return {};
+  const auto there = store.edit_at(common.seq);
+  if (!there) return failure(there.error());
+  if (*there && (*there)->version == common) return {};
+  return failure("the log has other edits than this server: start it again");
+}
+
+/// Writes what the log lacks of a part. `end`: the end of the log when the first part was written.
+StoreResult<void> write_rest(Store& store, const LogPart& part, Sequence end) {
+  std::vector<NameChange> names;
+  for (const LogName& name : part.names)
+    names.push_back({{name.folded, name.name, name.key}, name.is_release});
+  if (!names.empty()) {
+    if (auto written = store.change_names(names); !written) return written;
+  }
+  std::vector<PlayerRow> players;
+  for (const LogPlayer& row : part.players) players.push_back({row.author, row.key, row.name});
+  std::vector<EditRecord> records;
+  for (const LogPartRecord& mine : part.records) {
+    if (mine.record.version.seq > end) records.push_back(mine.record);
+  }
+  if (players.empty() && records.empty()) return {};
+  return store.append_history(players, records);
+}
+
+}  // namespace
 
 Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   WorldStart start;
   const auto range = store.log_range();
   if (!range) return failure(range.error());
   start.log.last = range->last.version.seq;
+  start.log.last_epoch = range->last.version.epoch;
   start.log.last_time_us = range->last.time_us;
   // Reading the last row verifies its checksum. New edits never get a time before the time of that
   // row, so a damaged time would spread to them.
@@ -54,6 +95,51 @@ Result<std::uint64_t, std::string> replay_log(LogReader& store, const WorldStart
       });
   if (!read) return failure(read.error());
   return replayed;
+}
+
+Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<LogPart>& parts,
+                                               Version last, std::uint64_t features) {
+  const auto end = store.last_sequence();
+  if (!end) return failure(end.error());
+  if (const auto same = is_prefix(store, parts, last, *end); !same) return failure(same.error());
+  for (const LogPart& part : parts) {
+    if (const auto written = write_rest(store, part, *end); !written)
+      return failure(written.error().message());
+  }
+  Takeover out;
+  out.features = features;
+  const auto epoch = store.raise_epoch();
+  if (!epoch) return failure(epoch.error());
+  out.epoch = *epoch;
+  const auto checkpoint = store.checkpoint();
+  if (!checkpoint) return failure(checkpoint.error());
+  out.checkpoint = *checkpoint;
+  out.author_max = store.author_max();
+  auto read = read_missed_log(store, std::max<Sequence>(1, last.seq), SIZE_MAX);
+  if (!read) return failure(read.error());
+  out.read = *std::move(read);
+  return out;
+}
+
+Result<ReadLog, std::string> read_missed_log(WorldReader& store, Sequence first,
+                                             std::size_t records_max) {
+  ReadLog read;
+  // The rows of players come before the records that name them, so they are read later.
+  const auto range = store.log_range();
+  if (!range) return failure(range.error());
+  read.last = range->last.version.seq;
+  const auto done = store.read_log(first, read.last, [&](const EditRecord& record) {
+    read.records.push_back(record);
+    return read.records.size() < records_max;
+  });
+  if (!done) return failure(done.error());
+  auto players = store.players();
+  if (!players) return failure(players.error());
+  read.players = *std::move(players);
+  auto claims = store.name_claims();
+  if (!claims) return failure(claims.error());
+  read.names = *std::move(claims);
+  return read;
 }
 
 }  // namespace runstone

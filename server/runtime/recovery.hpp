@@ -3,8 +3,10 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/core/result.hpp"
+#include "server/store/store.hpp"
 #include "server/store/world_reader.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_server.hpp"
@@ -20,5 +22,15 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store);
 /// edits. Fails if a record cannot be read; the world must not be used then.
 Result<std::uint64_t, std::string> replay_log(LogReader& store, const WorldStart& start,
                                               WorldServer& world);
+
+/// Writes the parts of the log that an earlier owner may not have written, raises the epoch, and reads
+/// what a server needs to take the world over. `last`: the last record of this server. Fails if the log
+/// has other records than this server; nothing is written then.
+Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<LogPart>& parts,
+                                               Version last, std::uint64_t features);
+/// Reads what a server that follows has missed: the records from `first` on, `records_max` at most, and
+/// all players and names. Cost: O(players + names + records).
+Result<ReadLog, std::string> read_missed_log(WorldReader& store, Sequence first,
+                                             std::size_t records_max = 8'192);
 
 }  // namespace runstone

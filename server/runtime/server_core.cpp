@@ -22,6 +22,7 @@ namespace {
 constexpr auto kTickInterval = std::chrono::milliseconds(50);
 constexpr auto kChatRetentionInterval = std::chrono::minutes(10);
 constexpr auto kStallInterval = std::chrono::seconds(1);
+constexpr auto kCheckpointInterval = std::chrono::seconds(5);
 constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for the last of them
 
 }  // namespace
@@ -45,17 +46,22 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       readers_(strand_, threads.workers, chunks_, world_place(config), generator),
       tiles_(strand_, chunks_, generator, store.meta().chunk_edge,
              [this](Sequence at, const ChunkKey& key) { return readers_.past_chunk(at, key); }),
-      environment_(sessions_, *listener_, sender_, readers_, tiles_),
+      owner_(threads.io, strand_, threads.decoders.get_executor(), store.meta().chunk_edge,
+             !config.insecure),
+      environment_(sessions_, *listener_, sender_, readers_, tiles_, owner_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
       tile_resends_(strand_.make_timer()),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
       stalls_(strand_, kStallInterval, [this] { close_stalled(); }),
       activity_(strand_, std::chrono::seconds(config.counters_s), [this] { write_activity(); }),
-      chat_retention_(strand_, kChatRetentionInterval, [this] {
-        const TimeUs log_us = world_->rights_time();  // may be ahead of the system's clock
-        chat_log_->forget_before(
-            chat_kept_from_us(config_, std::min(log_us, read_clocks().utc_us)));
-      }) {}
+      chat_retention_(strand_, kChatRetentionInterval,
+                      [this] {
+                        const TimeUs log_us =
+                            world_->rights_time();  // may be ahead of the system's clock
+                        chat_log_->forget_before(
+                            chat_kept_from_us(config_, std::min(log_us, read_clocks().utc_us)));
+                      }),
+      checkpoints_(strand_, kCheckpointInterval, [this] { read_checkpoint(); }) {}
 
 ServerCore::~ServerCore() = default;
 
@@ -73,45 +79,105 @@ Result<void, std::string> ServerCore::listen_for_gateway(const std::string& path
 
 Result<void, std::string> ServerCore::recover() {
   auto start = read_world_start(store_);
-  if (!start) return Unexpected<std::string>{start.error()};
+  if (!start) return failure(start.error());
   const auto epoch = store_.raise_epoch();
-  if (!epoch) return Unexpected<std::string>{epoch.error().message()};
+  if (!epoch) return failure(epoch.error().message());
   start->log.epoch = *epoch;
+  if (const auto made = make_world(*start); !made) return made;
+  make_log(store_, start->log.last);
+  logger("world").info("OWNS THE WORLD: epoch={} seq={}", *epoch, start->log.last);
+  return {};
+}
 
+Result<void, std::string> ServerCore::follow() {
+  if (store_.epoch() == 0) return failure("the owner of the world has not started");
+  // The owner goes on writing meanwhile.
+  if (const auto begun = store_.begin_reads(); !begun) return failure(begun.error().message());
+  auto start = read_world_start(store_);
+  if (!start) return failure(start.error());
+  start->log.epoch = store_.epoch();
+  if (const auto made = make_world(*start); !made) return made;
+  if (const auto ended = store_.end_reads(); !ended) return failure(ended.error().message());
+  world_->follow(start->log.last_epoch);
+  owner_.attach(*world_);
+  return {};
+}
+
+Result<void, std::string> ServerCore::make_world(WorldStart& start) {
   chat_log_ = open_chat_log(config_, read_clocks().utc_us);
-  if (chat_log_) start->chat = newest_chat(*chat_log_);
+  if (chat_log_) start.chat = newest_chat(*chat_log_);
 
   auto materials = store_.materials();
   if (!materials) return failure(materials.error());
   WorldConfig world_config = world_config_of(config_, store_.meta(), port());
   world_config.materials = *std::move(materials);
   world_ = std::make_unique<WorldServer>(
-      std::move(world_config), *start, environment_,
+      std::move(world_config), start, environment_,
       [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
-  const auto replayed = replay_log(store_, *start, *world_);
+  const auto replayed = replay_log(store_, start, *world_);
   if (!replayed) return Unexpected<std::string>{replayed.error()};
+  environment_.attach(*world_, chat_log_.get());
+  logger("world").info("world={} seq={} checkpoint={} replayed={} players={} snapshots={}",
+                       config_.world, start.log.last, start.checkpoint, *replayed,
+                       start.players.size(), start.snapshots.size());
+  return {};
+}
 
+void ServerCore::make_log(Store& store, Sequence durable) {
   OperatorActions actions = actions_;
   if (chat_log_) {
     actions.list_chat = [this](const ChatQuery& query, const CommandReply& reply) {
       runstone::list_chat(*chat_log_, query, reply);
     };
   }
-  commands_ = std::make_unique<CommandRunner>(strand_, *world_, readers_, config_.operators,
+  commands_ = std::make_unique<CommandRunner>(strand_, *world_, readers_, running_.operators,
                                               config_.world, actions);
   DurableLog::Options options;
   options.queued_records_max = config_.log_queue_records;
   options.reserve_bytes = config_.disk_reserve_mib << 20;
-  options.durable = start->log.last;
+  options.durable = durable;
   if (config_.keyframe_edits > 0) options.keyframes = KeyframePolicy{config_.keyframe_edits};
-  log_ = std::make_unique<DurableLog>(strand_, store_, world_place(config_), generator_, options,
+  // A task that on_space posts from the constructor runs later.
+  log_ = std::make_unique<DurableLog>(strand_, store, world_place(config_), generator_, options,
                                       log_events());
-  // A task that on_space posted from the constructor runs later, because no thread runs the strand.
-  environment_.attach(*world_, *log_, *commands_, chat_log_.get());
-  logger("world").info("world={} epoch={} seq={} checkpoint={} replayed={} players={} snapshots={}",
-                       config_.world, *epoch, start->log.last, start->checkpoint, *replayed,
-                       start->players.size(), start->snapshots.size());
+  environment_.attach(*log_, *commands_);
+}
+
+Result<void, std::string> ServerCore::take_over(Store& store) {
+  struct Left {
+    std::vector<LogPart> parts;
+    Version last;
+  };
+  auto stopped = std::make_shared<std::promise<Left>>();
+  auto left = stopped->get_future();
+  strand_.post([this, stopped] {
+    owner_.end("this server takes the world over");
+    Left now{world_->stop_following(), world_->last_record()};
+    stopped->set_value(std::move(now));
+  });
+  const Left mine = left.get();
+  const auto start = prepare_takeover(store, mine.parts, mine.last, kFeaturesKnown);
+  if (!start) return failure(start.error());
+  auto taken = std::make_shared<std::promise<bool>>();
+  auto is_taken = taken->get_future();
+  strand_.post([this, &store, start = *start, taken] {
+    checkpoints_.stop();
+    make_log(store, start.read.last);
+    taken->set_value(world_->take_over(start, read_clocks()));
+  });
+  if (!is_taken.get()) return failure("the log has other edits than this server");
+  logger("world").info("OWNS THE WORLD: epoch={} seq={}", start->epoch, start->read.last);
   return {};
+}
+
+void ServerCore::read_checkpoint() {
+  const auto checkpoint = std::make_shared<Sequence>(0);
+  const auto work = [checkpoint](WorldReader& reader, const Generator& /*generator*/) {
+    if (const auto read = reader.checkpoint()) *checkpoint = *read;
+  };
+  readers_.read_log(work, [this, checkpoint](const std::string& /*error*/) {
+    world_->checkpoint_moved(*checkpoint);
+  });
 }
 
 DurableLog::Events ServerCore::log_events() {
@@ -144,12 +210,13 @@ void ServerCore::start() {
   if (chat_log_) chat_retention_.start();
   stalls_.start();
   if (config_.counters_s > 0) activity_.start();
+  if (log_ == nullptr) checkpoints_.start();
 }
 
 void ServerCore::tick() {
   const Clocks now = read_clocks();
   world_->tick(now);
-  commands_->tick(now);
+  if (commands_) commands_->tick(now);
 }
 
 void ServerCore::close_stalled() {
@@ -161,6 +228,8 @@ void ServerCore::after_task() {
   if (world_->has_ready_edits(steady_now_us())) commits_.schedule();
   schedule_delivery();
   schedule_tile_resends();
+  is_live_.store(world_->is_live());
+  has_forked_.store(world_->has_forked());
   finish_stop_if_flushed();
 }
 
@@ -174,7 +243,23 @@ void ServerCore::log_counters() {
 std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
   const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000,
                                 memory_bytes};
-  return counters_line(*world_, listener_->counters(), log_->writer().counters(), runtime);
+  return counters_line(*world_, listener_->counters(), log_counters_now(), runtime);
+}
+
+LogWriter::Counters ServerCore::log_counters_now() const {
+  return log_ ? log_->writer().counters() : LogWriter::Counters{};
+}
+
+void ServerCore::command(const std::string& line, CommandReply reply) {
+  strand_.post([this, line, reply = std::move(reply)]() mutable {
+    if (commands_) return commands_->run(line, std::move(reply));
+    // The program can be stopped like any other.
+    if (line == "stop") {
+      actions_.stop();
+      return reply({"", true, true});
+    }
+    refuse(reply, "this server follows the owner of the world: give the command there");
+  });
 }
 
 void ServerCore::answer_gateway(const std::string& question, CommandReply reply) {
@@ -200,15 +285,14 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
     running_ = std::move(reloaded.config);
     start_logging(running_.log_level, running_.log_format);
     world_->reconfigure(world_config_of(running_, store_.meta(), port()));
-    commands_->set_operators(running_.operators);
+    if (commands_) commands_->set_operators(running_.operators);
     logger("app").info("reload: {}", reloaded.text());
     reply({reloaded.text(), true, true});
   });
 }
 
 void ServerCore::write_activity() {
-  ActivitySample sample =
-      sample_activity(*world_, listener_->counters(), log_->writer().counters());
+  ActivitySample sample = sample_activity(*world_, listener_->counters(), log_counters_now());
   const ActivityNow now{world_->online_players().size(), world_->memory().total()};
   const std::string line = activity_line(sampled_, sample, now, config_.counters_s);
   sampled_ = sample;
@@ -222,10 +306,11 @@ std::future<void> ServerCore::begin_stop() {
   std::future<void> answer = promise->get_future();
   strand_.post([this, promise = std::move(promise)]() mutable {
     stopping_ = std::move(promise);
-    commands_->stop();
+    owner_.end("this server stops");
+    if (commands_) commands_->stop();
     const Clocks now = read_clocks();
     world_->begin_stop(now);
-    commands_->tick(now);  // commands that wait get their answer
+    if (commands_) commands_->tick(now);  // commands that wait get their answer
     // The world has closed the sessions that it knows. These are connected, but their first task
     // has not run.
     listener_->close_all(GoodbyeReason::closing, "the server stops");
@@ -235,19 +320,23 @@ std::future<void> ServerCore::begin_stop() {
 
 void ServerCore::finish_stop_if_flushed() {
   // Sessions end within the linger time of NetSession, which is a second.
-  if (!stopping_ || !sessions_.is_empty()) return;
-  const bool gives_up = log_->has_failed() || (log_->is_full() && world_->is_stop_overdue());
+  // Another server waits for the world, and not for the sessions here.
+  if (!stopping_ || (!sessions_.is_empty() && !world_->hands_over())) return;
+  const bool gives_up =
+      log_ && (log_->has_failed() || (log_->is_full() && world_->is_stop_overdue()));
   if (!gives_up && !world_->is_flushed()) return;
   ticks_.stop();
   stalls_.stop();
   activity_.stop();
   chat_retention_.stop();
+  checkpoints_.stop();
   tile_resends_.cancel();
   stopping_->set_value();
   stopping_.reset();
 }
 
 StopState ServerCore::stop_state() const {
+  if (!log_) return {};
   return {log_->has_failed(), world_->head() - log_->durable(), world_->dirty_chunks()};
 }
 
@@ -255,7 +344,7 @@ void ServerCore::stop_writer() {
   readers_.stop();
   tiles_.stop();
   if (chat_log_) chat_log_->stop();
-  log_->stop();
+  if (log_) log_->stop();
 }
 
 void ServerCore::on_refused(SessionId session) { listener_->forget(session); }

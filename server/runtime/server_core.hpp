@@ -7,6 +7,7 @@
 #pragma once
 #include <asio/io_context.hpp>
 #include <asio/thread_pool.hpp>
+#include <atomic>
 #include <functional>
 #include <future>
 #include <memory>
@@ -26,6 +27,7 @@
 #include "server/runtime/connected_sessions.hpp"
 #include "server/runtime/durable_log.hpp"
 #include "server/runtime/message_turns.hpp"
+#include "server/runtime/owner_connection.hpp"
 #include "server/runtime/periodic_task.hpp"
 #include "server/runtime/server_environment.hpp"
 #include "server/runtime/stop_state.hpp"
@@ -65,7 +67,23 @@ class ServerCore final : public NetEvents {
   /// Reads what the store remembers, raises the epoch, replays the log above the checkpoint, and
   /// starts the log writer.
   Result<void, std::string> recover();
-  /// Accepts sessions and ticks from now on. Requires listen() and recover().
+  /// Reads the same, and follows the owner of the world instead. Whoever calls it tells where the owner
+  /// is: connect_to().
+  Result<void, std::string> follow();
+  /// Connects to the owner at HOST:PORT, unless there is a connection. Thread: any.
+  void connect_to(const std::string& address) { owner_.connect_to(address); }
+  /// Makes a server that follows the owner of the world, which `store` has open for writing. `store`
+  /// must outlive the core. Blocks on the database. Sessions go on. After an error the server must be
+  /// stopped. Requires start(). Thread: any but those of `threads`.
+  Result<void, std::string> take_over(Store& store);
+  /// How a server that follows gets on.
+  struct FollowState {
+    bool is_live = false;     // it has reached the owner
+    bool has_forked = false;  // it cannot go on
+  };
+  /// Thread: any.
+  FollowState follow_state() const { return {is_live_.load(), has_forked_.load()}; }
+  /// Accepts sessions and ticks from now on. Requires listen(), and recover() or follow().
   void start();
   std::uint16_t port() const { return listener_->port(); }
 
@@ -78,6 +96,9 @@ class ServerCore final : public NetEvents {
   /// is queued.
   /// Requires that the future of begin_stop() is ready.
   void stop_writer();
+  /// Returns true if another server waits to take the world over. Requires that the future of
+  /// begin_stop() is ready.
+  bool hands_over() const { return world_->hands_over(); }
   /// Returns what the stop has left undone. Requires stop_writer(), and that no thread runs the
   /// strand any more.
   StopState stop_state() const;
@@ -93,9 +114,7 @@ class ServerCore final : public NetEvents {
   void log_counters();
   /// Carries out a command of the console or the control socket. The replies come on the world
   /// strand. Thread: any.
-  void command(const std::string& line, CommandReply reply) {
-    commands_->run(line, std::move(reply));
-  }
+  void command(const std::string& line, CommandReply reply);
 
   /// Answers a question of a gateway, of which there is one: "status". The answer is the line of all
   /// counters (counters_line.hpp) and a line "player NAME" for each session. Thread: any.
@@ -113,6 +132,13 @@ class ServerCore final : public NetEvents {
   void on_disconnected(SessionId session) override;
 
  private:
+  /// Makes the world of what `store` remembers, and adds the chat to `start`.
+  Result<void, std::string> make_world(WorldStart& start);
+  /// Makes what the owner of the world has.
+  void make_log(Store& store, Sequence durable);
+  LogWriter::Counters log_counters_now() const;
+  /// Reads how far the owner's snapshots reach.
+  void read_checkpoint();
   DurableLog::Events log_events();
   void tick();
   /// Closes the sessions whose clients have read nothing for the idle time.
@@ -135,7 +161,7 @@ class ServerCore final : public NetEvents {
 
   asio::io_context& io_;
   const ServerConfig& config_;
-  Store& store_;
+  Store& store_;  // of a server that follows: for reading
   const Generator& generator_;
   const std::function<void()> on_failure_;
   const OperatorActions actions_;
@@ -150,16 +176,19 @@ class ServerCore final : public NetEvents {
   ChunkSender sender_;
   WorldReaders readers_;
   TileMaking tiles_;
+  OwnerConnection owner_;
   ServerEnvironment environment_;
   CommitScheduler commits_;
   asio::steady_timer tile_resends_;   // WorldServer::resend_tiles()
   bool is_resend_scheduled_ = false;  // used on the world strand
-  PeriodicTask ticks_, stalls_, activity_, chat_retention_;
+  PeriodicTask ticks_, stalls_, activity_, chat_retention_, checkpoints_;
+  std::atomic<bool> is_live_{false}, has_forked_{false};  // written by the world strand
   ActivitySample sampled_;  // at the last write_activity(). Used on the world strand
   // The answer of begin_stop(), set while it waits. Used on the world strand.
   std::shared_ptr<std::promise<void>> stopping_;
 
-  // These parts exist from recover() on.
+  // These parts exist from recover() or follow() on; the last two of a server that follows only when it
+  // has taken the world over.
   std::unique_ptr<ChatLog> chat_log_;  // null if chat_days is 0
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<DurableLog> log_;

@@ -3,6 +3,7 @@
 #include "common/core/assert.hpp"
 #include "common/os/thread_cpu_ns.hpp"
 #include "server/runtime/read_clocks.hpp"
+#include "server/runtime/recovery.hpp"
 #include "server/runtime/visit_line.hpp"
 
 namespace runstone {
@@ -61,11 +62,36 @@ void ServerEnvironment::charge_reading(SessionId session, std::size_t bytes) {
   if (const auto& net = sessions_.find(session)) net->charge_reading(bytes);
 }
 
-bool ServerEnvironment::log_has_room(std::size_t records) const {
-  return log_->writer().has_room(records);
+void ServerEnvironment::trust(SessionId session) {
+  if (const auto& net = sessions_.find(session)) net->trust();
 }
 
-std::size_t ServerEnvironment::log_queued_bytes() const { return log_->writer().queued_bytes(); }
+bool ServerEnvironment::send_to_owner(const EncodedMessage& message) {
+  return owner_.send(message);
+}
+
+void ServerEnvironment::leave_owner(const std::string& why) { owner_.leave(why); }
+
+void ServerEnvironment::read_log(Sequence first) {
+  const auto found = std::make_shared<Result<ReadLog, std::string>>(ReadLog{});
+  const auto work = [found, first](WorldReader& reader, const Generator& /*generator*/) {
+    *found = read_missed_log(reader, first);
+  };
+  readers_.read_log(work, [this, found](const std::string& error) {
+    if (!error.empty()) *found = failure(error);
+    world_->log_read(*found, read_clocks());
+  });
+}
+
+bool ServerEnvironment::owns_world() const { return log_ != nullptr && log_->is_owned(); }
+
+bool ServerEnvironment::log_has_room(std::size_t records) const {
+  return log_ != nullptr && log_->writer().has_room(records);
+}
+
+std::size_t ServerEnvironment::log_queued_bytes() const {
+  return log_ == nullptr ? 0 : log_->writer().queued_bytes();
+}
 
 void ServerEnvironment::log_append(std::vector<PlayerRow> players,
                                    std::vector<EditRecord> records) {
@@ -126,7 +152,7 @@ bool ServerEnvironment::is_tile_current(const CachedChunk& copy) const {
 }
 
 void ServerEnvironment::save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) {
-  tiles_.save(std::move(tiles), log_->writer());
+  if (log_ != nullptr) tiles_.save(std::move(tiles), log_->writer());
 }
 
 void ServerEnvironment::open_history(SessionId session, const HistoryRequest& request) {

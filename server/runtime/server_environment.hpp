@@ -15,6 +15,7 @@
 #include "server/runtime/connected_sessions.hpp"
 #include "server/runtime/durable_log.hpp"
 #include "server/runtime/operator_log.hpp"
+#include "server/runtime/owner_connection.hpp"
 #include "server/runtime/tile_making.hpp"
 #include "server/runtime/world_readers.hpp"
 #include "server/world/world_environment.hpp"
@@ -25,19 +26,23 @@ class ServerEnvironment final : public WorldEnvironment {
  public:
   /// All must outlive the object.
   ServerEnvironment(ConnectedSessions& sessions, Listener& listener, ChunkSender& sender,
-                    WorldReaders& readers, TileMaking& tiles)
+                    WorldReaders& readers, TileMaking& tiles, OwnerConnection& owner)
       : sessions_(sessions),
         listener_(listener),
         sender_(sender),
         readers_(readers),
-        tiles_(tiles) {}
+        tiles_(tiles),
+        owner_(owner) {}
 
-  /// Connects the parts that are made after recovery, because they need the world. Call it once,
-  /// before the first session connects. All must outlive the object.
-  /// `chat_log` may be null.
-  void attach(WorldServer& world, DurableLog& log, CommandRunner& commands, ChatLog* chat_log) {
-    chat_log_ = chat_log;
+  /// Connects the world, which is made after the environment. Call it once, before the first session
+  /// connects. `chat_log` may be null. Both must outlive the object.
+  void attach(WorldServer& world, ChatLog* chat_log) {
     world_ = &world;
+    chat_log_ = chat_log;
+  }
+  /// Connects what the owner of the world has. Until then, the log has no room. Both must outlive the
+  /// object.
+  void attach(DurableLog& log, CommandRunner& commands) {
     log_ = &log;
     commands_ = &commands;
   }
@@ -61,6 +66,11 @@ class ServerEnvironment final : public WorldEnvironment {
   void forget_outside(SessionId session, const View& view) override;
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override;
   void charge_reading(SessionId session, std::size_t bytes) override;
+  void trust(SessionId session) override;
+  bool send_to_owner(const EncodedMessage& message) override;
+  void leave_owner(const std::string& why) override;
+  void read_log(Sequence first) override;
+  bool owns_world() const override;
   bool log_has_room(std::size_t records) const override;
   std::size_t log_queued_bytes() const override;
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
@@ -91,6 +101,7 @@ class ServerEnvironment final : public WorldEnvironment {
   ChunkSender& sender_;
   WorldReaders& readers_;
   TileMaking& tiles_;
+  OwnerConnection& owner_;
   OperatorLog lines_;
   WorldServer* world_ = nullptr;
   DurableLog* log_ = nullptr;

@@ -1,7 +1,9 @@
 #include "server/world/authority.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "common/core/assert.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/edits/descriptor/edit_memory.hpp"
 
@@ -64,22 +66,55 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
                           ? actions_.order(offer.op, offer.action, version.seq)
                           : offer.subject;
     const Sequence subject = ordered.subject;
-    std::vector<ChunkKey>& touched = batch.touched.emplace_back();
-    for (const ChunkCoord at : touched_chunks(offer.edit, limits_.chunk_edge))
-      touched.push_back({0, at});
-    const std::size_t stacked =
-        stack_bytes_of(offer.edit, std::max<std::size_t>(1, touched.size()));
-    for (const ChunkKey& key : touched)
-      ordered.previous.push_back(chunks_.push(key, version, offer.edit, stacked));
-    batch.all_touched.insert(batch.all_touched.end(), touched.begin(), touched.end());
-    batch.commit.edits.push_back(std::move(ordered));
+    push(std::move(ordered), version, batch);
     batch.records.push_back({version, offer.op, time_us, offer.cause, offer.edit, subject});
   }
+  publish(batch);
+  return batch;
+}
+
+OrderedBatch Authority::follow(std::span<const LogPartRecord> records, const Clocks& now) {
+  OrderedBatch batch;
+  batch.commit.epoch = records.front().record.version.epoch;
+  for (const LogPartRecord& part : records) {
+    const EditRecord& record = part.record;
+    RUNSTONE_ASSERT(record.version.seq == head_ + 1);
+    RUNSTONE_ASSERT(record.version.epoch == batch.commit.epoch);
+    ++head_;
+    log_clock_.follow(record.time_us);
+    resolved_.raise(record.op);
+    OrderedEdit ordered;
+    ordered.seq = head_;
+    ordered.op = record.op;
+    ordered.cause = record.cause;
+    ordered.submitted_us = part.submitted_us;
+    ordered.ordered_us = now.steady_us;
+    ordered.edit = record.edit;
+    ordered.subject = record.subject;
+    push(std::move(ordered), record.version, batch);
+    batch.records.push_back(record);
+  }
+  publish(batch);
+  return batch;
+}
+
+void Authority::push(OrderedEdit ordered, Version version, OrderedBatch& batch) {
+  std::vector<ChunkKey>& touched = batch.touched.emplace_back();
+  for (const ChunkCoord at : touched_chunks(ordered.edit, limits_.chunk_edge))
+    touched.push_back({0, at});
+  const std::size_t stacked =
+      stack_bytes_of(ordered.edit, std::max<std::size_t>(1, touched.size()));
+  for (const ChunkKey& key : touched)
+    ordered.previous.push_back(chunks_.push(key, version, ordered.edit, stacked));
+  batch.all_touched.insert(batch.all_touched.end(), touched.begin(), touched.end());
+  batch.commit.edits.push_back(std::move(ordered));
+}
+
+void Authority::publish(OrderedBatch& batch) {
   std::vector<ChunkKey>& all = batch.all_touched;
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   for (const ChunkKey& key : all) chunks_.publish(key);
-  return batch;
 }
 
 }  // namespace runstone

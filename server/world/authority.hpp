@@ -10,6 +10,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/edits/descriptor/edit_record.hpp"
@@ -29,6 +30,7 @@ namespace runstone {
 struct LogPosition {
   Epoch epoch = 1;          // of this start, already raised
   Sequence last = 0;        // last sequence in the log; every record of the log is durable
+  Epoch last_epoch = 0;     // of that record
   TimeUs last_time_us = 0;  // of that record; 0 if the log is empty
 };
 
@@ -73,6 +75,13 @@ class Authority {
   /// nullopt if there are none. Cost: O(runs + edits) for each touched chunk.
   std::optional<OrderedBatch> commit(const Clocks& now, std::uint64_t large_room = kAllLargeEdits);
 
+  // A server that follows. It orders nothing itself.
+  /// Applies records that the owner has ordered. The commit has their order and the time `now`.
+  /// Requires records of one epoch that continue the log.
+  OrderedBatch follow(std::span<const LogPartRecord> records, const Clocks& now);
+  /// From now on edits are ordered in this epoch. Requires that it is not below epoch().
+  void begin_epoch(Epoch epoch) { epoch_ = epoch; }
+
   /// The time of the log, for its warnings.
   LogClock& log_clock() { return log_clock_; }
   const LogClock& log_clock() const { return log_clock_; }
@@ -81,6 +90,11 @@ class Authority {
   Sequence head() const { return head_; }
 
  private:
+  /// Puts an edit on the stacks of the chunks that it touches, and adds it to the commit.
+  void push(OrderedEdit ordered, Version version, OrderedBatch& batch);
+  /// Makes all_touched a set, and publishes its chunks.
+  void publish(OrderedBatch& batch);
+
   EditLimits limits_;
   Epoch epoch_;
   Sequence head_;

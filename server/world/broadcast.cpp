@@ -9,6 +9,7 @@
 #include "protocol/codec/commit_encoder.hpp"
 #include "server/interest/audiences.hpp"
 #include "server/world/delivery.hpp"
+#include "server/world/followers.hpp"
 #include "server/world/material_handlers.hpp"
 #include "server/world/rights_handlers.hpp"
 #include "server/world/stale_tiles.hpp"
@@ -44,7 +45,7 @@ Authors authors_of(const WorldState& world, const Commit& commit) {
   Authors authors;
   for (const OrderedEdit& edit : commit.edits) authors[{edit.op.author, edit.op.instance}] = 0;
   for (const auto& [id, session] : world.sessions) {
-    if (session.state != SessionStage::open) continue;
+    if (session.state != SessionStage::open || session.is_relayed) continue;
     const auto found = authors.find({session.author, session.instance});
     if (found != authors.end()) found->second = id;
   }
@@ -103,7 +104,7 @@ void send_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now)
   const CommitEncoder encoder(batch.commit);
   for (const Audience& audience : audiences) {
     const EncodedMessage encoded = encode_message(encoder, audience.edits);
-    const std::vector<SessionId> full = world.environment.send_to_all(audience.sessions, encoded);
+    const std::vector<SessionId> full = world.output.send_to_all(audience.sessions, encoded);
     world.counters.commit_bytes += encoded.bytes->size();
     world.counters.commits_sent += audience.sessions.size() - full.size();
     world.counters.queue_full += full.size();
@@ -127,14 +128,18 @@ bool commit_and_broadcast(WorldState& world, LargeEdits large, const Clocks& now
   apply_rights(world, batch->records);
   apply_materials(world, batch->records);
   std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);
-  world.environment.log_append(std::move(players), std::move(batch->records));
-  send_batch(world, *batch, now);
-  tiles_edited(world, batch->all_touched, now);
-  for (const ChunkKey& key : batch->all_touched) {
+  append_to_log(world, std::move(players), *batch);
+  publish_batch(world, *batch, now);
+  return true;
+}
+
+void publish_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now) {
+  send_batch(world, batch, now);
+  tiles_edited(world, batch.all_touched, now);
+  for (const ChunkKey& key : batch.all_touched) {
     if (world.authority.chunks().stack_size(key) > world.config.stack_load_edits)
       request_load(world, key, now);
   }
-  return true;
 }
 
 bool has_ready_edits(const WorldState& world, TimeUs now_us) {

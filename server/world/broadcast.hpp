@@ -14,6 +14,9 @@ enum class LargeEdits { paced, all };
 /// Cost: O(edits + subscribers of touched chunks + sessions), because the sessions of the authors are
 /// searched among all, and that of audiences_of().
 bool commit_and_broadcast(WorldState& world, LargeEdits large, const Clocks& now);
+/// Sends edits that were ordered to the sessions, and does what they make necessary for tiles and for
+/// chunks that are not in memory.
+void publish_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now);
 /// Returns true if commit_and_broadcast() with paced large edits would order edits.
 bool has_ready_edits(const WorldState& world, TimeUs now_us);
 /// Sends the durable watermark to the sessions whose client has edits that are not yet

@@ -24,7 +24,7 @@ void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& 
   if (mine.history) return;  // a session in the past gets nothing of the live world
   const SessionInterest& interest = *world.interest.find(session);
   const bool are_tiles = cached.chunks.front().key.lod > 0;
-  if (are_tiles) world.environment.charge_reading(session, cached.chunks.size() * kTileClaimBytes);
+  if (are_tiles) world.output.charge_reading(session, cached.chunks.size() * kTileClaimBytes);
   for (const CachedChunk& chunk : cached.chunks) {
     if (are_tiles && !accepts_claim(world, mine, chunk.key)) continue;
     const auto state = interest.state(chunk.key);
@@ -92,7 +92,7 @@ bool send_not_modified(WorldState& world, SessionId session, bool is_more) {
     };
     same.chunks.erase(std::unique(same.chunks.begin(), same.chunks.end(), one_key),
                       same.chunks.end());
-    if (!world.environment.send(session, encode_message(same))) {
+    if (!world.output.send(session, encode_message(same))) {
       ++world.counters.queue_full;
       return false;
     }

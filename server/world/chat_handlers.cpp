@@ -73,7 +73,7 @@ std::optional<ChatRefusal> pay_line(WorldState& world, const WorldSession& mine,
 void refuse_line(WorldState& world, SessionId session, const ChatRefusal& refusal,
                  const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  world.environment.charge_reading(session, kRefusedLineBytes);
+  world.output.charge_reading(session, kRefusedLineBytes);
   world.refusals.add(mine.key, "chat: " + refusal.what, now.utc_us);
   if (!mine.chat_answers.take(1, now.steady_us)) return;
   ChatLine line;
@@ -136,7 +136,7 @@ void broadcast_chat(WorldState& world) {
   for (const auto& [id, session] : world.sessions) {
     if (has_chat(session)) readers.push_back(id);
   }
-  world.counters.queue_full += world.environment.send_to_all(readers, encode_message(lines)).size();
+  world.counters.queue_full += world.output.send_to_all(readers, encode_message(lines)).size();
   for (const ChatLine& line : lines.lines) world.chat.add(line);
 }
 

@@ -35,7 +35,7 @@ bool send_view_states(WorldState& world, SessionId session, const Clocks& now) {
   if (!send_uniform(world, session, now)) return false;
   for (std::optional<ViewState>* due : {&mine.begins_due, &mine.refused_due, &mine.complete_due}) {
     if (!*due) continue;
-    if (!world.environment.send(session, encode_message(**due))) {
+    if (!world.output.send(session, encode_message(**due))) {
       ++world.counters.queue_full;
       mine.stalled_us = now.steady_us;
       return false;
@@ -94,7 +94,7 @@ bool send_uniform(WorldState& world, SessionId session, const Clocks& now) {
         std::find_if(mine.uniform.begin(), mine.uniform.end(),
                      [level](const UniformChunk& one) { return one.key.lod != level; });
     const UniformChunks message{view_in_force(world, session), {mine.uniform.begin(), end}};
-    if (!world.environment.send(session, encode_message(message))) {
+    if (!world.output.send(session, encode_message(message))) {
       ++world.counters.queue_full;
       mine.stalled_us = now.steady_us;
       return false;
@@ -142,7 +142,7 @@ bool send_chunk(WorldState& world, SessionId session, const ChunkKey& key, const
   if (chunk == nullptr) {
     const ChunkUnavailable unavailable{
         view_in_force(world, session), {key}, UnavailableReason::damaged};
-    if (!world.environment.send(session, encode_message(unavailable))) {
+    if (!world.output.send(session, encode_message(unavailable))) {
       put_off(world, session, key, now);
       return false;
     }

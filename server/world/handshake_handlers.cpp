@@ -1,10 +1,13 @@
 #include "server/world/handshake_handlers.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/world/chat_handlers.hpp"
+#include "server/world/followers.hpp"
+#include "server/world/following.hpp"
 #include "server/world/material_handlers.hpp"
 #include "server/world/name_rules.hpp"
 #include "server/world/presence.hpp"
@@ -145,12 +148,64 @@ bool close_if_authenticated(WorldState& world, SessionId session) {
   return true;
 }
 
+std::vector<SessionId> sessions_that_join(const WorldState& world) {
+  std::vector<SessionId> joining;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.join) joining.push_back(id);
+  }
+  return joining;
+}
+
+/// Closes a session that goes on if its client has connected again meanwhile.
+bool close_if_replaced(WorldState& world, SessionId session) {
+  const WorldSession& mine = *world.find(session);
+  for (const auto& [other, theirs] : world.sessions) {
+    if (other == session || theirs.state != SessionStage::open) continue;
+    if (theirs.key != mine.key || theirs.instance != mine.instance) continue;
+    close_session(world, session, GoodbyeReason::already_connected,
+                  "the same client connected again");
+    return true;
+  }
+  return false;
+}
+
 bool close_if_forged(WorldState& world, SessionId session, const Signature& signature) {
   const WorldSession& mine = *world.find(session);
   if (verify(mine.key, mine.auth_transcript, signature)) return false;
   close_session(world, session, GoodbyeReason::not_authenticated,
                 "the signature does not match the key");
   return true;
+}
+
+/// Makes the session one of the world, under this author number.
+void enter(WorldState& world, SessionId session, AuthorId author, const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  mine.state = SessionStage::open;
+  mine.author = author;
+  mine.pose_changed = true;
+  mine.position.start(mine.pose.at, now.steady_us);
+  mine.last_message_us = now.steady_us;
+  world.interest.open(session);
+  ++world.counters.sessions_opened;
+  world.environment.player_came(visit_of(world, session, mine));
+}
+
+/// Sends session accepted and, unless another server does it, what the player has to know at first.
+/// Returns false if the session is closed.
+bool send_accepted(WorldState& world, SessionId session, const SessionAccepted& accepted) {
+  if (!send_or_close(world, session, accepted)) return false;
+  if (world.find(session)->is_relayed) return true;
+  send_epoch(world, session);  // if it began since Welcome
+  if (world.find(session) == nullptr) return false;
+  send_materials(world, session);  // those that were added since Welcome
+  if (world.find(session) == nullptr) return false;
+  start_ground(world, session);
+  return true;
+}
+
+/// Returns true for another server of the world. Requires that the features are in force.
+bool is_server(const WorldState& world, const WorldSession& mine) {
+  return mine.key == world.config.server_keys.public_key && (mine.features & kFeatureServers) != 0;
 }
 
 void open_session(WorldState& world, SessionId session, const Clocks& now) {
@@ -163,33 +218,37 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
     break;  // there is at most one, and closing it invalidates the iterators
   }
   if (close_if_no_seat(world, session)) return;
-  mine.state = SessionStage::open;
-  mine.author = world.players.enter(mine.key, mine.name);
+  if (mine.author == 0) mine.pose.at = world.config.spawn;  // else the session goes on
+  enter(world, session, world.players.enter(mine.key, mine.name), now);
   if (world.players.is_renamed(mine.author) &&
       world.environment.log_has_room(world.authority.queue().size() + 1)) {
-    world.environment.log_append({*world.players.take_unsaved(mine.author)}, {});
+    append_players(world, {*world.players.take_unsaved(mine.author)});
   }
-  mine.pose.at = world.config.spawn;
-  mine.pose_changed = true;
-  mine.position.start(world.config.spawn, now.steady_us);
-  mine.last_message_us = now.steady_us;
-  world.interest.open(session);
-  ++world.counters.sessions_opened;
-  world.environment.player_came(visit_of(world, session, mine));
   world.player_list_changed = true;
   const bool has_tiles = (mine.features & kFeatureTiles) != 0;
   const SessionAccepted accepted{mine.author,
                                  world.authority.resolved().of(mine.author, mine.instance),
                                  has_tiles ? world.config.tile_rules : 0};
-  if (!send_or_close(world, session, accepted)) return;
-  send_materials(world, session);  // those that were added since Welcome
-  if (world.find(session) == nullptr) return;
-  start_ground(world, session);
+  if (!send_accepted(world, session, accepted)) return;
   send_all_poses_to(world, session);
   send_recent_chat(world, session, now);
   // A player who is let in without the invite must not believe that it has worked.
   const std::string no_role = std::exchange(world.find(session)->no_role, {});
   if (!no_role.empty()) tell(world, session, "you were given no role: " + no_role, now);
+}
+
+/// Lets an authenticated player in, at once or when the claim of the name is on disk, or closes the
+/// session.
+void let_in(WorldState& world, SessionId session, const ClientAuth& auth, const Clocks& now) {
+  if (!world.environment.owns_world())
+    return close_session(world, session, GoodbyeReason::closing, kConnectAgain);
+  // The name may have been claimed since hello. A session without a seat claims nothing.
+  if (close_if_no_seat(world, session) || close_if_no_name(world, session) ||
+      close_if_not_admitted(world, session, auth, now))
+    return;
+  world.find(session)->is_authenticated = true;
+  claim_name(world, session, now.steady_us);
+  if (!waits_for_claim(world, *world.find(session))) open_session(world, session, now);
 }
 
 }  // namespace
@@ -205,14 +264,22 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.key = hello.key;
   mine.instance = hello.instance;
   mine.name = hello.name;
-  mine.features = world.config.features & hello.features;
-  // Before any signature: a banned address costs little.
-  if (close_if_banned(world, session)) return;
-  if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
+  mine.features = (world.config.features | kFeatureServers) & hello.features;
+  if (!is_server(world, mine)) mine.features &= ~kFeatureServers;
+  if (is_server(world, mine)) {
+    if (world.following)
+      return close_session(world, session, GoodbyeReason::closing,
+                           "this server does not own the world");
+  } else {
+    // Before any signature: a banned address costs little.
+    if (close_if_banned(world, session)) return;
+    if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
+  }
   Welcome welcome = welcome_of(world, mine.key);
   welcome.encoding = choose_encoding(world.config, hello.encodings);
   welcome.features = mine.features;
   mine.materials_known = welcome.materials.size();
+  mine.epoch = welcome.epoch;
   // A client sends what it makes of the password on encrypted connections only.
   const std::optional<JoinPassword>& password = world.rights.password().value;
   if (password && mine.binding) welcome.password_salt = password->salt;
@@ -232,16 +299,48 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth
                     const Clocks& now) {
   if (close_if_authenticated(world, session) || close_if_forged(world, session, auth.signature))
     return;
-  // The name may have been claimed since hello. A session without a seat claims nothing.
-  if (close_if_no_seat(world, session) || close_if_no_name(world, session) ||
-      close_if_not_admitted(world, session, auth, now))
-    return;
   WorldSession& mine = *world.find(session);
-  mine.auth_transcript = {};
+  if (is_server(world, mine)) return admit_follower(world, session, now);
+  if (world.following) return join_at_owner(world, session, auth);
+  let_in(world, session, auth, now);
+}
+
+void join_relayed(WorldState& world, SessionId session, const RelayOpen& open, const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  mine.address = AddressBlock{open.address};
+  if (open.is_encrypted) mine.binding.emplace();
+  mine.key = open.key;
+  mine.instance = open.instance;
+  mine.name = open.name;
+  mine.features = world.config.features & open.features;
+  mine.state = SessionStage::authenticating;
+  if (open.author == 0) return let_in(world, session, {{}, open.ticket, open.password_key}, now);
+  if (!world.environment.owns_world() || !world.players.adopt({open.author, open.key, open.name}))
+    return close_session(world, session, GoodbyeReason::closing, kConnectAgain);
+  if (close_if_not_admitted(world, session, {}, now) || close_if_replaced(world, session)) return;
   mine.is_authenticated = true;
-  world.environment.opened(session);  // connections without a key no longer replace it
-  claim_name(world, session, now.steady_us);
-  if (!waits_for_claim(world, mine)) open_session(world, session, now);
+  mine.author = open.author;
+  mine.pose = open.pose;
+  open_session(world, session, now);
+}
+
+void open_let_in(WorldState& world, SessionId session, const SessionAccepted& accepted,
+                 const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  mine.join.reset();
+  world.players.adopt({accepted.author, mine.key, mine.name});
+  mine.pose.at = world.config.spawn;
+  enter(world, session, accepted.author, now);
+  const bool has_tiles = (mine.features & kFeatureTiles) != 0;
+  send_accepted(world, session,
+                {accepted.author, accepted.resolved, has_tiles ? world.config.tile_rules : 0});
+}
+
+void let_waiting_in(WorldState& world, const Clocks& now) {
+  for (const SessionId session : sessions_that_join(world)) {
+    if (WorldSession* mine = world.find(session))
+      let_in(world, session, *std::exchange(mine->join, std::nullopt), now);
+  }
 }
 
 void on_key_request(WorldState& world, SessionId session, const KeyRequest& request,

@@ -14,6 +14,14 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello);
 /// client, and the older connection is usually dead without a sign of it.
 void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth,
                     const Clocks& now);
+/// Handles the session of a player at another server, which has authenticated the player: opens it as
+/// on_client_auth() does, or closes it. A session of a player whom an earlier owner let in goes on.
+void join_relayed(WorldState& world, SessionId session, const RelayOpen& open, const Clocks& now);
+/// Opens an authenticated session whose player the owner of the world has let in.
+void open_let_in(WorldState& world, SessionId session, const SessionAccepted& accepted,
+                 const Clocks& now);
+/// Lets those in whom no owner has answered, because this server has become the owner.
+void let_waiting_in(WorldState& world, const Clocks& now);
 /// Sends the sealed key of a slot and removes it, or closes the session: not_admitted, or flooding
 /// after too many requests for empty slots. Whoever has the code may take the key, so the player needs
 /// no rights. The session ends in any case.

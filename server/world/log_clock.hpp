@@ -33,6 +33,8 @@ class LogClock {
   void advance(const Clocks& now);
   /// Returns the time for an edit that is ordered at the last advance().
   TimeUs stamp();
+  /// Reports an edit that another server has ordered at this time.
+  void follow(TimeUs time_us) { last_us_ = time_us > last_us_ ? time_us : last_us_; }
   /// Returns the log's time at the last advance(), at least that of the last edit.
   TimeUs time() const { return last_us_ > time_us_ ? last_us_ : time_us_; }
   /// Returns the newest warning that was not taken, if there is one.

@@ -46,7 +46,7 @@ void read_next(WorldState& world, SessionId session, const Clocks& now) {
     return send_marks(world, session, refused(request, "your role does not allow to see the past"));
   mine.is_reading_log_marks = true;
   ++world.log_mark_reads;
-  world.environment.charge_reading(session, request.count * kLogMarkBytes);
+  world.output.charge_reading(session, request.count * kLogMarkBytes);
   world.environment.read_log_marks(session, request);
 }
 

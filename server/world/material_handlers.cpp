@@ -62,7 +62,7 @@ void apply_materials(WorldState& world, const std::vector<EditRecord>& records) 
 void send_materials(WorldState& world, SessionId session) {
   WorldSession* mine = world.find(session);
   const MaterialTable& table = world.config.materials;
-  if (mine->materials_known == table.size()) return;
+  if (mine->is_relayed || mine->materials_known == table.size()) return;
   if ((mine->features & kFeatureMaterials) == 0) {
     return close_session(world, session, GoodbyeReason::closing,
                          "the world has new materials: connect again");

@@ -47,15 +47,21 @@ class NameClaims {
   }
   /// Removes a claim and returns the change to write, or nullopt if nobody owns the name.
   std::optional<NameChange> release(const std::string& folded) {
-    const auto found = by_folded_.find(folded);
-    if (found == by_folded_.end()) return std::nullopt;
-    NameChange change{std::move(found->second.claim), true};
-    const auto names = by_key_.find(change.claim.key);
-    names->second.erase(folded);
-    if (names->second.empty()) by_key_.erase(names);
-    by_folded_.erase(found);
+    auto claim = remove(folded);
+    if (!claim) return std::nullopt;
     ++queued_;
-    return change;
+    return NameChange{*std::move(claim), true};
+  }
+  /// Makes these the claims. All of them are on disk.
+  void follow_all(const std::vector<NameClaim>& claims) {
+    by_folded_.clear();
+    by_key_.clear();
+    for (const NameClaim& claim : claims) restore(claim);
+  }
+  /// Does what another server has written already.
+  void follow(const NameChange& change) {
+    remove(change.claim.folded);
+    if (!change.is_release) restore(change.claim);
   }
 
   /// Reports that `count` more changes are on disk, the oldest first.
@@ -75,6 +81,17 @@ class NameClaims {
   }
 
  private:
+  /// Removes the claim of a name and returns it, or nullopt if nobody owns the name.
+  std::optional<NameClaim> remove(const std::string& folded) {
+    const auto found = by_folded_.find(folded);
+    if (found == by_folded_.end()) return std::nullopt;
+    NameClaim claim = std::move(found->second.claim);
+    const auto names = by_key_.find(claim.key);
+    names->second.erase(folded);
+    if (names->second.empty()) by_key_.erase(names);
+    by_folded_.erase(found);
+    return claim;
+  }
   struct Entry {
     NameClaim claim;
     std::uint64_t number = 0;  // of the change that made it; 0: it was on disk at the start

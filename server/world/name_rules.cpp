@@ -5,6 +5,7 @@
 
 #include "common/names/folded_name.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
+#include "server/world/followers.hpp"
 
 namespace runstone {
 
@@ -45,7 +46,7 @@ void claim_name(WorldState& world, SessionId session, TimeUs now_us) {
                   " names (names release NAME)");
   if (!world.claim_ledger.take(mine.address, kClaimPrice, now_us))
     return report("not claimed: too many names of its address in an hour (names_per_address)");
-  world.environment.log_names({world.names.claim({std::move(folded), mine.name, mine.key})});
+  append_names(world, {world.names.claim({std::move(folded), mine.name, mine.key})});
   report("claimed by key=" + key_fingerprint(mine.key));
 }
 
@@ -63,7 +64,7 @@ Result<NameClaim, std::string> release_name(WorldState& world, const std::string
   if (!world.environment.log_has_room(world.authority.queue().size() + 1))
     return Unexpected<std::string>{"the log has no room; try again later"};
   NameChange change = *world.names.release(folded);
-  world.environment.log_names({change});
+  append_names(world, {change});
   return std::move(change.claim);
 }
 

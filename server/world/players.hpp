@@ -31,6 +31,16 @@ class Players {
   /// Gives no number up to `author_max` to a new key. The rows of such numbers may be lost. Call it
   /// before the first enter().
   void begin_above(AuthorId author_max) { next_ = std::max(next_, author_max + 1); }
+  /// Adds a player to whom another server has given the number. Returns false if another key has it, or
+  /// the key has another number.
+  bool adopt(const PlayerRow& player) {
+    const auto named = by_key_.find(player.key);
+    if (named != by_key_.end()) return named->second == player.author;
+    if (!known_.try_emplace(player.author, Known{player, std::nullopt}).second) return false;
+    by_key_[player.key] = player.author;
+    next_ = std::max(next_, player.author + 1);
+    return true;
+  }
   /// Returns the key's author, a new one for a new key, and sets its name.
   AuthorId enter(const PublicKey& key, const std::string& name) {
     const auto found = by_key_.find(key);

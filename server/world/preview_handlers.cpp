@@ -56,7 +56,7 @@ void on_preview_share(WorldState& world, SessionId session, const PreviewShare& 
                       const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (!mine.previews.take(1, now.steady_us))
-    return world.environment.charge_reading(session, kDroppedPreviewBytes);
+    return world.output.charge_reading(session, kDroppedPreviewBytes);
   const bool is_live = !mine.history && !mine.is_opening_history;
   const bool are_possible =
       is_live && std::all_of(share.edits.begin(), share.edits.end(),
@@ -75,7 +75,7 @@ void on_preview_share(WorldState& world, SessionId session, const PreviewShare& 
       }
     }
   } else {
-    world.environment.charge_reading(session, kDroppedPreviewBytes);
+    world.output.charge_reading(session, kDroppedPreviewBytes);
   }
   std::vector<SessionId> showing, gone;
   std::set_union(readers.begin(), readers.end(), waiting.begin(), waiting.end(),
@@ -89,8 +89,8 @@ void on_preview_share(WorldState& world, SessionId session, const PreviewShare& 
   const auto pass_on = [&](const std::vector<SessionId>& to, const PlayerPreview& preview) {
     if (to.empty()) return;
     const EncodedMessage encoded = encode_message(preview);
-    world.counters.queue_full += world.environment.send_to_all(to, encoded).size();
-    world.environment.charge_reading(session, to.size() * encoded.bytes->size());
+    world.counters.queue_full += world.output.send_to_all(to, encoded).size();
+    world.output.charge_reading(session, to.size() * encoded.bytes->size());
   };
   pass_on(gone, {mine.author, {}});
   pass_on(readers, {mine.author, share.edits});

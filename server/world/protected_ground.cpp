@@ -17,7 +17,8 @@ static_assert(kGroundPriorityMax == kBoxPriorityMax);
 using Box = const Decided<ProtectedBox>*;
 
 bool has_ground(const WorldSession& session) {
-  return session.state == SessionStage::open && (session.features & kFeatureRights) != 0;
+  return !session.is_relayed && session.state == SessionStage::open &&
+         (session.features & kFeatureRights) != 0;
 }
 
 Permissions permissions_of(const WorldState& world, const PublicKey& key) {

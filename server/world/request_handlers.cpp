@@ -20,11 +20,6 @@ namespace {
 constexpr std::size_t kRejectionBytes = 4'096;
 constexpr std::size_t kRequestedChunkBytes = 256;
 
-/// Describes what is wrong with a descriptor, for the author of the client.
-std::string text_of(const Error& fault) {
-  return std::string(fault.what) + " (at byte " + std::to_string(fault.offset) + ")";
-}
-
 bool is_within_reach(const WorldState& world, WorldSession& session, const EditDescriptor& edit,
                      const Clocks& now) {
   const WorldConfig& config = world.config;
@@ -44,10 +39,14 @@ const char* why_busy(const WorldState& world, const EditDescriptor& edit, Author
 
 }  // namespace
 
+std::string fault_text(const Error& fault) {
+  return std::string(fault.what) + " (at byte " + std::to_string(fault.offset) + ")";
+}
+
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request,
                       const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  world.environment.charge_reading(session, request.keys.size() * kRequestedChunkBytes);
+  world.output.charge_reading(session, request.keys.size() * kRequestedChunkBytes);
   for (const ChunkKey& key : request.keys) {
     mine.claims.drop(key);  // the client rejects its copy
     const auto state = world.interest.find(session)->state(key);
@@ -111,7 +110,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
         {op, Cause::player, request.submitted_us, request.edit, 0, request.action, now.steady_us});
   }
   if (!refusal) return;
-  if (*refusal == RejectReason::bad_edit && request.fault) detail = text_of(*request.fault);
+  if (*refusal == RejectReason::bad_edit && request.fault) detail = fault_text(*request.fault);
   if (*refusal == RejectReason::busy && detail.empty())
     detail = why_busy(world, request.edit, mine.author);
   ++world.counters.edits_rejected;
@@ -127,7 +126,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   }
   // Edits that are offered again after a reconnection are no misuse.
   if (*refusal != RejectReason::already_resolved)
-    world.environment.charge_reading(session, kRejectionBytes);
+    world.output.charge_reading(session, kRejectionBytes);
   const bool maybe_applied = *refusal == RejectReason::already_resolved;
   const Sequence applied_by = maybe_applied ? world.authority.head() : 0;
   mine.awaits_durable = std::max(mine.awaits_durable, applied_by);

@@ -1,6 +1,8 @@
 // Request handlers: the messages of an open session that need no state of their own. Views are
 // handled in view_scheduler.hpp, history requests in time_travel.hpp.
 #pragma once
+#include <string>
+
 #include "server/world/world_state.hpp"
 
 namespace runstone {
@@ -8,6 +10,8 @@ namespace runstone {
 /// Sends chunks of the session's view again. Chunks outside of it are ignored.
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request,
                       const Clocks& now);
+/// Describes what is wrong with a descriptor, for the author of the client.
+std::string fault_text(const Error& fault);
 /// Queues the edit for the next commit, or answers with a reject.
 void on_edit(WorldState& world, SessionId session, const EditRequest& request, const Clocks& now);
 /// Stores the player's pose; presence.hpp sends it.

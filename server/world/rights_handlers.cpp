@@ -234,6 +234,7 @@ void apply_rights(WorldState& world, const std::vector<EditRecord>& records) {
   std::vector<std::pair<SessionId, std::string>> refused;
   for (const auto& [id, session] : world.sessions) {
     if (session.state == SessionStage::greeting) continue;
+    if (session.join) continue;  // the owner of the world decides
     // A player who has not proved the key yet may bring an invite.
     auto why = session.is_authenticated ? join_refusal(world, session.key, session.address)
                                         : address_refusal(world, session.key, session.address);

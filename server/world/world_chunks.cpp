@@ -214,6 +214,20 @@ void WorldChunks::mark_saved(const ChunkKey& key, Version version) {
   if (e->saved == e->version) dirty_.erase(key);
 }
 
+void WorldChunks::saved_up_to(Sequence seq) {
+  for (auto at = dirty_.begin(); at != dirty_.end();) {
+    Entry& e = *entry(*at);
+    // A load that is under way may bring an older snapshot.
+    if (e.version.seq > seq || e.residency == Residency::loading) {
+      ++at;
+      continue;
+    }
+    e.saved = e.version;
+    if (e.residency == Residency::absent) clear_stack(e);
+    at = dirty_.erase(at);
+  }
+}
+
 std::optional<Sequence> WorldChunks::first_quarantined_edit() const {
   std::optional<Sequence> first;
   for (const auto& [key, seq] : quarantined_) {

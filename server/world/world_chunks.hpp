@@ -81,6 +81,9 @@ class WorldChunks {
   /// Returns the chunks that were edited since their snapshot, ascending.
   const std::set<ChunkKey>& dirty() const { return dirty_; }
   void mark_saved(const ChunkKey& key, Version version);
+  /// Reports that another program has saved the chunks with all edits up to this sequence. Cost:
+  /// O(dirty chunks).
+  void saved_up_to(Sequence seq);
   /// Returns the lowest sequence that only the log has because its chunk is quarantined, or nullopt
   /// if there is none. A checkpoint must stay below it, so that a start after a repair replays
   /// those edits.

@@ -99,6 +99,8 @@ class WorldEnvironment {
   }
   /// Allows to drop queued snapshots outside of the session's view, if no byte of them was sent.
   virtual void forget_outside(SessionId /*session*/, const View& /*view*/) {}
+  /// Lifts the limits of a session that has proved to be another server of this world.
+  virtual void trust(SessionId /*session*/) {}
   /// Sends goodbye behind the queued edits and control messages, then closes the connection.
   /// Answer: WorldServer::disconnected().
   virtual void close(SessionId session, GoodbyeReason reason, const std::string& text) = 0;
@@ -107,6 +109,9 @@ class WorldEnvironment {
   /// size says. The server then waits longer before it reads from the session again.
   virtual void charge_reading(SessionId /*session*/, std::size_t /*bytes*/) {}
 
+  /// Returns false while another server may own the world. Then nobody is let in, because that server
+  /// may know more of the player.
+  virtual bool owns_world() const { return true; }
   /// Returns true if the log queue has room for `records` more. If not, edits are rejected busy.
   virtual bool log_has_room(std::size_t records) const = 0;
   /// Returns the bytes of memory that the records take that are not durable yet.
@@ -154,6 +159,15 @@ class WorldEnvironment {
   /// WorldServer::snapshots_saved().
   virtual void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                               Sequence checkpoint) = 0;
+
+  /// Queues a message for the owner of the world, which this server follows. Returns false if there is
+  /// no room, or no connection.
+  virtual bool send_to_owner(const EncodedMessage& /*message*/) { return false; }
+  /// Ends the connection with the owner. Answer: WorldServer::owner_disconnected().
+  virtual void leave_owner(const std::string& /*why*/) {}
+  /// Reads durable records from `first` on, on a reader. Called at most once until it is answered.
+  /// Answer: WorldServer::log_read().
+  virtual void read_log(Sequence /*first*/) {}
 
   /// Carries out a client's command. The key of the player decides its permissions. Called at most
   /// once for a session until it is answered. Answers: WorldServer::answer_command(), the last one

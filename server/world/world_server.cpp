@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "common/core/assert.hpp"
 #include "common/core/key_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "protocol/codec/invite_token.hpp"
@@ -16,6 +18,8 @@
 #include "server/world/command_handlers.hpp"
 #include "server/world/delivery.hpp"
 #include "server/world/digest_check_scheduler.hpp"
+#include "server/world/followers.hpp"
+#include "server/world/following.hpp"
 #include "server/world/handshake_handlers.hpp"
 #include "server/world/log_mark_handlers.hpp"
 #include "server/world/material_handlers.hpp"
@@ -60,9 +64,18 @@ void on_open_message(WorldState& world, SessionId session, const Message& messag
     return on_preview_share(world, session, *share, now);
 }
 
+void on_resumed(WorldState& world, SessionId session) {
+  WorldSession& mine = *world.find(session);
+  if (mine.resumes_unanswered == 0)
+    return close_session(world, session, GoodbyeReason::unexpected_message,
+                         "resumed, but there was no resume");
+  --mine.resumes_unanswered;
+}
+
 void close_silent_sessions(WorldState& world, const Clocks& now) {
   std::vector<std::pair<SessionId, bool>> silent;
   for (const auto& [id, session] : world.sessions) {
+    if (session.is_relayed) continue;  // the server that it is connected to closes it
     const bool is_open = session.state == SessionStage::open;
     const TimeUs since = is_open ? session.last_message_us : session.connected_us;
     const TimeUs limit = is_open ? world.config.idle_us_max : world.config.handshake_us_max;
@@ -146,6 +159,7 @@ void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock f
 
 void WorldServer::received(SessionId session, Message&& message, const Clocks& now) {
   WorldState& world = *state_;
+  if (world.followers.contains(session)) return on_follower_message(world, session, message, now);
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return;
   ++world.counters.messages;
@@ -163,10 +177,16 @@ void WorldServer::received(SessionId session, Message&& message, const Clocks& n
     return on_key_request(world, session, *request, now);
   if (const auto* deposit = std::get_if<KeyDeposit>(&message))
     return on_key_deposit(world, session, *deposit, now);
+  if (std::holds_alternative<Resumed>(message)) return on_resumed(world, session);
+  // It was sent before the client knew that another server orders now, and will be offered again.
+  const bool is_lost = mine->needs_resume || mine->resumes_unanswered > 0;
+  if (is_lost && std::holds_alternative<EditRequest>(message)) return;
+  if (world.following && on_message_for_owner(world, session, message, now)) return;
   on_open_message(world, session, message, now);
 }
 
 void WorldServer::disconnected(SessionId session) {
+  forget_follower(*state_, session);
   forget_session(*state_, session);
   collect_released(*state_);
 }
@@ -279,6 +299,7 @@ std::optional<std::string> WorldServer::edit_refusal(AuthorId author,
 
 void WorldServer::step_checkpointer(const Clocks& now) {
   WorldState& world = *state_;
+  if (world.following) return;  // the owner of the world writes snapshots
   if (world.is_stopping && now.steady_us >= world.stop_due_us) {
     world.checkpointer.abandon();
     world.loads.cancel_for_world();
@@ -294,11 +315,15 @@ void WorldServer::tick(const Clocks& now) {
     world.environment.report(OperatorLogLevel::warn, *warning);
   forget_gone_authors(world);
   close_silent_sessions(world, now);
+  close_lost_followers(world, now);
+  if (world.following) tick_following(world, now);
   apply_due_views(world, now);
   send_due_ground(world);
-  broadcast_player_list(world);
-  broadcast_chat(world);
-  broadcast_poses(world, now);
+  if (!world.following) {  // the owner of the world sends them
+    broadcast_player_list(world);
+    broadcast_chat(world);
+    broadcast_poses(world, now);
+  }
   broadcast_durable(world, now);
   send_due_digest_checks(world, now);
   open_waiting_history(world, now);
@@ -319,6 +344,12 @@ void WorldServer::resend_tiles(const Clocks& now) { runstone::resend_tiles(*stat
 
 void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
   WorldState& world = *state_;
+  if (world.following && chunk.version > world.authority.chunks().version(key)) {
+    // The owner has saved it, and what made this version is still on its way. That may take as long as
+    // the owner does not answer, so these attempts do not count.
+    world.load_retries.ended(key);
+    return chunk_failed(key, LoadFailure::not_read, "it is newer than what has arrived", now);
+  }
   count_load_end(world, key);
   world.load_retries.ended(key);
   if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
@@ -339,7 +370,10 @@ void WorldServer::chunk_failed(const ChunkKey& key, LoadFailure failure, const s
   WorldState& world = *state_;
   count_load_end(world, key);
   if (failure == LoadFailure::not_read && !world.is_stopping) {
-    if (const auto pause_us = world.load_retries.failed(key, now.steady_us)) {
+    auto pause_us = world.load_retries.failed(key, now.steady_us);
+    // The database of several servers may be away for long.
+    if (!pause_us && world.following) pause_us = world.load_retries.failed(key, now.steady_us);
+    if (pause_us) {
       world.environment.report(OperatorLogLevel::error,
                                "chunk=" + text_of(key) + " not read, again in " +
                                    std::to_string(*pause_us / 1'000'000) + " s: " + what);
@@ -393,6 +427,78 @@ void WorldServer::history_chunk_loaded(SessionId session, HistoryNumber history,
   on_history_chunk(*state_, session, history, key, chunk ? *chunk : nullptr, now);
 }
 
+void WorldServer::follow(Epoch last_epoch) {
+  RUNSTONE_ASSERT(state_->sessions.empty());
+  WorldState& world = *state_;
+  world.following = std::make_unique<Following>();
+  world.following->head_epoch = last_epoch;
+  world.config.features &= ~kFeaturesOfOwner;
+}
+
+bool WorldServer::is_following() const { return state_->following != nullptr; }
+bool WorldServer::is_live() const {
+  return !state_->following || state_->following->link == Following::Link::live;
+}
+bool WorldServer::has_forked() const { return state_->following && state_->following->has_forked; }
+Version WorldServer::last_record() const {
+  return {state_->following->head_epoch, state_->authority.head()};
+}
+std::size_t WorldServer::follower_count() const { return state_->followers.size(); }
+
+void WorldServer::owner_connected(const std::optional<ChannelBinding>& binding, const Clocks& now) {
+  if (state_->following) runstone::owner_connected(*state_, binding, now);
+}
+
+void WorldServer::owner_received(Message&& message, const Clocks& now) {
+  if (state_->following) on_owner_message(*state_, std::move(message), now);
+}
+
+void WorldServer::owner_disconnected() {
+  if (state_->following) runstone::owner_disconnected(*state_);
+}
+
+void WorldServer::log_read(const Result<ReadLog, std::string>& read, const Clocks& now) {
+  if (state_->following) on_log_read(*state_, read, now);
+}
+
+void WorldServer::checkpoint_moved(Sequence checkpoint) {
+  if (state_->following) state_->authority.chunks().saved_up_to(checkpoint);
+}
+
+std::vector<LogPart> WorldServer::stop_following() {
+  WorldState& world = *state_;
+  runstone::owner_disconnected(world);
+  world.following->is_taking_over = true;
+  std::vector<LogPart> parts;
+  for (const KeptPart& kept : world.following->not_durable) parts.push_back(kept.part);
+  return parts;
+}
+
+bool WorldServer::take_over(const Takeover& start, const Clocks& now) {
+  WorldState& world = *state_;
+  if (take_read(world, start.read, now) || world.authority.head() != start.read.last) {
+    world.following->has_forked = true;
+    return false;
+  }
+  world.following.reset();
+  world.config.features = start.features;
+  world.durable = world.authority.head();
+  world.checkpointer = Checkpointer(world.config.snapshots, start.checkpoint);
+  world.players.begin_above(start.author_max);
+  begin_epoch(world, start.epoch);
+  world.player_list_changed = true;
+  world.sent_player_list.clear();
+  for (const SessionId session : world.open_sessions()) {
+    WorldSession& mine = *world.find(session);
+    world.players.adopt({mine.author, mine.key, mine.name});
+    mine.has_player_list = false;
+    mine.pose_changed = true;
+    send_resume(world, session, world.authority.resolved().of(mine.author, mine.instance));
+  }
+  let_waiting_in(world, now);
+  return true;
+}
+
 std::optional<View> WorldServer::restore_preview_view(SessionId session) const {
   return runstone::restore_preview_view(*state_, session);
 }
@@ -413,6 +519,7 @@ void WorldServer::durable(Sequence seq, const Clocks& now) {
   if (seq <= world.durable) return;
   world.durable = seq;
   send_durable_to_authors(world);
+  send_durable_to_followers(world);
   step_checkpointer(now);
 }
 
@@ -429,6 +536,7 @@ void WorldServer::snapshots_saved(const Clocks& now) {
 void WorldServer::set_disk_is_full(bool is_full, const Clocks& now) {
   state_->disk_is_full = is_full;
   state_->durable_due_us = 0;  // the watermark tells every session
+  send_durable_to_followers(*state_);
   open_authenticated(*state_, now);
 }
 
@@ -440,8 +548,11 @@ void WorldServer::begin_stop(const Clocks& now) {
   }
   world.accepts_edits = false;
   world.is_stopping = true;
-  world.stop_due_us = now.steady_us + world.config.stop_us_max;
+  // Another server takes over as soon as this one lets go, and reads the edits from the log.
+  world.hands_over = has_live_followers(world);
+  world.stop_due_us = now.steady_us + (world.hands_over ? 0 : world.config.stop_us_max);
   world.checkpointer.finish();
+  close_followers(world);
   while (!world.sessions.empty()) {
     close_session(world, world.sessions.begin()->first, GoodbyeReason::closing, "the server stops");
   }
@@ -452,10 +563,12 @@ void WorldServer::begin_stop(const Clocks& now) {
 }
 
 bool WorldServer::is_flushed() const {
+  if (state_->following) return true;
   return state_->authority.queue().size() == 0 && state_->durable == state_->authority.head() &&
          (state_->checkpointer.is_clean(state_->authority) || is_stop_overdue());
 }
 
+bool WorldServer::hands_over() const { return state_->hands_over; }
 bool WorldServer::is_stop_overdue() const { return state_->checkpointer.is_abandoned(); }
 std::size_t WorldServer::dirty_chunks() const { return state_->authority.chunks().dirty().size(); }
 

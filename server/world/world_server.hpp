@@ -19,6 +19,7 @@
 #include "server/limits/recent_refusals.hpp"
 #include "server/world/added_at.hpp"
 #include "server/world/clocks.hpp"
+#include "server/world/following.hpp"
 #include "server/world/server_edits.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
@@ -181,6 +182,34 @@ class WorldServer {
   /// Reports that the log cannot be written any more. Edits are rejected busy from now on.
   void log_failed();
 
+  // Several servers of one world (followers.hpp, following.hpp).
+  /// From now on another server owns the world, and this one follows it. Call it before the first
+  /// session, after replay_onto_stack(). `last_epoch`: of the last record that was replayed.
+  void follow(Epoch last_epoch);
+  bool is_following() const;
+  /// Returns false if this server follows, and has not reached the owner.
+  bool is_live() const;
+  /// Returns true if this server has edits that the log does not have. It cannot go on then.
+  bool has_forked() const;
+  /// Returns the last record that a server that follows has.
+  Version last_record() const;
+  /// Returns the number of servers that follow this one.
+  std::size_t follower_count() const;
+  // The connection with the owner. Ignored unless is_following().
+  void owner_connected(const std::optional<ChannelBinding>& binding, const Clocks& now);
+  void owner_received(Message&& message, const Clocks& now);
+  void owner_disconnected();
+  void log_read(const Result<ReadLog, std::string>& read, const Clocks& now);
+  /// Reports that the owner has moved the checkpoint: every edit up to it is contained in snapshots.
+  void checkpoint_moved(Sequence checkpoint);
+  /// Stops following, because the caller has the lease of the world. Players stay; what they do waits.
+  /// Returns the parts of the log that the earlier owner may not have written, in order. The caller
+  /// writes those whose records the log lacks, then calls take_over().
+  std::vector<LogPart> stop_following();
+  /// Makes this server the owner. Sessions go on, and edits that wait are ordered. Returns false if the
+  /// log has other edits than this server: nothing may be written then.
+  bool take_over(const Takeover& start, const Clocks& now);
+
   // Stop.
   /// Closes all sessions, rejects edits, and writes dirty chunks as snapshots for at most
   /// stop_us_max. It continues with the answers of WorldEnvironment and with tick() until
@@ -189,6 +218,8 @@ class WorldServer {
   /// Returns true if every ordered edit is durable and either contained in snapshots, except those
   /// of quarantined chunks, or left to the next start because is_stop_overdue().
   bool is_flushed() const;
+  /// Returns true if a stop is under way, and another server waits to take the world over.
+  bool hands_over() const;
   /// Returns true if a stop is under way and begins no more snapshots.
   bool is_stop_overdue() const;
   /// Returns the number of chunks with edits that only the log has. Quarantined chunks do not

@@ -62,6 +62,7 @@ struct WorldSession {
   SessionStage state = SessionStage::greeting;
   std::uint64_t features = 0;       // in force, from welcome on
   std::size_t materials_known = 0;  // rows of the material table that it has, from welcome on
+  Epoch epoch = 0;                  // that it knows, from welcome on
   TimeUs connected_us = 0;
   TimeUs last_message_us = 0;
   AddressBlock address{};
@@ -69,6 +70,9 @@ struct WorldSession {
   PublicKey key{};
   ClientInstance instance = 0;
   std::string name;
+  /// The session is connected to another server, which sends it terrain and commits
+  /// (followers.hpp).
+  bool is_relayed = false;
   Bytes auth_transcript;          // the bytes that the client must sign; empty in other stages
   bool is_authenticated = false;  // the session opens when the claim of its name is on disk
   std::string no_role;  // why the player's invite or password gave no role, until it is told
@@ -86,6 +90,13 @@ struct WorldSession {
   // then does not clear a place whose copy was refused.
   ClientSequence refused_action = 0;
   RejectReason refused_reason = RejectReason::busy;
+  // While another server owns the world (following.hpp).
+  bool is_at_owner = false;        // the owner knows of the session
+  std::optional<ClientAuth> join;  // authenticated, until the owner has let the player in
+  // The server that orders the edits has changed, or was out of reach. Edits of the client are ignored
+  // until it has answered every Resume.
+  bool needs_resume = false;
+  std::uint32_t resumes_unanswered = 0;
   // Rejects that did not fit the session's queue, in order. They are sent when it drains.
   std::vector<Reject> pending_rejects;
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};

@@ -30,6 +30,7 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnviro
                        RandomBytes random_)
     : config(std::move(config_)),
       environment(environment_),
+      output(environment_),
       random(std::move(random_)),
       authority(limits_of(config), start.log),
       checkpointer(config.snapshots, start.checkpoint),
@@ -74,6 +75,12 @@ void forget_session(WorldState& world, SessionId session) {
     world.gone_authors.push_back(found->second.author);
   }
   forget_tiles(world, session, found->second);
+  if (const RelayedSession* there = world.output.relayed(session)) {
+    const auto follower = world.followers.find(there->link);
+    if (follower != world.followers.end()) follower->second.sessions.erase(there->remote);
+    world.output.remove(session);
+  }
+  if (world.following) session_left(world, session, found->second);
   const auto gone = world.sessions.extract(found);
   if (was_open) world.environment.player_left(visit_of(world, session, gone.mapped()));
   world.interest.close(session);
@@ -101,7 +108,7 @@ void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
                    const std::string& text) {
   if (world.find(session) == nullptr) return;
   ++world.counters.sessions_closed;
-  world.environment.close(session, reason, text);
+  world.output.close(session, reason, text);
   const auto level =
       reason == GoodbyeReason::closing ? OperatorLogLevel::debug : OperatorLogLevel::warn;
   world.environment.report(level, "session=" + std::to_string(session) + " closed reason=" +
@@ -111,7 +118,7 @@ void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
 }
 
 bool send_or_close(WorldState& world, SessionId session, const Message& message) {
-  if (world.environment.send(session, encode_message(message))) return true;
+  if (world.output.send(session, encode_message(message))) return true;
   ++world.counters.queue_full;
   close_session(world, session, GoodbyeReason::timed_out,
                 "send queue full: the peer reads too slowly");
@@ -150,7 +157,7 @@ EncodedMessage encoded_durable(const WorldState& world) {
 
 void send_durable(WorldState& world, SessionId session, const EncodedMessage& encoded) {
   WorldSession* mine = world.find(session);
-  if (mine == nullptr || !mine->pending_rejects.empty()) return;
+  if (mine == nullptr || mine->is_relayed || !mine->pending_rejects.empty()) return;
   const bool is_known =
       mine->durable_sent == world.durable && mine->read_only_sent == world.disk_is_full;
   if (is_known || !send_or_skip(world, session, encoded)) return;
@@ -159,7 +166,7 @@ void send_durable(WorldState& world, SessionId session, const EncodedMessage& en
 }
 
 bool send_or_skip(WorldState& world, SessionId session, const EncodedMessage& message) {
-  if (world.environment.send(session, message)) return true;
+  if (world.output.send(session, message)) return true;
   ++world.counters.queue_full;
   return false;
 }

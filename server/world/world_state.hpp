@@ -2,6 +2,7 @@
 // are free functions over it. WorldServer is its interface.
 #pragma once
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,12 +15,15 @@
 #include "server/world/authority.hpp"
 #include "server/world/chat_state.hpp"
 #include "server/world/checkpointer.hpp"
+#include "server/world/followers.hpp"
+#include "server/world/following.hpp"
 #include "server/world/key_deposits.hpp"
 #include "server/world/large_edit_pace.hpp"
 #include "server/world/load_queue.hpp"
 #include "server/world/load_retries.hpp"
 #include "server/world/name_claims.hpp"
 #include "server/world/players.hpp"
+#include "server/world/session_output.hpp"
 #include "server/world/session_turns.hpp"
 #include "server/world/tile_queue.hpp"
 #include "server/world/tile_resends.hpp"
@@ -89,6 +93,7 @@ struct WorldState {
 
   WorldConfig config;
   WorldEnvironment& environment;
+  SessionOutput output;
   RandomBytes random;
   Authority authority;
   Checkpointer checkpointer;
@@ -113,7 +118,10 @@ struct WorldState {
   LargeEditPace large_edits;
   WorldTiles tiles;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
-  std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
+  std::map<SessionId, Follower> followers;     // other servers, by their session (followers.hpp)
+  // Set while another server owns the world, and this one follows it (following.hpp).
+  std::unique_ptr<Following> following;
+  std::vector<AuthorId> gone_authors;  // of sessions that ended since the last tick
   WorldCounters counters;
   Sequence durable = 0;
   bool accepts_edits =
@@ -125,7 +133,8 @@ struct WorldState {
   // its share of the memory, or because a budget is used up.
   std::set<SessionId> loads_wait;
   bool is_stopping = false;
-  TimeUs stop_due_us = 0;  // when a stop that is under way begins no more snapshots
+  bool hands_over = false;  // a stop is under way, and another server takes the world over
+  TimeUs stop_due_us = 0;   // when a stop that is under way begins no more snapshots
   // Presence.
   bool player_list_changed = false;
   std::map<AuthorId, ListedEntry> sent_player_list;

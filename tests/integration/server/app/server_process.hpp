@@ -87,15 +87,20 @@ class ServerProcess {
       std::this_thread::sleep_for(time);
       return false;
     };
-    auto server = values.standby ? start_as_standby(values.store, stops_within, start) : start();
+    const auto follow = [&] { return Server::follow(values, on_failure, {}); };
+    auto server =
+        values.standby ? start_as_standby(values.store, stops_within, start, follow) : start();
     if (!server) {
       std::fprintf(stderr, "%s\n", server.error().c_str());
       return 1;
     }
     const std::uint16_t port = (*server)->port();
     if (::write(socket, &port, sizeof port) != static_cast<ssize_t>(sizeof port)) return 1;
+    std::optional<TakeoverWatch> watch;
+    if ((*server)->is_following()) watch.emplace(values.store, **server, on_failure);
     char end = 0;
     static_cast<void>(::read(socket, &end, 1) == 0);
+    watch.reset();
     return (*server)->stop().state.is_durable() ? 0 : 1;
   }
 

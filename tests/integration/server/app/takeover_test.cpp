@@ -1,8 +1,13 @@
-// Servers of one world in PostgreSQL: one writes it, and the next one takes over when it stops, is killed
-// or stands still. The cases need a PostgreSQL server, see scripts/check-postgres.
+// Servers of one world in PostgreSQL: one owns it, the others follow, and one of them takes over when it
+// stops, is killed or stands still. The cases need a PostgreSQL server, see scripts/check-postgres.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <memory>
 #include <string>
+#include <thread>
+#include <variant>
+#include <vector>
 
 #include "tests/integration/server/app/server_process.hpp"
 #include "tests/support/raw_client.hpp"
@@ -20,9 +25,20 @@ VoxelPos voxel_of(ClientSequence seq) {
 /// A player who builds on one server after the other.
 class Builder {
  public:
+  /// Joins in the epoch `epoch`, once there is a server with it, as join() does.
+  void join_in(Epoch epoch, const ServerProcess& server) {
+    for (int tries = 0; tries < 100; ++tries) {
+      RawClient client(server.port());
+      if (client.join(2, kInstance) && client.welcome.epoch == epoch) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    join(server);
+    CHECK(this->epoch() == epoch);
+  }
   /// Joins, and offers the edits again that may not be durable.
   void join(const ServerProcess& server) {
     client_ = std::make_unique<RawClient>(server.port());
+    client_->features = kFeatureResume;
     const auto accepted = client_->join(1, kInstance);
     REQUIRE(accepted.has_value());
     CHECK(accepted->resolved >= durable_);
@@ -40,6 +56,21 @@ class Builder {
       REQUIRE(message.has_value());
       durable_ = message->seq;
     }
+  }
+  /// Waits until another server orders the edits of this session, in the epoch `epoch`, and offers it
+  /// those that may not be durable. Returns false if the session ends.
+  bool resumes_in(Epoch epoch) {
+    std::vector<Message> seen;
+    const auto resume = client_->next_of<Resume>(&seen);
+    if (!resume) return false;
+    for (const Message& message : seen) {
+      if (const auto* durable = std::get_if<Durable>(&message))
+        client_->welcome.epoch = std::max(client_->welcome.epoch, durable->epoch);
+    }
+    CHECK(this->epoch() == epoch);
+    client_->send(Resumed{});
+    for (ClientSequence seq = resume->resolved + 1; seq <= sent_; ++seq) send(seq);
+    return true;
   }
   ClientSequence sent() const { return sent_; }
 
@@ -112,10 +143,30 @@ TEST_CASE("a standby takes a world over from a server that stops, and from one t
   second->kill();
 
   const auto third = cluster.start("third", true);
-  builder.join(*third);
-  CHECK(builder.epoch() == 3);
+  builder.join_in(3, *third);
   builder.build(10);
   builder.wait_durable(610);
+  CHECK(third->stop());
+  cluster.check_log(builder);
+}
+
+TEST_CASE("a player of a server that follows stays when the owner stops, and when it is killed",
+          "[.postgres-server]") {
+  const Cluster cluster;
+  const auto first = cluster.start("first", false);
+  const auto second = cluster.start("second", true);
+  const auto third = cluster.start("third", true);
+  Builder builder;
+  builder.join(*third);
+  CHECK(builder.epoch() == 1);
+  builder.build(300);
+  builder.wait_durable(100);  // others are under way
+  SECTION("the owner stops") { CHECK(first->stop()); }
+  SECTION("the owner is killed") { first->kill(); }
+  CHECK(builder.resumes_in(2));
+  builder.build(100);
+  builder.wait_durable(400);
+  CHECK(second->stop());
   CHECK(third->stop());
   cluster.check_log(builder);
 }
@@ -131,8 +182,7 @@ TEST_CASE("a server that stood still beyond its lease adds nothing to the log, a
   first->pause();
 
   const auto second = cluster.start("second", true);
-  builder.join(*second);
-  CHECK(builder.epoch() == 2);
+  builder.join_in(2, *second);
   builder.build(50);
   first->resume();
   CHECK(first->fails());

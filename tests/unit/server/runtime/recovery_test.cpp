@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <memory>
 #include <span>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -107,6 +108,154 @@ TEST_CASE("a start fails on a damaged last record and names it", "[server]") {
   const auto start = read_world_start(**store);
   REQUIRE_FALSE(start.has_value());
   CHECK(start.error().find("edit_log seq=6") != std::string::npos);
+}
+
+// A takeover by a server that has followed the owner of the world.
+
+/// Returns a part of the log with these records and the rows of both players.
+LogPart part_of(std::span<const EditRecord> records) {
+  LogPart part;
+  for (const AuthorId author : {AuthorId{1}, AuthorId{2}}) {
+    const PlayerRow row = sample_player(author);
+    part.players.push_back({row.author, row.key, row.name});
+  }
+  for (const EditRecord& record : records) part.records.push_back({record, 0});
+  return part;
+}
+
+/// Returns everything that the log of a world holds.
+std::vector<EditRecord> log_of(Store& store) {
+  std::vector<EditRecord> records;
+  const auto last = store.last_sequence();
+  REQUIRE(last.has_value());
+  const auto read = store.read_log(1, *last, [&](const EditRecord& record) {
+    records.push_back(record);
+    return true;
+  });
+  REQUIRE(read.has_value());
+  return records;
+}
+
+/// A world that an owner has written, and the records that a follower has.
+struct TakeoverBench {
+  TakeoverBench() {
+    records = make_world(folder / "world");
+    SplitMix64 rng{2};
+    for (EditRecord& record : sample_records(rng, 1, kRecords + 1, 4)) records.push_back(record);
+    auto opened = open_world(folder / "world", StoreAccess::read_write);
+    REQUIRE(opened.has_value());
+    store = *std::move(opened);
+  }
+  Result<Takeover, std::string> prepare(const std::vector<LogPart>& parts, Version last) {
+    return prepare_takeover(*store, parts, last, kFeatureChat);
+  }
+  std::span<const EditRecord> some(std::size_t first, std::size_t last) const {
+    return std::span(records).subspan(first - 1, last - first + 1);
+  }
+  void check_unchanged() {
+    CHECK(log_of(*store) == std::vector(records.begin(), records.begin() + kRecords));
+    CHECK(store->epoch() == 1);
+    const auto claims = store->name_claims();
+    REQUIRE(claims.has_value());
+    CHECK(claims->empty());
+    const auto players = store->players();
+    REQUIRE(players.has_value());
+    CHECK(players->size() == 2);
+  }
+
+  TempFolder folder;
+  std::vector<EditRecord> records;  // kRecords of them are in the log
+  std::unique_ptr<Store> store;
+};
+
+TEST_CASE("a takeover writes the records that the log lacks, and no others", "[server]") {
+  TakeoverBench bench;
+  LogPart first = part_of(bench.some(5, 7));  // two of them are in the log
+  first.players[1].name = "renamed";
+  LogPart names;
+  names.names.push_back({"ana", "Ana", sample_player(1).key, false});
+  names.names.push_back({"bob", "Bob", sample_player(2).key, false});
+  LogPart release;
+  release.names.push_back({"bob", "Bob", sample_player(2).key, true});
+  LogPart second = part_of(bench.some(8, 10));
+  second.players.erase(second.players.begin(), second.players.end());
+  const auto taken = bench.prepare({first, names, release, second}, bench.records[9].version);
+  INFO((taken ? "" : taken.error()));
+  REQUIRE(taken.has_value());
+  CHECK(log_of(*bench.store) == bench.records);
+  CHECK(taken->epoch == 2);
+  CHECK(bench.store->epoch() == 2);
+  CHECK(taken->features == kFeatureChat);
+  CHECK(taken->checkpoint == 0);
+  CHECK(taken->author_max == 2);
+  CHECK(taken->read.last == 10);
+  REQUIRE(taken->read.records.size() == 1);
+  CHECK(taken->read.records[0] == bench.records[9]);
+  REQUIRE(taken->read.players.size() == 2);
+  CHECK(taken->read.players[1].name == "renamed");
+  CHECK(taken->read.names == std::vector<NameClaim>{{"ana", "Ana", sample_player(1).key}});
+}
+
+TEST_CASE("a takeover reads what the owner wrote and the follower did not get", "[server]") {
+  TakeoverBench bench;
+  SECTION("the follower has some records") {
+    const auto taken = bench.prepare({part_of(bench.some(3, 4))}, bench.records[3].version);
+    REQUIRE(taken.has_value());
+    CHECK(taken->read.records == std::vector(bench.records.begin() + 3, bench.records.begin() + 6));
+    CHECK(taken->read.last == kRecords);
+  }
+  SECTION("the follower has none") {
+    const auto taken = bench.prepare({}, {});
+    REQUIRE(taken.has_value());
+    CHECK(taken->read.records.size() == kRecords);
+  }
+  CHECK(log_of(*bench.store).size() == kRecords);
+}
+
+TEST_CASE("a takeover fails and writes nothing if the log has other edits", "[server]") {
+  TakeoverBench bench;
+  LogPart names;
+  names.names.push_back({"ana", "Ana", sample_player(1).key, false});
+  std::vector<LogPart> parts{names};
+  Version last;
+  SECTION("the follower's last record is another one") {
+    parts.push_back(part_of(bench.some(5, 5)));
+    last = {2, 5};
+    parts[1].records[0].record.version = last;
+  }
+  SECTION("the log ends with another record") {
+    parts.push_back(part_of(bench.some(5, 8)));
+    for (LogPartRecord& record : parts[1].records) record.record.version.epoch = 2;
+    last = {2, 8};
+  }
+  SECTION("the follower has durable records only") { last = {2, kRecords}; }
+  const auto taken = bench.prepare(parts, last);
+  REQUIRE_FALSE(taken.has_value());
+  CHECK(taken.error().find("other edits") != std::string::npos);
+  bench.check_unchanged();
+}
+
+TEST_CASE("a takeover fails and writes nothing if records are missing", "[server]") {
+  TakeoverBench bench;
+  const auto taken = bench.prepare({part_of(bench.some(8, 9))}, bench.records[8].version);
+  REQUIRE_FALSE(taken.has_value());
+  bench.check_unchanged();
+}
+
+TEST_CASE("what a follower has missed is read from its last record on, in portions", "[server]") {
+  TakeoverBench bench;
+  const auto all = read_missed_log(*bench.store, 1);
+  REQUIRE(all.has_value());
+  CHECK(all->records.size() == kRecords);
+  CHECK(all->last == kRecords);
+  CHECK(all->players.size() == 2);
+  const auto some = read_missed_log(*bench.store, 3, 2);
+  REQUIRE(some.has_value());
+  CHECK(some->records == std::vector(bench.records.begin() + 2, bench.records.begin() + 4));
+  CHECK(some->last == kRecords);
+  const auto none = read_missed_log(*bench.store, kRecords + 1);
+  REQUIRE(none.has_value());
+  CHECK(none->records.empty());
 }
 
 }  // namespace

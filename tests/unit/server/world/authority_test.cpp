@@ -98,7 +98,7 @@ TEST_CASE("queued edits get consecutive sequences, and the previous sequence of 
 }
 
 TEST_CASE("records have version, operation and a time that never decreases", "[world]") {
-  Authority authority(limits(), {2, 0, 9000});
+  Authority authority(limits(), {2, 0, 0, 9000});
   (void)authority.submit(offer(1, SetVoxel{{1, 1, 1}}, 1));
   const auto first = authority.commit({0, 5000});
   CHECK(first->records[0].time_us == 9000);  // the wall clock was behind the log

@@ -72,6 +72,12 @@ class FakeEnvironment : public WorldEnvironment {
   std::set<SessionId> refuse_edits;  // sessions whose queue of the edits class is full
   std::map<SessionId, std::size_t> snapshot_room;  // snapshots that still fit; absent: no bound
   std::map<SessionId, std::size_t> charged;        // bytes beyond those of messages
+  std::deque<EncodedMessage> to_owner;             // messages for the owner of the world
+  bool is_owner_full = false;            // the queue of the connection with the owner is full
+  std::vector<std::string> owners_left;  // why this server ended the connection with the owner
+  std::deque<Sequence> log_reads;        // the first record of each
+  std::vector<SessionId> trusted;        // sessions of other servers
+  bool is_owner = true;                  // no other server may own the world
   bool log_room = true;
   std::size_t log_records_max =
       std::numeric_limits<std::size_t>::max();  // records that are not written yet
@@ -170,6 +176,14 @@ class FakeEnvironment : public WorldEnvironment {
                       Sequence checkpoint) override {
     saves.push_back({std::move(chunks), checkpoint});
   }
+  bool send_to_owner(const EncodedMessage& message) override {
+    if (!is_owner_full) to_owner.push_back(message);
+    return !is_owner_full;
+  }
+  bool owns_world() const override { return is_owner; }
+  void leave_owner(const std::string& why) override { owners_left.push_back(why); }
+  void read_log(Sequence first) override { log_reads.push_back(first); }
+  void trust(SessionId session) override { trusted.push_back(session); }
   void player_came(const PlayerVisit& visit) override { came.push_back(visit); }
   void player_left(const PlayerVisit& visit) override { left.push_back(visit); }
   void report(OperatorLogLevel /*level*/, const std::string& line) override {

@@ -53,7 +53,8 @@ WorldStart start_after(const FakeEnvironment& environment) {
   WorldStart start;
   start.players = environment.players;
   for (const EditRecord& record : environment.records) {
-    start.log = {record.version.epoch + 1, record.version.seq, record.time_us};
+    start.log = {record.version.epoch + 1, record.version.seq, record.version.epoch,
+                 record.time_us};
     if (const RightsChange* change = rights_change_of(record.edit))
       start.rights.push_back({*change, {record.version.seq, record.op.author, record.time_us}});
   }

@@ -36,9 +36,10 @@ inline WorldConfig config() {
 }
 
 struct WorldBench {
-  explicit WorldBench(WorldConfig c = config(), WorldStart start = {})
+  /// `random` is every byte that the server draws.
+  explicit WorldBench(WorldConfig c = config(), WorldStart start = {}, std::uint8_t random = 9)
       : server(std::move(c), start, environment,
-               [](std::span<std::uint8_t> out) { std::fill(out.begin(), out.end(), 9); }) {}
+               [random](std::span<std::uint8_t> out) { std::ranges::fill(out, random); }) {}
 
   Clocks now() const { return {time_us, time_us + 1'000'000'000}; }
 
