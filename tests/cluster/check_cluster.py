@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Checks that servers of one world in PostgreSQL lose nothing, in the manner of Jepsen.
 
-Several servers stand by for one world, bots build on whichever has it, and servers, database and network
-fail at random. Then every edit that was called durable must be in the log once, the log must be in order,
-no two starts may have had the same epoch, and every digest must be equal.
+Several servers serve one world: one owns it, the others follow. Bots build through all of them, and
+servers, database and the network between all of these fail at random. Then every edit that was called
+durable must be in the log once, the log must be in order, no two starts may have had the same epoch, and
+every digest must be equal.
 
 A seed decides which faults are made, not at which step of a program they come: two runs of a seed differ.
 
@@ -41,18 +42,23 @@ class Run:
         self.servers = []
         for i in range(SERVERS):
             wire = self.wires.add(lambda: self.postgres.port)
-            self.servers.append(GameServer(self.bin / "runstone-server", self.folder, f"server{i}", wire,
+            peers = self.wires.add(lambda i=i: self.servers[i].port())
+            self.servers.append(GameServer(self.bin / "runstone-server", self.folder, f"server{i}", wire, peers,
                                            self.postgres.url(wire.port)))
         self.players = self.wires.add(self.player_port)
 
-    def listening(self):
-        """Returns the server that took the world last, or None."""
-        found = [(port, server) for server in self.servers if (port := server.port())]
-        return max(found, key=lambda one: one[0])[1] if found else None
+    def owner(self):
+        """Returns the server that has the lease, or None."""
+        try:
+            address = self.postgres.text("SELECT address FROM lease")
+        except subprocess.SubprocessError:  # there is no world yet, or the database is down
+            return None
+        return next((one for one in self.servers if address == f"127.0.0.1:{one.peers.port}"), None)
 
     def player_port(self):
-        server = self.listening()
-        return server.port()[1] if server and server.port() else None
+        """Returns the port of any server that listens: players come to all of them."""
+        ports = [port for server in self.servers if (port := server.port())]
+        return random.choice(ports) if ports else None
 
     def later(self, seconds, heal):
         self.heals.append((time.monotonic() + seconds, heal))
@@ -72,12 +78,12 @@ class Run:
         return until()
 
     def fail_something(self):
-        # The server that has the world, or any of them.
-        server = self.listening() if self.random.random() < 0.7 else None
+        # The server that owns the world, or any of them.
+        server = self.owner() if self.random.random() < 0.7 else None
         server = server or self.random.choice(self.servers)
         seconds = self.random.uniform(0.3, 6)
         fault = self.random.choice(["kill", "stop", "pause", "freeze database", "cut database", "cut players",
-                                    "freeze players", "crash database"])
+                                    "freeze players", "cut servers", "freeze servers", "crash database"])
         if fault == "kill":
             server.signal(signal.SIGKILL)
         elif fault == "stop":
@@ -97,6 +103,11 @@ class Run:
         elif fault == "freeze players":
             self.players.freeze()
             self.later(seconds, self.players.thaw)
+        elif fault == "cut servers":
+            server.peers.cut()
+        elif fault == "freeze servers":
+            server.peers.freeze()
+            self.later(seconds, server.peers.thaw)
         elif fault == "crash database":
             self.postgres.crash()
             self.wait(self.random.uniform(0, 3))
@@ -106,7 +117,7 @@ class Run:
     def play(self):
         """Lets bots build while things fail. Returns what was wrong with what they saw."""
         self.servers[0].create()
-        if not self.wait(30, self.listening):
+        if not self.wait(30, self.owner):
             return ["no server has taken the world"]
         self.wait(2)
         # Before the world was there, the others could not start.
@@ -180,7 +191,9 @@ class Run:
         wrong = self.play()
         if wrong:
             return wrong
-        for server in sorted(self.servers, key=lambda one: one is self.listening()):
+        # The owner stops last.
+        owner = self.owner()
+        for server in sorted(self.servers, key=lambda one: one is owner):
             if server.process is not None and (code := server.stop()) not in (0, -signal.SIGTERM):
                 wrong.append(f"{server.name} stopped with exit code {code}")
         return wrong + self.check_world()

@@ -8,13 +8,14 @@ import time
 
 
 class GameServer:
-    def __init__(self, program, folder, name, wire, url):
+    def __init__(self, program, folder, name, wire, peers, url):
+        """`wire` leads to the database, at `url`. `peers` leads from the other servers to this one."""
         self.folder = pathlib.Path(folder) / name
-        self.name, self.wire = name, wire
+        self.name, self.wire, self.peers = name, wire, peers
         self.port_file = self.folder.with_suffix(".port")
         self.log = self.folder.with_suffix(".log")
         self.command = [program, "--world", self.folder, "--store", url, "--standby", "--lease-s", "2", "--listen",
-                        "127.0.0.1:0", "--port-file", self.port_file, "--sessions-per-address", "0",
+                        "127.0.0.1:0", "--peer-address", f"127.0.0.1:{peers.port}", "--port-file", self.port_file, "--sessions-per-address", "0",
                         "--budgets-per-address", "0", "--connections-per-second", "0", "--stop-s", "20"]
         self.process = None
         self.start_at = 0.0
@@ -59,15 +60,15 @@ class GameServer:
         return self.process.wait(timeout=60)
 
     def port(self):
-        """Returns since when it listens, and its port; None if it does not listen."""
+        """Returns the port at which it listens; None if it does not listen."""
         if self.process is None or self.process.poll() is not None:
             return None
         try:
             text = self.port_file.read_text()
-            return (self.port_file.stat().st_mtime, int(text)) if text else None
+            return int(text) if text else None
         except FileNotFoundError:
             return None
 
     def epochs(self):
         """Returns the epoch of each start that took the world over."""
-        return [int(epoch) for epoch in re.findall(r" epoch=(\d+) seq=", self.log.read_text())]
+        return [int(epoch) for epoch in re.findall(r"OWNS THE WORLD: epoch=(\d+)", self.log.read_text())]

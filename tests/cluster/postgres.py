@@ -46,5 +46,10 @@ class Postgres:
 
     def ask(self, sql):
         """Returns the first number of a query."""
-        asked = subprocess.run([self.bin / "psql", self.url(), "-At", "-c", sql], check=True, stdout=subprocess.PIPE)
-        return int(asked.stdout.split()[0])
+        return int(self.text(sql).split()[0])
+
+    def text(self, sql):
+        """Returns the first row of a query as text."""
+        asked = subprocess.run([self.bin / "psql", self.url(), "-At", "-c", sql], check=True, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        return asked.stdout.strip()
