@@ -321,6 +321,20 @@ TEST_CASE("the end of a link ends the sessions of its players at the owner, and 
   CHECK(bench.is_open(1, 1));
 }
 
+TEST_CASE("a banned player's session does not go on at another owner", "[world][servers][rights]") {
+  FollowerBench bench;
+  RelayOpen open = open_of(5);
+  open.author = 9;
+  const auto done = bench.server.change_rights(Restrict{RestrictionKind::ban, open.key, 0, ""}, {},
+                                               0, bench.now());
+  REQUIRE(done.has_value());
+  bench.send(open);
+  const auto ends = bench.environment.messages<RelayClose>(kLink, kEdge);
+  REQUIRE(ends.size() == 1);
+  CHECK(ends[0].reason == static_cast<std::uint8_t>(GoodbyeReason::not_admitted));
+  CHECK(bench.server.online_players().empty());
+}
+
 TEST_CASE("nobody joins an owner that is not sure to be one, and who is there stays",
           "[world][servers]") {
   FollowerBench bench;
