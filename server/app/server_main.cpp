@@ -254,15 +254,16 @@ int run(const ServerOptions& options) {
   signals.wait_for_the_end(*running, [&] {
     running->reload(read_config(options), [](const CommandAnswer& /*the log has it*/) {});
   });
+  const bool has_failed_to_follow = watch && watch->has_failed();
   watch.reset();
   backup.stop();
   if (console) console->close();
   logger("app").info("stopping");
   const bool has_followed = running->is_following();
   const StopReport report = running->stop();
-  if (has_followed) {
+  if (has_followed || has_failed_to_follow) {
     std::cout << "stopped, and another server owns the world\n";
-    return kStopped;
+    return has_failed_to_follow ? kFailed : kStopped;
   }
   log_stop(report, *config);
   bool is_written = true;

@@ -107,6 +107,7 @@ bool TakeoverWatch::look() {
 }
 
 void TakeoverWatch::fail(const std::string& why) {
+  has_failed_.store(true);
   logger("app").error("STANDBY: {}", why);
   on_failure_();
 }

@@ -1,6 +1,7 @@
 // Standby: a server of a world that another server owns. It follows the owner and serves players, and
 // takes the world over when the owner has ended or does not answer.
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -35,6 +36,8 @@ class TakeoverWatch {
   TakeoverWatch(const std::string& place, Server& server, std::function<void()> on_failure);
   /// Ends the thread. Waits for a takeover that is under way.
   ~TakeoverWatch();
+  /// Returns true if `on_failure` was called. Thread: any.
+  bool has_failed() const { return has_failed_.load(); }
   TakeoverWatch(const TakeoverWatch&) = delete;
   TakeoverWatch& operator=(const TakeoverWatch&) = delete;
 
@@ -47,6 +50,7 @@ class TakeoverWatch {
   LeaseWatch lease_;
   Server& server_;
   const std::function<void()> on_failure_;
+  std::atomic<bool> has_failed_{false};
   std::mutex mutex_;
   std::condition_variable wake_;
   bool is_stopping_ = false;  // guarded by mutex_

@@ -51,7 +51,7 @@ void OwnerConnection::connect(const std::string& address) {
   events.on_message = [this](Message&& message, std::size_t bytes) {
     strand_.post([this, link = link_, message = std::move(message), bytes]() mutable {
       world_->owner_received(std::move(message), read_clocks());
-      if (link_ != nullptr) link_->handled(bytes);
+      if (link != nullptr) link->handled(bytes);
     });
   };
   events.on_ended = [this, address](const std::string& why) {

@@ -31,7 +31,9 @@ StoreResult<void> write_rest(Store& store, const LogPart& part, Sequence end) {
   for (const LogName& name : part.names)
     names.push_back({{name.folded, name.name, name.key}, name.is_release});
   if (!names.empty()) {
-    if (auto written = store.change_names(names); !written) return written;
+    // Another key may own the name by now: what is in the database is newer then.
+    const auto written = store.change_names(names);
+    if (!written && written.error().kind != StoreError::Kind::bad_request) return written;
   }
   std::vector<PlayerRow> players;
   for (const LogPlayer& row : part.players) players.push_back({row.author, row.key, row.name});

@@ -95,7 +95,7 @@ Result<void, std::string> ServerCore::follow() {
   if (const auto begun = store_.begin_reads(); !begun) return failure(begun.error().message());
   auto start = read_world_start(store_);
   if (!start) return failure(start.error());
-  start->log.epoch = store_.epoch();
+  start->log.epoch = std::max(store_.epoch(), start->log.last_epoch);
   if (const auto made = make_world(*start); !made) return made;
   if (const auto ended = store_.end_reads(); !ended) return failure(ended.error().message());
   world_->follow(start->log.last_epoch);

@@ -129,9 +129,17 @@ void on_follow_request(WorldState& world, SessionId link) {
 void admit_follower(WorldState& world, SessionId link, const Clocks& now) {
   world.environment.report(OperatorLogLevel::info,
                            "follower=" + std::to_string(link) + " another server follows this one");
+  const ClientInstance instance = world.find(link)->instance;
   world.sessions.erase(link);
+  // An earlier connection of the same server would keep the sessions of its players.
+  for (const auto& [other, follower] : world.followers) {
+    if (follower.instance != instance) continue;
+    close_follower(world, other, GoodbyeReason::already_connected, "it connected again");
+    break;
+  }
   Follower& follower = world.followers[link];
   follower.last_message_us = now.steady_us;
+  follower.instance = instance;
   world.environment.trust(link);
   world.environment.opened(link);
   follower.is_full = !world.environment.send(link, encode_message(SessionAccepted{}));

@@ -21,9 +21,10 @@ struct OrderedBatch;
 
 /// A server that follows.
 struct Follower {
-  bool gets_log = false;       // it has asked for it
-  bool is_full = false;        // its queue was full: it has missed records, and is closed soon
-  TimeUs last_message_us = 0;  // steady clock
+  bool gets_log = false;        // it has asked for it
+  ClientInstance instance = 0;  // of the server's process
+  bool is_full = false;         // its queue was full: it has missed records, and is closed soon
+  TimeUs last_message_us = 0;   // steady clock
   std::map<SessionId, SessionId> sessions;  // its players: by its number, the number here
 };
 

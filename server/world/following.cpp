@@ -259,13 +259,18 @@ void owner_connected(WorldState& world, const std::optional<ChannelBinding>& bin
   mine.binding = binding;
   mine.heard_us = mine.pinged_us = now.steady_us;
   mine.waiting.clear();
+  const ClientInstance earlier = mine.hello.instance;
   mine.hello = {};
   mine.hello.key = world.config.server_keys.public_key;
   mine.hello.name = "server";
   mine.hello.features = kFeatureServers;
-  std::array<std::uint8_t, sizeof mine.hello.instance> instance{};
-  world.random(instance);
-  std::memcpy(&mine.hello.instance, instance.data(), sizeof mine.hello.instance);
+  // The same on each connection, so that the owner knows which one it replaces.
+  mine.hello.instance = earlier;
+  if (earlier == 0) {
+    std::array<std::uint8_t, sizeof mine.hello.instance> instance{};
+    world.random(instance);
+    std::memcpy(&mine.hello.instance, instance.data(), sizeof mine.hello.instance);
+  }
   world.random(mine.hello.nonce);
   send(world, mine.hello);
 }

@@ -246,7 +246,11 @@ void let_in(WorldState& world, SessionId session, const ClientAuth& auth, const 
   if (close_if_no_seat(world, session) || close_if_no_name(world, session) ||
       close_if_not_admitted(world, session, auth, now))
     return;
-  world.find(session)->is_authenticated = true;
+  WorldSession& mine = *world.find(session);
+  mine.auth_transcript = {};
+  mine.is_authenticated = true;
+  // Connections without a key no longer replace it.
+  if (!mine.is_relayed) world.environment.opened(session);
   claim_name(world, session, now.steady_us);
   if (!waits_for_claim(world, *world.find(session))) open_session(world, session, now);
 }
@@ -328,7 +332,8 @@ void open_let_in(WorldState& world, SessionId session, const SessionAccepted& ac
                  const Clocks& now) {
   WorldSession& mine = *world.find(session);
   mine.join.reset();
-  world.players.adopt({accepted.author, mine.key, mine.name});
+  if (!world.players.adopt({accepted.author, mine.key, mine.name}))
+    return close_session(world, session, GoodbyeReason::closing, kConnectAgain);
   mine.pose.at = world.config.spawn;
   enter(world, session, accepted.author, now);
   const bool has_tiles = (mine.features & kFeatureTiles) != 0;

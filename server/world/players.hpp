@@ -24,6 +24,13 @@ class Players {
 
   /// Adds a row of the store. Call it before the first enter().
   void restore(const PlayerRow& stored) {
+    // Another server may have given the number, or the key, otherwise while there was no row.
+    if (const auto had = known_.find(stored.author);
+        had != known_.end() && had->second.row.key != stored.key)
+      by_key_.erase(had->second.row.key);
+    if (const auto had = by_key_.find(stored.key);
+        had != by_key_.end() && had->second != stored.author)
+      known_.erase(had->second);
     by_key_[stored.key] = stored.author;
     known_[stored.author] = {stored, stored.name};
     next_ = std::max(next_, stored.author + 1);

@@ -1,6 +1,6 @@
 // SessionOutput: sends to the sessions of players, wherever they are connected: here, or to another
 // server that follows this one. Messages for sessions there go through the link with that server
-// (docs/protocol.md, "Between servers"), one message for all of its sessions.
+// (docs/protocol.md, "Between servers"): send_to_all() makes one message for all sessions of a link.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>

@@ -490,7 +490,10 @@ bool WorldServer::take_over(const Takeover& start, const Clocks& now) {
   world.sent_player_list.clear();
   for (const SessionId session : world.open_sessions()) {
     WorldSession& mine = *world.find(session);
-    world.players.adopt({mine.author, mine.key, mine.name});
+    if (!world.players.adopt({mine.author, mine.key, mine.name})) {
+      close_session(world, session, GoodbyeReason::closing, kConnectAgain);
+      continue;
+    }
     mine.has_player_list = false;
     mine.pose_changed = true;
     send_resume(world, session, world.authority.resolved().of(mine.author, mine.instance));

@@ -18,6 +18,7 @@ std::uint64_t handshake(WorldBench& bench, SessionId session, std::uint8_t who,
   bench.server.connected(session, bench.now());
   Hello hello = bench.hello(who);
   hello.features = features;
+  hello.instance = session;
   bench.server.received(session, hello, bench.now());
   const auto welcome = bench.environment.messages<Welcome>(session, 0);
   REQUIRE(welcome.size() == 1);
