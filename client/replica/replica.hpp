@@ -120,8 +120,9 @@ class Replica {
   /// edit.
   Result<void> receive(const Commit& commit, const Arrival& arrival);
   void receive(const Reject& reject, TimeUs now_us);
-  /// Another server orders the edits from now on, and has resolved those of this client up to `resolved`.
-  /// Nothing is lost. Returns the edits to send, ascending: those that need an answer.
+  /// Another server orders the edits from now on. It has resolved those of this client up to
+  /// `resolved`. Returns the client sequences of the edits to send again, ascending: those that have
+  /// no answer.
   std::vector<ClientSequence> resume(ClientSequence resolved);
   /// Takes the durable watermark. A later epoch begins with it: another server has taken the world over,
   /// with all edits that were ordered before. The watermark of an earlier epoch is ignored.

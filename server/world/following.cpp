@@ -167,7 +167,7 @@ void on_owner_durable(WorldState& world, const Durable& durable, const Clocks& n
     return records.empty() ? now.steady_us - front.received_us >= kRowsKeptUs
                            : records.back().record.version.seq <= durable.seq;
   };
-  while (!kept.empty() && is_durable(kept.front())) kept.pop_front();
+  std::erase_if(kept, is_durable);
   if (world.disk_is_full != durable.is_read_only) {
     world.disk_is_full = durable.is_read_only;
     world.durable_due_us = 0;
@@ -317,8 +317,14 @@ void on_log_read(WorldState& world, const Result<ReadLog, std::string>& read, co
     mine.has_forked = true;
     return leave(world, *why);
   }
-  if (world.authority.head() >= mine.read_to && read->last >= world.authority.head())
+  if (world.authority.head() >= mine.read_to && read->last >= world.authority.head()) {
+    // The database has them. Rows without records that it lacks were lost with an earlier owner.
+    std::erase_if(mine.not_durable, [last = read->last](const KeptPart& kept) {
+      const auto& records = kept.part.records;
+      return records.empty() || records.back().record.version.seq <= last;
+    });
     return go_live(world, now);
+  }
   // The rest is not durable yet, or there is more than one read returns.
   mine.read_again_us = now.steady_us + (read->last > world.authority.head() ? 0 : kReadPauseUs);
 }
@@ -351,9 +357,14 @@ bool on_message_for_owner(WorldState& world, SessionId session, const Message& m
   WorldSession& mine = *world.find(session);
   const bool reaches_owner = is_live(world) && mine.is_at_owner;
   if (const auto* edit = std::get_if<EditRequest>(&message)) {
-    if (edit->fault) {
+    const bool is_refused = edit->action != 0 && edit->action == mine.refused_action;
+    if (edit->fault || is_refused) {
+      mine.refused_action = edit->action;
+      mine.refused_reason = RejectReason::bad_edit;
+      world.output.charge_reading(session, kRejectionBytes);
       send_reject(world, session,
-                  {edit->client_seq, RejectReason::bad_edit, fault_text(*edit->fault), 0});
+                  {edit->client_seq, RejectReason::bad_edit,
+                   edit->fault ? fault_text(*edit->fault) : kActionRefused, 0});
     } else if (reaches_owner) {
       send_from(world, session, *edit);
     }

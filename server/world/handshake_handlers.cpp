@@ -270,14 +270,13 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.name = hello.name;
   mine.features = (world.config.features | kFeatureServers) & hello.features;
   if (!is_server(world, mine)) mine.features &= ~kFeatureServers;
-  if (is_server(world, mine)) {
-    if (world.following)
-      return close_session(world, session, GoodbyeReason::closing,
-                           "this server does not own the world");
-  } else {
-    // Before any signature: a banned address costs little.
-    if (close_if_banned(world, session)) return;
+  // Before any signature: a banned address costs little.
+  if (close_if_banned(world, session)) return;
+  if (!is_server(world, mine)) {
     if (close_if_no_seat(world, session) || close_if_no_name(world, session)) return;
+  } else if (world.following) {
+    return close_session(world, session, GoodbyeReason::closing,
+                         "this server does not own the world");
   }
   Welcome welcome = welcome_of(world, mine.key);
   welcome.encoding = choose_encoding(world.config, hello.encodings);

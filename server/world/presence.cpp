@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace runstone {
 namespace {
@@ -53,17 +54,26 @@ void broadcast_player_list(WorldState& world) {
   Entries entries = entries_of(world);
   const PlayerList change = change_between(world, world.sent_player_list, entries);
   const bool has_change = !change.players.empty() || !change.left.empty();
-  const EncodedMessage encoded_change = encode_message(change);
-  std::optional<EncodedMessage> encoded_full;  // made only if a session needs it
+  std::vector<SessionId> get_change, get_full;
   for (const SessionId session : world.open_sessions()) {
     WorldSession& mine = *world.find(session);
-    if (mine.has_player_list && !has_change) continue;
-    if (!mine.has_player_list && !encoded_full)
-      encoded_full = encode_message(full_player_list(world, entries));
-    mine.has_player_list =
-        send_or_skip(world, session, mine.has_player_list ? encoded_change : *encoded_full);
-    if (!mine.has_player_list) world.player_list_changed = true;
+    if (!std::exchange(mine.has_player_list, true)) {
+      get_full.push_back(session);
+    } else if (has_change) {
+      get_change.push_back(session);
+    }
   }
+  const auto send_to = [&world](const std::vector<SessionId>& sessions, const PlayerList& list) {
+    if (sessions.empty()) return;
+    const auto full = world.output.send_to_all(sessions, encode_message(list));
+    world.counters.queue_full += full.size();
+    for (const SessionId session : full) {
+      world.find(session)->has_player_list = false;
+      world.player_list_changed = true;  // a later call sends them the whole list
+    }
+  };
+  send_to(get_change, change);
+  send_to(get_full, get_full.empty() ? PlayerList{} : full_player_list(world, entries));
   world.sent_player_list = std::move(entries);
 }
 
@@ -85,8 +95,7 @@ void broadcast_poses(WorldState& world, const Clocks& now) {
     poses.players.push_back({session.author, session.pose});
   }
   if (poses.players.empty()) return;
-  const EncodedMessage encoded = encode_message(poses);
-  for (const SessionId session : open) send_or_skip(world, session, encoded);
+  world.counters.queue_full += world.output.send_to_all(open, encode_message(poses)).size();
 }
 
 void send_all_poses_to(WorldState& world, SessionId session) {

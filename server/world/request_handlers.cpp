@@ -15,9 +15,8 @@
 namespace runstone {
 namespace {
 
-// Bytes that count as read, so that messages that gain nothing do not keep the world busy: with the
-// default `read_kib_per_second`, a session gets some 220 rejections and 4,096 chunks a second.
-constexpr std::size_t kRejectionBytes = 4'096;
+// Bytes that count as read for each chunk that a client requests: with the default
+// `read_kib_per_second`, a session gets 4,096 chunks a second.
 constexpr std::size_t kRequestedChunkBytes = 256;
 
 bool is_within_reach(const WorldState& world, WorldSession& session, const EditDescriptor& edit,
@@ -82,7 +81,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     refusal = world.authority.resolved().answer_to(op);
   } else if (request.action != 0 && request.action == mine.refused_action) {
     refusal = mine.refused_reason;
-    detail = "an earlier edit of the same action was refused";
+    detail = kActionRefused;
     world.authority.reject(op, *refusal);
   } else if (!has_room) {
     refusal = RejectReason::busy;

@@ -1,6 +1,7 @@
 // Request handlers: the messages of an open session that need no state of their own. Views are
 // handled in view_scheduler.hpp, history requests in time_travel.hpp.
 #pragma once
+#include <cstddef>
 #include <string>
 
 #include "server/world/world_state.hpp"
@@ -10,6 +11,10 @@ namespace runstone {
 /// Sends chunks of the session's view again. Chunks outside of it are ignored.
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request,
                       const Clocks& now);
+/// Bytes that count as read for each rejection, so that messages that gain nothing do not keep the world
+/// busy: with the default `read_kib_per_second`, a session gets some 220 rejections a second.
+inline constexpr std::size_t kRejectionBytes = 4'096;
+inline constexpr const char* kActionRefused = "an earlier edit of the same action was refused";
 /// Describes what is wrong with a descriptor, for the author of the client.
 std::string fault_text(const Error& fault);
 /// Queues the edit for the next commit, or answers with a reject.
