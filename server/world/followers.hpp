@@ -42,8 +42,8 @@ void forget_follower(WorldState& world, SessionId link);
 void close_lost_followers(WorldState& world, const Clocks& now);
 /// Returns true if another server gets the log.
 bool has_live_followers(const WorldState& world);
-/// Closes all followers without a word to their players, who stay where they are. For a server that
-/// stops.
+/// Closes all followers and forgets the sessions of their players, who stay connected to the followers.
+/// For a server that stops.
 void close_followers(WorldState& world);
 
 /// Queues rows of players and the records of a commit for the log, and sends them to the followers.

@@ -5,9 +5,9 @@
 //   - The records that the owner had before the connection are read from the database.
 //   - Records that are not durable are kept. If this server takes the world over, it writes those that
 //     the owner has not written. So nothing is lost that has arrived here.
-//   - What a client sent to an owner that is gone may be lost. So every change of the owner, and every
-//     gap in the connection with it, is told to the clients (Resume), and they offer the edits again that
-//     have no answer. The operation id keeps them from being applied twice.
+//   - What a client has sent is lost if the owner ends, or if the connection with it breaks, before the
+//     owner has handled it. Clients are told so (Resume), and send again the edits that have no answer.
+//     The operation id keeps them from being applied twice.
 //   - If the owner has ordered edits differently from what arrived here (it took the world over from a
 //     server that had sent them), this server cannot go on: WorldServer::has_forked().
 // Bounds: records that are not durable: those of the owner's log queue; messages of the owner that wait
@@ -85,7 +85,7 @@ struct Following {
   Epoch head_epoch = 0;                // of the last record that this server has
   std::deque<KeptPart> not_durable;
   bool has_forked = false;
-  bool is_taking_over = false;  // no owner is listened to any more
+  bool is_taking_over = false;  // messages of an owner are ignored
 };
 
 // The connection with the owner.
