@@ -1,42 +1,60 @@
-"""A runstone-server of the test, with its wire to the database. It is started again when it has ended."""
-import pathlib
+"""A runstone-server of the test, with its wires and its clock. It is started again when it has ended."""
 import random
 import re
 import signal
 import subprocess
 import time
 
+from server_clock import ServerClock
+
 
 class GameServer:
-    def __init__(self, program, folder, name, wire, peers, url):
-        """`wire` leads to the database, at `url`. `peers` leads from the other servers to this one."""
-        self.folder = pathlib.Path(folder) / name
-        self.name, self.wire, self.peers = name, wire, peers
+    def __init__(self, program, folder, name, databases, peers, url):
+        """`databases` are the wires to the hosts of the database, at `url`. `peers` leads from the other
+        servers to this one."""
+        self.folder = folder / name
+        self.name, self.databases, self.peers = name, databases, peers
         self.port_file = self.folder.with_suffix(".port")
+        self.digests_file = self.folder.with_suffix(".digests")
         self.log = self.folder.with_suffix(".log")
-        self.command = [program, "--world", self.folder, "--store", url, "--standby", "--lease-s", "2", "--listen",
-                        "127.0.0.1:0", "--peer-address", f"127.0.0.1:{peers.port}", "--port-file", self.port_file, "--sessions-per-address", "0",
+        self.log.touch()
+        self.clock = ServerClock(self.folder.with_suffix(".clock"))
+        self.clock.set_off(0)
+        # The kernel ends it if the test ends.
+        self.command = ["setpriv", "--pdeathsig=KILL", program, "--world", self.folder, "--store", url,
+                        "--standby", "--lease-s", "2", "--listen", "127.0.0.1:0",
+                        "--peer-address", f"127.0.0.1:{peers.port}", "--port-file", self.port_file,
+                        "--digests", self.digests_file, "--sessions-per-address", "0",
                         "--budgets-per-address", "0", "--connections-per-second", "0", "--stop-s", "20"]
         self.process = None
         self.start_at = 0.0
         self.is_paused = False
-        self.failed_starts = []  # exit codes of starts that gave up
+        self.sent = set()  # signals that the test has sent to this process
+        self.bad_ends = []  # exit codes of starts that gave up, and signals that the test did not send
 
     def create(self):
         """Makes the world, with this server as its first owner."""
         self._start("--create", "--generator", "flat")
 
     def _start(self, *more):
+        self.sent = set()
         with open(self.log, "ab") as log:
-            self.process = subprocess.Popen([*self.command, *more], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                            stderr=log)
+            self.process = subprocess.Popen([*self.command, *more], stdin=subprocess.DEVNULL,
+                                            stdout=subprocess.DEVNULL, stderr=log,
+                                            env=self.clock.environment())
+
+    def forget_ends(self):
+        self.bad_ends.clear()
+
+    def _judge(self, code):
+        # 0: it was stopped. 1: it lost the world or the database. Below 0: a signal.
+        if code > 1 or (code < 0 and -code not in self.sent):
+            self.bad_ends.append(code)
 
     def step(self):
         """Starts it again, a moment after it has ended, as a service manager does."""
         if self.process is not None and (code := self.process.poll()) is not None:
-            # 0: it was stopped. 1: it lost the world or the database. A signal: it was killed.
-            if code > 1:
-                self.failed_starts.append(code)
+            self._judge(code)
             self.process = None
             self.start_at = time.monotonic() + random.uniform(0.1, 1)
         if self.process is None and time.monotonic() >= self.start_at:
@@ -44,6 +62,7 @@ class GameServer:
 
     def signal(self, number):
         if self.process is not None and self.process.poll() is None:
+            self.sent.add(number)
             self.process.send_signal(number)
 
     def pause(self):
@@ -55,13 +74,31 @@ class GameServer:
         self.signal(signal.SIGCONT)
 
     def stop(self):
-        """Returns the exit code of a stop in order."""
+        """Stops it in order. Returns its exit code, or None if it does not end."""
+        if self.process is None:
+            return 0
+        self.digests_file.unlink(missing_ok=True)
         self.signal(signal.SIGTERM)
-        return self.process.wait(timeout=60)
+        try:
+            code = self.process.wait(timeout=60)
+        except subprocess.TimeoutExpired:
+            return None
+        self.process = None
+        return code
+
+    def has_digests(self):
+        """Returns true if its last stop was in order, and it owned the world."""
+        return self.digests_file.exists() and '"clean":false' not in self.digests_file.read_text()
+
+    def kill(self):
+        self.signal(signal.SIGKILL)
+        if self.process is not None:
+            self.process.wait()
 
     def port(self):
         """Returns the port at which it listens; None if it does not listen."""
-        if self.process is None or self.process.poll() is not None:
+        process = self.process
+        if process is None or process.poll() is not None:
             return None
         try:
             text = self.port_file.read_text()

@@ -18,6 +18,25 @@ class Wires:
         self.loop.call_soon_threadsafe(self.loop.stop)
 
 
+class WireBundle:
+    """Several wires that fail together."""
+
+    def __init__(self, wires):
+        self.wires = wires
+
+    def freeze(self):
+        for wire in self.wires:
+            wire.freeze()
+
+    def thaw(self):
+        for wire in self.wires:
+            wire.thaw()
+
+    def cut(self):
+        for wire in self.wires:
+            wire.cut()
+
+
 class Wire:
     @classmethod
     async def open(cls, target):
