@@ -47,9 +47,11 @@ class Builders:
             return [f"the {self.name} ended with exit code {self.process.returncode}, without a report: "
                     f"see {self.log}"]
         self.edits = collections.Counter(seen["edits"])
-        # The bounds of the last row. An edit whose answer was lost with a connection has no time.
-        if rows := seen["local_us"]["rows"]:
-            self.longest_s = rows[-1][1] / 1e6
+        # An edit whose answer was lost with a connection has no time, and makes the maximum infinite.
+        waits = seen["local_us"]
+        if waits["rows"]:
+            longest = waits["max"] if waits["infinite"] == 0 else waits["rows"][-1][1]
+            self.longest_s = longest / 1e6
         return [f"{self.name}: {wrong}" for wrong in judge(seen, self.process.returncode)]
 
     def check_that_all_is_durable(self):

@@ -13,6 +13,10 @@ from small_disk import SmallDisk
 PATIENCE_S = 60
 CONNECT_S = 2  # after which a server of the world tries the other host
 
+# Takes one file of the log after another, also those that are kept for later.
+USE_LOG = ("DO $$ BEGIN FOR i IN 1..100 LOOP PERFORM pg_logical_emit_message(false, 'test', 'full'); "
+           "PERFORM pg_switch_wal(); END LOOP; END $$")
+
 
 def until(holds, what):
     """Waits until a condition holds, a step at a time."""
@@ -116,7 +120,7 @@ class DatabasePair:
         self.disks[host].fill()
         if is_log_full:
             try:
-                self.primary.text("SELECT pg_switch_wal()")
+                self.primary.text(USE_LOG)
             except subprocess.SubprocessError:
                 pass
         yield from pause(seconds)
