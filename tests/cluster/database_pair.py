@@ -13,8 +13,9 @@ from small_disk import SmallDisk
 PATIENCE_S = 60
 CONNECT_S = 2  # after which a server of the world tries the other host
 
-# Takes one file of the log after another, also those that are kept for later.
-USE_LOG = ("DO $$ BEGIN FOR i IN 1..100 LOOP PERFORM pg_logical_emit_message(false, 'test', 'full'); "
+# Takes one file of the log after another, also those that are kept for later: more than `max_wal_size`, and
+# fewer than `wal_keep_size`, so that the standby can catch up.
+USE_LOG = ("DO $$ BEGIN FOR i IN 1..40 LOOP PERFORM pg_logical_emit_message(false, 'test', 'full'); "
            "PERFORM pg_switch_wal(); END LOOP; END $$")
 
 
@@ -39,6 +40,7 @@ class DatabasePair:
         self.hosts = [Postgres(folder / name, is_synchronous) for name in ("alpha", "beta")]
         self.primary, self.standby = self.hosts
         self.disks = {}
+        self.used = []  # MiB of the data, now and then
         self.work = None
         for host in self.hosts:
             if has_disks:
@@ -117,6 +119,7 @@ class DatabasePair:
     def fill_disk(self, host, seconds, is_log_full):
         """The disk of a server is full. With `is_log_full`, the primary needs a new file for its log at
         once: if the full disk is its own, it ends itself. Otherwise it is often a table that has no room."""
+        self.used.append(self.disks[host].used_mib())
         self.disks[host].fill()
         if is_log_full:
             try:
@@ -127,11 +130,16 @@ class DatabasePair:
         self.disks[host].clear()
         yield from self._until_in_order()
 
+    def used_mib(self):
+        """Returns how much the data took at most, of those times at which a disk was filled or unmounted."""
+        return max(self.used, default=0)
+
     def close(self, keeps_data):
         for host in self.hosts:
             host.close()
             if disk := self.disks.get(host):
                 disk.clear()
+                self.used.append(disk.used_mib())
                 if keeps_data:
                     shutil.copytree(host.data, host.folder / "data-kept")
                 disk.unmount()

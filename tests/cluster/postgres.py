@@ -13,7 +13,7 @@ ANSWER_S = 20
 SETTINGS = {
     "listen_addresses": "127.0.0.1", "max_connections": "100", "shared_buffers": "16MB",
     "dynamic_shared_memory_type": "mmap", "min_wal_size": "2MB", "max_wal_size": "32MB",
-    "wal_keep_size": "32MB",
+    "wal_keep_size": "128MB",
     "synchronous_commit": "on", "wal_retrieve_retry_interval": "200ms",
 }
 
@@ -45,11 +45,14 @@ class Postgres:
         self.bin = max(versions, key=lambda path: int(path.parent.name))
         self.folder = pathlib.Path(folder)
         self.data = self.folder / "data"
+        self.memory = self.folder / "memory"
         self.data.mkdir(parents=True)
+        self.memory.mkdir()
         # PostgreSQL refuses to run as root.
         self.prefix = []
         if os.geteuid() == 0:
             shutil.chown(self.folder, "postgres")
+            shutil.chown(self.memory, "postgres")
             self.prefix = ["setpriv", "--reuid=postgres", "--regid=postgres", "--init-groups"]
         self.log = self.folder / "log"
         self.log.touch()
@@ -81,7 +84,7 @@ class Postgres:
         """Begins to copy another server's data into this one's folder. Returns the process that does it."""
         self._forget_memory()
         for entry in self.data.iterdir():
-            if entry.is_dir():
+            if entry.is_dir() and not entry.is_symlink():
                 shutil.rmtree(entry)
             else:
                 entry.unlink()
@@ -90,6 +93,11 @@ class Postgres:
 
     def begin_start(self, primary=None):
         """Starts it, as a standby of another server if there is one."""
+        # The shared memory of a real server does not lie on the disk of the data.
+        memory = self.data / "pg_dynshmem"
+        if not memory.is_symlink():
+            memory.rmdir()
+            memory.symlink_to(self.memory)
         mark = self.data / "standby.signal"
         settings = self.settings | {"port": str(self.port), "unix_socket_directories": str(self.folder)}
         if primary is not None:

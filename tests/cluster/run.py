@@ -54,11 +54,12 @@ class Run:
 
     def summary(self):
         edits = self.edits()
-        panics = sum(host.panics() for host in self.cluster.database.hosts)
+        database = self.cluster.database
+        panics = sum(host.panics() for host in database.hosts)
         return (f"{edits['submitted']} edits, {edits['durable']} durable, {edits['rejected']} rejections, "
                 f"{self.world.logged} in the log; longest wait {self.builders.longest_s:.1f} s; "
                 f"{len(self.world.epochs)} starts took the world; "
-                f"PostgreSQL ended itself {panics} times; "
+                f"PostgreSQL ended itself {panics} times, its disks held {database.used_mib()} MiB at most; "
                 f"faults: {dict(sorted(self.faults.made.items()))}")
 
     def close(self, keeps_data=False):
