@@ -262,9 +262,10 @@ Result<void, std::string> Server::take_over() {
   if (!writer) return failure(writer.error().message());
   parts.writer = *std::move(writer);
   parts.is_following = false;
-  if (auto published = parts.publish(*parts.writer); !published) return published;
-  if (auto taken = parts.core->take_over(*parts.writer); !taken) return taken;
-  return {};
+  auto taken = parts.publish(*parts.writer);
+  if (taken) taken = parts.core->take_over(*parts.writer);
+  if (!taken) parts.writer->give_up();  // another server need not wait for the lease to run out
+  return taken;
 }
 
 std::uint16_t Server::port() const { return parts_->core->port(); }

@@ -7,10 +7,17 @@
 namespace runstone {
 namespace {
 
-/// Fails if the log and the records of a server that follows differ where both have one. `parts`: those
-/// of the server that may not be in the log. `last`: its last record. `end`: of the log.
-Result<void, std::string> is_prefix(LogReader& store, const std::vector<LogPart>& parts,
-                                    Version last, Sequence end) {
+constexpr const char* kStartAgain = "start it again";
+
+/// Fails if what a server that follows has and the log do not continue each other. `parts`: its records
+/// that may not be in the log. `last`: its last record. `end`: of the log.
+Result<void, std::string> is_prefix(Store& store, const std::vector<LogPart>& parts, Version last,
+                                    Sequence end) {
+  // An owner wrote all records that it had before it raised the epoch. What the log lacks of earlier
+  // epochs, that owner did not have.
+  if (last.seq > end && last.epoch < store.epoch())
+    return failure("another server has owned the world since, without all edits of this one: " +
+                   std::string(kStartAgain));
   Version common = last;
   for (const LogPart& part : parts) {
     for (const LogPartRecord& mine : part.records) {
@@ -22,7 +29,7 @@ Result<void, std::string> is_prefix(LogReader& store, const std::vector<LogPart>
   const auto there = store.edit_at(common.seq);
   if (!there) return failure(there.error());
   if (*there && (*there)->version == common) return {};
-  return failure("the log has other edits than this server: start it again");
+  return failure("the log has other edits than this server: " + std::string(kStartAgain));
 }
 
 /// Writes what the log lacks of a part. `end`: the end of the log when the first part was written.

@@ -27,6 +27,7 @@ constexpr std::size_t kWaitingMax = 65'536;
 // Rows of players and names without records have no sequence that tells when they are durable. They are
 // written within some 50 ms.
 constexpr TimeUs kRowsKeptUs = 10'000'000;
+constexpr const char* kTakenOver = "another server has taken the world over";
 
 void leave(WorldState& world, const std::string& why) {
   world.environment.leave_owner(why);
@@ -151,11 +152,14 @@ void on_log_part(WorldState& world, LogPart part, const Clocks& now) {
   std::erase_if(part.records, [head = world.authority.head()](const LogPartRecord& one) {
     return one.record.version.seq <= head;
   });
-  const Sequence next = world.authority.head() + 1;
-  if (!part.records.empty() && part.records.front().record.version.seq != next)
-    return leave(world, "the owner's next record is " +
-                            std::to_string(part.records.front().record.version.seq) + ", and not " +
-                            std::to_string(next));
+  if (!part.records.empty()) {
+    const Version& first = part.records.front().record.version;
+    const Sequence next = world.authority.head() + 1;
+    if (first.seq != next)
+      return leave(world, "the owner's next record is " + std::to_string(first.seq) + ", and not " +
+                              std::to_string(next));
+    if (first.epoch < world.following->head_epoch) return leave(world, kTakenOver);
+  }
   apply_log_part(world, part, now);
   world.following->not_durable.push_back({std::move(part), now.steady_us});
 }
@@ -317,6 +321,7 @@ void on_log_read(WorldState& world, const Result<ReadLog, std::string>& read, co
     mine.has_forked = true;
     return leave(world, *why);
   }
+  if (mine.head_epoch > mine.owner_epoch) return leave(world, kTakenOver);
   if (world.authority.head() >= mine.read_to && read->last >= world.authority.head()) {
     // The database has them. Rows without records that it lacks were lost with an earlier owner.
     std::erase_if(mine.not_durable, [last = read->last](const KeptPart& kept) {

@@ -72,6 +72,18 @@ void on_resumed(WorldState& world, SessionId session) {
   --mine.resumes_unanswered;
 }
 
+/// Loads a chunk again after a pause. Returns false after too many failures in a row.
+bool load_again(WorldState& world, const ChunkKey& key, OperatorLogLevel level,
+                const std::string& why, const Clocks& now) {
+  auto pause_us = world.load_retries.failed(key, now.steady_us);
+  // The database of several servers may be away for long.
+  if (!pause_us && world.following) pause_us = world.load_retries.failed(key, now.steady_us);
+  if (!pause_us) return false;
+  world.environment.report(level, "chunk=" + text_of(key) + " not read, again in " +
+                                      std::to_string(*pause_us / 1'000'000) + " s: " + why);
+  return true;
+}
+
 void close_silent_sessions(WorldState& world, const Clocks& now) {
   std::vector<std::pair<SessionId, bool>> silent;
   for (const auto& [id, session] : world.sessions) {
@@ -344,13 +356,16 @@ void WorldServer::resend_tiles(const Clocks& now) { runstone::resend_tiles(*stat
 
 void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
   WorldState& world = *state_;
-  if (world.following && chunk.version > world.authority.chunks().version(key)) {
-    // The owner has saved it, and what made this version is still on its way. That may take as long as
-    // the owner does not answer, so these attempts do not count.
-    world.load_retries.ended(key);
-    return chunk_failed(key, LoadFailure::not_read, "it is newer than what has arrived", now);
-  }
   count_load_end(world, key);
+  const bool is_newer = chunk.version > world.authority.chunks().version(key);
+  if (is_newer && (world.following || !world.environment.owns_world())) {
+    // The owner has saved it, and what made this version is still on its way. That may take as long as
+    // the owner does not answer, so these attempts do not count. A server that has just lost the lease
+    // does not know yet that it has no chunk to load any more.
+    world.load_retries.ended(key);
+    load_again(world, key, OperatorLogLevel::debug, "it is newer than what has arrived", now);
+    return start_loads(world, now);
+  }
   world.load_retries.ended(key);
   if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
     ++world.counters.chunks_failed;
@@ -369,18 +384,9 @@ void WorldServer::chunk_failed(const ChunkKey& key, LoadFailure failure, const s
                                const Clocks& now) {
   WorldState& world = *state_;
   count_load_end(world, key);
-  if (failure == LoadFailure::not_read && !world.is_stopping) {
-    auto pause_us = world.load_retries.failed(key, now.steady_us);
-    // The database of several servers may be away for long.
-    if (!pause_us && world.following) pause_us = world.load_retries.failed(key, now.steady_us);
-    if (pause_us) {
-      world.environment.report(OperatorLogLevel::error,
-                               "chunk=" + text_of(key) + " not read, again in " +
-                                   std::to_string(*pause_us / 1'000'000) + " s: " + what);
-      start_loads(world, now);
-      return;
-    }
-  }
+  if (failure == LoadFailure::not_read && !world.is_stopping &&
+      load_again(world, key, OperatorLogLevel::error, what, now))
+    return start_loads(world, now);
   world.load_retries.ended(key);
   ++world.counters.chunks_failed;
   world.authority.chunks().quarantine(key);

@@ -235,6 +235,22 @@ TEST_CASE("a takeover fails and writes nothing if the log has other edits", "[se
   bench.check_unchanged();
 }
 
+TEST_CASE("a takeover writes nothing if an owner before it lacked the follower's records",
+          "[server]") {
+  TakeoverBench bench;
+  const auto epoch = bench.store->raise_epoch();
+  REQUIRE(epoch.has_value());
+  const auto parts = std::vector{part_of(bench.some(5, 8))};
+  const auto taken = bench.prepare(parts, bench.records[7].version);
+  REQUIRE_FALSE(taken.has_value());
+  CHECK(taken.error().find("another server has owned the world since") != std::string::npos);
+  CHECK(bench.store->epoch() == *epoch);
+  CHECK(log_of(*bench.store).size() == kRecords);
+  // Records that are in the log are no reason to refuse.
+  const auto in_log = std::vector{part_of(bench.some(5, kRecords))};
+  CHECK(bench.prepare(in_log, bench.records[kRecords - 1].version).has_value());
+}
+
 TEST_CASE("a takeover fails and writes nothing if records are missing", "[server]") {
   TakeoverBench bench;
   const auto taken = bench.prepare({part_of(bench.some(8, 9))}, bench.records[8].version);

@@ -720,6 +720,77 @@ TEST_CASE("a load that began before the owner's checkpoint may bring an older sn
   CHECK(bench.world(1).dirty_chunks() == 0);
 }
 
+TEST_CASE("a follower leaves an owner that has lost the world to another server",
+          "[world][servers]") {
+  ClusterBench bench;
+  bench.join(0, 1, 1);
+  bench.join(1, 1, 2);
+  bench.edit(0, 1, 1, SetVoxel{{1, 1, 1}});
+  bench.run();
+  bench.durable_max = 1;
+  bench.edit(0, 1, 2, SetVoxel{{2, 1, 1}});
+  bench.run();
+  const std::size_t late = bench.add_follower();
+  bench.servers[late].holds_reads = true;
+  bench.connect(late);
+  bench.pump();
+  CHECK_FALSE(bench.world(late).is_live());  // it waits for the record that is not durable
+  bench.durable_max = 100;
+  REQUIRE(bench.take_over(1));
+  bench.edit(1, 1, 1, SetVoxel{{3, 1, 1}});
+  bench.run();
+  REQUIRE(bench.database.records.back().version == Version{2, 3});
+  const auto order_at_old_owner = [&](ClientSequence seq) {
+    bench.edit(0, 1, seq, SetVoxel{{4, 1, 1}});
+    bench.world(0).commit(bench.now());
+    bench.pump();
+  };
+  auto& left = bench.environment(late).owners_left;
+  SECTION("it reads an edit of the next owner from the database") {
+    order_at_old_owner(3);
+    bench.servers[late].holds_reads = false;
+    bench.tick();
+    order_at_old_owner(4);
+  }
+  SECTION("it gets an edit of the old owner after one of the next") {
+    bench.servers[late].holds_from_owner = true;
+    order_at_old_owner(3);
+    order_at_old_owner(4);
+    bench.servers[late].holds_reads = false;
+    bench.tick();
+    bench.servers[late].holds_from_owner = false;
+    bench.pump();
+  }
+  REQUIRE_FALSE(left.empty());
+  CHECK(left.front() == "another server has taken the world over");
+  CHECK_FALSE(bench.world(late).has_forked());
+  bench.cut(late);
+  bench.connect(late);
+  for (int i = 0; i < 4; ++i) bench.tick();
+  CHECK(bench.world(late).is_live());
+  CHECK(bench.world(late).last_record() == Version{2, 3});
+}
+
+TEST_CASE("a follower leaves an owner whose records go back to an earlier epoch",
+          "[world][servers]") {
+  ClusterBench bench;
+  bench.join(0, 1, 1);
+  REQUIRE(bench.take_over(1));
+  const std::size_t follower = bench.add_follower();
+  bench.connect(follower);
+  bench.join(1, 1, 2);
+  bench.edit(1, 1, 1, SetVoxel{{1, 1, 1}});
+  bench.run();
+  REQUIRE(bench.world(follower).last_record() == Version{2, 1});
+  LogPart part = bench.servers[follower].parts.back();
+  REQUIRE(part.records.size() == 1);
+  part.records[0].record.version = {1, 2};
+  bench.world(follower).owner_received(part, bench.now());
+  CHECK(bench.world(follower).last_record() == Version{2, 1});
+  REQUIRE(bench.environment(follower).owners_left.size() == 1);
+  CHECK(bench.environment(follower).owners_left[0] == "another server has taken the world over");
+}
+
 TEST_CASE("a follower does not give up a chunk while the database is away", "[world][servers]") {
   ClusterBench bench;
   bench.join(1, 1, 2);
