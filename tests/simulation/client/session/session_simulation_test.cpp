@@ -9,28 +9,14 @@
 #include <sstream>
 #include <vector>
 
-#include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/store/sqlite_backend.hpp"
-#include "tests/simulation/client/session/sim_client.hpp"
-#include "tests/simulation/client/session/sim_server.hpp"
-#include "tests/support/edit_oracle.hpp"
+#include "tests/simulation/client/session/final_check.hpp"
 #include "tests/support/power_loss_vfs.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace runstone::test {
 namespace {
-
-/// The result of the final check. Each fault is one line.
-struct FinalCheck {
-  std::vector<std::string> faults;
-  std::uint64_t edits = 0, chunks = 0, rejected = 0;
-  std::uint64_t beyond = 0;   // refused by the clients: outside of the world's heights
-  std::uint64_t unknown = 0;  // rejected by a server that died before it could answer: unseen
-  void expect(bool ok, const std::string& fault) {
-    if (!ok) faults.push_back(fault);
-  }
-};
 
 class Simulation {
  public:
@@ -46,10 +32,10 @@ class Simulation {
     REQUIRE(create_sqlite_world(folder_.path(), meta, options_).has_value());
     server_.start();
     for (unsigned i = 0; i < replicas; ++i) {
-      clients_.push_back(std::make_unique<SimClient>(time_, rng_, server_, faults_, i + 1));
+      clients_.push_back(std::make_unique<SimClient>(time_, rng_, dial(), i + 1));
     }
     for (unsigned i = 0; i < readers; ++i) {
-      clients_.push_back(std::make_unique<SimClient>(time_, rng_, server_, faults_, 100 + i,
+      clients_.push_back(std::make_unique<SimClient>(time_, rng_, dial(), 100 + i,
                                                      folder_ / ("cache" + std::to_string(i))));
     }
   }
@@ -83,10 +69,10 @@ class Simulation {
     }
     r.edits = log.size();
     r.expect(log.size() == last, "the log ends before the server's last sequence");
-    check_durable_kept(log, r);
-    check_exactly_once(log, r);
-    check_voxels(log, r);
-    check_heights(log, r);
+    r.check_durable_kept(log, remembered_);
+    r.check_exactly_once(log, clients_);
+    r.check_voxels(log, {&server_.world()}, clients_);
+    r.check_heights(log, world_config().heights, clients_);
     return r;
   }
 
@@ -107,6 +93,12 @@ class Simulation {
  private:
   /// Time in which all 145 chunks of the largest view are checked, at 8 a second.
   static constexpr TimeUs kDigestCheckRoundUs = 30'000'000;
+
+  SimDial dial() {
+    return [this](SimEnd client) {
+      return server_.running() ? server_.accept(faults_, std::move(client)) : nullptr;
+    };
+  }
 
   void come_to_rest() {
     const TimeUs give_up = time_.now() + 300'000'000;
@@ -207,92 +199,6 @@ class Simulation {
                        [](const auto& c) { return c->is_idle(); });
   }
 
-  /// Checks that edits durable before a crash are in the log, at the same sequence.
-  void check_durable_kept(const std::vector<EditRecord>& log, FinalCheck& r) const {
-    r.expect(log.size() >= remembered_.size(), "durable edits are missing");
-    for (std::size_t i = 0; i < std::min(log.size(), remembered_.size()); ++i) {
-      r.expect(log[i].op == remembered_[i], "a durable edit changed, seq " + std::to_string(i + 1));
-    }
-  }
-
-  /// Checks that each submitted edit is in the log once, or that its client knows why not.
-  void check_exactly_once(const std::vector<EditRecord>& log, FinalCheck& r) const {
-    std::map<OperationId, int> times;
-    for (const EditRecord& record : log) ++times[record.op];
-    for (const auto& [op, count] : times) r.expect(count == 1, "an edit was applied twice");
-    for (const auto& client : clients_) {
-      for (const auto& [seq, edit] : client->submitted()) {
-        const auto found = times.find({client->session().author(), client->instance(), seq});
-        const auto reject = client->rejected().find(seq);
-        const bool is_rejected =
-            reject != client->rejected().end() || client->unseen().contains(seq);
-        r.unknown += client->unseen().contains(seq) && found == times.end() ? 1 : 0;
-        r.rejected += is_rejected ? 1 : 0;
-        r.expect(found != times.end() || is_rejected,
-                 "an edit was lost without an answer, client seq " + std::to_string(seq));
-        r.expect(found == times.end() || reject == client->rejected().end(),
-                 "an edit was rejected and applied, client seq " + std::to_string(seq));
-        r.expect(found != times.end() || !client->durable().contains(seq),
-                 "an edit called durable is not in the log");
-      }
-    }
-  }
-
-  /// Checks that no edit beyond the world's heights was ordered, and that the clients refused all
-  /// of them.
-  void check_heights(const std::vector<EditRecord>& log, FinalCheck& r) const {
-    const HeightLimits heights = world_config().heights;
-    for (const EditRecord& record : log) {
-      const VoxelBox box = bounding_box(record.edit);
-      r.expect(box.min.y >= heights.y_min && box.max.y <= heights.y_max,
-               "an edit beyond the heights is in the log");
-    }
-    for (const auto& client : clients_) {
-      r.beyond += client->refused();
-      for (const auto& [seq, reason] : client->rejected()) {
-        r.expect(reason != RejectReason::outside_world,
-                 "a client predicted an edit beyond the heights");
-      }
-    }
-  }
-
-  /// Checks that server, replicas and the dense replay of the log agree, chunk by chunk.
-  void check_voxels(const std::vector<EditRecord>& log, FinalCheck& r) {
-    std::map<ChunkKey, std::vector<EditDescriptor>> edits;
-    std::map<ChunkKey, Sequence> versions;
-    for (const EditRecord& record : log) {
-      for (const ChunkCoord at : touched_chunks(record.edit, kSimEdge)) {
-        edits[{0, at}].push_back(record.edit);
-        versions[{0, at}] = record.version.seq;
-      }
-    }
-    for (const auto& client : clients_) {
-      for (const ChunkKey& key : client->replica().confirmed_keys()) edits.try_emplace(key);
-    }
-    for (const auto& [key, stack] : edits) {
-      ++r.chunks;
-      DenseChunk oracle = DenseChunk::of(sim_base_chunk(key.at));
-      oracle_apply(oracle, origin_of(key.at, kSimEdge), stack);
-      const Digest expected = oracle.digest();
-      const std::string name = "chunk " + std::to_string(key.at.x) + "," +
-                               std::to_string(key.at.y) + "," + std::to_string(key.at.z);
-      if (const ChunkPtr live = server_.world().find_chunk(key)) {
-        r.expect(digest_of(live->voxels) == expected, name + ": the server differs from the log");
-        r.expect(live->digest == expected,
-                 name + ": the server's digest does not follow its voxels");
-      }
-      for (const auto& client : clients_) {
-        const ChunkPtr held = client->replica().confirmed(key);
-        if (!held) continue;
-        r.expect(digest_of(held->voxels) == expected, name + ": a replica differs from the log");
-        r.expect(held->version.seq == versions[key],
-                 name + ": a replica stands at another version");
-        r.expect(*client->replica().shown(key) == held->voxels,
-                 name + ": something is shown that nobody confirmed");
-      }
-    }
-  }
-
   VirtualTime time_;
   SplitMix64 rng_;
   const unsigned readers_;
@@ -305,12 +211,6 @@ class Simulation {
   std::vector<OperationId> remembered_;  // durable at the last crash
   int crashes_ = 0, cuts_ = 0;
 };
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string out;
-  for (std::size_t i = 0; i < lines.size() && i < 10; ++i) out += lines[i] + "\n";
-  return out;
-}
 
 }  // namespace
 
@@ -325,7 +225,7 @@ TEST_CASE("three replicas and a server that loses power agree after thousands of
   Simulation simulation(seed);
   simulation.run(2500, 4);
   const FinalCheck r = simulation.check();
-  INFO(joined(r.faults));
+  INFO(r.text());
   CHECK(r.faults.empty());
   CHECK(simulation.crashes() > 2);
   CHECK(simulation.cuts() > 5);
@@ -349,7 +249,7 @@ void ten_replicas(std::uint64_t seed, int steps) {
   simulation.server().drop_commits = 2;
   simulation.run(steps, 2);
   const FinalCheck r = simulation.check();
-  INFO(joined(r.faults));
+  INFO(r.text());
   CHECK(r.faults.empty());
   // The seed decides how much went wrong: any of it, so that the other checks mean something.
   CHECK(simulation.crashes() > 1);
@@ -375,7 +275,7 @@ TEST_CASE("clients that are killed restart with their caches, and no replica dri
   Simulation simulation(seed, 3, true, 3);
   simulation.run(2500, 4);
   const FinalCheck r = simulation.check();
-  INFO(joined(r.faults));
+  INFO(r.text());
   CHECK(r.faults.empty());
   CHECK(simulation.crashes() > 2);
   std::uint64_t hits = 0, not_common = 0;
@@ -399,7 +299,7 @@ TEST_CASE("commits that vanish between server and replica are noticed and repair
   simulation.server().drop_commits = 40;
   simulation.run(1500, 0);
   const FinalCheck r = simulation.check();
-  INFO(joined(r.faults));
+  INFO(r.text());
   CHECK(simulation.server().dropped > 5);
   CHECK(r.faults.empty());
 }

@@ -13,23 +13,20 @@
 
 namespace runstone::test {
 
+/// Connects with a server. Returns null if there is none.
+using SimDial = std::function<std::shared_ptr<SimConnection>(SimEnd client)>;
+
 class SimClient {
  public:
-  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults,
-            unsigned number)
-      : time_(time),
-        rng_(rng),
-        server_(server),
-        faults_(faults),
-        number_(number),
-        session_(config(number)) {
+  SimClient(VirtualTime& time, SplitMix64& rng, SimDial dial, unsigned number)
+      : time_(time), rng_(rng), dial_(std::move(dial)), number_(number), session_(config(number)) {
     pump();
   }
   /// Makes a client that caches chunks in this folder. It must not edit: restart() forgets local
   /// edits.
-  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults,
-            unsigned number, const std::string& cache_folder)
-      : SimClient(time, rng, server, faults, number) {
+  SimClient(VirtualTime& time, SplitMix64& rng, SimDial dial, unsigned number,
+            const std::string& cache_folder)
+      : SimClient(time, rng, std::move(dial), number) {
     auto cache = ChunkCache::open(cache_folder, std::uint64_t{1} << 20);
     if (!cache) throw SimFault(cache.error());
     cache_ = *std::move(cache);
@@ -93,13 +90,13 @@ class SimClient {
   /// changes.
   void pump() {
     time_.after(rng_.between(1000, 8000), [this] {
-      if (!connection_ && server_.running() && time_.now() >= retry_at_) connect();
+      if (!connection_ && time_.now() >= retry_at_) connect();
       if (connection_) {
         session_.tick(time_.now());
         if (cache_) step_cache();
         for (const Message& message : session_.take_outgoing())
           connection_->send_from_client(encode_message(message));
-        if (session_.wants_close()) throw SimFault("session closes: " + session_.end()->text);
+        if (session_.wants_close()) close();
       }
       for (const RejectedEdit& r : drain_changes().rejects) rejected_[r.seq] = r.reason;
       pump();
@@ -122,6 +119,13 @@ class SimClient {
     return changes;
   }
 
+  /// Closes a connection whose server says goodbye, or is silent.
+  void close() {
+    const SessionEnd& end = *session_.end();
+    const bool is_expected = end.by_server ? !end.final : end.reason == GoodbyeReason::timed_out;
+    if (!is_expected) throw SimFault("session closes: " + end.text);
+    connection_->cut();
+  }
   void connect() {
     ++link_;
     SimEnd end;
@@ -143,7 +147,11 @@ class SimClient {
       session_.disconnected();
       retry_at_ = time_.now() + rng_.between(20'000, 500'000);
     };
-    connection_ = server_.accept(faults_, std::move(end));
+    connection_ = dial_(std::move(end));
+    if (!connection_) {
+      retry_at_ = time_.now() + rng_.between(20'000, 500'000);
+      return;
+    }
     Nonce nonce{};
     for (auto& b : nonce) b = static_cast<std::uint8_t>(rng_.next());
     session_.connected(nonce, std::nullopt, time_.now());
@@ -151,8 +159,7 @@ class SimClient {
 
   VirtualTime& time_;
   SplitMix64& rng_;
-  SimServer& server_;
-  const LinkFaults& faults_;
+  const SimDial dial_;
   const unsigned number_;
   std::unique_ptr<ChunkCache> cache_;
   unsigned life_ = 0;

@@ -1,5 +1,6 @@
 // SimServer: a WorldServer with virtual threads: a log writer and workers that answer after a
 // while, sessions on simulated connections, and crashes that lose everything except the disk.
+// SimProcess derives from it: a server of a world that several servers share.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/history/missing_edits.hpp"
+#include "server/runtime/recovery.hpp"
 #include "server/store/store.hpp"
 #include "server/world/world_server.hpp"
 #include "tests/simulation/client/session/sim_network.hpp"
@@ -46,7 +48,7 @@ inline RunChunk sim_base_chunk(ChunkCoord at) {
   return builder.finish();
 }
 
-class SimServer final : public WorldEnvironment {
+class SimServer : public WorldEnvironment {
  public:
   /// `open` opens the store of the world. It is called at each start.
   SimServer(VirtualTime& time, SplitMix64& rng, WorldConfig config,
@@ -59,36 +61,17 @@ class SimServer final : public WorldEnvironment {
 
   void start() {
     store_ = open_();
-    WorldStart start;
-    start.log.epoch = value(store_->raise_epoch());
-    const LogEnd last = value(store_->log_range()).last;
-    start.log.last = last.version.seq;
-    start.log.last_time_us = last.time_us;
-    start.checkpoint = value(store_->checkpoint());
-    start.snapshots = value(store_->snapshot_keys());
-    start.players = value(store_->players());
-    start.name_claims = value(store_->name_claims());
-    start.author_max = store_->author_max();
-    start.resolved = value(store_->high_waters());
-    std::vector<EditRecord> tail;
-    if (start.log.last > start.checkpoint) {
-      done(store_->read_log(start.checkpoint + 1, start.log.last, [&](const EditRecord& r) {
-        tail.push_back(r);
-        return true;
-      }));
-    }
-    world_ =
-        std::make_unique<WorldServer>(config_, start, *this, [this](std::span<std::uint8_t> out) {
-          for (auto& b : out) b = static_cast<std::uint8_t>(rng_.next());
-        });
-    for (const EditRecord& r : tail) world_->replay_onto_stack(r);
-    ++life_;
+    const Epoch epoch = value(store_->raise_epoch());
+    WorldStart start = read_start();
+    start.log.epoch = epoch;
+    make_world(start);
     tick_later();
   }
 
   /// Loses power: memory, queues and connections are lost. The disk keeps what was synchronised.
   void crash() {
     ++life_;
+    turn_waits_ = false;
     world_.reset();
     store_.reset();
     batches_.clear();
@@ -101,31 +84,36 @@ class SimServer final : public WorldEnvironment {
     const SessionId id = next_session_++;
     SimEnd end;
     end.on_message = [this, id, life = life_](MessageKind kind, ByteView bytes) -> Result<void> {
-      if (life != life_ || !sessions_.contains(id)) return {};
-      auto message = decode_message(Sender::client, kind, bytes, kSimEdge);
-      if (!message) throw SimFault(std::string("server cannot decode: ") + message.error().what);
-      world_->received(id, std::move(*message), now());
-      turn_later();
+      run(life, [this, id, kind, copy = Bytes(bytes.begin(), bytes.end())] {
+        if (!sessions_.contains(id)) return;
+        auto message = decode_message(Sender::client, kind, copy, kSimEdge);
+        if (!message) throw SimFault(std::string("server cannot decode: ") + message.error().what);
+        world_->received(id, std::move(*message), now());
+        turn_later();
+      });
       return {};
     };
     end.on_bad_stream = [](const Error& error) {
       throw SimFault(std::string("server got a bad stream: ") + error.what);
     };
     end.on_closed = [this, id, life = life_] {
-      if (life != life_) return;
-      if (sessions_.erase(id) != 0) world_->disconnected(id);
+      run(life, [this, id] {
+        if (sessions_.erase(id) != 0) world_->disconnected(id);
+      });
     };
     end.on_drained = [this, id, life = life_] {
-      if (life == life_ && sessions_.contains(id)) world_->drained(id, now());
+      run(life, [this, id] {
+        if (sessions_.contains(id)) world_->drained(id, now());
+      });
     };
     auto connection = std::make_shared<SimConnection>(time_, rng_, faults, server_queue_bytes,
                                                       std::move(end), std::move(client));
     sessions_[id].connection = connection;
-    world_->connected(id, now());
+    run(life_, [this, id] { world_->connected(id, now()); });
     return connection;
   }
 
-  Clocks now() const { return {time_.now(), 1'700'000'000'000'000 + time_.now()}; }
+  Clocks now() const { return {time_.now(), 1'700'000'000'000'000 + time_.now() + utc_offset_us}; }
 
   // Faults, in occurrences per 1000.
   std::uint32_t drop_commits = 0;  // send() returns true and loses the commit
@@ -133,8 +121,9 @@ class SimServer final : public WorldEnvironment {
   bool log_full = false;
   std::uint64_t dropped = 0;
   std::uint64_t updates = 0;  // sent as edits
+  TimeUs utc_offset_us = 0;   // of this machine's clock
 
- private:
+ protected:
   struct Session {
     std::shared_ptr<SimConnection> connection;
     SessionEncodings encodings;
@@ -151,11 +140,31 @@ class SimServer final : public WorldEnvironment {
     if (!result) throw SimFault(result.error().message());
   }
 
+  /// Reads what the store remembers. The epoch is not set.
+  WorldStart read_start() {
+    auto start = read_world_start(*store_);
+    if (!start) throw SimFault(start.error());
+    return *std::move(start);
+  }
+  void make_world(const WorldStart& start) {
+    world_ =
+        std::make_unique<WorldServer>(config_, start, *this, [this](std::span<std::uint8_t> out) {
+          for (auto& b : out) b = static_cast<std::uint8_t>(rng_.next());
+        });
+    if (const auto replayed = replay_log(*store_, start, *world_); !replayed)
+      throw SimFault(replayed.error());
+  }
+
+  /// Runs an event of the start number `life`, unless the server has crashed since.
+  void run(std::uint64_t life, std::function<void()> event) {
+    if (life == life_) run_now(std::move(event));
+  }
+  /// Runs an event of this start. A program that stands still does so later.
+  virtual void run_now(std::function<void()> event) { event(); }
   /// Runs `event` after a while, unless the server has crashed by then.
   void later(std::int32_t min_us, std::int32_t max_us, std::function<void()> event) {
-    time_.after(rng_.between(min_us, max_us), [this, life = life_, run = std::move(event)] {
-      if (life == life_) run();
-    });
+    time_.after(rng_.between(min_us, max_us),
+                [this, life = life_, event = std::move(event)] { run(life, event); });
   }
   void tick_later() {
     later(40'000, 60'000, [this] {
@@ -166,9 +175,9 @@ class SimServer final : public WorldEnvironment {
   }
   void turn_later() {
     if (std::exchange(turn_waits_, true)) return;
-    time_.after(rng_.between(10, 2000), [this, life = life_] {
+    later(10, 2000, [this] {
       turn_waits_ = false;
-      if (life == life_) world_->commit(now());
+      world_->commit(now());
     });
   }
 
@@ -267,13 +276,14 @@ class SimServer final : public WorldEnvironment {
     });
   }
   void load_chunk(const ChunkKey& key) override {
-    later(100, 50'000, [this, key] {
-      auto snapshot = value(store_->load_snapshot(key));
-      if (snapshot) return world_->chunk_loaded(key, std::move(*snapshot), now());
-      Chunk chunk{sim_base_chunk(key.at), {}, {}};
-      chunk.digest = digest_of(chunk.voxels);
-      world_->chunk_loaded(key, std::move(chunk), now());
-    });
+    later(100, 50'000, [this, key] { load_now(key); });
+  }
+  void load_now(const ChunkKey& key) {
+    auto snapshot = value(store_->load_snapshot(key));
+    if (snapshot) return world_->chunk_loaded(key, std::move(*snapshot), now());
+    Chunk chunk{sim_base_chunk(key.at), {}, {}};
+    chunk.digest = digest_of(chunk.voxels);
+    world_->chunk_loaded(key, std::move(chunk), now());
   }
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                       Sequence checkpoint) override {

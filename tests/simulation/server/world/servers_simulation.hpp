@@ -1,0 +1,239 @@
+// ServersSimulation: three servers of one world, their database and players at each of them, in virtual
+// time. Servers are killed, stand still for longer than their lease, are stopped by their operators, and
+// are cut off from each other and from the database; the database ends all connections; clocks of machines
+// jump. Afterwards the log must have each durable edit once, and all servers and replicas must agree.
+#pragma once
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/simulation/client/session/final_check.hpp"
+#include "tests/simulation/server/world/sim_process.hpp"
+#include "tests/support/sample_world.hpp"
+
+namespace runstone::test {
+
+class ServersSimulation {
+ public:
+  /// What was done, and what became of it.
+  struct Counts {
+    std::uint64_t steps = 0, kills = 0, pauses = 0, stops = 0, cuts = 0, silences = 0;
+    std::uint64_t database_cuts = 0, database_restarts = 0, clock_jumps = 0;
+    std::uint64_t owners = 0;  // of the world, one after the other
+    std::uint64_t edits = 0, chunks = 0, rejected = 0, unexplained = 0;
+  };
+
+  /// Adds to `counts` what it does. `tells`: what happens to the servers is written to standard output, a
+  /// line each.
+  ServersSimulation(std::uint64_t seed, Counts& counts,
+                    std::optional<Protection> without = std::nullopt, bool tells = false)
+      : tells_(tells), counts_(counts), rng_(seed), database_(time_, without) {
+    meta_.chunk_edge = kSimEdge;
+    for (unsigned i = 0; i < kServers; ++i) {
+      const std::string address = "server" + std::to_string(i) + ":4747";
+      servers_.push_back(std::make_unique<SimProcess>(
+          time_, rng_, world_config(), database_, meta_, address,
+          [this](const std::string& wanted) { return find(wanted); },
+          [this](const std::string& what) { tell(what); }));
+      servers_.back()->launch();
+    }
+    for (unsigned i = 0; i < kPlayers; ++i) {
+      clients_.push_back(std::make_unique<SimClient>(
+          time_, rng_, [this](SimEnd client) { return dial(std::move(client)); }, i + 1));
+    }
+    time_.run_until(time_.now() + 3'000'000);
+  }
+
+  /// Performs `steps` random actions, heals everything, and waits until nothing is in flight. Throws
+  /// SimFault if the log is harmed, or if the world does not come to rest.
+  void run(std::uint64_t steps) {
+    for (std::uint64_t step = 0; step < steps; ++step) {
+      time_.run_until(time_.now() + rng_.between(1'000, 120'000));
+      act();
+      see_owner();
+    }
+    counts_.steps += steps;
+    heal();
+    time_.run_until(time_.now() + kStallUsMax);
+    const TimeUs give_up_us = time_.now() + 300'000'000;
+    while (!is_at_rest() && time_.now() < give_up_us) {
+      time_.run_until(time_.now() + 1'000'000);
+      see_owner();
+    }
+    // What the servers have sent last arrives at the players.
+    time_.run_until(time_.now() + 1'000'000);
+    if (!is_at_rest()) throw SimFault("the world does not come to rest: " + state());
+  }
+
+  FinalCheck check() {
+    FinalCheck r;
+    r.edits = database_.log().size();
+    std::vector<WorldServer*> worlds;
+    for (const auto& server : servers_) worlds.push_back(&server->world());
+    r.check_exactly_once(database_.log(), clients_);
+    r.check_voxels(database_.log(), worlds, clients_);
+    r.check_heights(database_.log(), world_config().heights, clients_);
+    for (const auto& client : clients_)
+      r.expect(client->replica().counters().drifted == 0, "a replica has drifted");
+    counts_.edits += r.edits;
+    counts_.chunks += r.chunks;
+    counts_.rejected += r.rejected;
+    counts_.unexplained += r.unknown;
+    return r;
+  }
+
+ private:
+  static constexpr unsigned kServers = 3;
+  static constexpr unsigned kPlayers = 5;
+  static constexpr TimeUs kStallUsMax = 2'500'000;  // of a connection, with all that follows it
+
+  static WorldConfig world_config() {
+    WorldConfig config;
+    config.chunk_edge = kSimEdge;
+    config.heights = {-24, 30};
+    config.materials = default_material_table();
+    config.world_id = sample_meta().world_id;
+    config.server_keys = key_pair_of(KeySeed{7});
+    config.snapshots.edits_max = 100;
+    config.snapshots.interval_us = 5'000'000;
+    config.snapshots.slice_chunks = 5;
+    config.memory.idle_bytes_max = 20'000;
+    return config;
+  }
+
+  void tell(const std::string& what) const {
+    if (!tells_) return;
+    std::cout << std::fixed << std::setprecision(3) << static_cast<double>(time_.now()) / 1e6 << ' '
+              << what << std::endl;
+  }
+  SimProcess* find(const std::string& address) {
+    for (const auto& server : servers_) {
+      if (server->address() == address) return server.get();
+    }
+    return nullptr;
+  }
+  /// Connects a player with a server that takes connections.
+  std::shared_ptr<SimConnection> dial(SimEnd client) {
+    SimProcess& server = any_server();
+    return server.listens() ? server.accept(player_faults_, std::move(client)) : nullptr;
+  }
+  SimProcess& any_server() { return *servers_[rng_.below(kServers)]; }
+
+  void act() {
+    const std::uint64_t what = rng_.below(1000);
+    SimClient& client = *clients_[rng_.below(kPlayers)];
+    if (what < 3) return client.cut();
+    if (what < 20) {
+      return client.look({1,
+                          {rng_.between(-1, 1), rng_.between(-1, 1), rng_.between(-1, 1)},
+                          static_cast<std::uint8_t>(1 + rng_.below(2)),
+                          static_cast<std::uint8_t>(rng_.below(2))});
+    }
+    if (what < 45) return harm(any_server());
+    client.edit(random_edit_near(rng_, {-8, -8, -8}, Extent::cube(kSimEdge)));
+  }
+  void harm(SimProcess& server) {
+    const auto heal_later = [this](TimeUs longest_us, std::function<void()> heal) {
+      time_.after(rng_.between(100'000, static_cast<std::int32_t>(longest_us)), std::move(heal));
+    };
+    switch (rng_.below(8)) {
+      case 0:
+        if (!server.running()) return;
+        ++counts_.kills;
+        return server.kill();
+      case 1:
+        if (server.is_paused()) return;
+        ++counts_.pauses;
+        server.pause();
+        return heal_later(12'000'000, [&server] { server.resume(); });
+      case 2:
+        ++counts_.stops;
+        return server.stop();
+      case 3:
+        ++counts_.database_cuts;
+        server.is_database_cut = true;
+        return heal_later(9'000'000, [&server] { server.is_database_cut = false; });
+      case 4:
+        ++counts_.silences;
+        server.peer_faults.delay_us_max = 8'000'000;
+        return heal_later(8'000'000, [&server] { server.peer_faults = LinkFaults{}; });
+      case 5:
+        ++counts_.cuts;
+        return server.cut_owner_link();
+      case 6:
+        ++counts_.clock_jumps;
+        server.utc_offset_us = rng_.between(-1'000, 1'000) * std::int64_t{1'000'000};
+        return;
+      default:
+        ++counts_.database_restarts;
+        database_.restart();
+        for (const auto& one : servers_) one->lose_database_connections();
+    }
+  }
+  void heal() {
+    player_faults_.stalls_per_1000 = 0;
+    for (const auto& server : servers_) {
+      server->is_database_cut = false;
+      server->peer_faults = LinkFaults{};
+      server->peer_faults.stalls_per_1000 = 0;
+      server->resume();
+    }
+  }
+  void see_owner() {
+    if (const auto owner = database_.owner(); owner && owner->term != term_seen_) {
+      term_seen_ = owner->term;
+      ++counts_.owners;
+    }
+  }
+
+  bool is_at_rest() const {
+    const auto follows_all = [&](const auto& server) {
+      return server->running() && server->world().is_live() &&
+             server->world().head() == database_.last() &&
+             server->world().durable() == database_.last();
+    };
+    return std::ranges::count_if(servers_, [](const auto& s) { return s->is_owner(); }) == 1 &&
+           std::ranges::all_of(servers_, follows_all) &&
+           std::ranges::all_of(clients_, [](const auto& client) { return client->is_idle(); });
+  }
+  std::string state() const {
+    std::string text = "log=" + std::to_string(database_.last());
+    for (const auto& server : servers_) {
+      text += "; " + server->address();
+      if (!server->running()) {
+        text += " does not run";
+        continue;
+      }
+      text += std::string(server->is_owner() ? " owns" : " follows") +
+              " head=" + std::to_string(server->world().head()) +
+              " durable=" + std::to_string(server->world().durable()) +
+              (server->world().is_live() ? "" : " not live");
+    }
+    for (const auto& client : clients_) {
+      if (client->is_idle()) continue;
+      SimClient& busy = *client;
+      text += "; a player open=" + std::to_string(int{busy.session().is_open()}) +
+              " loaded=" + std::to_string(int{busy.session().loaded()}) +
+              " local edits=" + std::to_string(busy.replica().local_edits().all().size()) +
+              " awaited=" + std::to_string(busy.replica().awaiting_count());
+    }
+    return text;
+  }
+
+  const bool tells_;
+  Counts& counts_;
+  VirtualTime time_;
+  SplitMix64 rng_;
+  ModelDatabase database_;
+  WorldMeta meta_ = sample_meta();
+  LinkFaults player_faults_;
+  std::vector<std::unique_ptr<SimProcess>> servers_;
+  FinalCheck::Clients clients_;
+  LeaseTerm term_seen_ = 0;
+};
+
+}  // namespace runstone::test

@@ -1,0 +1,78 @@
+// Several servers of one world, with faults of every kind (servers_simulation.hpp). Each protection is
+// removed once: the simulation must find the harm.
+#include <catch2/catch.hpp>
+
+#include "tests/simulation/server/world/servers_simulation.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr std::uint64_t kSteps = 1'000;
+
+/// Runs a simulation. Returns what it found, or an empty text.
+std::string violation(ServersSimulation& simulation, std::uint64_t steps = kSteps) {
+  try {
+    simulation.run(steps);
+    return simulation.check().text();
+  } catch (const SimFault& fault) {
+    return fault.what();
+  }
+}
+
+void run_seeds(std::uint64_t first, std::uint64_t count, std::uint64_t steps = kSteps) {
+  ServersSimulation::Counts sum;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    CAPTURE(seed);
+    ServersSimulation simulation(seed, sum);
+    CHECK(violation(simulation, steps) == "");
+  }
+  CHECK(sum.owners > count);
+  CHECK(sum.edits > sum.steps / 4);
+  WARN(count << " seeds, " << sum.steps << " steps: " << sum.edits << " edits, " << sum.rejected
+             << " rejected, " << sum.owners << " owners, " << sum.kills << " kills, " << sum.pauses
+             << " pauses, " << sum.stops << " stops, " << sum.cuts << " cuts and " << sum.silences
+             << " silences between servers, " << sum.database_cuts << " cuts and "
+             << sum.database_restarts << " restarts of the database, " << sum.clock_jumps
+             << " clock jumps, " << sum.chunks << " chunks compared, " << sum.unexplained
+             << " edits never explained");
+}
+
+TEST_CASE("servers of one world lose no durable edit and agree after faults of every kind",
+          "[simulation][servers]") {
+#ifdef RUNSTONE_SANITIZED
+  run_seeds(1, 2, 500);
+#else
+  run_seeds(1, 10);
+#endif
+}
+
+// What happened in a run of one seed: --rng-seed says which.
+TEST_CASE("the story of one seed", "[.seed]") {
+  ServersSimulation::Counts counts;
+  ServersSimulation simulation(Catch::rngSeed(), counts, std::nullopt, true);
+  CHECK(violation(simulation) == "");
+}
+
+// Minutes: docs/testing.md gives the command.
+TEST_CASE("servers of one world agree after a million steps", "[.long]") {
+  run_seeds(1'000, 1'000);
+}
+
+TEST_CASE("without any one of its protections, a simulation finds the harm",
+          "[simulation][servers]") {
+  for (const Protection protection : kProtections) {
+    std::string found;
+    std::uint64_t seed = 1;
+    for (; seed <= 40 && found.empty(); ++seed) {
+      ServersSimulation::Counts counts;
+      ServersSimulation simulation(seed, counts, protection);
+      found = violation(simulation);
+    }
+    CAPTURE(name_of(protection));
+    CHECK_FALSE(found.empty());
+    WARN("without " << name_of(protection) << ", seed " << seed - 1 << ": " << found);
+  }
+}
+
+}  // namespace
+}  // namespace runstone::test
