@@ -54,6 +54,14 @@ class Builders:
             self.longest_s = longest / 1e6
         return [f"{self.name}: {wrong}" for wrong in judge(seen, self.process.returncode)]
 
+    def check_that_most_is_durable(self):
+        """Returns what is wrong if these edits came while things failed for some seconds each."""
+        edits = self.edits
+        if edits["durable"] < edits["submitted"] / 2:
+            return [f"of {edits['submitted']} edits only {edits['durable']} became durable: a server that "
+                    "could accept edits did not"]
+        return []
+
     def check_that_all_is_durable(self):
         """Returns what is wrong if these edits came when nothing failed."""
         edits = self.edits

@@ -138,6 +138,8 @@ def prove_builders(run, proof):
     broken["verified"]["violations"] = {"answer twice": {"count": 1}}
     proof.expect("a violation", judge(broken, 0), "break the protocol")
     proof.expect("an exit code", judge(seen, 1), "exit code")
+    run.builders.edits["durable"] = run.builders.edits["submitted"] // 3
+    proof.expect("rejections all the time", run.builders.check_that_most_is_durable(), "became durable")
     run.latecomers.edits["rejected"] = 1
     proof.expect("a rejected edit", run.latecomers.check_that_all_is_durable(), "rejected")
 

@@ -36,7 +36,7 @@ class Run:
         self.cluster.wait(2)
         disturb()
         self.cluster.heal()
-        wrong = self._see_off(self.builders)
+        wrong = self._see_off(self.builders) + self.builders.check_that_most_is_durable()
         # Everything must work again.
         self.latecomers.start(self.cluster.players.port, LATE_S)
         wrong += self._see_off(self.latecomers) + self.latecomers.check_that_all_is_durable()
