@@ -40,7 +40,7 @@ BotConfig config_of(const BotOptions& options, std::size_t index) {
   config.session.view.radius_v = options.view_radius_v;
   config.session.view.levels = options.far_levels;
   config.role = options.roles[index % options.roles.size()];
-  config.site = index % options.sites;
+  config.site = (options.first_site + index) % options.sites;
   config.sites = options.sites;
   config.seed = mix64(options.seed + index);
   config.rate = options.rate;

@@ -125,6 +125,8 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   app.add_option("--edits", edits, "edits at most, each bot");
   app.add_option("--sites", out.sites,
                  "building sites of all fleets that share the world; default: --count");
+  app.add_option("--first-site", out.first_site,
+                 "site of the first bot, from 0: fleets that share a world can stand apart");
   app.add_option("--seed", out.seed, "seed of everything that bots choose at random");
   app.add_option("--view", view, "view radius in chunks, both ways")
       ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
@@ -146,9 +148,9 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
          "play: 2 is twice as fast as recorded, 0 or max as fast as the server takes them; "
          "default 1")
       ->needs(play);
-  for (const char* other :
-       {"--count", "--behaviour", "--mix", "--replicas", "--join-rate", "--name", "--key-dir",
-        "--rate", "--duration", "--edits", "--sites", "--seed", "--view", "--far-levels"}) {
+  for (const char* other : {"--count", "--behaviour", "--mix", "--replicas", "--join-rate",
+                            "--name", "--key-dir", "--rate", "--duration", "--edits", "--sites",
+                            "--first-site", "--seed", "--view", "--far-levels"}) {
     play->excludes(app.get_option(other));
   }
   try {

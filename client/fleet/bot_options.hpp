@@ -29,6 +29,7 @@ struct BotOptions {
   double seconds = 10;                 // for which edits are due
   std::optional<std::uint64_t> edits;  // at most, each bot
   std::size_t sites = 0;               // building sites of all fleets in the world; set by parsing
+  std::size_t first_site = 0;          // of the first bot; the others have the next ones
   std::uint64_t seed = 1;
   std::uint8_t view_radius = 2, view_radius_v = 2;  // chunks
   std::uint8_t far_levels = 0;                      // of tiles beyond them

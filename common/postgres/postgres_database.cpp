@@ -6,8 +6,10 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "common/postgres/postgres_connection.hpp"
 
@@ -37,6 +39,25 @@ Result<void> set_up(Database& database, PostgresMode mode) {
       "SET tcp_user_timeout = 15000");
 }
 
+std::vector<std::string> parts_of(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream in(list);
+  for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
+  if (parts.empty()) parts.emplace_back();
+  return parts;
+}
+/// Returns HOST:PORT,HOST:PORT of lists with commas. One port is that of all hosts.
+std::string hosts_of(const std::string& hosts, const std::string& ports) {
+  const std::vector<std::string> port = parts_of(ports);
+  std::string text;
+  for (std::size_t i = 0; const std::string& host : parts_of(hosts)) {
+    const std::string& its_port = port[std::min(i, port.size() - 1)];
+    text += (i == 0 ? "" : ",") + host + (its_port.empty() ? "" : ":" + its_port);
+    ++i;
+  }
+  return text;
+}
+
 }  // namespace
 
 bool is_postgres_url(const std::string& text) {
@@ -56,8 +77,8 @@ std::string without_password(const std::string& url) {
     return value.empty() ? std::string() : before + value + after;
   };
   const bool is_socket = values["host"].starts_with('/');
-  return "postgresql://" + part("", "user", "@") + (is_socket ? "" : part("", "host", "")) +
-         part(":", "port", "") + part("/", "dbname", "") +
+  const std::string hosts = hosts_of(is_socket ? "" : values["host"], values["port"]);
+  return "postgresql://" + part("", "user", "@") + hosts + part("/", "dbname", "") +
          (is_socket ? part("?host=", "host", "") : "") +
          part(is_socket ? "&options=" : "?options=", "options", "");
 }

@@ -148,8 +148,7 @@ void log_stop(const StopReport& report, const ServerConfig& config) {
         "EDITS ARE LOST: lost_edits={} were accepted and could not be written; clients that keep "
         "them offer them again",
         report.state.lost_edits);
-  }
-  if (report.hands_over) {
+  } else if (report.hands_over) {
     logger("app").info("every edit is in the log, and the next owner takes them from there");
   } else if (report.state.chunks_left > 0) {
     logger("store").warn(

@@ -8,6 +8,9 @@ namespace runstone {
 namespace {
 
 constexpr std::chrono::milliseconds kPause{250};
+// A server that follows may have edits that the database lacks. So a server that starts leaves a world
+// without an owner to it for a second.
+constexpr int kFreeLooks = 4;
 // An owner that stops lets go of the connection first, and of the lease a moment later. Edits of players
 // wait meanwhile.
 constexpr std::chrono::milliseconds kShortPause{10};
@@ -24,15 +27,19 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
     return owner && !*owner;
   };
   std::string told;
+  int free_looks = 0;
   for (;;) {
     const auto owner = lease.owner();
     std::string reason;
+    if (!owner || *owner) free_looks = 0;
     if (!owner) {
       reason = owner.error().message();
     } else if (*owner) {
       auto followed = follow();
       if (followed) return followed;
       reason = (*owner)->name + " owns the world, and cannot be followed: " + followed.error();
+    } else if (++free_looks <= kFreeLooks) {
+      reason = "nobody owns the world, and a server that follows may take it over";
     } else {
       logger("app").info("STANDBY: nobody owns the world: taking it over");
       auto started = start();
@@ -40,6 +47,7 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
       // Another standby was faster, or the database went away. It may show a moment later.
       if (stops_within(kPause)) return std::unique_ptr<Server>();
       if (is_free()) return started;
+      reason = started.error();
     }
     if (reason != told) logger("app").info("STANDBY: waiting, because {}", reason);
     told = reason;

@@ -14,6 +14,7 @@ namespace runstone {
 namespace {
 
 constexpr std::chrono::milliseconds kConnectTimeout{2'000};
+constexpr std::size_t kToldMax = 16;
 
 }  // namespace
 
@@ -40,7 +41,7 @@ void OwnerConnection::connect_to(const std::string& address) {
 void OwnerConnection::connect(const std::string& address) {
   const auto end = parse_host_port(address, kDefaultPort);
   if (!end) {
-    if (std::exchange(told_, address) != address)
+    if (is_news(address))
       logger("world").error("the owner's address \"{}\" is none: {}", address, end.error());
     return;
   }
@@ -57,10 +58,10 @@ void OwnerConnection::connect(const std::string& address) {
   events.on_ended = [this, address](const std::string& why) {
     strand_.post([this, address, why] {
       link_.reset();
+      if (world_->is_live()) told_.clear();
       world_->owner_disconnected();
       const std::string line = address + ": " + why;
-      if (!has_ended_ && std::exchange(told_, line) != line)
-        logger("world").warn("OWNER LOST: {}", line);
+      if (!has_ended_ && is_news(line)) logger("world").warn("OWNER LOST: {}", line);
     });
   };
   std::optional<TlsContext> tls;
@@ -69,6 +70,11 @@ void OwnerConnection::connect(const std::string& address) {
                                          std::move(events));
   address_ = address;
   link_->connect(*end, kConnectTimeout);
+}
+
+bool OwnerConnection::is_news(const std::string& reason) {
+  if (told_.size() >= kToldMax) told_.clear();
+  return told_.insert(reason).second;
 }
 
 void OwnerConnection::leave(const std::string& why) {

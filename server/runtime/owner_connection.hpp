@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "server/net/outgoing_link.hpp"
@@ -37,6 +38,8 @@ class OwnerConnection {
 
  private:
   void connect(const std::string& address);
+  /// Returns true if a reason why there is no connection was not logged yet.
+  bool is_news(const std::string& reason);
 
   asio::io_context& io_;
   WorldStrand& strand_;
@@ -47,7 +50,7 @@ class OwnerConnection {
   // Used on the world strand.
   std::shared_ptr<OutgoingLink> link_;  // null: there is no connection
   std::string address_;                 // to which it leads
-  std::string told_;                    // the reason for the last end, to log each once
+  std::set<std::string> told_;  // why there was no connection since the last one that was live
   bool has_ended_ = false;
 };
 

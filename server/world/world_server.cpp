@@ -489,6 +489,7 @@ bool WorldServer::take_over(const Takeover& start, const Clocks& now) {
   world.following.reset();
   world.config.features = start.features;
   world.durable = world.authority.head();
+  world.disk_is_full = false;  // of the owner before; the log of this server says if it is
   world.checkpointer = Checkpointer(world.config.snapshots, start.checkpoint);
   world.players.begin_above(start.author_max);
   begin_epoch(world, start.epoch);

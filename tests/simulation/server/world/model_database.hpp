@@ -75,6 +75,8 @@ class ModelDatabase {
   }
   /// Returns false if the transaction was ended: nothing may be written in it.
   bool commit(Transaction transaction) { return open_.erase(transaction) != 0; }
+  /// No transaction can write meanwhile.
+  bool is_disk_full = false;
   /// All connections end. What was not committed is lost.
   void restart() { open_.clear(); }
 

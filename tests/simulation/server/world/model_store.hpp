@@ -170,6 +170,8 @@ class ModelStore final : public Store {
     throw SimFault("the model of the database does not know this call");
   }
   StoreResult<void> may_write() const {
+    if (database_.is_disk_full)
+      return Unexpected<StoreError>{{StoreError::Kind::full, file_, "", "no space is left"}};
     if (term_ && database_.may_write(*term_)) return {};
     return Unexpected<StoreError>{
         {StoreError::Kind::locked, file_, "lease", "another server has taken this world over"}};

@@ -1,7 +1,7 @@
 // ServersSimulation: three servers of one world, their database and players at each of them, in virtual
 // time. Servers are killed, stand still for longer than their lease, are stopped by their operators, and
-// are cut off from each other and from the database; the database ends all connections; clocks of machines
-// jump. Afterwards the log must have each durable edit once, and all servers and replicas must agree.
+// are cut off from each other and from the database; the database ends all connections, or its disk is full;
+// clocks of machines jump. Afterwards the log must have each durable edit once, and all servers and replicas must agree.
 #pragma once
 #include <iomanip>
 #include <iostream>
@@ -22,7 +22,7 @@ class ServersSimulation {
   /// What was done, and what became of it.
   struct Counts {
     std::uint64_t steps = 0, kills = 0, pauses = 0, stops = 0, cuts = 0, silences = 0;
-    std::uint64_t database_cuts = 0, database_restarts = 0, clock_jumps = 0;
+    std::uint64_t database_cuts = 0, database_restarts = 0, full_disks = 0, clock_jumps = 0;
     std::uint64_t owners = 0;  // of the world, one after the other
     std::uint64_t edits = 0, chunks = 0, rejected = 0, unexplained = 0;
   };
@@ -59,14 +59,8 @@ class ServersSimulation {
     counts_.steps += steps;
     heal();
     time_.run_until(time_.now() + kStallUsMax);
-    const TimeUs give_up_us = time_.now() + 300'000'000;
-    while (!is_at_rest() && time_.now() < give_up_us) {
-      time_.run_until(time_.now() + 1'000'000);
-      see_owner();
-    }
-    // What the servers have sent last arrives at the players.
-    time_.run_until(time_.now() + 1'000'000);
-    if (!is_at_rest()) throw SimFault("the world does not come to rest: " + state());
+    come_to_rest();
+    build_in_peace();
   }
 
   FinalCheck check() {
@@ -110,6 +104,26 @@ class ServersSimulation {
     std::cout << std::fixed << std::setprecision(3) << static_cast<double>(time_.now()) / 1e6 << ' '
               << what << std::endl;
   }
+  void come_to_rest() {
+    const TimeUs give_up_us = time_.now() + 300'000'000;
+    while (!is_at_rest() && time_.now() < give_up_us) {
+      time_.run_until(time_.now() + 1'000'000);
+      see_owner();
+    }
+    // What the servers have sent last arrives at the players.
+    time_.run_until(time_.now() + 1'000'000);
+    if (!is_at_rest()) throw SimFault("the world does not come to rest: " + state());
+  }
+  /// Nothing fails any more, so an edit of each player is ordered and written.
+  void build_in_peace() {
+    const Sequence before = database_.last();
+    for (std::int32_t i = 0; const auto& client : clients_)
+      client->edit({SetVoxel{{++i, 1, 1}}, {}, 1});
+    come_to_rest();
+    if (database_.last() != before + clients_.size())
+      throw SimFault("nothing fails any more, and edits of the players are not in the log");
+  }
+
   SimProcess* find(const std::string& address) {
     for (const auto& server : servers_) {
       if (server->address() == address) return server.get();
@@ -140,7 +154,7 @@ class ServersSimulation {
     const auto heal_later = [this](TimeUs longest_us, std::function<void()> heal) {
       time_.after(rng_.between(100'000, static_cast<std::int32_t>(longest_us)), std::move(heal));
     };
-    switch (rng_.below(8)) {
+    switch (rng_.below(9)) {
       case 0:
         if (!server.running()) return;
         ++counts_.kills;
@@ -168,6 +182,10 @@ class ServersSimulation {
         ++counts_.clock_jumps;
         server.utc_offset_us = rng_.between(-1'000, 1'000) * std::int64_t{1'000'000};
         return;
+      case 7:
+        ++counts_.full_disks;
+        database_.is_disk_full = true;
+        return heal_later(8'000'000, [this] { database_.is_disk_full = false; });
       default:
         ++counts_.database_restarts;
         database_.restart();
@@ -175,6 +193,7 @@ class ServersSimulation {
     }
   }
   void heal() {
+    database_.is_disk_full = false;
     player_faults_.stalls_per_1000 = 0;
     for (const auto& server : servers_) {
       server->is_database_cut = false;

@@ -32,9 +32,9 @@ void run_seeds(std::uint64_t first, std::uint64_t count, std::uint64_t steps = k
              << " rejected, " << sum.owners << " owners, " << sum.kills << " kills, " << sum.pauses
              << " pauses, " << sum.stops << " stops, " << sum.cuts << " cuts and " << sum.silences
              << " silences between servers, " << sum.database_cuts << " cuts and "
-             << sum.database_restarts << " restarts of the database, " << sum.clock_jumps
-             << " clock jumps, " << sum.chunks << " chunks compared, " << sum.unexplained
-             << " edits never explained");
+             << sum.database_restarts << " restarts of the database, " << sum.full_disks
+             << " full disks, " << sum.clock_jumps << " clock jumps, " << sum.chunks
+             << " chunks compared, " << sum.unexplained << " edits never explained");
 }
 
 TEST_CASE("servers of one world lose no durable edit and agree after faults of every kind",

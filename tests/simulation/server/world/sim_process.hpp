@@ -35,8 +35,9 @@ class SimProcess final : public SimServer {
   void launch() {
     ask([this] {
       const auto owner = database_.owner();
-      if (!owner) return own();
-      if (database_.epoch() == 0) return launch_again();
+      if (owner) free_looks_ = 0;
+      if (!owner && ++free_looks_ > kFreeLooks) return own();
+      if (!owner || database_.epoch() == 0) return launch_again();
       follow();
     });
   }
@@ -97,6 +98,7 @@ class SimProcess final : public SimServer {
     std::function<void()> done;   // after it
   };
 
+  static constexpr int kFreeLooks = 4;
   static constexpr TimeUs kRunsForUs = 300'000;
 
   void tell(const std::string& what) const { tell_(address_ + ' ' + what); }
@@ -114,10 +116,11 @@ class SimProcess final : public SimServer {
     crash();
     backlog_.clear();
     writes_.clear();
-    is_paused_ = is_stopping_ = false;
+    is_paused_ = is_stopping_ = is_disk_full_ = false;
     term_.reset();
     valid_until_us_ = 0;
     role_ = Role::none;
+    free_looks_ = 0;
   }
   void finish_stop_later(int polls = 1'000) {
     later(5'000, 15'000, [this, polls] {
@@ -161,6 +164,11 @@ class SimProcess final : public SimServer {
     return !database_.is_there(Protection::owner_clock) || time_.now() < valid_until_us_;
   }
 
+  /// The log writer of the owner notices a full disk when it writes.
+  void report_space() {
+    if (std::exchange(is_disk_full_, database_.is_disk_full) != is_disk_full_)
+      world_->set_disk_is_full(is_disk_full_, now());
+  }
   /// Writes in a transaction of its own, behind those before.
   void transact(std::function<void()> write, std::function<void()> done) {
     writes_.push_back({std::move(write), std::move(done)});
@@ -168,6 +176,8 @@ class SimProcess final : public SimServer {
   }
   void write_next() {
     ask([this] {
+      report_space();
+      if (is_disk_full_) return later(1'000'000, 1'000'000, [this] { write_next(); });
       const auto transaction = database_.begin(*term_, kLeaseUs);
       if (!transaction) return kill();
       later(100, 20'000, [this, transaction] { commit(*transaction); });
@@ -319,7 +329,9 @@ class SimProcess final : public SimServer {
 
   // WorldEnvironment.
   bool owns_world() const override { return may_order(); }
-  bool log_has_room(std::size_t /*records*/) const override { return may_order() && !log_full; }
+  bool log_has_room(std::size_t /*records*/) const override {
+    return may_order() && !is_disk_full_;
+  }
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override {
     // What was let in before the program stood still is ordered when it goes on. Nothing else may be.
     const bool ran_on = time_.now() - resumed_us_ > kRunsForUs;
@@ -374,12 +386,14 @@ class SimProcess final : public SimServer {
   const FindPeer find_peer_;
   const std::function<void(const std::string&)> tell_;
   Role role_ = Role::none;
+  int free_looks_ = 0;  // for so often, nobody owned the world when this program started
   bool is_stopping_ = false;
   bool is_paused_ = false;
   TimeUs resumed_us_ = 0;
   std::deque<std::function<void()>> backlog_;  // events that wait while the program stands still
   std::optional<LeaseTerm> term_;
   TimeUs valid_until_us_ = 0;
+  bool is_disk_full_ = false;            // as the world knows
   std::deque<Write> writes_;             // the first one is under way
   std::shared_ptr<SimConnection> link_;  // with the owner; null: there is none
   std::string link_address_;

@@ -41,6 +41,10 @@ TEST_CASE("an address is shown without its password", "[postgres]") {
         "postgresql://ana@/d?host=/tmp/a");
   CHECK(without_password("postgresql://h/d?options=-csearch_path%3Dvalley") ==
         "postgresql://h/d?options=-csearch_path=valley");
+  CHECK(without_password("postgresql://ana:x@h,i:2/d?target_session_attrs=read-write") ==
+        "postgresql://ana@h,i:2/d");
+  CHECK(without_password("postgresql://h:1,i:2/d") == "postgresql://h:1,i:2/d");
+  CHECK(without_password("postgresql:///d?host=h,i&port=5") == "postgresql://h:5,i:5/d");
   CHECK(without_password("postgresql://ana:secre%t@h/d") == "postgresql://...");
   const auto wrong = sql::open_postgres("postgresql://ana:secre%t@h/d", sql::PostgresMode::read);
   REQUIRE_FALSE(wrong.has_value());

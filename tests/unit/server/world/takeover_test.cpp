@@ -356,5 +356,20 @@ TEST_CASE("a server that takes over orders changes and edits of its own",
   CHECK(bench.environment(1).saves[0].chunks.size() == 1);
 }
 
+TEST_CASE("the next owner does not keep the full disk of the one before", "[world][servers]") {
+  ClusterBench bench;
+  bench.join(1, 1, 2);
+  bench.world(0).set_disk_is_full(true, bench.now());
+  bench.tick(1'000'000);
+  REQUIRE(bench.sent<Durable>(1, 1).back().is_read_only);
+  bench.lose_owner();
+  REQUIRE(bench.take_over(1));
+  CHECK_FALSE(bench.sent<Durable>(1, 1).back().is_read_only);
+  bench.edit(1, 1, 1, place(1));
+  bench.run();
+  CHECK(bench.sent<Reject>(1, 1).empty());
+  CHECK(bench.database.last() == 1);
+}
+
 }  // namespace
 }  // namespace runstone::test
