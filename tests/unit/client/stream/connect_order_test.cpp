@@ -117,7 +117,17 @@ TEST_CASE("a connection that brings no list does not begin again with the first 
   order.connected();
   CHECK(order.next().address == "given");
   order.connected();
-  CHECK(order.next().address == "b");
+  for (const std::int64_t pause_ms : {75, 150, 300}) {  // all of them are full
+    const Order::Attempt attempt = order.next();
+    CHECK(attempt.address == "b");
+    CHECK(attempt.pause_ms == pause_ms);
+    order.connected();
+    CHECK(addresses(order, 2) == Names{"c", "given"});
+    order.connected();
+  }
+  order.set_others({"b", "c"});
+  CHECK(addresses(order, 3) == Names{"b", "c", "given"});
+  CHECK(order.next().pause_ms == 75);
 }
 
 TEST_CASE("a newer list replaces the earlier one at the next attempt", "[client_net]") {
