@@ -28,13 +28,14 @@ inline constexpr std::uint64_t kFeaturePreviews = 512;        // PreviewShare an
 inline constexpr std::uint64_t kFeatureTiles = 1024;  // View.levels, and chunks with a level
 inline constexpr std::uint64_t kFeatureResume =
     4096;  // Resume, Resumed; a Durable may raise the epoch
+inline constexpr std::uint64_t kFeatureServerList = 8192;  // Servers
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;  // FollowRequest to RelayCharge
 // Those that a server offers to players.
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
-    kFeaturePreviews | kFeatureTiles | kFeatureResume;
+    kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -142,6 +143,10 @@ inline constexpr std::size_t kRelayBodyBytesMax = kServerEditBytesMax - 64 * 102
 static_assert(kRelaySessionsMax * 4 + 512 <= kServerEditBytesMax - kRelayBodyBytesMax);
 /// Records in one LogPart take so many bytes at most, beyond a single one.
 inline constexpr std::size_t kLogPartBytesMax = 256 * 1024;
+
+// The list of servers.
+inline constexpr std::size_t kServersMax = 64;
+inline constexpr std::size_t kServerAddressBytesMax = 256;  // likewise of the address of a page
 
 // Commands.
 inline constexpr std::size_t kCommandBytesMax = 1024;      // one line

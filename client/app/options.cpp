@@ -42,7 +42,8 @@ struct RawOptions {
 void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   CLI::Option* const connect = app.add_option(
       "--connect", raw.address,
-      "server: HOST, HOST:PORT or a link runstone://HOST:PORT/#INVITE; default port " +
+      "server: HOST, HOST:PORT or a link runstone://HOST:PORT/#INVITE; several servers of one "
+      "world are separated by commas; default port " +
           std::to_string(kDefaultPort));
   app.add_option("LINK", raw.link, "the same as --connect LINK")->excludes(connect);
   CLI::Option* const local =
@@ -171,9 +172,10 @@ void set_server(const RawOptions& raw, ClientOptions& out) {
   if (!out.ticket.empty() && out.key_file.empty() && !has_window)
     throw CLI::ValidationError("--connect",
                                "the invite is for an identity that you keep: add --key FILE");
-  auto server = parse_host_port(link->address, kDefaultPort);
-  if (!server) throw CLI::ValidationError("--connect", server.error());
-  out.server = *std::move(server);
+  auto servers = parse_host_ports(link->address, kDefaultPort);
+  if (!servers) throw CLI::ValidationError("--connect", servers.error());
+  out.server = servers->front();
+  out.more_servers.assign(servers->begin() + 1, servers->end());
 }
 
 /// Sets the options that depend on `raw`. Throws CLI::ParseError.

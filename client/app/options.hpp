@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/app/flight_path.hpp"
 #include "client/local/local_server.hpp"
@@ -16,7 +17,8 @@ namespace runstone {
 
 struct ClientOptions {
   HostPort server{"127.0.0.1", kDefaultPort};
-  bool has_server = true;        // false: the player chooses one on the title screen
+  std::vector<HostPort> more_servers;  // of the same world
+  bool has_server = true;              // false: the player chooses one on the title screen
   std::string local_world;       // name of a world on this computer to start and join; empty: none
   NewLocalWorld local_creation;  // of local_world, if there is none of this name
   ClientSettings settings;       // of a client with a window; `given` says what overrides them

@@ -197,6 +197,7 @@ void Shell::join_address(const JoinAddress& chosen) {
   if (!take_name(chosen.name)) return;
   Destination to{options_, to_string(*server), {}};
   to.options.server = *server;
+  to.options.more_servers.clear();
   to.options.ticket = link->ticket;
   to.options.password.clear();
   to.options.servers_file = default_servers_file();
@@ -238,6 +239,7 @@ bool Shell::start_local(Destination& to, const volatile std::sig_atomic_t& stop)
   }
   if (local_->poll() == LocalServer::State::running) {
     to.options.server = {"127.0.0.1", local_->port()};
+    to.options.more_servers.clear();
     to.options.reconnect_seconds = kLocalReconnectSeconds;
     // No certificate names 127.0.0.1, and this server is known by its key.
     to.options.tls = TlsContext::client();

@@ -75,6 +75,7 @@ void ThreadedSession::start(TimeUs now_us) {
   LinkConfig net;
   net.host = options_.server.host;
   net.port = options_.server.port;
+  net.more = options_.more_servers;
   net.tls = options_.tls;
   net_ = std::make_unique<NetClient>(std::move(net), wake_);
 }
@@ -114,7 +115,7 @@ void ThreadedSession::ask_password() {
 
 void ThreadedSession::on_connected(const LinkConnected& event) {
   connection_ = event.connection;
-  session_.connected(random_nonce(), event.binding, steady_now_us());
+  session_.connected(random_nonce(), event.binding, steady_now_us(), event.is_listed);
   flush();
 }
 
@@ -124,6 +125,8 @@ void ThreadedSession::on_received(LinkReceived& event) {
     count_snapshots(snapshots_, *chunks, event);
   session_.receive(std::move(event.message),
                    {event.received_us, event.unpacked_us, steady_now_us()});
+  if (std::exchange(servers_seen_, session_.servers_number()) != session_.servers_number())
+    net_->set_servers(session_.servers());
   if (session_.connect_count() != connects_handled_) on_world_opened();
 }
 
@@ -135,7 +138,7 @@ void ThreadedSession::on_disconnected(const LinkDisconnected& event) {
   session_.disconnected();
   last_failure_ = event.why;
   last_words_ = session_.end() ? words_of(*session_.end())
-                               : words_of_link(event.why, to_string(options_.server));
+                               : words_of_link(event.why, to_string(event.server));
   if (session_.end() && !session_.end()->text.empty())
     last_failure_ += " (" + session_.end()->text + ")";
   if (!lost_us_) {

@@ -97,7 +97,8 @@ class ThreadedSession {
   std::deque<LinkEvent> events_;     // taken from the network thread, not handled yet
   ConnectionNumber connection_ = 0;  // 0: none
   std::uint64_t connects_handled_ = 0;
-  bool world_opened_ = false;  // until take_world_opened()
+  std::uint64_t servers_seen_ = 0;  // servers_number() of the list that the network thread has
+  bool world_opened_ = false;       // until take_world_opened()
   bool is_password_asked_ = false;
   std::optional<TimeUs> lost_us_ = 0;  // when the last world was lost; nullopt while one is open
   std::string last_failure_;           // why the last attempt to connect failed

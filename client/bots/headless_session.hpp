@@ -37,8 +37,9 @@ class HeadlessSession {
   HeadlessSession(SessionConfig config, FleetStatistics& fleet, TimeUs (*clock)());
 
   // As the functions of ClientSession.
-  void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us) {
-    connection_.connected(nonce, binding, now_us);
+  void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us,
+                 bool is_listed = false) {
+    connection_.connected(nonce, binding, now_us, is_listed);
   }
   void disconnected() { connection_.disconnected(); }
   void receive(Message message, const Arrival& arrival);
@@ -53,6 +54,8 @@ class HeadlessSession {
   bool is_open() const { return connection_.is_open(); }
   const std::optional<SessionEnd>& end() const { return connection_.end(); }
   const std::optional<Welcome>& welcome() const { return connection_.welcome(); }
+  const Servers& servers() const { return connection_.servers(); }
+  std::uint64_t servers_number() const { return connection_.servers_number(); }
   View view() const { return connection_.view(); }
   std::uint64_t connect_count() const { return connection_.connect_count(); }
   /// Returns true if every chunk of the view arrived or is unavailable, none lacks edits, and all tiles

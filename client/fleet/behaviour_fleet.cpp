@@ -55,6 +55,7 @@ struct BehaviourFleet::Parts {
   explicit Parts(const BotOptions& fleet_options) : options(fleet_options) {
     net.host = options.server.host;
     net.port = options.server.port;
+    net.more = options.more_servers;
     net.tls = options.tls;
     net.web_path = options.web_path;
     if (!options.password.empty()) password = std::make_shared<PasswordKeys>(options.password);

@@ -21,8 +21,8 @@ double speed_of(const std::string& text) {
 
 /// Where `--connect` leads: to a server, or to the WebSocket of a gateway.
 struct Target {
-  HostPort server;
-  std::string web_path;  // empty: a server
+  std::vector<HostPort> servers;  // at least one, of one world
+  std::string web_path;           // empty: a server
   bool is_encrypted = true;
 };
 
@@ -43,9 +43,9 @@ Target target_of(std::string text) {
     if (out.web_path.find_first_of(" \r\n?#") != std::string::npos)
       throw CLI::ValidationError("--connect", "not the path of a WebSocket: " + out.web_path);
   }
-  auto server = parse_host_port(text, default_port);
-  if (!server) throw CLI::ValidationError("--connect", server.error());
-  out.server = *std::move(server);
+  auto servers = parse_host_ports(text, default_port);
+  if (!servers) throw CLI::ValidationError("--connect", servers.error());
+  out.servers = *std::move(servers);
   return out;
 }
 
@@ -86,7 +86,8 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   std::uint64_t edits = 0;
   app.add_option("--connect", address,
                  "server: HOST or HOST:PORT, default port " + std::to_string(kDefaultPort) +
-                     "; gateway: wss://HOST:PORT/play, or ws:// without encryption")
+                     ", or several of one world, separated by commas; gateway: "
+                     "wss://HOST:PORT/play, or ws:// without encryption")
       ->required();
   bool insecure = false;
   CLI::Option* const no_encryption = app.add_flag(
@@ -159,7 +160,8 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
     if (!target.web_path.empty() && target.is_encrypted && insecure)
       throw CLI::ValidationError("--insecure", "a gateway without encryption is ws://HOST/PATH");
     if (!target.is_encrypted) insecure = true;
-    out.server = std::move(target.server);
+    out.server = target.servers.front();
+    out.more_servers.assign(target.servers.begin() + 1, target.servers.end());
     out.web_path = std::move(target.web_path);
     if (!password_file.empty()) {
       if (!out.web_path.empty())

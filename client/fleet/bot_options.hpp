@@ -16,6 +16,7 @@ inline constexpr double kPlaySpeedMax = 1'000'000;
 
 struct BotOptions {
   HostPort server{"127.0.0.1", kDefaultPort};
+  std::vector<HostPort> more_servers;                    // of the same world
   std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
   std::string web_path;   // of a gateway's WebSocket; empty: `server` is no gateway
   std::size_t count = 1;  // bots

@@ -35,7 +35,7 @@ template <class Session>
 void LinkedSession<Session>::on_connected(ConnectionNumber connection,
                                           const std::optional<ChannelBinding>& binding) {
   connection_ = connection;
-  session_.connected(random_nonce(), binding, steady_now_us());
+  session_.connected(random_nonce(), binding, steady_now_us(), link_.attempt().is_listed);
   flush();
 }
 
@@ -44,6 +44,8 @@ void LinkedSession<Session>::on_received(LinkReceived received) {
   const TimeUs now_us = steady_now_us();
   session_.receive(std::move(received.message),
                    {received.received_us, received.unpacked_us, now_us});
+  if (std::exchange(servers_seen_, session_.servers_number()) != session_.servers_number())
+    link_.set_servers(session_.servers());
   flush();
 }
 

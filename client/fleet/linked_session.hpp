@@ -51,6 +51,7 @@ class LinkedSession final : private LinkCallbacks {
   const std::string name_;
   Link link_;
   ConnectionNumber connection_ = 0;  // 0: none
+  std::uint64_t servers_seen_ = 0;   // servers_number() of the list that the link has
   std::string last_failure_;
   std::map<std::string, std::uint64_t> losses_;
 };

@@ -40,6 +40,7 @@ struct PlayFleet::Parts {
       : options(fleet_options), log(recorded) {
     const LinkConfig net{.host = options.server.host,
                          .port = options.server.port,
+                         .more = options.more_servers,
                          .tls = options.tls,
                          .web_path = options.web_path};
     for (const RecordedAuthor& author : log.authors)

@@ -8,9 +8,9 @@
 #include <chrono>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "client/net/link_socket.hpp"
-#include "common/os/host_port.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
@@ -22,7 +22,23 @@ constexpr std::size_t kReadBytes = 64 * 1024;
 /// to 12 MiB, so only a few of them may be decoded at once.
 constexpr std::size_t kDecodeBytes = 256;
 constexpr std::size_t kWriteBytes = 64 * 1024;
+using asio::ip::tcp;
 using std::chrono::milliseconds;
+
+std::vector<LinkTarget> given_targets(const LinkConfig& config) {
+  std::vector<LinkTarget> out = {{{config.host, config.port}, config.web_path}};
+  for (const HostPort& server : config.more) out.push_back({server, config.web_path});
+  return out;
+}
+
+/// Returns the addresses that a name has, from this one on.
+std::vector<tcp::endpoint> endpoints_from(std::uint32_t first,
+                                          const tcp::resolver::results_type& found) {
+  std::vector<tcp::endpoint> out;
+  for (const auto& entry : found) out.push_back(entry.endpoint());
+  if (!out.empty()) std::ranges::rotate(out, out.begin() + first % out.size());
+  return out;
+}
 
 }  // namespace
 
@@ -39,6 +55,11 @@ struct Link::State {
   const LinkConfig config;
   LinkCallbacks& callbacks;
   LinkStats stats;
+
+  ConnectOrder<LinkTarget> order{
+      given_targets(config), {config.pause_ms_first, config.pause_ms_max}, randombytes_uniform};
+  Attempt attempt;                   // the newest one
+  std::uint32_t first_endpoint = 0;  // of the addresses of a name, where the next attempt starts
 
   asio::ip::tcp::resolver resolver{io};
   LinkSocket socket{io};
@@ -148,18 +169,18 @@ asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
 /// Connects, performs the TLS handshake if the link is encrypted, and opens the WebSocket if it has
 /// one. Returns as connect().
 template <class State>
-asio::awaitable<std::string> open(State& state,
-                                  const asio::ip::tcp::resolver::results_type& endpoints) {
+asio::awaitable<std::string> open(State& state, const std::vector<tcp::endpoint>& endpoints) {
   const auto [error, endpoint] =
       co_await asio::async_connect(state.socket.tcp(), endpoints, kTuple);
   if (error) co_return "cannot connect: " + error.message();
   state.socket.set_no_delay();
-  const LinkConfig& config = state.config;
+  const LinkTarget& target = state.attempt.address;
   std::string failure;
-  if (config.tls) failure = co_await state.socket.secure(*config.tls, config.host);
-  if (!failure.empty() || config.web_path.empty()) co_return failure;
-  const std::string host = to_string(HostPort{config.host, config.port});
-  failure = co_await state.socket.open_websocket(host, config.web_path);
+  if (state.config.tls)
+    failure = co_await state.socket.secure(*state.config.tls, target.server.host);
+  if (!failure.empty() || target.web_path.empty()) co_return failure;
+  const std::string host = to_string(target.server);
+  failure = co_await state.socket.open_websocket(host, target.web_path);
   co_return failure;
 }
 
@@ -167,11 +188,12 @@ asio::awaitable<std::string> open(State& state,
 /// reason.
 template <class State>
 asio::awaitable<std::string> connect(State& state) {
-  const std::string port = std::to_string(state.config.port);
-  const auto [resolve_error, endpoints] =
-      co_await state.resolver.async_resolve(state.config.host, port, kTuple);
-  if (resolve_error)
-    co_return "cannot resolve " + state.config.host + ": " + resolve_error.message();
+  const HostPort& server = state.attempt.address.server;
+  const std::string port = std::to_string(server.port);
+  const auto [resolve_error, found] =
+      co_await state.resolver.async_resolve(server.host, port, kTuple);
+  if (resolve_error) co_return "cannot resolve " + server.host + ": " + resolve_error.message();
+  const std::vector<tcp::endpoint> endpoints = endpoints_from(state.first_endpoint++, found);
   state.socket.reset();
   state.pause.expires_after(milliseconds(state.config.connect_ms_max));
   State* const raw = &state;
@@ -185,8 +207,13 @@ asio::awaitable<std::string> connect(State& state) {
 
 template <class State>
 asio::awaitable<void> keep_connected(State& state) {
-  std::int64_t pause_ms = state.config.pause_ms_first;
   while (!state.stopping) {
+    state.attempt = state.order.next();
+    if (state.attempt.pause_ms > 0) {
+      state.pause.expires_after(milliseconds(state.attempt.pause_ms));
+      co_await state.pause.async_wait(kTuple);
+      if (state.stopping) break;
+    }
     std::string failure = co_await connect(state);
     if (state.stopping) break;
     if (failure.empty()) {
@@ -197,7 +224,7 @@ asio::awaitable<void> keep_connected(State& state) {
       state.why_closed.clear();
       state.stream = std::make_unique<MessageStream>(state.connection, state.stats, state.callbacks,
                                                      steady_now_ns);
-      pause_ms = state.config.pause_ms_first;
+      state.order.connected();
       state.callbacks.on_connected(state.connection, state.socket.binding());
       asio::co_spawn(state.io, write_messages(state, state.connection), asio::detached);
       co_await read_messages(state);
@@ -205,12 +232,6 @@ asio::awaitable<void> keep_connected(State& state) {
     } else {
       state.callbacks.on_disconnected(0, std::move(failure));
     }
-    if (state.stopping) break;
-    const auto spread = static_cast<std::int64_t>(
-        randombytes_uniform(static_cast<std::uint32_t>(pause_ms / 2 + 1)));
-    state.pause.expires_after(milliseconds(pause_ms * 3 / 4 + spread));
-    co_await state.pause.async_wait(kTuple);
-    pause_ms = std::min(pause_ms * 2, state.config.pause_ms_max);
   }
 }
 
@@ -219,11 +240,20 @@ asio::awaitable<void> keep_connected(State& state) {
 Link::Link(asio::io_context& io, LinkConfig config, LinkCallbacks& callbacks)
     : state_(std::make_unique<State>(io, std::move(config), callbacks)) {
   if (sodium_init() < 0) throw std::runtime_error("libsodium cannot start");
+  state_->first_endpoint = randombytes_random();
 }
 
 Link::~Link() = default;
 
 void Link::start() { asio::co_spawn(state_->io, keep_connected(*state_), asio::detached); }
+
+void Link::set_servers(const Servers& list) {
+  const LinkConfig& config = state_->config;
+  state_->order.set_others(config.web_path.empty() ? other_servers(list)
+                                                   : other_gateways(list, config.tls.has_value()));
+}
+
+const Link::Attempt& Link::attempt() const { return state_->attempt; }
 
 void Link::send(ConnectionNumber connection, const EncodedMessage& message) {
   state_->enqueue(connection, message);

@@ -1,8 +1,8 @@
-// Link: a connection to the server that is made again after a loss. It carries the messages of a
-// MessageStream over TCP and TLS, or over a WebSocket of a gateway. After a loss it connects again, with
-// growing pauses, until it is stopped. Messages carry the number of their connection; those of an older
-// connection are dropped. The io_context belongs to the caller, so one thread may run one link
-// (NetClient) or a thousand (bots).
+// Link: a connection to a server that is made again after a loss. It carries the messages of a
+// MessageStream over TCP and TLS, or over a WebSocket of a gateway. After a loss it connects again,
+// to another server of the world if it knows one, until it is stopped (ConnectOrder). Messages
+// carry the number of their connection; those of an older connection are dropped. The io_context
+// belongs to the caller, so one thread may run one link (NetClient) or a thousand (bots).
 // Thread: all calls and callbacks on the one thread that runs the io_context.
 #pragma once
 #include <asio/io_context.hpp>
@@ -10,8 +10,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "client/net/link_target.hpp"
+#include "client/stream/connect_order.hpp"
 #include "client/stream/link_callbacks.hpp"
+#include "common/os/host_port.hpp"
 #include "common/tls/tls_context.hpp"
 
 namespace runstone {
@@ -19,6 +23,7 @@ namespace runstone {
 struct LinkConfig {
   std::string host;
   std::uint16_t port = 0;
+  std::vector<HostPort> more = {};  // further addresses of the world that the user gave
   /// nullopt: the connection is not encrypted.
   std::optional<TlsContext> tls = TlsContext::client();
   /// Path of the WebSocket of a gateway, such as "/play". Empty: `port` is that of the server, which
@@ -28,8 +33,7 @@ struct LinkConfig {
   std::size_t events_max = 4096;
   std::size_t event_bytes_max = std::size_t{16} << 20;
   std::int64_t connect_ms_max = 5'000;
-  /// The pause between attempts starts with `first` and doubles up to `max`. A random quarter is
-  /// added or subtracted.
+  /// See ConnectPauses.
   std::int64_t pause_ms_first = 100, pause_ms_max = 3'000;
 };
 
@@ -42,8 +46,14 @@ class Link {
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
+  using Attempt = ConnectOrder<LinkTarget>::Attempt;
+
   /// Starts connecting. Call once.
   void start();
+  /// Takes the servers of the world. The list is one of the server that the link is connected to.
+  void set_servers(const Servers& list);
+  /// Returns the newest attempt to connect. In a callback it is that of the connection.
+  const Attempt& attempt() const;
   /// Queues a message. Queued edits are sent before other messages. Does nothing if the connection
   /// has ended.
   void send(ConnectionNumber connection, const EncodedMessage& message);

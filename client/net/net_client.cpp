@@ -44,14 +44,14 @@ struct NetClient::State final : private LinkCallbacks {
   }
   void on_connected(ConnectionNumber connection,
                     const std::optional<ChannelBinding>& binding) override {
-    push(LinkConnected{connection, binding});
+    push(LinkConnected{connection, binding, link.attempt().is_listed});
   }
   void on_received(LinkReceived received) override {
     const std::size_t bytes = memory_of(received);
     push(std::move(received), bytes);
   }
   void on_disconnected(ConnectionNumber connection, std::string why) override {
-    push(LinkDisconnected{connection, std::move(why)});
+    push(LinkDisconnected{connection, std::move(why), link.attempt().address.server});
   }
   bool is_full() override {
     const std::lock_guard lock(mutex);
@@ -89,6 +89,10 @@ void NetClient::send(ConnectionNumber connection, const EncodedMessage& message)
 
 void NetClient::close(ConnectionNumber connection) {
   asio::post(state_->io, [raw = state_.get(), connection] { raw->link.close(connection); });
+}
+
+void NetClient::set_servers(const Servers& list) {
+  asio::post(state_->io, [raw = state_.get(), list] { raw->link.set_servers(list); });
 }
 
 void NetClient::stop(std::int64_t wait_ms) {

@@ -20,10 +20,12 @@ namespace runstone {
 struct LinkConnected {
   ConnectionNumber connection = 0;
   std::optional<ChannelBinding> binding;  // of an encrypted connection
+  bool is_listed = false;                 // as in Link::Attempt
 };
 struct LinkDisconnected {
   ConnectionNumber connection = 0;  // 0: no connection could be made
   std::string why;
+  HostPort server;  // that it led to
 };
 using LinkEvent = std::variant<LinkConnected, LinkReceived, LinkDisconnected>;
 
@@ -41,6 +43,7 @@ class NetClient {
   /// These calls have the meaning of those of Link. stop() also waits for the thread to end.
   void send(ConnectionNumber connection, const EncodedMessage& message);
   void close(ConnectionNumber connection);
+  void set_servers(const Servers& list);
   void stop(std::int64_t milliseconds);
   const LinkStats& stats() const;
 

@@ -19,9 +19,9 @@ ClientSession::ClientSession(SessionConfig config) : connection_(std::move(confi
 // Connection.
 
 void ClientSession::connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding,
-                              TimeUs now_us) {
+                              TimeUs now_us, bool is_listed) {
   disconnected();
-  connection_.connected(nonce, binding, now_us);
+  connection_.connected(nonce, binding, now_us, is_listed);
 }
 
 void ClientSession::disconnected() {

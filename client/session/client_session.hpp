@@ -56,8 +56,9 @@ class ClientSession {
   explicit ClientSession(SessionConfig config);
 
   /// Begins a connection on a new byte stream. `nonce` must be fresh and random, so that old
-  /// welcomes cannot be replayed.
-  void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us);
+  /// welcomes cannot be replayed. `is_listed`: see ServerConnection::connected().
+  void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us,
+                 bool is_listed = false);
   void disconnected();
   /// Takes one decoded message. After an error wants_close() returns true and a goodbye is queued.
   void receive(Message message, const Arrival& arrival);
@@ -160,6 +161,9 @@ class ClientSession {
   const std::optional<SessionEnd>& end() const { return connection_.end(); }
   /// As ServerConnection::welcome().
   const std::optional<Welcome>& welcome() const { return connection_.welcome(); }
+  /// As ServerConnection::servers().
+  const Servers& servers() const { return connection_.servers(); }
+  std::uint64_t servers_number() const { return connection_.servers_number(); }
   AuthorId author() const { return connection_.author(); }
   OperationId operation(ClientSequence seq) const {
     return {author(), connection_.config().instance, seq};

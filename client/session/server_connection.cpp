@@ -19,12 +19,13 @@ bool is_final(GoodbyeReason reason) {
 // Connection.
 
 void ServerConnection::connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding,
-                                 TimeUs now_us) {
+                                 TimeUs now_us, bool is_listed) {
   disconnected();
   end_.reset();
   lacks_password_ = false;
   hello_ = make_hello(config_, nonce);
   binding_ = binding;
+  is_listed_ = is_listed;
   outgoing_.push_back(hello_);
   state_ = SessionState::hello_sent;
   last_message_us_ = now_us;
@@ -42,7 +43,10 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
   if (!accepts_input()) return Dispatch::handled;
   last_message_us_ = arrival.now_us;
   if (const auto* goodbye = std::get_if<Goodbye>(&message)) {
-    end_ = SessionEnd{goodbye->reason, goodbye->text, true, is_final(goodbye->reason)};
+    // Before its welcome, whatever answers at an address of the list may be no server of this
+    // world.
+    const bool is_proved = !is_listed_ || state_ != SessionState::hello_sent;
+    end_ = SessionEnd{goodbye->reason, goodbye->text, true, is_proved && is_final(goodbye->reason)};
     lacks_password_ = state_ == SessionState::authenticating && welcome_->password_salt &&
                       !config_.password && goodbye->reason == GoodbyeReason::not_admitted;
     wants_close_ = true;
@@ -65,6 +69,11 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
   }
   if (const auto* added = std::get_if<MaterialsAdded>(&message); added != nullptr && is_open())
     return on_materials(*added);
+  if (auto* servers = std::get_if<Servers>(&message); servers != nullptr && is_open()) {
+    servers_ = std::move(*servers);
+    ++servers_number_;
+    return Dispatch::handled;
+  }
   if (const auto* durable = std::get_if<Durable>(&message); durable != nullptr && is_open()) {
     // Another server has taken the world over, and nothing is lost.
     if ((welcome_->features & kFeatureResume) != 0)
@@ -79,9 +88,19 @@ SessionStage ServerConnection::stage() const {
   return state_ == SessionState::authenticating ? SessionStage::authenticating : SessionStage::open;
 }
 
+std::optional<WelcomeFault> ServerConnection::fault_of(const Welcome& welcome) {
+  // The key of another world would be pinned as one that the user has met.
+  if (is_listed_ && (!welcome_ || welcome_->world_id != welcome.world_id))
+    return WelcomeFault{GoodbyeReason::closing, "a listed server has another world"};
+  return check_welcome(hello_, welcome, binding_, config_.pinned);
+}
+
 ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
-  if (const auto fault = check_welcome(hello_, welcome, binding_, config_.pinned))
-    return give_up(fault->reason, fault->text);
+  if (const auto fault = fault_of(welcome)) {
+    if (!is_listed_) return give_up(fault->reason, fault->text);
+    fail_with(fault->reason, fault->text);
+    return Dispatch::handled;
+  }
   ClientAuth auth{sign(config_.keys, client_transcript(hello_, welcome, binding_)), config_.ticket};
   const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
   // Whoever receives the key of the password can join with it. So it is sent only to the world for
@@ -93,7 +112,15 @@ ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
     if (!key) return give_up(GoodbyeReason::closing, key.error());
     auth.password_key = *key;
   }
-  if (is_another_world || (welcome_ && welcome_->epoch != welcome.epoch)) clock_.reset();
+  // Each of several servers has a clock of its own.
+  const bool is_another_clock = is_another_world ||
+                                (welcome_ && welcome_->epoch != welcome.epoch) ||
+                                !servers_.servers.empty();
+  if (is_another_clock) clock_.reset();
+  if (is_another_world) {
+    servers_ = {};
+    ++servers_number_;
+  }
   outgoing_.push_back(std::move(auth));
   welcome_ = std::move(welcome);
   state_ = SessionState::authenticating;

@@ -4,9 +4,10 @@
 // disconnected() leads back to offline from every state. The connection performs the handshake,
 // sends pings, view, pose and requests, and ends a silent connection. The session that contains it
 // handles all other messages. The server proves its key with a signature. The key is pinned per
-// world: the first one is trusted, and another one is rejected. Pins, clock offset and the newest
-// welcome outlive a connection. Pure: randomness and times are arguments, in microseconds of the
-// client's steady clock. One thread.
+// world: the first one is trusted, and another one is rejected. Pins, the newest welcome and the
+// list of servers outlive a connection, and so does the clock offset unless there are several
+// servers. Pure: randomness and times are arguments, in microseconds of the client's steady clock.
+// One thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -46,8 +47,11 @@ class ServerConnection {
 
   /// Begins a connection on a new byte stream. `nonce` must be fresh and random, so that old
   /// welcomes cannot be replayed. `binding` identifies an encrypted stream; the signatures of both
-  /// sides hold for it alone.
-  void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us);
+  /// sides hold for it alone. `is_listed`: the address comes from servers(), and the user did not
+  /// give it. Such a server must be one of the same world; if it is not, another attempt may
+  /// succeed.
+  void connected(const Nonce& nonce, const std::optional<ChannelBinding>& binding, TimeUs now_us,
+                 bool is_listed = false);
   void disconnected();
 
   /// How the connection dispatched a message.
@@ -109,6 +113,11 @@ class ServerConnection {
   /// Returns the welcome of the current or last connection, or nullopt before the first. Its
   /// material table has the rows that came later, too.
   const std::optional<Welcome>& welcome() const { return welcome_; }
+  /// Returns the newest list of the world's servers. It is empty until one comes, and in another
+  /// world.
+  const Servers& servers() const { return servers_; }
+  /// Returns a number that rises with each change of servers().
+  std::uint64_t servers_number() const { return servers_number_; }
   AuthorId author() const { return author_; }
   std::uint64_t connect_count() const { return connect_count_; }
   std::uint64_t pongs() const { return pongs_; }
@@ -121,6 +130,8 @@ class ServerConnection {
   /// Returns the stage of the handshake. Requires a connection.
   SessionStage stage() const;
   Dispatch on_welcome(Welcome welcome);
+  /// Returns why the welcome is rejected, or nullopt.
+  std::optional<WelcomeFault> fault_of(const Welcome& welcome);
   /// Ends the connection for a reason for which another attempt is pointless.
   Dispatch give_up(GoodbyeReason reason, const std::string& text);
   void on_session_accepted(const SessionAccepted& accepted, TimeUs now_us);
@@ -134,7 +145,10 @@ class ServerConnection {
   bool lacks_password_ = false;
   Hello hello_;
   std::optional<ChannelBinding> binding_;  // of the current connection
+  bool is_listed_ = false;                 // its address
   std::optional<Welcome> welcome_;
+  Servers servers_;
+  std::uint64_t servers_number_ = 0;
   AuthorId author_ = 0;
   std::uint64_t connect_count_ = 0, pongs_ = 0;
   ClockOffset clock_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "common/core/text.hpp"
 #include "common/os/steady_clock.hpp"
@@ -23,7 +24,10 @@ std::string words_of_close(const EmscriptenWebSocketCloseEvent& event) {
 }  // namespace
 
 WebLink::WebLink(std::string url, LinkCallbacks& callbacks)
-    : url_(std::move(url)), callbacks_(callbacks) {}
+    : url_(std::move(url)),
+      order_({url_}, kPauses, randombytes_uniform),
+      attempt_(order_.next()),
+      callbacks_(callbacks) {}
 
 WebLink::~WebLink() { stop(); }
 
@@ -31,9 +35,9 @@ void WebLink::connect(TimeUs now_us) {
   connect_us_ = now_us;
   EmscriptenWebSocketCreateAttributes attributes;
   emscripten_websocket_init_create_attributes(&attributes);
-  attributes.url = url_.c_str();
+  attributes.url = attempt_.address.c_str();
   socket_ = std::max(0, emscripten_websocket_new(&attributes));
-  if (socket_ == 0) return disconnect("the browser makes no WebSocket to " + url_);
+  if (socket_ == 0) return disconnect("the browser makes no WebSocket to " + attempt_.address);
   emscripten_websocket_set_onopen_callback(socket_, this, on_open);
   emscripten_websocket_set_onmessage_callback(socket_, this, on_message);
   emscripten_websocket_set_onclose_callback(socket_, this, on_close);
@@ -44,7 +48,7 @@ int WebLink::on_open(int /*type*/, const EmscriptenWebSocketOpenEvent* event, vo
   if (event->socket != self.socket_) return 0;
   self.is_open_ = true;
   self.is_closing_ = false;
-  self.pause_us_ = kPauseUsFirst;
+  self.order_.connected();
   ++self.connection_;
   self.stats_.connections.fetch_add(1, std::memory_order_relaxed);
   self.stream_ = std::make_unique<MessageStream>(self.connection_, self.stats_, self.callbacks_,
@@ -90,12 +94,10 @@ void WebLink::disconnect(std::string why) {
   is_lost_ = false;
   received_.clear();
   received_bytes_ = 0;
-  const auto quarter = static_cast<std::uint32_t>(pause_us_ / 4);
-  connect_us_ = steady_now_us() + pause_us_ - quarter +
-                static_cast<TimeUs>(randombytes_uniform(2 * quarter + 1));
-  pause_us_ = std::min(2 * pause_us_, kPauseUsMax);
   const bool was_open = std::exchange(is_open_, false);
   callbacks_.on_disconnected(was_open ? connection_ : 0, std::move(why));
+  attempt_ = order_.next();
+  connect_us_ = steady_now_us() + attempt_.pause_ms * 1'000;
 }
 
 void WebLink::read(TimeUs until_us) {
@@ -148,6 +150,17 @@ void WebLink::step(TimeUs now_us) {
   static_cast<void>(stream_->acknowledge(now_us));
   flush();
   if (is_closing_ && !stream_->has_output()) disconnect("closed by this client");
+}
+
+void WebLink::set_servers(const Servers& list) {
+  const bool is_encrypted = url_.starts_with("wss://");
+  const std::string page_scheme = is_encrypted ? "https://" : "http://";
+  std::vector<std::string> others;
+  for (const ServerEntry& entry : others_of(list)) {
+    if (entry.page.starts_with(page_scheme))
+      others.push_back("ws" + web_socket_path(entry.page.substr(std::string("http").size())));
+  }
+  order_.set_others(std::move(others));
 }
 
 void WebLink::send(ConnectionNumber connection, const EncodedMessage& message) {

@@ -43,7 +43,7 @@ std::string host_of(const std::string& url) {
 }  // namespace
 
 WebSession::WebSession(const JoinOptions& options)
-    : host_(host_of(options.url)), session_(config_of(options)), link_(options.url, *this) {
+    : session_(config_of(options)), link_(options.url, *this) {
   if (options.has_cache) cache_.emplace(options.cached_worlds);
 }
 
@@ -92,7 +92,7 @@ void WebSession::on_connected(ConnectionNumber connection,
   connection_ = connection;
   Nonce nonce;
   randombytes_buf(nonce.data(), nonce.size());
-  session_.connected(nonce, binding, steady_now_us());
+  session_.connected(nonce, binding, steady_now_us(), link_.attempt().is_listed);
   for (const Message& message : session_.take_outgoing())
     link_.send(connection_, encode_message(message));
 }
@@ -102,6 +102,8 @@ void WebSession::on_received(LinkReceived received) {
     count_snapshots(snapshots_, *chunks, received);
   session_.receive(std::move(received.message),
                    {received.received_us, received.unpacked_us, steady_now_us()});
+  if (std::exchange(servers_seen_, session_.servers_number()) != session_.servers_number())
+    link_.set_servers(session_.servers());
   if (std::exchange(connects_handled_, session_.connect_count()) != session_.connect_count()) {
     world_opened_ = true;
     last_words_ = {};
@@ -111,7 +113,8 @@ void WebSession::on_received(LinkReceived received) {
 void WebSession::on_disconnected(ConnectionNumber /*connection*/, std::string why) {
   connection_ = 0;
   session_.disconnected();
-  last_words_ = session_.end() ? words_of(*session_.end()) : words_of_link(why, host_);
+  last_words_ = session_.end() ? words_of(*session_.end())
+                               : words_of_link(why, host_of(link_.attempt().address));
 }
 
 FailureWords WebSession::failure_words() const {

@@ -53,11 +53,11 @@ class WebSession final : private LinkCallbacks {
   void on_received(LinkReceived received) override;
   void on_disconnected(ConnectionNumber connection, std::string why) override;
 
-  const std::string host_;  // for words
   ClientSession session_;
   ConnectionNumber connection_ = 0;  // 0: none
   std::uint64_t connects_handled_ = 0;
-  bool world_opened_ = false;  // until take_world_opened()
+  std::uint64_t servers_seen_ = 0;  // servers_number() of the list that the link has
+  bool world_opened_ = false;       // until take_world_opened()
   bool has_left_ = false;
   FailureWords last_words_;
   SnapshotStats snapshots_;

@@ -68,6 +68,20 @@ Result<HostPort, std::string> parse_host_port(std::string_view text, std::uint16
   return parse(text, {default_port, 1});
 }
 
+Result<std::vector<HostPort>, std::string> parse_host_ports(std::string_view text,
+                                                            std::uint16_t default_port) {
+  std::vector<HostPort> out;
+  for (bool goes_on = true; goes_on;) {
+    const std::size_t comma = text.find(',');
+    auto address = parse_host_port(text.substr(0, comma), default_port);
+    if (!address) return Unexpected<std::string>{address.error()};
+    out.push_back(*std::move(address));
+    goes_on = comma != std::string_view::npos;
+    if (goes_on) text.remove_prefix(comma + 1);
+  }
+  return out;
+}
+
 Result<HostPort, std::string> parse_listen_address(std::string_view text,
                                                    std::uint16_t default_port) {
   const bool is_any = text.starts_with(':') && text.rfind(':') == 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/core/result.hpp"
 
@@ -23,6 +24,10 @@ std::string to_string(const HostPort& address);
 /// a V6. The host is not resolved or checked any further. Fails with one line of text if the form
 /// is wrong or the port is not a number from 1 to 65535.
 Result<HostPort, std::string> parse_host_port(std::string_view text, std::uint16_t default_port);
+
+/// Reads one such address or several, separated by commas.
+Result<std::vector<HostPort>, std::string> parse_host_ports(std::string_view text,
+                                                            std::uint16_t default_port);
 
 /// Reads the address that a server listens on: the same forms, and ":PORT" for every IPv4 address
 /// of the machine. Port 0 is allowed: it takes a free port.

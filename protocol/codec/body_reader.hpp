@@ -1,7 +1,7 @@
 // BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier
 // cannot check. Internal to the message decoder. The readers are in session_bodies.cpp,
 // chunk_bodies.cpp, edit_bodies.cpp, rights_bodies.cpp, chat_bodies.cpp, key_transfer_bodies.cpp,
-// material_bodies.cpp, preview_bodies.cpp and server_bodies.cpp.
+// material_bodies.cpp, preview_bodies.cpp, server_bodies.cpp and server_list_bodies.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -106,6 +106,9 @@ struct BodyReader {
   Result<Message> read(const wire::Relay& t) const;
   Result<Message> read(const wire::RelayClose& t) const;
   Result<Message> read(const wire::RelayCharge& t) const;
+
+  // ---- server_list_bodies.cpp
+  Result<Message> read(const wire::Servers& t) const;
 
   using TakeEdit = std::function<Result<void>()>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then

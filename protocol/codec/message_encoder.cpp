@@ -59,7 +59,7 @@ struct BodyBuilder {
   }
   Offset<wire::ClientAuth> operator()(const ClientAuth& m) {
     const auto signature = bytes_of(b, m.signature);
-    const auto ticket = m.ticket.empty() ? 0 : b.CreateString(m.ticket);
+    const auto ticket = optional_text(m.ticket);
     return wire::CreateClientAuth(b, signature, ticket, optional_bytes(m.password_key));
   }
   Offset<wire::SessionAccepted> operator()(const SessionAccepted& m) {
@@ -281,7 +281,9 @@ struct BodyBuilder {
   Offset<wire::Resumed> operator()(const Resumed& /*m*/) { return wire::CreateResumed(b); }
 
   Offset<wire::FollowRequest> operator()(const FollowRequest& m) {
-    return wire::CreateFollowRequest(b, m.after.epoch, m.after.seq);
+    const auto address = optional_text(m.player_address);
+    const auto page = optional_text(m.page_address);
+    return wire::CreateFollowRequest(b, m.after.epoch, m.after.seq, address, page);
   }
   Offset<wire::FollowAnswer> operator()(const FollowAnswer& m) {
     return wire::CreateFollowAnswer(b, m.head);
@@ -317,7 +319,7 @@ struct BodyBuilder {
     RUNSTONE_ASSERT(!m.name.empty() && m.name.size() <= kPlayerNameBytesMax);
     const auto key = bytes_of(b, m.key);
     const auto name = b.CreateString(m.name);
-    const Offset<flatbuffers::String> ticket = m.ticket.empty() ? 0 : b.CreateString(m.ticket);
+    const auto ticket = optional_text(m.ticket);
     const auto password_key = optional_bytes(m.password_key);
     const wire::Pose pose = pose_of(m.pose);
     return wire::CreateRelayOpen(b, m.session, m.address, m.is_encrypted, key, m.instance, name,
@@ -334,6 +336,18 @@ struct BodyBuilder {
   }
   Offset<wire::RelayCharge> operator()(const RelayCharge& m) {
     return wire::CreateRelayCharge(b, m.session, m.bytes);
+  }
+  Offset<wire::Servers> operator()(const Servers& m) {
+    RUNSTONE_ASSERT(m.servers.size() <= kServersMax && m.here <= m.servers.size());
+    std::vector<Offset<wire::ServerEntry>> servers;
+    servers.reserve(m.servers.size());
+    for (const ServerEntry& server : m.servers) {
+      RUNSTONE_ASSERT(is_player_address(server.address) && is_page_address(server.page));
+      const auto address = b.CreateString(server.address);
+      servers.push_back(
+          wire::CreateServerEntry(b, address, optional_text(server.page), server.players));
+    }
+    return wire::CreateServers(b, b.CreateVector(servers), m.here);
   }
 
   Offset<flatbuffers::Vector<std::uint8_t>> preview_list(const std::vector<EditDescriptor>& edits) {
@@ -366,6 +380,10 @@ struct BodyBuilder {
       -> Offset<flatbuffers::Vector<std::uint8_t>> {
     if (!bytes) return 0;
     return bytes_of(b, *bytes);
+  }
+  /// An empty text is left out.
+  Offset<flatbuffers::String> optional_text(const std::string& t) {
+    return t.empty() ? Offset<flatbuffers::String>() : b.CreateString(t);
   }
   Offset<wire::Chunks> chunks(std::uint32_t view, std::span<const ChunkEntry> entries) {
     RUNSTONE_ASSERT(view != 0);

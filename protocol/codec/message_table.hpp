@@ -93,6 +93,7 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"RelayCharge", server, kControl, open, kFeatureServers},
       {"Resume", server, kEdits, open, kFeatureResume},
       {"Resumed", client, kEdits, open, kFeatureResume},
+      {"Servers", server, kEdits, open, kFeatureServerList},
   }};
 }();
 

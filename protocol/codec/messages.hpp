@@ -36,6 +36,7 @@
 #include "protocol/codec/preview_messages.hpp"
 #include "protocol/codec/restore_preview_messages.hpp"
 #include "protocol/codec/rights_messages.hpp"
+#include "protocol/codec/server_list.hpp"
 #include "protocol/codec/server_messages.hpp"
 #include "protocol/limits.hpp"
 
@@ -455,7 +456,7 @@ using Message =
                  Permissions, ProtectedGround, ChatRequest, ChatLines, KeyRequest, SealedKey,
                  KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest, LogMarks,
                  RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
-                 RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed>;
+                 RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

@@ -68,8 +68,16 @@ bool operator==(const Relay& a, const Relay& b) {
 }
 
 Result<Message> BodyReader::read(const wire::FollowRequest& t) const {
-  const FollowRequest m{{t.epoch(), t.seq()}};
+  FollowRequest m{{t.epoch(), t.seq()}};
   if (m.after.seq > kSequenceMax) return bad("follow request: sequence exceeds 63 bits");
+  const auto take_address = [](const flatbuffers::String* from, std::string& to) {
+    return take_text(from, 0, kServerAddressBytesMax, to);
+  };
+  if (!take_address(t.player_address(), m.player_address) ||
+      (!m.player_address.empty() && !is_player_address(m.player_address)))
+    return bad("follow request: player_address is not HOST:PORT");
+  if (!take_address(t.page_address(), m.page_address) || !is_page_address(m.page_address))
+    return bad("follow request: page_address is not the address of a page");
   return m;
 }
 

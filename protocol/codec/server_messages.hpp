@@ -21,6 +21,8 @@ namespace runstone {
 /// Asks for the records of the log. The follower has those up to this version.
 struct FollowRequest {
   Version after;
+  // The follower's entry in the list of servers, see ServerEntry. Without an address it has none.
+  std::string player_address = {}, page_address = {};
   friend bool operator==(const FollowRequest&, const FollowRequest&) = default;
 };
 /// The owner sends every record after `head`, in LogPart messages. Those up to it are in the database,

@@ -7,6 +7,7 @@
 #include "common/core/hex.hpp"
 #include "common/core/tile_keys.hpp"
 #include "common/os/host_port.hpp"
+#include "protocol/codec/server_list.hpp"
 #include "protocol/rules/chat_text.hpp"
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
@@ -106,6 +107,30 @@ FormField peer_address_field() {
           [](const ServerConfig& config) { return config.peer_address; }};
 }
 
+FormField player_address_field() {
+  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+            if (!text.empty()) {
+              const auto address = parse_host_port(text, kDefaultPort);
+              if (!address) return address.error();
+              if (!is_player_address(to_string(*address)))
+                return "must be HOST, HOST:PORT or [V6]:PORT, with a host of ASCII characters";
+            }
+            config.player_address = text;
+            return std::nullopt;
+          },
+          [](const ServerConfig& config) { return config.player_address; }};
+}
+
+FormField page_address_field() {
+  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+            if (!is_page_address(text))
+              return "must be https://HOST, perhaps with a port and a path";
+            config.page_address = text;
+            return std::nullopt;
+          },
+          [](const ServerConfig& config) { return config.page_address; }};
+}
+
 FormField message_of_the_day_field() {
   return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
             auto line = text.empty() ? Result<std::string, std::string>(text) : chat_text(text);
@@ -159,6 +184,15 @@ const SettingsTable<ServerConfig>& settings() {
           form("peer_address",
                "HOST or HOST:PORT at which other servers of the world of `store` reach this one",
                peer_address_field()),
+          form("player_address",
+               "HOST or HOST:PORT at which players reach this server of the world of `store`; "
+               "empty: as peer_address",
+               player_address_field()),
+          form(
+              "page_address",
+              "https://HOST/PATH of the pages of runstone-web for this server; empty: browsers are "
+              "not led here",
+              page_address_field()),
           text("listen", "HOST, HOST:PORT, [V6]:PORT or :PORT; port 0 takes a free one",
                &C::listen),
           flag("insecure", "connections are not encrypted; for 127.0.0.1 and [::1] only",

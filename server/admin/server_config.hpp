@@ -37,6 +37,11 @@ struct ServerConfig {
   /// HOST, HOST:PORT or [V6]:PORT, at which other servers of the world of `store` reach this one. Empty:
   /// see peer_address_of().
   std::string peer_address;
+  /// HOST, HOST:PORT or [V6]:PORT, at which players reach this server of the world of `store`.
+  /// Empty: see player_address_of().
+  std::string player_address;
+  std::string
+      page_address;  // https://HOST/PATH of its runstone-web; empty: browsers are not led here
   // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
   std::string listen = "0.0.0.0:" + std::to_string(kDefaultPort);
   /// Connections are not encrypted. Only for an address of this machine, unless `i_know` is set.

@@ -5,6 +5,7 @@
 #include "common/os/host_port.hpp"
 #include "common/tiles/tile_rules.hpp"
 #include "protocol/default_port.hpp"
+#include "server/admin/player_address.hpp"
 #include "server/admin/reserved_names.hpp"
 #include "server/world/chat_state.hpp"
 
@@ -50,6 +51,10 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, s
   world.reserved_names = folded_reserved_names(config.reserved_names);
   world.operators = config.operators;
   world.link_address = link_address(config, port);
+  if (!config.store.empty()) {
+    world.player_address = player_address_of(config, port);
+    world.page_address = config.page_address;
+  }
   world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
   world.tile_levels_max = static_cast<std::uint8_t>(config.tile_levels_max);
   if (world.tile_levels_max == 0) world.features &= ~kFeatureTiles;

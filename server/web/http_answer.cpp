@@ -165,34 +165,24 @@ HttpAnswer plain_answer(unsigned status, std::string sentence) {
   return {status, "text/plain; charset=utf-8", std::move(sentence) + "\n"};
 }
 
-const std::vector<std::pair<std::string, std::string>>& safety_headers(PageScripts scripts) {
-  using Headers = std::vector<std::pair<std::string, std::string>>;
-  const auto allowing = [](const std::string& more) -> Headers {
-    return {
-        {"Content-Security-Policy",
-         "default-src 'none'; style-src 'self'; " + more +
-             "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
-        {"Cross-Origin-Opener-Policy", "same-origin"},
-        {"Cross-Origin-Embedder-Policy", "require-corp"},
-        {"Cross-Origin-Resource-Policy", "same-origin"},
-        {"X-Content-Type-Options", "nosniff"},
-        {"Referrer-Policy", "no-referrer"},
-    };
-  };
-  static const Headers none = allowing("");
-  static const Headers own = allowing("script-src 'self'; connect-src 'self'; ");
+std::vector<std::pair<std::string, std::string>> safety_headers(PageScripts scripts,
+                                                                const std::string& sockets) {
+  std::string more;
+  if (scripts == PageScripts::own) more = "script-src 'self'; connect-src 'self'; ";
   // 'wasm-unsafe-eval' allows WebAssembly and no other code that is made at run time.
-  static const Headers client =
-      allowing("script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; img-src data:; ");
-  switch (scripts) {
-    case PageScripts::own:
-      return own;
-    case PageScripts::client:
-      return client;
-    case PageScripts::none:
-      break;
-  }
-  return none;
+  if (scripts == PageScripts::client)
+    more =
+        "script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'" + sockets + "; img-src data:; ";
+  return {
+      {"Content-Security-Policy",
+       "default-src 'none'; style-src 'self'; " + more +
+           "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Cross-Origin-Embedder-Policy", "require-corp"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+  };
 }
 
 }  // namespace runstone

@@ -87,7 +87,9 @@ HttpAnswer answer_gateway_request(const HttpRequest& request, const GatewayConte
 HttpAnswer plain_answer(unsigned status, std::string sentence);
 
 /// Returns the headers for the safety of browsers: pages load nothing from elsewhere, run no other
-/// scripts, are shown in no frame, and share no process with other sites.
-const std::vector<std::pair<std::string, std::string>>& safety_headers(PageScripts scripts);
+/// scripts, are shown in no frame, and share no process with other sites. `sockets`: where the
+/// client may connect besides this gateway, see OriginCheck::sockets().
+std::vector<std::pair<std::string, std::string>> safety_headers(PageScripts scripts,
+                                                                const std::string& sockets);
 
 }  // namespace runstone

@@ -59,4 +59,11 @@ bool OriginCheck::allows(std::optional<std::string_view> origin, std::string_vie
   return std::find(allowed_.begin(), allowed_.end(), asked) != allowed_.end();
 }
 
+std::string OriginCheck::sockets() const {
+  constexpr std::string_view kHttp = "http";
+  std::string out;
+  for (const std::string& origin : allowed_) out += " ws" + origin.substr(kHttp.size());
+  return out;
+}
+
 }  // namespace runstone

@@ -29,6 +29,9 @@ class OriginCheck {
   /// Returns true if a request with these headers may open a WebSocket. Without an origin it does
   /// not come from a page, so it may.
   bool allows(std::optional<std::string_view> origin, std::string_view host) const;
+  /// Returns the WebSockets of the allowed origins, each after a blank: " wss://play.example.org".
+  /// Gateways of one world name each other's pages, so their pages may connect there.
+  std::string sockets() const;
 
  private:
   const std::vector<std::string> allowed_;

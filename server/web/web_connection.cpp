@@ -247,7 +247,8 @@ boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection>
   if (!answer.location.empty()) response.set(http::field::location, answer.location);
   if (!answer.allow.empty()) response.set(http::field::allow, answer.allow);
   if (answer.status == 426) response.set(http::field::upgrade, "websocket");
-  for (const auto& [name, value] : safety_headers(answer.scripts)) response.set(name, value);
+  const auto safety = safety_headers(answer.scripts, self->state_.origin.sockets());
+  for (const auto& [name, value] : safety) response.set(name, value);
   if (answer.status != 304) response.content_length(bytes.size());
   response.keep_alive(keeps_alive);
   if (request.method() != http::verb::head) response.body() = {bytes.data(), bytes.size()};

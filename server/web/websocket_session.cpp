@@ -43,7 +43,8 @@ WebSocketSession::WebSocketSession(WebState& state, WebStream& stream, AddressBl
   // Beast sends a ping after half of the idle time, and closes the socket after all of it.
   websocket_.set_option(websocket::stream_base::timeout{handshake, idle, true});
   websocket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
-    for (const auto& [name, value] : safety_headers(PageScripts::none)) response.set(name, value);
+    for (const auto& [name, value] : safety_headers(PageScripts::none, ""))
+      response.set(name, value);
   }));
   websocket_.control_callback([this](websocket::frame_type kind, boost::beast::string_view) {
     if (kind != websocket::frame_type::close) on_control_frame();

@@ -24,8 +24,6 @@ void close_follower(WorldState& world, SessionId link, GoodbyeReason reason,
   forget_follower(world, link);
 }
 
-bool is_served(const Follower& follower) { return follower.gets_log && !follower.is_full; }
-
 /// Sends to every follower that gets the log. One that cannot take the message is closed later, because
 /// that closes sessions, and the caller may be in the middle of one.
 void send_to_followers(WorldState& world, const EncodedMessage& message) {
@@ -114,11 +112,13 @@ void on_relay_close(WorldState& world, SessionId link, const RelayClose& close) 
   if (found != sessions.end()) forget_session(world, found->second);
 }
 
-void on_follow_request(WorldState& world, SessionId link) {
+void on_follow_request(WorldState& world, SessionId link, const FollowRequest& request) {
   if (!world.environment.owns_world())
     return close_follower(world, link, GoodbyeReason::closing, "another server may own the world");
   Follower& follower = world.followers.at(link);
   follower.gets_log = true;
+  follower.player_address = request.player_address;
+  follower.page_address = request.page_address;
   const Sequence head = world.authority.head();
   follower.is_full = !world.environment.send(link, encode_message(FollowAnswer{head})) ||
                      !world.environment.send(link, encoded_durable(world));
@@ -130,6 +130,7 @@ void admit_follower(WorldState& world, SessionId link, const Clocks& now) {
   world.environment.report(OperatorLogLevel::info,
                            "follower=" + std::to_string(link) + " another server follows this one");
   const ClientInstance instance = world.find(link)->instance;
+  const std::uint64_t features = world.find(link)->features;
   world.sessions.erase(link);
   // An earlier connection of the same server would keep the sessions of its players.
   for (const auto& [other, follower] : world.followers) {
@@ -140,6 +141,7 @@ void admit_follower(WorldState& world, SessionId link, const Clocks& now) {
   Follower& follower = world.followers[link];
   follower.last_message_us = now.steady_us;
   follower.instance = instance;
+  follower.takes_servers = (features & kFeatureServerList) != 0;
   world.environment.trust(link);
   world.environment.opened(link);
   follower.is_full = !world.environment.send(link, encode_message(SessionAccepted{}));
@@ -160,7 +162,8 @@ void on_follower_message(WorldState& world, SessionId link, const Message& messa
   if (const auto* relay = std::get_if<Relay>(&message)) return on_relay(world, link, *relay, now);
   if (const auto* close = std::get_if<RelayClose>(&message))
     return on_relay_close(world, link, *close);
-  if (std::holds_alternative<FollowRequest>(message)) return on_follow_request(world, link);
+  if (const auto* request = std::get_if<FollowRequest>(&message))
+    return on_follow_request(world, link, *request);
   if (const auto* ping = std::get_if<Ping>(&message)) {
     static_cast<void>(
         world.environment.send(link, encode_message(Pong{ping->sent_us, now.steady_us})));

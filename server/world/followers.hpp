@@ -6,7 +6,9 @@
 // from the database. Its players pay for their messages like all others.
 // Thread: the world strand.
 #pragma once
+#include <cstdint>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "protocol/codec/messages.hpp"
@@ -26,7 +28,14 @@ struct Follower {
   bool is_full = false;         // its queue was full: it has missed records, and is closed soon
   TimeUs last_message_us = 0;   // steady clock
   std::map<SessionId, SessionId> sessions;  // its players: by its number, the number here
+  // The list of servers (listed_servers.hpp).
+  std::string player_address, page_address;  // as in FollowRequest
+  bool takes_servers = false;                // it knows the message
+  std::uint64_t servers_sent = 0;            // number of the last list
 };
+
+/// Returns true if the server gets the log.
+inline bool is_served(const Follower& follower) { return follower.gets_log && !follower.is_full; }
 
 /// A follower that has sent nothing for so long is closed. It sends a ping each second.
 inline constexpr TimeUs kFollowerSilentUsMax = 5'000'000;

@@ -10,6 +10,7 @@
 #include "common/core/assert.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/handshake_handlers.hpp"
+#include "server/world/listed_servers.hpp"
 #include "server/world/material_handlers.hpp"
 #include "server/world/request_handlers.hpp"
 #include "server/world/rights_handlers.hpp"
@@ -112,7 +113,9 @@ void on_welcome(WorldState& world, const Welcome& welcome) {
 void ask_for_log(WorldState& world) {
   const Sequence head = world.authority.head();
   world.following->link = Link::asking;
-  send(world, FollowRequest{{world.authority.epoch(), head}});
+  send(world, FollowRequest{{world.authority.epoch(), head},
+                            world.config.player_address,
+                            world.config.page_address});
 }
 
 void go_live(WorldState& world, const Clocks& now) {
@@ -232,6 +235,8 @@ void on_live_message(WorldState& world, const Message& message, const Clocks& no
     }
     return;
   }
+  if (const auto* servers = std::get_if<Servers>(&message))
+    return take_listed_servers(world, *servers);
   if (const auto* charge = std::get_if<RelayCharge>(&message))
     world.output.charge_reading(charge->session, charge->bytes);
 }
@@ -267,7 +272,7 @@ void owner_connected(WorldState& world, const std::optional<ChannelBinding>& bin
   mine.hello = {};
   mine.hello.key = world.config.server_keys.public_key;
   mine.hello.name = "server";
-  mine.hello.features = kFeatureServers;
+  mine.hello.features = kFeatureServers | kFeatureServerList;
   // The same on each connection, so that the owner knows which one it replaces.
   mine.hello.instance = earlier;
   if (earlier == 0) {

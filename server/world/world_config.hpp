@@ -36,6 +36,8 @@ struct WorldConfig {
   KeyPair server_keys;
   std::uint64_t features = kFeaturesKnown;  // optional parts of the protocol
   std::string link_address = "HOST";        // HOST or HOST:PORT in links for players
+  /// This server's entry in the list of servers, see ServerEntry. Without an address it has none.
+  std::string player_address, page_address;
   // Limits of sessions.
   std::size_t sessions_max = 256;             // beyond it: server_full
   std::size_t sessions_per_key = 0;           // likewise; 0: no limit

@@ -21,6 +21,7 @@
 #include "server/world/followers.hpp"
 #include "server/world/following.hpp"
 #include "server/world/handshake_handlers.hpp"
+#include "server/world/listed_servers.hpp"
 #include "server/world/log_mark_handlers.hpp"
 #include "server/world/material_handlers.hpp"
 #include "server/world/name_rules.hpp"
@@ -335,7 +336,9 @@ void WorldServer::tick(const Clocks& now) {
     broadcast_player_list(world);
     broadcast_chat(world);
     broadcast_poses(world, now);
+    update_listed_servers(world, now);
   }
+  send_listed_servers(world);
   broadcast_durable(world, now);
   send_due_digest_checks(world, now);
   open_waiting_history(world, now);
@@ -492,6 +495,7 @@ bool WorldServer::take_over(const Takeover& start, const Clocks& now) {
   world.disk_is_full = false;  // of the owner before; the log of this server says if it is
   world.checkpointer = Checkpointer(world.config.snapshots, start.checkpoint);
   world.players.begin_above(start.author_max);
+  hold_listed_servers(world, now);
   begin_epoch(world, start.epoch);
   world.player_list_changed = true;
   world.sent_player_list.clear();

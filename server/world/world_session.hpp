@@ -97,6 +97,7 @@ struct WorldSession {
   // until it has answered every Resume.
   bool needs_resume = false;
   std::uint32_t resumes_unanswered = 0;
+  std::uint64_t servers_sent = 0;  // number of the last list of servers (listed_servers.hpp)
   // Rejects that did not fit the session's queue, in order. They are sent when it drains.
   std::vector<Reject> pending_rejects;
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};

@@ -19,6 +19,7 @@
 #include "server/world/following.hpp"
 #include "server/world/key_deposits.hpp"
 #include "server/world/large_edit_pace.hpp"
+#include "server/world/listed_servers.hpp"
 #include "server/world/load_queue.hpp"
 #include "server/world/load_retries.hpp"
 #include "server/world/name_claims.hpp"
@@ -121,6 +122,7 @@ struct WorldState {
   std::map<SessionId, Follower> followers;     // other servers, by their session (followers.hpp)
   // Set while another server owns the world, and this one follows it (following.hpp).
   std::unique_ptr<Following> following;
+  ListedServers listed;
   std::vector<AuthorId> gone_authors;  // of sessions that ended since the last tick
   WorldCounters counters;
   Sequence durable = 0;

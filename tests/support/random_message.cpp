@@ -538,6 +538,41 @@ Relay any_relay(SplitMix64& rng) {
   return m;
 }
 
+std::string any_player_address(SplitMix64& rng) {
+  const std::string port = ":" + std::to_string(1 + rng.below(65'535));
+  if (rng.below(4) == 0) return "[2001:db8::" + std::to_string(rng.below(10'000)) + "]" + port;
+  return std::string(1 + rng.below(rng.below(8) == 0 ? 250 : 20), 'a') + "-1.example" + port;
+}
+
+std::string any_page_address(SplitMix64& rng) {
+  if (rng.below(3) == 0) return "";
+  return rng.below(2) == 0 ? "https://play.example/world/a_" + std::to_string(rng.below(1000))
+                           : "http://" + any_player_address(rng) + "/";
+}
+
+Servers any_servers(SplitMix64& rng) {
+  std::set<std::string> addresses;
+  for (std::uint32_t left = rng.below(8) == 0 ? kServersMax : rng.below(6); left != 0; --left) {
+    std::string address = any_player_address(rng);
+    if (address.size() <= kServerAddressBytesMax) addresses.insert(std::move(address));
+  }
+  Servers m;
+  for (const std::string& address : addresses) {
+    std::string page = any_page_address(rng);
+    if (page.size() > kServerAddressBytesMax) page.clear();
+    m.servers.push_back({address, std::move(page), rng.below(100'000)});
+  }
+  m.here = static_cast<std::uint8_t>(rng.below(static_cast<std::uint32_t>(m.servers.size() + 1)));
+  return m;
+}
+
+FollowRequest any_follow_request(SplitMix64& rng) {
+  FollowRequest m{any_version(rng)};
+  if (rng.below(2) == 0) m.player_address = "play.example:4747";
+  if (rng.below(2) == 0) m.page_address = "https://play.example";
+  return m;
+}
+
 }  // namespace
 
 std::vector<EditDescriptor> any_preview(SplitMix64& rng) {
@@ -650,7 +685,7 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
     case kKindOf<PlayerPreview>:
       return PlayerPreview{rng.below(1000), any_preview(rng)};
     case kKindOf<FollowRequest>:
-      return FollowRequest{any_version(rng)};
+      return any_follow_request(rng);
     case kKindOf<FollowAnswer>:
       return FollowAnswer{any64(rng) >> 1};
     case kKindOf<LogPart>:
@@ -667,9 +702,11 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return RelayCharge{static_cast<SessionId>(any64(rng)), any64(rng)};
     case kKindOf<Resume>:
       return Resume{any64(rng) >> 1};
-    default:
-      RUNSTONE_ASSERT(kind == kKindOf<Resumed>);
+    case kKindOf<Resumed>:
       return Resumed{};
+    default:
+      RUNSTONE_ASSERT(kind == kKindOf<Servers>);
+      return any_servers(rng);
   }
 }
 

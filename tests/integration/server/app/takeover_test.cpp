@@ -171,6 +171,30 @@ TEST_CASE("a player of a server that follows stays when the owner stops, and whe
   cluster.check_log(builder);
 }
 
+TEST_CASE("a player learns of the other server, which takes the player in when the first one stops",
+          "[.postgres-server]") {
+  const Cluster cluster;
+  const auto first = cluster.start("first", false);
+  RawClient client(first->port());
+  client.features = kFeatureServerList;
+  REQUIRE(client.join(1, 7).has_value());
+  const auto second = cluster.start("second", true);
+  const auto list = client.next_of<Servers>();
+  REQUIRE(list.has_value());
+  CHECK(list->servers.size() == 2);
+  const std::vector<ServerEntry> others = others_of(*list);
+  REQUIRE(others.size() == 1);
+  CHECK(others[0].address == "127.0.0.1:" + std::to_string(second->port()));
+  CHECK(first->stop());
+  RawClient moved(second->port());
+  moved.features = kFeatureServerList;
+  REQUIRE(moved.join(1, 7).has_value());
+  const auto rest = moved.next_of<Servers>();
+  REQUIRE(rest.has_value());
+  CHECK(rest->here != 0);
+  CHECK(second->stop());
+}
+
 TEST_CASE("a server that stood still beyond its lease adds nothing to the log, and ends",
           "[.postgres-server]") {
   const Cluster cluster;

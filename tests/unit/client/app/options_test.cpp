@@ -49,6 +49,12 @@ TEST_CASE("the address is a host with or without a port, also in IPv6", "[client
   CHECK(refused({"--connect", "example.org:0"}) == 2);
   CHECK(refused({"--connect", "example.org:65536"}) == 2);
   CHECK(refused({"--connect", ":4000"}) == 2);
+  CHECK(accepted({"--connect", "a"}).more_servers.empty());
+  const ClientOptions several = accepted({"--connect", "runstone://a,b:5/#token"});
+  CHECK(several.server == HostPort{"a", 4747});
+  CHECK(several.more_servers == std::vector<HostPort>{{"b", 5}});
+  CHECK(several.ticket == "token");
+  CHECK(refused({"--connect", "a,"}) == 2);
 }
 
 TEST_CASE(

@@ -41,6 +41,11 @@ TEST_CASE("bots connect to a server or to the WebSocket of a gateway", "[client_
   const auto server = options("play.example.org");
   REQUIRE(server.has_value());
   CHECK(server->web_path.empty());
+  CHECK(server->more_servers.empty());
+  const auto several = options("one.example,two.example:5000");
+  REQUIRE(several.has_value());
+  CHECK(several->server == HostPort{"one.example", kDefaultPort});
+  CHECK(several->more_servers == std::vector<HostPort>{{"two.example", 5000}});
   const auto secure = options("wss://play.example.org/play");
   REQUIRE(secure.has_value());
   CHECK(secure->server == HostPort{"play.example.org", 443});

@@ -1,5 +1,6 @@
 #include "client/net/net_client.hpp"
 
+#include <algorithm>
 #include <asio.hpp>
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -149,6 +150,55 @@ TEST_CASE_METHOD(Fixture,
   const auto got = peer.receive();
   REQUIRE(got);
   CHECK(std::get<Ping>(*got).sent_us == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "a lost connection is made again at another server of the list",
+                 "[client_net]") {
+  Peer other;
+  const std::uint16_t other_port = other.port();
+  const auto address_of = [](const Peer& server) {
+    return "127.0.0.1:" + std::to_string(server.port());
+  };
+  Servers list{{{address_of(peer)}, {address_of(other)}}, 0};
+  std::ranges::sort(list.servers, {}, &ServerEntry::address);
+  start(config());
+  peer.accept();
+  CHECK_FALSE(next_as<LinkConnected>().is_listed);
+  client->set_servers(seen_from(list, address_of(peer)));
+  SECTION("because the connection breaks") { peer.socket.close(); }
+  SECTION("because the server says goodbye") {
+    peer.send(Goodbye{GoodbyeReason::closing, "the server stops"});
+    next_as<LinkReceived>();
+    client->close(1);
+  }
+  const auto lost = next_as<LinkDisconnected>();
+  CHECK(lost.connection == 1);
+  CHECK(lost.server == HostPort{"127.0.0.1", peer.port()});
+  other.accept();
+  const auto up = next_as<LinkConnected>();
+  CHECK(up.connection == 2);
+  CHECK(up.is_listed);
+
+  // From there, the first server is the other one.
+  client->set_servers(seen_from(list, address_of(other)));
+  other.acceptor.close();
+  other.socket.close();
+  CHECK(next_as<LinkDisconnected>().server == HostPort{"127.0.0.1", other_port});
+  peer.accept();
+  CHECK_FALSE(next_as<LinkConnected>().is_listed);
+}
+
+TEST_CASE_METHOD(Fixture, "every given address is tried", "[client_net]") {
+  Peer other;
+  LinkConfig net = config();
+  net.more = {{"127.0.0.1", other.port()}};
+  peer.acceptor.close();
+  start(net);
+  other.accept();
+  while (std::holds_alternative<LinkDisconnected>(next())) {
+  }
+  client->send(1, encode_message(Ping{1}));
+  CHECK(other.receive().has_value());
 }
 
 TEST_CASE_METHOD(Fixture, "bytes that are no frames end the connection with a reason",

@@ -45,6 +45,7 @@ struct ConnectionFixture {
     out.materials = default_material_table();
     out.server_key = server.public_key;
     out.view_radius_max = 4;
+    out.features = features;
     out.signature = sign(server, server_transcript(hello, out, std::nullopt));
     return out;
   }
@@ -60,6 +61,7 @@ struct ConnectionFixture {
   KeyPair server = keys(9);
   WorldId world_id{1, 2, 3};
   Epoch epoch = 1;
+  std::uint64_t features = 0;
   Hello hello;
   TimeUs now = 1'000'000;
   ServerConnection connection{config()};
@@ -178,6 +180,69 @@ TEST_CASE_METHOD(ConnectionFixture,
   connection.connected({6}, std::nullopt, now);
   CHECK_FALSE(connection.end());
   CHECK_FALSE(connection.wants_close());
+}
+
+TEST_CASE_METHOD(ConnectionFixture, "the list of servers is kept until another world's begins",
+                 "[session]") {
+  const Servers list{{{"a:1"}, {"b:1"}}, 1};
+  features = kFeatureServerList;
+  open();
+  CHECK(connection.servers_number() == 0);
+  CHECK(receive(list) == Dispatch::handled);
+  CHECK_FALSE(connection.wants_close());
+  CHECK(connection.servers() == list);
+  CHECK(connection.servers_number() == 1);
+  receive(Pong{now, now});
+  CHECK(connection.clock().known());
+  open();
+  CHECK(connection.servers() == list);
+  CHECK(connection.servers_number() == 1);
+  CHECK_FALSE(connection.clock().known());  // the server may be another one, with another clock
+  world_id = {4};
+  open();
+  CHECK(connection.servers() == Servers{});
+  CHECK(connection.servers_number() == 2);
+}
+
+TEST_CASE_METHOD(ConnectionFixture,
+                 "whatever answers at a listed address must prove the key of the same world",
+                 "[session]") {
+  open();
+  connection.connected({6}, std::nullopt, now, true);
+  hello = take<Hello>().at(0);
+  SECTION("it does") {
+    receive(welcome());
+    CHECK(receive(SessionAccepted{6, 0}) == Dispatch::session_accepted);
+    CHECK(connection.is_open());
+    CHECK_FALSE(connection.end());
+    receive(Goodbye{GoodbyeReason::not_admitted, "banned"});
+    CHECK(connection.end()->final);
+    return;
+  }
+  SECTION("another key") {
+    server = keys(8);
+    receive(welcome());
+    CHECK(connection.end()->reason == GoodbyeReason::not_authenticated);
+  }
+  SECTION("another world") {
+    world_id = {4};
+    receive(welcome());
+    CHECK(connection.config().pinned.size() == 1);
+  }
+  SECTION("another signature") {
+    Welcome forged = welcome();
+    forged.signature[0] ^= 1;
+    receive(forged);
+  }
+  SECTION("a goodbye before it has proved anything") {
+    receive(Goodbye{GoodbyeReason::not_admitted, "banned"});
+  }
+  // Nothing secret was sent, and another address may lead to the world.
+  CHECK(take<ClientAuth>().empty());
+  CHECK(connection.wants_close());
+  REQUIRE(connection.end());
+  CHECK_FALSE(connection.end()->final);
+  CHECK(connection.welcome()->world_id == WorldId{1, 2, 3});
 }
 
 TEST_CASE_METHOD(ConnectionFixture,

@@ -33,6 +33,17 @@ TEST_CASE("an address with a port keeps it, and brackets enclose IPv6", "[os]") 
   CHECK(parsed("[2001:db8::7]:80") == HostPort{"2001:db8::7", 80});
 }
 
+TEST_CASE("several addresses are separated by commas", "[os]") {
+  const auto all = parse_host_ports("a,b:1,[::1]:2", kDefault);
+  REQUIRE(all.has_value());
+  CHECK(*all == std::vector<HostPort>{{"a", kDefault}, {"b", 1}, {"::1", 2}});
+  CHECK(parse_host_ports("a", kDefault).value() == std::vector<HostPort>{{"a", kDefault}});
+  for (const char* text : {"", ",", "a,", ",a", "a,,b", "a,b:0"}) {
+    CAPTURE(text);
+    CHECK_FALSE(parse_host_ports(text, kDefault).has_value());
+  }
+}
+
 TEST_CASE("an address becomes text that reads back to it", "[os]") {
   for (const char* text : {"localhost:4747", "127.0.0.1:1", "[::1]:4000"})
     CHECK(to_string(parsed(text)) == text);

@@ -38,6 +38,7 @@ const char* text_of_feature(std::uint64_t feature) {
   if (feature == kFeaturePreviews) return "previews";
   if (feature == kFeatureServers) return "servers";
   if (feature == kFeatureResume) return "resume";
+  if (feature == kFeatureServerList) return "server list";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 
@@ -93,7 +94,7 @@ TEST_CASE("an encoded message has its kind, and the kind decides the class", "[p
   }
   CHECK(kKindOf<Hello> == 0);
   CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
-  CHECK(kKindOf<Resumed> == kMessageKindCount - 1);
+  CHECK(kKindOf<Servers> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {

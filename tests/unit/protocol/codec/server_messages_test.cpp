@@ -124,6 +124,23 @@ TEST_CASE("a request to follow and its answer are refused with a sequence of 64 
   CHECK_FALSE(answer(kSequenceMax + 1));
 }
 
+TEST_CASE("a request to follow is refused with an address of a wrong form", "[protocol]") {
+  const auto request = [](const std::string& address, const std::string& page) {
+    return passes<FollowRequest>([&](auto& b) {
+      const auto address_at = b.CreateString(address);
+      return wire::CreateFollowRequest(b, 3, 4, address_at, b.CreateString(page));
+    });
+  };
+  CHECK(request("", ""));
+  CHECK(request("play.example:4747", "https://play.example"));
+  CHECK_FALSE(request("play.example", ""));
+  CHECK_FALSE(request("play.example:0", ""));
+  CHECK_FALSE(request(std::string(kServerAddressBytesMax - 1, 'a') + ":1", ""));
+  CHECK_FALSE(request("", "play.example"));
+  CHECK_FALSE(request("", "https://" + std::string(kServerAddressBytesMax, 'a')));
+  CHECK(comes_back(FollowRequest{{3, 4}, "play.example:4747", "https://play.example"}));
+}
+
 TEST_CASE("a part of the log is refused with a bad player or name", "[protocol]") {
   refuses<LogPart, LogPartFields>({
       [](auto& p) { p.players[0].author = 0; },

@@ -68,6 +68,19 @@ TEST_CASE("links have the public address, or that of a server for its machine al
   CHECK(link_address() == "example.org");
 }
 
+TEST_CASE("only a server of a world in a database has an address in the list of servers",
+          "[runtime]") {
+  ServerConfig config;
+  config.listen = "192.0.2.1";
+  config.player_address = "play.example";
+  config.page_address = "https://play.example";
+  CHECK(world_config_of(config, sample_meta(), 5000).player_address.empty());
+  CHECK(world_config_of(config, sample_meta(), 5000).page_address.empty());
+  config.store = "postgresql://db.example/valley";
+  CHECK(world_config_of(config, sample_meta(), 5000).player_address == "play.example:5000");
+  CHECK(world_config_of(config, sample_meta(), 5000).page_address == "https://play.example");
+}
+
 TEST_CASE("the configured encoding is the preferred one", "[server]") {
   ServerConfig config;
   for (const ChunkEncoding encoding :

@@ -89,8 +89,8 @@ TEST_CASE("only the files of the client are served, and only if there is one", "
 }
 
 TEST_CASE("the client may run its own code, the map a script, and no other page any", "[web]") {
-  const auto policy = [](PageScripts scripts) {
-    for (const auto& [name, value] : safety_headers(scripts)) {
+  const auto policy = [](PageScripts scripts, const std::string& sockets = "") {
+    for (const auto& [name, value] : safety_headers(scripts, sockets)) {
       if (name == "Content-Security-Policy") return value;
     }
     return std::string();
@@ -100,6 +100,12 @@ TEST_CASE("the client may run its own code, the map a script, and no other page 
   CHECK(policy(PageScripts::client).find("script-src 'self' 'wasm-unsafe-eval';") !=
         std::string::npos);
   CHECK(policy(PageScripts::client).find("'unsafe-inline'") == std::string::npos);
+  CHECK(policy(PageScripts::client).find("connect-src 'self';") != std::string::npos);
+  const std::string other = " wss://other.example";
+  CHECK(policy(PageScripts::client, other).find("connect-src 'self' wss://other.example;") !=
+        std::string::npos);
+  for (const PageScripts scripts : {PageScripts::none, PageScripts::own})
+    CHECK(policy(scripts, other) == policy(scripts));
   const TempFolder folder;
   write_all(folder);
   const auto files = ClientFiles::load(folder.path());

@@ -35,6 +35,8 @@ TEST_CASE("with a list only the pages of its origins may open a WebSocket", "[we
   CHECK(check.allows("http://b.example:81", "elsewhere.example"));
   CHECK_FALSE(check.allows("http://b.example", "elsewhere.example"));
   CHECK_FALSE(check.allows("https://elsewhere.example", "elsewhere.example"));
+  CHECK(check.sockets() == " wss://a.example ws://b.example:81");
+  CHECK(OriginCheck({}, true).sockets().empty());
 }
 
 TEST_CASE("a list with something that is no origin is refused", "[web]") {

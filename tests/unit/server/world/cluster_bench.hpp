@@ -89,7 +89,7 @@ struct ClusterBench {
   /// Makes an owner and connects followers with it.
   explicit ClusterBench(std::size_t followers = 1, WorldConfig c = config())
       : config_(std::move(c)) {
-    servers.emplace_back().bench = std::make_unique<WorldBench>(config_);
+    servers.emplace_back().bench = std::make_unique<WorldBench>(config_of(0));
     for (std::size_t i = 0; i < followers; ++i) connect(add_follower());
     pump();
   }
@@ -104,7 +104,8 @@ struct ClusterBench {
     WorldStart start = database.start();
     start.log.epoch = database.epoch;
     const auto random = static_cast<std::uint8_t>(9 + servers.size());
-    servers.emplace_back().bench = std::make_unique<WorldBench>(config_, start, random);
+    const WorldConfig c = config_of(servers.size());
+    servers.emplace_back().bench = std::make_unique<WorldBench>(c, start, random);
     WorldBench& fresh = *servers.back().bench;
     fresh.time_us = time_us;
     for (const EditRecord& record : database.records) fresh.server.replay_onto_stack(record);
@@ -318,6 +319,14 @@ struct ClusterBench {
   bool answers_resumes = true;  // the players do
 
  private:
+  /// A player_address of the configuration is the beginning of those of the servers.
+  WorldConfig config_of(std::size_t server) const {
+    WorldConfig c = config_;
+    if (c.player_address.empty()) return c;
+    c.player_address += std::to_string(server) + ":4747";
+    c.page_address = "https://page" + std::to_string(server);
+    return c;
+  }
   struct Player {
     std::map<ClientSequence, EditRequest> edits;  // that it has sent
     std::size_t resumes_answered = 0;

@@ -1,0 +1,24 @@
+// LinkTarget: where a link connects to. It is a server, or a WebSocket of a gateway.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "common/os/host_port.hpp"
+#include "protocol/codec/server_list.hpp"
+
+namespace runstone {
+
+struct LinkTarget {
+  HostPort server;
+  /// Path of the WebSocket, such as "/play". Empty: `server` takes frames without a WebSocket.
+  std::string web_path = {};
+  friend bool operator==(const LinkTarget&, const LinkTarget&) = default;
+};
+
+/// Returns the servers of a list besides its sender.
+std::vector<LinkTarget> other_servers(const Servers& list);
+/// Returns the WebSockets of their gateways. Those count whose pages are encrypted if `is_encrypted`,
+/// and are not encrypted otherwise.
+std::vector<LinkTarget> other_gateways(const Servers& list, bool is_encrypted);
+
+}  // namespace runstone
