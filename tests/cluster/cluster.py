@@ -16,14 +16,18 @@ class Cluster:
         self.servers = []
         self.wires = Wires()
         self.database = DatabasePair(folder / "postgres", has_disks, is_synchronous)
+        own_wires = []  # of the players, one for each server
         try:
             for i in range(SERVERS):
                 # The hosts keep their wires, as machines keep their addresses: the server finds the primary.
                 databases = [self.wires.add(lambda host=host: host.port) for host in self.database.hosts]
-                peers = self.wires.add(lambda i=i: self.servers[i].port())
+                peers, players = [self.wires.add(lambda i=i: self.servers[i].port()) for _ in range(2)]
+                own_wires.append(players)
                 self.servers.append(GameServer(programs / "runstone-server", folder, f"server{i}",
-                                               WireBundle(databases), peers, url_of(databases)))
-            self.players = self.wires.add(self.player_port)
+                                               WireBundle(databases), peers, players, url_of(databases)))
+            # Players come to any server, and from there to those of its list.
+            self.door = self.wires.add(self.player_port)
+            self.players = WireBundle([self.door, *own_wires])
         except BaseException:
             self.close()
             raise
@@ -37,7 +41,7 @@ class Cluster:
         return next((one for one in self.servers if address == f"127.0.0.1:{one.peers.port}"), None)
 
     def player_port(self):
-        """Returns the port of any server that listens: players come to all of them."""
+        """Returns the port of any server that listens."""
         ports = [port for server in self.servers if (port := server.port())]
         return random.choice(ports) if ports else None
 

@@ -9,9 +9,9 @@ from server_clock import ServerClock
 
 
 class GameServer:
-    def __init__(self, program, folder, name, databases, peers, url):
+    def __init__(self, program, folder, name, databases, peers, players, url):
         """`databases` are the wires to the hosts of the database, at `url`. `peers` leads from the other
-        servers to this one."""
+        servers to this one, `players` from players who know it from the list of servers."""
         self.folder = folder / name
         self.name, self.databases, self.peers = name, databases, peers
         self.port_file = self.folder.with_suffix(".port")
@@ -23,7 +23,8 @@ class GameServer:
         # The kernel ends it if the test ends.
         self.command = ["setpriv", "--pdeathsig=KILL", program, "--world", self.folder, "--store", url,
                         "--standby", "--lease-s", "2", "--listen", "127.0.0.1:0",
-                        "--peer-address", f"127.0.0.1:{peers.port}", "--port-file", self.port_file,
+                        "--peer-address", f"127.0.0.1:{peers.port}",
+                        "--player-address", f"127.0.0.1:{players.port}", "--port-file", self.port_file,
                         "--digests", self.digests_file, "--sessions-per-address", "0",
                         "--budgets-per-address", "0", "--connections-per-second", "0", "--stop-s", "20"]
         self.process = None

@@ -32,13 +32,13 @@ class Run:
         """Lets bots build, and calls `disturb` meanwhile. Returns what is wrong."""
         if not self.cluster.create():
             return ["no server has taken the world"]
-        self.builders.start(self.cluster.players.port, self.seconds)
+        self.builders.start(self.cluster.door.port, self.seconds)
         self.cluster.wait(2)
         disturb()
         self.cluster.heal()
         wrong = self._see_off(self.builders) + self.builders.check_that_most_is_durable()
         # Everything must work again.
-        self.latecomers.start(self.cluster.players.port, LATE_S)
+        self.latecomers.start(self.cluster.door.port, LATE_S)
         wrong += self._see_off(self.latecomers) + self.latecomers.check_that_all_is_durable()
         wrong += self.cluster.stop()
         return wrong + self.world.check(self.edits())
