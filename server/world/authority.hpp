@@ -71,6 +71,8 @@ class Authority {
   const EditQueue& queue() const { return queue_; }
   /// Returns how long the edits of players waited to be ordered.
   const WaitHistogram& edit_waits() const { return edit_waits_; }
+  /// Adds the wait of an edit that another server has ordered for a player here.
+  void add_edit_wait(TimeUs wait_us) { edit_waits_.add(wait_us); }
   /// Advances the log's time, and orders the edits that EditQueue::take(large_room) returns. Returns
   /// nullopt if there are none. Cost: O(runs + edits) for each touched chunk.
   std::optional<OrderedBatch> commit(const Clocks& now, std::uint64_t large_room = kAllLargeEdits);

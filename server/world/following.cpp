@@ -25,6 +25,7 @@ constexpr TimeUs kPingIntervalUs = 1'000'000;
 constexpr TimeUs kOwnerSilentUsMax = 5'000'000;
 constexpr TimeUs kReadPauseUs = 20'000;
 constexpr std::size_t kWaitingMax = 65'536;
+constexpr std::size_t kForwardedMax = 65'536;
 // Rows of players and names without records have no sequence that tells when they are durable. They are
 // written within some 50 ms.
 constexpr TimeUs kRowsKeptUs = 10'000'000;
@@ -77,6 +78,18 @@ void send_all_sessions(WorldState& world) {
   }
 }
 
+/// Measures how long edits of players here have waited.
+void add_waits(WorldState& world, std::span<const LogPartRecord> records, const Clocks& now) {
+  if (!world.following) return;
+  auto& forwarded = world.following->forwarded;
+  for (const LogPartRecord& one : records) {
+    const auto found = forwarded.find(one.record.op);
+    if (found == forwarded.end()) continue;
+    world.authority.add_edit_wait(now.steady_us - found->second);
+    forwarded.erase(found);
+  }
+}
+
 void follow_records(WorldState& world, std::span<const LogPartRecord> records, const Clocks& now) {
   while (!records.empty()) {
     const Epoch epoch = records.front().record.version.epoch;
@@ -85,6 +98,7 @@ void follow_records(WorldState& world, std::span<const LogPartRecord> records, c
     const auto same = records.first(static_cast<std::size_t>(other - records.begin()));
     if (epoch > world.authority.epoch()) begin_epoch(world, epoch);
     if (world.following) world.following->head_epoch = epoch;
+    add_waits(world, same, now);
     const OrderedBatch batch = world.authority.follow(same, now);
     apply_rights(world, batch.records);
     apply_materials(world, batch.records);
@@ -198,6 +212,7 @@ void on_relayed_reject(WorldState& world, SessionId session, Reject reject) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr || mine->state != SessionStage::open) return;
   mine->awaits_durable = std::max(mine->awaits_durable, reject.seq);
+  world.following->forwarded.erase({mine->author, mine->instance, reject.client_seq});
   send_reject(world, session, std::move(reject));
 }
 
@@ -311,6 +326,7 @@ void owner_disconnected(WorldState& world) {
   Following& mine = *world.following;
   mine.link = Link::none;
   mine.waiting.clear();
+  mine.forwarded.clear();
   for (auto& [id, session] : world.sessions) {
     session.is_at_owner = false;
     session.needs_resume = session.state == SessionStage::open;
@@ -376,6 +392,9 @@ bool on_message_for_owner(WorldState& world, SessionId session, const Message& m
                   {edit->client_seq, RejectReason::bad_edit,
                    edit->fault ? fault_text(*edit->fault) : kActionRefused, 0});
     } else if (reaches_owner) {
+      auto& forwarded = world.following->forwarded;
+      if (forwarded.size() < kForwardedMax)
+        forwarded.try_emplace({mine.author, mine.instance, edit->client_seq}, now.steady_us);
       send_from(world, session, *edit);
     }
     return true;
@@ -406,6 +425,9 @@ bool on_message_for_owner(WorldState& world, SessionId session, const Message& m
 
 void session_left(WorldState& world, SessionId session, const WorldSession& mine) {
   if (!mine.is_at_owner || !is_live(world)) return;
+  std::erase_if(world.following->forwarded, [&mine](const auto& edit) {
+    return edit.first.author == mine.author && edit.first.instance == mine.instance;
+  });
   static_cast<void>(world.environment.send_to_owner(encode_message(RelayClose{session, 1, ""})));
 }
 

@@ -11,11 +11,13 @@
 //   - If the owner has ordered edits differently from what arrived here (it took the world over from a
 //     server that had sent them), this server cannot go on: WorldServer::has_forked().
 // Bounds: records that are not durable: those of the owner's log queue; messages of the owner that wait
-// while records are read: kWaitingMax, then the connection is made anew.
+// while records are read: kWaitingMax, then the connection is made anew; edits whose wait is measured:
+// kForwardedMax.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -84,6 +86,8 @@ struct Following {
   TimeUs heard_us = 0, pinged_us = 0;  // steady clock: the last message, the last ping
   Epoch head_epoch = 0;                // of the last record that this server has
   std::deque<KeptPart> not_durable;
+  // Edits of players here that the owner got, until it answers: when they came (steady clock).
+  std::map<OperationId, TimeUs> forwarded;
   bool has_forked = false;
   bool is_taking_over = false;  // messages of an owner are ignored
 };

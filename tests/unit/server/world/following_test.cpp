@@ -791,6 +791,36 @@ TEST_CASE("a follower leaves an owner whose records go back to an earlier epoch"
   CHECK(bench.environment(follower).owners_left[0] == "another server has taken the world over");
 }
 
+TEST_CASE("a follower measures how long the edits of its players wait for the owner",
+          "[world][servers]") {
+  ClusterBench bench;
+  bench.join(0, 1, 1);
+  bench.join(1, 1, 2);
+  bench.join(1, 2, 3);
+  bench.servers[1].holds_to_owner = true;
+  bench.edit(1, 1, 1, kAtOrigin);
+  bench.edit(1, 2, 1, kAtOrigin);
+  bench.receive(1, 1, EditRequest{2, 0, {FillBox{{{0, 0, 0}, {4'000, 4'000, 4'000}}}, {}, 1}});
+  bench.at(1).time_us = (bench.time_us += 30'000);
+  bench.edit(0, 1, 1, kAtOrigin);
+  bench.world(1).disconnected(2);  // nobody waits for its edit
+  bench.servers[1].holds_to_owner = false;
+  bench.run();
+  CHECK(bench.sent<Reject>(1, 1).size() == 1);
+  CHECK(bench.world(1).edit_waits().count() == 1);
+  CHECK(bench.world(1).edit_waits().sum_us() == 30'000);
+  CHECK(bench.world(0).edit_waits().count() == 3);
+  // What a lost connection leaves without an answer is not measured.
+  bench.servers[1].holds_to_owner = true;
+  bench.edit(1, 1, 3, kAtOrigin);
+  bench.cut(1);
+  bench.servers[1].holds_to_owner = false;
+  bench.connect(1);
+  for (int i = 0; i < 3; ++i) bench.tick();
+  CHECK(bench.world(1).last_record().seq == 4);
+  CHECK(bench.world(1).edit_waits().count() == 2);  // when it was offered again
+}
+
 TEST_CASE("a follower does not give up a chunk while the database is away", "[world][servers]") {
   ClusterBench bench;
   bench.join(1, 1, 2);
