@@ -192,12 +192,12 @@ void Shell::join_address(const JoinAddress& chosen) {
   };
   const auto link = parse_server_link(chosen.address);
   if (!link) return refuse(link.error());
-  const auto server = parse_host_port(link->address, kDefaultPort);
-  if (!server) return refuse(server.error());
+  const auto servers = parse_host_ports(link->address, kDefaultPort);
+  if (!servers) return refuse(servers.error());
   if (!take_name(chosen.name)) return;
-  Destination to{options_, to_string(*server), {}};
-  to.options.server = *server;
-  to.options.more_servers.clear();
+  Destination to{options_, to_string(servers->front()), {}};
+  to.options.server = servers->front();
+  to.options.more_servers.assign(servers->begin() + 1, servers->end());
   to.options.ticket = link->ticket;
   to.options.password.clear();
   to.options.servers_file = default_servers_file();

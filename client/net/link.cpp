@@ -58,8 +58,7 @@ struct Link::State {
 
   ConnectOrder<LinkTarget> order{
       given_targets(config), {config.pause_ms_first, config.pause_ms_max}, randombytes_uniform};
-  Attempt attempt;                   // the newest one
-  std::uint32_t first_endpoint = 0;  // of the addresses of a name, where the next attempt starts
+  Attempt attempt;  // the newest one
 
   asio::ip::tcp::resolver resolver{io};
   LinkSocket socket{io};
@@ -193,7 +192,7 @@ asio::awaitable<std::string> connect(State& state) {
   const auto [resolve_error, found] =
       co_await state.resolver.async_resolve(server.host, port, kTuple);
   if (resolve_error) co_return "cannot resolve " + server.host + ": " + resolve_error.message();
-  const std::vector<tcp::endpoint> endpoints = endpoints_from(state.first_endpoint++, found);
+  const std::vector<tcp::endpoint> endpoints = endpoints_from(randombytes_uniform(256), found);
   state.socket.reset();
   state.pause.expires_after(milliseconds(state.config.connect_ms_max));
   State* const raw = &state;
@@ -240,7 +239,6 @@ asio::awaitable<void> keep_connected(State& state) {
 Link::Link(asio::io_context& io, LinkConfig config, LinkCallbacks& callbacks)
     : state_(std::make_unique<State>(io, std::move(config), callbacks)) {
   if (sodium_init() < 0) throw std::runtime_error("libsodium cannot start");
-  state_->first_endpoint = randombytes_random();
 }
 
 Link::~Link() = default;

@@ -7,9 +7,8 @@
 
 namespace runstone {
 
-/// Returns HOST:PORT, or [V6]:PORT: the setting `player_address`, with `port` if it has none, or
-/// else peer_address_of(). Returns an empty text if that is no address for players, such as an IPv6
-/// address with a zone. `port`: the one that the server listens at.
+/// Returns HOST:PORT, or [V6]:PORT: the setting `player_address`, with `port` if it has none. Returns an
+/// empty text if the setting is empty. `port`: the one that the server listens at.
 std::string player_address_of(const ServerConfig& config, std::uint16_t port);
 
 }  // namespace runstone

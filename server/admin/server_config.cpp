@@ -124,7 +124,7 @@ FormField player_address_field() {
 FormField page_address_field() {
   return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
             if (!is_page_address(text))
-              return "must be https://HOST, perhaps with a port and a path";
+              return "must be https://HOST or http://HOST, perhaps with a port and a path";
             config.page_address = text;
             return std::nullopt;
           },
@@ -186,12 +186,12 @@ const SettingsTable<ServerConfig>& settings() {
                peer_address_field()),
           form("player_address",
                "HOST or HOST:PORT at which players reach this server of the world of `store`; "
-               "empty: as peer_address",
+               "empty: players are not told of it",
                player_address_field()),
           form(
               "page_address",
               "https://HOST/PATH of the pages of runstone-web for this server; empty: browsers are "
-              "not led here",
+              "not told of it",
               page_address_field()),
           text("listen", "HOST, HOST:PORT, [V6]:PORT or :PORT; port 0 takes a free one",
                &C::listen),

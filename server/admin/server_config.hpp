@@ -38,10 +38,10 @@ struct ServerConfig {
   /// see peer_address_of().
   std::string peer_address;
   /// HOST, HOST:PORT or [V6]:PORT, at which players reach this server of the world of `store`.
-  /// Empty: see player_address_of().
+  /// Empty: players are not told of this server.
   std::string player_address;
   std::string
-      page_address;  // https://HOST/PATH of its runstone-web; empty: browsers are not led here
+      page_address;  // https://HOST/PATH of its runstone-web; empty: browsers are not told of this server
   // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
   std::string listen = "0.0.0.0:" + std::to_string(kDefaultPort);
   /// Connections are not encrypted. Only for an address of this machine, unless `i_know` is set.

@@ -100,6 +100,7 @@ struct Server::Parts {
   std::unique_ptr<ServerCore> core;
   bool is_unclaimed = false;
   bool is_running = false;
+  bool has_failed_to_take_over = false;  // the thread of the watch has ended when this is read
   std::atomic<bool> is_following{false};
 
   /// The store that has the lease, unless this server follows.
@@ -264,7 +265,10 @@ Result<void, std::string> Server::take_over() {
   parts.is_following = false;
   auto taken = parts.publish(*parts.writer);
   if (taken) taken = parts.core->take_over(*parts.writer);
-  if (!taken) parts.writer->give_up();  // another server need not wait for the lease to run out
+  if (!taken) {
+    parts.has_failed_to_take_over = true;
+    parts.writer->give_up();  // another server need not wait for the lease to run out
+  }
   return taken;
 }
 
@@ -313,7 +317,7 @@ StopReport Server::stop() {
   const StopState state = parts.core->stop_state();
   const auto live = parts.core->edited_chunks();
   parts.core.reset();
-  if (parts.is_following) return {};
+  if (parts.is_following || parts.has_failed_to_take_over) return {};
   // Once the world is handed over, its rows are those of another server.
   StopReport report = sum_up(parts.owned_store(), live, state, [due_us, hands_over] {
     return !hands_over && steady_now_us() < due_us;

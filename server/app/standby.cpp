@@ -8,9 +8,10 @@ namespace runstone {
 namespace {
 
 constexpr std::chrono::milliseconds kPause{250};
-// A server that follows may have edits that the database lacks. So a server that starts leaves a world
-// without an owner to it for a second.
-constexpr int kFreeLooks = 4;
+// A server that follows may have edits that the database lacks. So a server that starts takes a world that
+// has no owner only after a second: one that follows takes it earlier, unless it does not know yet that the
+// owner is gone.
+constexpr int kLooksWithoutOwner = 4;
 // An owner that stops lets go of the connection first, and of the lease a moment later. Edits of players
 // wait meanwhile.
 constexpr std::chrono::milliseconds kShortPause{10};
@@ -27,18 +28,18 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
     return owner && !*owner;
   };
   std::string told;
-  int free_looks = 0;
+  int looks_without_owner = 0;
   for (;;) {
     const auto owner = lease.owner();
     std::string reason;
-    if (!owner || *owner) free_looks = 0;
+    if (!owner || *owner) looks_without_owner = 0;
     if (!owner) {
       reason = owner.error().message();
     } else if (*owner) {
       auto followed = follow();
       if (followed) return followed;
       reason = (*owner)->name + " owns the world, and cannot be followed: " + followed.error();
-    } else if (++free_looks <= kFreeLooks) {
+    } else if (++looks_without_owner <= kLooksWithoutOwner) {
       reason = "nobody owns the world, and a server that follows may take it over";
     } else {
       logger("app").info("STANDBY: nobody owns the world: taking it over");
@@ -48,6 +49,7 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
       if (stops_within(kPause)) return std::unique_ptr<Server>();
       if (is_free()) return started;
       reason = started.error();
+      looks_without_owner = 0;
     }
     if (reason != told) logger("app").info("STANDBY: waiting, because {}", reason);
     told = reason;

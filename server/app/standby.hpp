@@ -19,9 +19,10 @@ namespace runstone {
 using StartServer = std::function<Result<std::unique_ptr<Server>, std::string>()>;
 
 /// Starts the server by `start` if nobody has owned the world for a second, and by `follow` if another
-/// server owns it. Waits while the owner cannot be followed yet, and while the database does not answer. `stops_within` waits,
-/// and returns true if the program has to stop meanwhile. Returns null then. Fails if `start` fails
-/// although nobody owns the world. Requires start_logging(), and that `place` is a database.
+/// server owns it. Waits while the owner cannot be followed yet, and while the database does not
+/// answer. `stops_within` waits, and returns true if the program has to stop meanwhile. Returns null
+/// then. Fails if `start` fails although nobody owns the world. Requires start_logging(), and that
+/// `place` is a database.
 Result<std::unique_ptr<Server>, std::string> start_as_standby(
     const std::string& place, const std::function<bool(std::chrono::milliseconds)>& stops_within,
     const StartServer& start, const StartServer& follow);

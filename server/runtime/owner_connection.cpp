@@ -14,7 +14,7 @@ namespace runstone {
 namespace {
 
 constexpr std::chrono::milliseconds kConnectTimeout{2'000};
-constexpr std::size_t kToldMax = 16;
+constexpr std::size_t kLoggedReasonsMax = 16;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void OwnerConnection::connect_to(const std::string& address) {
 void OwnerConnection::connect(const std::string& address) {
   const auto end = parse_host_port(address, kDefaultPort);
   if (!end) {
-    if (is_news(address))
+    if (is_not_logged_yet(address))
       logger("world").error("the owner's address \"{}\" is none: {}", address, end.error());
     return;
   }
@@ -52,16 +52,16 @@ void OwnerConnection::connect(const std::string& address) {
   events.on_message = [this](Message&& message, std::size_t bytes) {
     strand_.post([this, link = link_, message = std::move(message), bytes]() mutable {
       world_->owner_received(std::move(message), read_clocks());
+      if (world_->is_live()) logged_reasons_.clear();
       if (link != nullptr) link->handled(bytes);
     });
   };
   events.on_ended = [this, address](const std::string& why) {
     strand_.post([this, address, why] {
       link_.reset();
-      if (world_->is_live()) told_.clear();
       world_->owner_disconnected();
       const std::string line = address + ": " + why;
-      if (!has_ended_ && is_news(line)) logger("world").warn("OWNER LOST: {}", line);
+      if (!has_ended_ && is_not_logged_yet(line)) logger("world").warn("OWNER LOST: {}", line);
     });
   };
   std::optional<TlsContext> tls;
@@ -72,9 +72,9 @@ void OwnerConnection::connect(const std::string& address) {
   link_->connect(*end, kConnectTimeout);
 }
 
-bool OwnerConnection::is_news(const std::string& reason) {
-  if (told_.size() >= kToldMax) told_.clear();
-  return told_.insert(reason).second;
+bool OwnerConnection::is_not_logged_yet(const std::string& reason) {
+  if (logged_reasons_.size() >= kLoggedReasonsMax) logged_reasons_.clear();
+  return logged_reasons_.insert(reason).second;
 }
 
 void OwnerConnection::leave(const std::string& why) {

@@ -38,8 +38,8 @@ class OwnerConnection {
 
  private:
   void connect(const std::string& address);
-  /// Returns true if a reason why there is no connection was not logged yet.
-  bool is_news(const std::string& reason);
+  /// Notes a reason why there is no connection. Returns true if it was not logged yet.
+  bool is_not_logged_yet(const std::string& reason);
 
   asio::io_context& io_;
   WorldStrand& strand_;
@@ -48,9 +48,9 @@ class OwnerConnection {
   const bool is_encrypted_;
   WorldServer* world_ = nullptr;
   // Used on the world strand.
-  std::shared_ptr<OutgoingLink> link_;  // null: there is no connection
-  std::string address_;                 // to which it leads
-  std::set<std::string> told_;  // why there was no connection since the last one that was live
+  std::shared_ptr<OutgoingLink> link_;    // null: there is no connection
+  std::string address_;                   // to which it leads
+  std::set<std::string> logged_reasons_;  // for ends since the last connection that was live
   bool has_ended_ = false;
 };
 

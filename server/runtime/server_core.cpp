@@ -165,7 +165,10 @@ Result<void, std::string> ServerCore::take_over(Store& store) {
     make_log(store, start.read.last);
     taken->set_value(world_->take_over(start, read_clocks()));
   });
-  if (!is_taken.get()) return failure("the log has other edits than this server");
+  if (!is_taken.get()) {
+    log_->stop();
+    return failure("the log has other edits than this server");
+  }
   logger("world").info("OWNS THE WORLD: epoch={} seq={}", start->epoch, start->read.last);
   return {};
 }

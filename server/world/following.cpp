@@ -118,6 +118,7 @@ void on_welcome(WorldState& world, const Welcome& welcome) {
     return leave(world, "what answers there is no server of this world");
   if ((welcome.features & kFeatureServers) == 0)
     return leave(world, "the server there does not let others follow");
+  if (welcome.epoch < mine.head_epoch) return leave(world, kTakenOver);
   mine.link = Link::authenticating;
   mine.owner_epoch = welcome.epoch;
   const Bytes own = client_transcript(mine.hello, welcome, mine.binding);
@@ -424,10 +425,12 @@ bool on_message_for_owner(WorldState& world, SessionId session, const Message& m
 }
 
 void session_left(WorldState& world, SessionId session, const WorldSession& mine) {
+  auto& forwarded = world.following->forwarded;
+  auto edit = forwarded.lower_bound({mine.author, mine.instance, 0});
+  while (edit != forwarded.end() && edit->first.author == mine.author &&
+         edit->first.instance == mine.instance)
+    edit = forwarded.erase(edit);
   if (!mine.is_at_owner || !is_live(world)) return;
-  std::erase_if(world.following->forwarded, [&mine](const auto& edit) {
-    return edit.first.author == mine.author && edit.first.instance == mine.instance;
-  });
   static_cast<void>(world.environment.send_to_owner(encode_message(RelayClose{session, 1, ""})));
 }
 

@@ -51,6 +51,7 @@ bool have_same_addresses(const std::vector<ServerEntry>& a, const std::vector<Se
 void update_listed_servers(WorldState& world, const Clocks& now) {
   ListedServers& listed = world.listed;
   if (now.steady_us < listed.held_until_us) return;
+  if (world.followers.empty() && listed.number == 0) return;
   std::vector<ServerEntry> servers = servers_now(world);
   const bool is_alone = servers.size() < 2;
   if (is_alone && listed.number == 0) return;

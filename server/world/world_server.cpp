@@ -363,8 +363,8 @@ void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& n
   const bool is_newer = chunk.version > world.authority.chunks().version(key);
   if (is_newer && (world.following || !world.environment.owns_world())) {
     // The owner has saved it, and what made this version is still on its way. That may take as long as
-    // the owner does not answer, so these attempts do not count. A server that has just lost the lease
-    // does not know yet that it has no chunk to load any more.
+    // the owner does not answer, so these attempts do not count. A server that has lost the lease may read
+    // what the next owner has saved.
     world.load_retries.ended(key);
     load_again(world, key, OperatorLogLevel::debug, "it is newer than what has arrived", now);
     return start_loads(world, now);

@@ -24,13 +24,14 @@ class Faults:
                            "full disk of the standby": self._fill_disk_of_standby}
         if cluster.servers[0].clock.library is not None:
             self.kinds["clocks"] = self._set_clock_off
+        if unknown := set(without) - set(self.kinds):
+            raise ValueError(f"there is no fault {sorted(unknown)}; there are {sorted(self.kinds)}")
         for kind in without:
-            self.kinds.pop(kind, None)
+            del self.kinds[kind]
 
     def make_one(self):
         """Makes a fault, any of those that can be made now."""
-        while True:
-            kind = self.random.choice(list(self.kinds))
+        for kind in self.random.sample(list(self.kinds), len(self.kinds)):
             if self.kinds[kind]():
                 self.made[kind] += 1
                 return

@@ -1,5 +1,5 @@
-// ModelStore: a connection of one program with the ModelDatabase, as a Store. Whoever has the lease may
-// write. It knows what servers of one world call: no keyframes, tiles, imports or compactions.
+// ModelStore: a connection of one program with the ModelDatabase, as a Store. Whoever has the lease
+// may write. It knows what servers of one world call: no keyframes, tiles, imports or compactions.
 #pragma once
 #include <optional>
 #include <string>

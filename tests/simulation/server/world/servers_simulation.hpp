@@ -1,7 +1,8 @@
-// ServersSimulation: three servers of one world, their database and players at each of them, in virtual
-// time. Servers are killed, stand still for longer than their lease, are stopped by their operators, and
-// are cut off from each other and from the database; the database ends all connections, or its disk is full;
-// clocks of machines jump. Afterwards the log must have each durable edit once, and all servers and replicas must agree.
+// ServersSimulation: three servers of one world, their database and players at each of them, in
+// virtual time. Servers are killed, stand still for longer than their lease, are stopped by their
+// operators, and are cut off from each other and from the database; the database ends all connections,
+// or its disk is full; clocks of machines jump. Afterwards the log must have each durable edit once,
+// and all servers and replicas must agree.
 #pragma once
 #include <iomanip>
 #include <iostream>
@@ -27,8 +28,8 @@ class ServersSimulation {
     std::uint64_t edits = 0, chunks = 0, rejected = 0, unexplained = 0;
   };
 
-  /// Adds to `counts` what it does. `tells`: what happens to the servers is written to standard output, a
-  /// line each.
+  /// Adds to `counts` what it does. `tells`: what happens to the servers is written to standard
+  /// output, a line each.
   ServersSimulation(std::uint64_t seed, Counts& counts,
                     std::optional<Protection> without = std::nullopt, bool tells = false)
       : tells_(tells), counts_(counts), rng_(seed), database_(time_, without) {

@@ -19,6 +19,11 @@ std::string violation(ServersSimulation& simulation, std::uint64_t steps = kStep
   }
 }
 
+/// Returns true if a violation is one of the log or of a replica. A world that stands still is none.
+bool is_harm(const std::string& found) {
+  return !found.empty() && found.find("does not come to rest") == std::string::npos;
+}
+
 void run_seeds(std::uint64_t first, std::uint64_t count, std::uint64_t steps = kSteps) {
   ServersSimulation::Counts sum;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
@@ -28,6 +33,7 @@ void run_seeds(std::uint64_t first, std::uint64_t count, std::uint64_t steps = k
   }
   CHECK(sum.owners > count);
   CHECK(sum.edits > sum.steps / 4);
+  CHECK(sum.unexplained <= 1 + sum.edits / 10'000);
   WARN(count << " seeds, " << sum.steps << " steps: " << sum.edits << " edits, " << sum.rejected
              << " rejected, " << sum.owners << " owners, " << sum.kills << " kills, " << sum.pauses
              << " pauses, " << sum.stops << " stops, " << sum.cuts << " cuts and " << sum.silences
@@ -47,7 +53,7 @@ TEST_CASE("servers of one world lose no durable edit and agree after faults of e
 }
 
 // What happened in a run of one seed: --rng-seed says which.
-TEST_CASE("the story of one seed", "[.seed]") {
+TEST_CASE("one seed, with what happens to its servers", "[.seed]") {
   ServersSimulation::Counts counts;
   ServersSimulation simulation(Catch::rngSeed(), counts, std::nullopt, true);
   CHECK(violation(simulation) == "");
@@ -62,16 +68,19 @@ TEST_CASE("servers of one world agree after a million steps", "[.long]") {
 TEST_CASE("without any one of its protections, a simulation finds the harm",
           "[simulation][servers]") {
   for (const Protection protection : kProtections) {
+    CAPTURE(name_of(protection));
+    ServersSimulation::Counts counts;
     std::string found;
-    std::uint64_t seed = 1;
-    for (; seed <= 40 && found.empty(); ++seed) {
-      ServersSimulation::Counts counts;
-      ServersSimulation simulation(seed, counts, protection);
+    std::uint64_t seed = 0;
+    while (seed < 40 && !is_harm(found)) {
+      ServersSimulation simulation(++seed, counts, protection);
       found = violation(simulation);
     }
-    CAPTURE(name_of(protection));
-    CHECK_FALSE(found.empty());
-    WARN("without " << name_of(protection) << ", seed " << seed - 1 << ": " << found);
+    CHECK(is_harm(found));
+    WARN("without " << name_of(protection) << ", seed " << seed << ": " << found);
+    // With it, the same seed does no harm.
+    ServersSimulation whole(seed, counts);
+    CHECK(violation(whole) == "");
   }
 }
 #endif

@@ -1,7 +1,7 @@
-// SimProcess: a server program of a world that several servers share, in virtual time. It owns the world
-// or follows the owner, as server/app/standby.hpp and server/runtime/server_core.hpp do with threads and
-// sockets. WorldServer, the reading at a start, and the preparation of a takeover are the real ones. A
-// program can be killed, stand still, and be cut off from the database.
+// SimProcess: a server program of a world that several servers share, in virtual time. It owns the
+// world or follows the owner, as server/app/standby.hpp and server/runtime/server_core.hpp do with
+// threads and sockets. WorldServer, the reading at a start, and the preparation of a takeover are the
+// real ones. A program can be killed, stand still, and be cut off from the database.
 #pragma once
 #include <deque>
 #include <functional>

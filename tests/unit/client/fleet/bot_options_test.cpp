@@ -66,8 +66,8 @@ TEST_CASE("bots connect to a server or to the WebSocket of a gateway", "[client_
 }
 
 TEST_CASE("the option --play excludes the options of behaviours", "[client_app][play]") {
-  for (const char* other :
-       {"--count", "--rate", "--duration", "--edits", "--sites", "--first-site", "--seed", "--view"}) {
+  for (const char* other : {"--count", "--rate", "--duration", "--edits", "--sites", "--first-site",
+                            "--seed", "--view"}) {
     CAPTURE(other);
     CHECK(parse({other, "3"}).options.has_value());
     CHECK(parse({"--play", "a.rlog", other, "3"}).exit_code == 2);
