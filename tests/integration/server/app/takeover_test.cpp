@@ -98,6 +98,7 @@ struct Cluster {
       ServerConfig config = quiet_config(folders / name);
       config.store = place.path();
       config.standby = is_standby;
+      config.player_address = "127.0.0.1";
       config.lease_s = 2;
       return config;
     });
