@@ -17,8 +17,8 @@ struct LinkTarget {
 
 /// Returns the servers of a list besides its sender.
 std::vector<LinkTarget> other_servers(const Servers& list);
-/// Returns the WebSockets of their gateways. Those count whose pages are encrypted if `is_encrypted`,
-/// and are not encrypted otherwise.
+/// Returns the WebSockets of the gateways of these servers. With `is_encrypted` it returns those of
+/// https:// pages only, without it those of http:// pages only.
 std::vector<LinkTarget> other_gateways(const Servers& list, bool is_encrypted);
 
 }  // namespace runstone

@@ -8,9 +8,9 @@ namespace runstone {
 namespace {
 
 constexpr std::chrono::milliseconds kPause{250};
-// A server that follows may have edits that the database lacks. So a server that starts takes a world that
-// has no owner only after a second: one that follows takes it earlier, unless it does not know yet that the
-// owner is gone.
+// A server that follows may have edits that the database lacks. So a server that starts waits for a
+// second before it takes a world without an owner. A server that follows takes it earlier, unless it
+// has not noticed yet that the owner is gone.
 constexpr int kLooksWithoutOwner = 4;
 // An owner that stops lets go of the connection first, and of the lease a moment later. Edits of players
 // wait meanwhile.

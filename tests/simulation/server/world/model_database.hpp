@@ -90,7 +90,7 @@ class ModelDatabase {
     }
   }
 
-  // What a transaction writes. `term`: of its program.
+  // Writes of a transaction. `term` is that of the program that writes.
   void append(LeaseTerm term, std::span<const PlayerRow> players,
               std::span<const EditRecord> records) {
     check_writer(term);

@@ -118,7 +118,7 @@ class ModelStore final : public Store {
   }
   Epoch epoch() const override { return database_.epoch(); }
 
-  // What no server of a simulation calls.
+  // The servers of a simulation never call these functions. Each throws SimFault.
   StoreResult<Sequence> sequence_at(TimeUs /*time_us*/) override { return no<Sequence>(); }
   StoreResult<bool> has_base() override { return no<bool>(); }
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey& /*key*/) override {

@@ -20,7 +20,7 @@ namespace runstone::test {
 
 class ServersSimulation {
  public:
-  /// What was done, and what became of it.
+  /// How often each fault was made, and how many edits and chunks the final checks compared.
   struct Counts {
     std::uint64_t steps = 0, kills = 0, pauses = 0, stops = 0, cuts = 0, silences = 0;
     std::uint64_t database_cuts = 0, database_restarts = 0, full_disks = 0, clock_jumps = 0;
@@ -111,11 +111,11 @@ class ServersSimulation {
       time_.run_until(time_.now() + 1'000'000);
       see_owner();
     }
-    // What the servers have sent last arrives at the players.
+    // The last messages of the servers are still on their way to the players.
     time_.run_until(time_.now() + 1'000'000);
     if (!is_at_rest()) throw SimFault("the world does not come to rest: " + state());
   }
-  /// Nothing fails any more, so an edit of each player is ordered and written.
+  /// Lets each player make an edit while nothing fails. Throws SimFault unless all are in the log.
   void build_in_peace() {
     const Sequence before = database_.last();
     for (std::int32_t i = 0; const auto& client : clients_)

@@ -52,7 +52,7 @@ TEST_CASE("servers of one world lose no durable edit and agree after faults of e
 #endif
 }
 
-// What happened in a run of one seed: --rng-seed says which.
+// Runs one seed, the number after --rng-seed, and prints what happens to the servers.
 TEST_CASE("one seed, with what happens to its servers", "[.seed]") {
   ServersSimulation::Counts counts;
   ServersSimulation simulation(Catch::rngSeed(), counts, std::nullopt, true);

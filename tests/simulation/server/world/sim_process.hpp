@@ -333,7 +333,8 @@ class SimProcess final : public SimServer {
     return may_order() && !is_disk_full_;
   }
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override {
-    // What was let in before the program stood still is ordered when it goes on. Nothing else may be.
+    // A program that goes on after it stood still first orders the edits that it had accepted. Later
+    // it may order an edit only while it has the lease.
     const bool ran_on = time_.now() - resumed_us_ > kRunsForUs;
     if (!records.empty() && ran_on && !database_.holds(*term_))
       throw SimFault("a server orders edits when its lease may have run out");
