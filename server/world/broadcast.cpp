@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
+#include <optional>
 #include <span>
 
 #include "common/core/assert.hpp"
@@ -38,35 +38,25 @@ void add_sessions(std::span<const SessionId> more, std::vector<SessionId>& sessi
   sessions.swap(scratch);
 }
 
-using Authors = std::map<std::pair<AuthorId, ClientInstance>, SessionId>;
-
-/// Returns the open sessions of the clients that made the edits.
-Authors authors_of(const WorldState& world, const Commit& commit) {
-  Authors authors;
-  for (const OrderedEdit& edit : commit.edits) authors[{edit.op.author, edit.op.instance}] = 0;
-  for (const auto& [id, session] : world.sessions) {
-    if (session.state != SessionStage::open || session.is_relayed) continue;
-    const auto found = authors.find({session.author, session.instance});
-    if (found != authors.end()) found->second = id;
-  }
-  std::erase_if(authors, [](const auto& author) { return author.second == 0; });
-  return authors;
+/// Returns the session of the client that made an edit, if it is connected here.
+std::optional<SessionId> author_session(const WorldState& world, const OrderedEdit& edit) {
+  const auto found = world.clients.find({edit.op.author, edit.op.instance});
+  return found == world.clients.end() ? std::nullopt : std::optional(found->second);
 }
 
 /// Returns for each edit the sessions that see one of its chunks, and the session of its client,
 /// ascending.
-std::vector<std::vector<SessionId>> receivers_of(const WorldState& world, const Authors& authors,
+std::vector<std::vector<SessionId>> receivers_of(const WorldState& world,
                                                  const OrderedBatch& batch) {
   std::vector<std::vector<SessionId>> receivers(batch.commit.edits.size());
   std::vector<SessionId> scratch;
   for (std::size_t i = 0; i < receivers.size(); ++i) {
     for (const ChunkKey& key : batch.touched[i])
       add_sessions(world.interest.subscribers(key), receivers[i], scratch);
-    const OperationId& op = batch.commit.edits[i].op;
-    const auto author = authors.find({op.author, op.instance});
-    if (author == authors.end()) continue;
-    const auto at = std::ranges::lower_bound(receivers[i], author->second);
-    if (at == receivers[i].end() || *at != author->second) receivers[i].insert(at, author->second);
+    const auto author = author_session(world, batch.commit.edits[i]);
+    if (!author) continue;
+    const auto at = std::ranges::lower_bound(receivers[i], *author);
+    if (at == receivers[i].end() || *at != *author) receivers[i].insert(at, *author);
   }
   return receivers;
 }
@@ -89,10 +79,11 @@ void drop_edits_for(WorldState& world, SessionId session, const OrderedBatch& ba
 }
 
 void send_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now) {
-  const Authors authors = authors_of(world, batch.commit);
-  for (const auto& [author, session] : authors)
-    world.find(session)->awaits_durable = world.authority.head();
-  const auto receivers = receivers_of(world, authors, batch);
+  for (const OrderedEdit& edit : batch.commit.edits) {
+    if (const auto author = author_session(world, edit))
+      world.find(*author)->awaits_durable = world.authority.head();
+  }
+  const auto receivers = receivers_of(world, batch);
   for (std::size_t i = 0; i < receivers.size(); ++i) {
     const OrderedEdit& edit = batch.commit.edits[i];
     const std::size_t work = edit_work(edit.edit, world.config.chunk_edge);

@@ -185,6 +185,7 @@ void enter(WorldState& world, SessionId session, AuthorId author, const Clocks& 
   mine.pose_changed = true;
   mine.position.start(mine.pose.at, now.steady_us);
   mine.last_message_us = now.steady_us;
+  if (!mine.is_relayed) world.clients[{mine.author, mine.instance}] = session;
   world.interest.open(session);
   ++world.counters.sessions_opened;
   world.environment.player_came(visit_of(world, session, mine));

@@ -73,6 +73,8 @@ void forget_session(WorldState& world, SessionId session) {
   if (was_open) {
     world.player_list_changed = true;
     world.gone_authors.push_back(found->second.author);
+    const auto client = world.clients.find({found->second.author, found->second.instance});
+    if (client != world.clients.end() && client->second == session) world.clients.erase(client);
   }
   forget_tiles(world, session, found->second);
   if (const RelayedSession* there = world.output.relayed(session)) {

@@ -119,7 +119,9 @@ struct WorldState {
   LargeEditPace large_edits;
   WorldTiles tiles;
   std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
-  std::map<SessionId, Follower> followers;     // other servers, by their session (followers.hpp)
+  // The open sessions that are connected here, by their client.
+  std::map<std::pair<AuthorId, ClientInstance>, SessionId> clients;
+  std::map<SessionId, Follower> followers;  // other servers, by their session (followers.hpp)
   // Set while another server owns the world, and this one follows it (following.hpp).
   std::unique_ptr<Following> following;
   ListedServers listed;
