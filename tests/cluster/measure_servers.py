@@ -5,7 +5,7 @@
 
 Servers, database and bots run on this machine, so it must be idle otherwise. The processor time of a
 server is that of its process, of the database that of all its processes, in the middle of a run. It takes
-some five minutes, and needs the packages of the set `postgres` (scripts/packages).
+some ten minutes, and needs the packages of the set `postgres` (scripts/packages).
 """
 import argparse
 import json
@@ -22,7 +22,7 @@ from postgres import Postgres, children_of
 
 GROUPS = 2       # of builders, far apart
 BUILDERS = 150   # of each group
-RATE = 3         # edits a second of each
+RATES = (3, 20)  # edits a second of each
 JOIN_S = 7       # until all have joined
 MEASURE_S = 12
 PAIRS = 3        # of runs that are compared
@@ -123,10 +123,10 @@ def measure(programs, servers, fleets):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def builders(group):
+def builders(group, rate):
     """Returns what a group of builders does, who stand far from the other groups."""
     sites = 100 * GROUPS
-    return ["--count", str(BUILDERS), "--rate", str(RATE), "--sites", str(sites), "--first-site",
+    return ["--count", str(BUILDERS), "--rate", str(rate), "--sites", str(sites), "--first-site",
             str(100 * group), "--seed", str(group)]
 
 
@@ -147,9 +147,39 @@ def machine(programs):
     return f"{model}, {os.cpu_count()} cores; g++ {compiler(programs)}; commit {commit}"
 
 
-def us(seconds, count):
-    """Returns the time of each, in microseconds."""
-    return seconds / count * 1e6
+class Load:
+    """What servers cost at one rate of edits."""
+
+    def __init__(self, run, rate):
+        groups = [builders(group, rate) for group in range(GROUPS)]
+        one, two = [], []
+        for _ in range(PAIRS):  # in turn, so that a disturbance meets both
+            one.append(run("one server", 1, [(0, group) for group in groups]))
+            two.append(run("two servers", 2, list(enumerate(groups))))
+        idle = run("one server, and another one that nobody is at", 2, [(0, group) for group in groups])
+        away = run("all builders at the server that follows", 2, [(1, group) for group in groups])
+        self.edits_each_second = GROUPS * BUILDERS * rate
+        edits = self.edits_each_second * MEASURE_S
+        self.one = statistics.median(run.all_servers() for run in one)
+        self.two = statistics.median(run.all_servers() for run in two)
+        self.ratios = [after.all_servers() / before.all_servers() for before, after in zip(one, two)]
+        self.costs_us = [seconds / edits * 1e6 for seconds in
+                         (self.one, statistics.median(run.database for run in one), idle.servers[1],
+                          away.servers[0], away.servers[1])]
+
+
+COSTS = ("an edit of a builder at the owner, with the builder's session",
+         "the same edit in the database",
+         "one more server: at that server, each edit",
+         "an edit of a builder at another server: at the owner",
+         "an edit of a builder at another server: at that server")
+
+
+def strand_table(programs):
+    """Returns the table of `runstone-bench relay`."""
+    printed = subprocess.run([programs / "runstone-bench", "relay"], check=True, text=True,
+                             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
+    return printed[printed.index("|"):].strip()
 
 
 def main():
@@ -162,45 +192,38 @@ def main():
         print("running", name, file=sys.stderr)
         return measure(programs, servers, fleets)
 
-    groups = [builders(group) for group in range(GROUPS)]
-    one, two = [], []
-    for _ in range(PAIRS):  # in turn, so that a disturbance meets both
-        one.append(run("one server", 1, [(0, group) for group in groups]))
-        two.append(run("two servers", 2, list(enumerate(groups))))
-    idle = run("one server, and another one that nobody is at", 2, [(0, group) for group in groups])
-    away = run("all builders at the server that follows", 2, [(1, group) for group in groups])
+    loads = [Load(run, rate) for rate in RATES]
 
-    edits = GROUPS * BUILDERS * RATE * MEASURE_S
-    ratio = statistics.median(b.all_servers() / a.all_servers() for a, b in zip(one, two))
-    owner = statistics.median(run.servers[0] for run in one)
-    database = statistics.median(run.database for run in one)
-    rows = [
-        ("an edit of a builder at the owner, with the builder's session", us(owner, edits)),
-        ("the same edit in the database", us(database, edits)),
-        ("one more server: at that server, each edit", us(idle.servers[1], edits)),
-        ("an edit of a builder at another server: at the owner", us(away.servers[0], edits)),
-        ("an edit of a builder at another server: at that server", us(away.servers[1], edits)),
-    ]
+    def row(name, cells):
+        return f"| {name} | {' | '.join(cells)} |"
     print(f"""# Figures: several servers of one world
 `tests/cluster/measure_servers.py build/release/bin` prints this page. Servers, PostgreSQL and bots are on
-one machine, and encrypted. Two groups of {BUILDERS} builders stand far apart. Each builder makes {RATE} edits of
-one voxel a second. Processor time is that of processes in {MEASURE_S} s, after all have joined. It contains
-all that the players of these servers cost: their moves and poses, and what they see of each other.
+one machine, and encrypted. Two groups of {BUILDERS} builders stand far apart, and make edits of one voxel.
+Processor time is that of processes in {MEASURE_S} s, after all have joined. It contains all that the players
+of these servers cost: their moves and poses, and what they see of each other.
 
 {machine(programs)}
+""")
+    print(row("two groups of builders", [f"{load.edits_each_second:,} edits/s" for load in loads]))
+    print("|---|" + "---|" * len(loads))
+    print(row("at one server, s", [f"{load.one:.2f}" for load in loads]))
+    print(row("each at a server of its own, s", [f"{load.two:.2f}" for load in loads]))
+    print(row("two servers against one: median (and each pair of runs)",
+              [f"{statistics.median(load.ratios):.2f} ({', '.join(f'{ratio:.2f}' for ratio in load.ratios)})"
+               for load in loads]))
+    print("\nTarget: at most 1.25.\n")
+    print(row("cost, µs of processor time", [f"{load.edits_each_second:,} edits/s" for load in loads]))
+    print("|---|" + "---|" * len(loads))
+    for number, name in enumerate(COSTS):
+        costs = [load.costs_us[number] for load in loads]
+        print(row(name, [f"{cost:.0f}" if abs(cost) >= 20 else f"{cost:.1f}" for cost in costs]))
+    print(f"""
+## The world strand
+`runstone-bench relay` measures the same without sockets, encryption and database: the processor time of
+the world strand, the one thread that orders edits, and of the codec of the messages between servers.
+20 players at each server see each other's edits.
 
-| two groups of builders | servers, s | database, s |
-|---|---|---|
-| at one server | {owner:.2f} | {database:.2f} |
-| each at a server of its own | {statistics.median(run.all_servers() for run in two):.2f} | {statistics.median(run.database for run in two):.2f} |
-
-Two servers against one: {ratio:.2f} of the processor time, the median of {PAIRS} pairs of runs
-({", ".join(f"{b.all_servers() / a.all_servers():.2f}" for a, b in zip(one, two))}). Target: at most 1.25.
-
-| cost | processor time, µs |
-|---|---|""")
-    for name, cost in rows:
-        print(f"| {name} | {cost:.0f} |" if abs(cost) >= 20 else f"| {name} | {cost:.1f} |")
+{strand_table(programs)}""")
 
 
 if __name__ == "__main__":

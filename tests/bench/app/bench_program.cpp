@@ -18,6 +18,7 @@
 #include "tests/bench/meshing/mesh_bench.hpp"
 #include "tests/bench/meshing/mesh_once.hpp"
 #include "tests/bench/network/net_bench.hpp"
+#include "tests/bench/servers/relay_bench.hpp"
 #include "tests/bench/storage/storage_bench.hpp"
 #include "tests/bench/thesis/scenario_bench.hpp"
 #include "tests/bench/tiles/tiles_bench.hpp"
@@ -99,6 +100,13 @@ int stores(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   return finish(run_store_bench(options, err), options, err, [&](const auto& result) {
     write_machine(this_machine(), out);
     write_table(result, out);
+  });
+}
+
+int relay(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_relay_bench(options, err), options, err, [&](const auto& rows) {
+    write_machine(this_machine(), out);
+    write_table(rows, out);
   });
 }
 
@@ -218,6 +226,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return log(options.bench, out, err);
     case Command::stores:
       return stores(options.bench, out, err);
+    case Command::relay:
+      return relay(options.bench, out, err);
     case Command::edits:
       return edits(options.bench, out, err);
     case Command::net:

@@ -6,6 +6,7 @@
 #include "tests/bench/edits/edit_options.hpp"
 #include "tests/bench/map/map_options.hpp"
 #include "tests/bench/meshing/mesh_options.hpp"
+#include "tests/bench/servers/relay_options.hpp"
 #include "tests/bench/storage/storage_options.hpp"
 #include "tests/bench/thesis/scenario_bench.hpp"
 #include "tests/bench/tiles/tiles_options.hpp"
@@ -29,12 +30,13 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 14> kSubcommands = {
+constexpr std::array<Subcommand, 15> kSubcommands = {
     {{Command::mesh, add_mesh_command},
      {Command::chunk_edge, add_chunk_edge_command},
      {Command::edits, add_edits_command},
      {Command::log, add_log_command},
      {Command::stores, add_stores_command},
+     {Command::relay, add_relay_command},
      {Command::bytes, add_bytes_command},
      {Command::bytes_to_quads, add_bytes_to_quads_command},
      {Command::storage, add_storage_command},

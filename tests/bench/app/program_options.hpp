@@ -18,6 +18,7 @@ enum class Command {
   edits,
   log,
   stores,
+  relay,
   bytes,
   bytes_to_quads,
   storage,
