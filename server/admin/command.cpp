@@ -112,6 +112,15 @@ Result<Command, std::string> chat_command(const Words& words, TimeUs now_us) {
   return Command(ChatLogCommand{std::move(query)});
 }
 
+Result<Command, std::string> handover_command(const Words& words) {
+  if (words.size() == 1) return Command(HandoverCommand{});
+  const auto number = number_of<SessionId>(words[1]);
+  if (words.size() != 2 || !number)
+    return failure(
+        "handover: the number of one server comes after it, or nothing (servers lists them)");
+  return Command(HandoverCommand{number});
+}
+
 /// Parses what comes after `say`: the rest of the line, also with single quotes in it. A text that is
 /// quoted as a whole is taken without its quotes.
 Result<Command, std::string> say_command(std::string_view rest) {
@@ -196,6 +205,7 @@ Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us)
     return Command(**std::move(rights));
   }
   if (name == "materials") return materials_command(*words);
+  if (name == "handover") return handover_command(*words);
   if (name == "names" && words->size() > 1) {
     if ((*words)[1] != "release") return failure("names \"" + (*words)[1] + "\": release NAME");
     if (words->size() != 3)
@@ -211,6 +221,7 @@ Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us)
   if (name == "status") plain = StatusCommand{};
   if (name == "players") plain = PlayersCommand{};
   if (name == "names") plain = NamesCommand{};
+  if (name == "servers") plain = ServersCommand{};
   if (name == "stop") plain = StopCommand{};
   if (name == "reload") plain = ReloadCommand{};
   if (name == "undo") plain = UndoCommand{false};

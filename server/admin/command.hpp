@@ -57,6 +57,13 @@ struct BackupCommand {
   std::string folder;  // the new one
   friend bool operator==(const BackupCommand&, const BackupCommand&) = default;
 };
+struct ServersCommand {
+  friend bool operator==(const ServersCommand&, const ServersCommand&) = default;
+};
+struct HandoverCommand {
+  std::optional<SessionId> server;  // its number; nullopt: the one with the most players
+  friend bool operator==(const HandoverCommand&, const HandoverCommand&) = default;
+};
 struct StopCommand {
   friend bool operator==(const StopCommand&, const StopCommand&) = default;
 };
@@ -99,11 +106,11 @@ struct RollbackListCommand {
   friend bool operator==(const RollbackListCommand&, const RollbackListCommand&) = default;
 };
 
-using Command =
-    std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand, AddMaterialsCommand,
-                 StopCommand, ReloadCommand, BackupCommand, UndoCommand, LogCommand, NamesCommand,
-                 ReleaseNameCommand, SayCommand, ChatLogCommand, RollbackPreviewCommand,
-                 RollbackCommand, RollbackListCommand, RightsCommand>;
+using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand,
+                             AddMaterialsCommand, ServersCommand, HandoverCommand, StopCommand,
+                             ReloadCommand, BackupCommand, UndoCommand, LogCommand, NamesCommand,
+                             ReleaseNameCommand, SayCommand, ChatLogCommand, RollbackPreviewCommand,
+                             RollbackCommand, RollbackListCommand, RightsCommand>;
 
 /// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate
 /// words; a word that contains blanks stands in double quotes. `now_us` (UTC) is the time to which

@@ -12,6 +12,7 @@
 #include "server/admin/material_list.hpp"
 #include "server/admin/name_list.hpp"
 #include "server/admin/player_list.hpp"
+#include "server/admin/server_list.hpp"
 #include "server/draw/preview_pictures.hpp"
 #include "server/rollback/newest_edits.hpp"
 #include "server/rollback/preview_edits.hpp"
@@ -94,6 +95,10 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
   if (std::holds_alternative<StatusCommand>(*command)) return status(reply);
   if (std::holds_alternative<PlayersCommand>(*command)) return players(reply);
   if (std::holds_alternative<NamesCommand>(*command)) return names(reply);
+  if (std::holds_alternative<ServersCommand>(*command))
+    return reply({server_list(world_.known_servers()), true, true});
+  if (const auto* handover = std::get_if<HandoverCommand>(&*command))
+    return hand_over(handover->server, reply);
   if (const auto* release = std::get_if<ReleaseNameCommand>(&*command))
     return release_name(release->name, reply);
   if (const auto* list = std::get_if<MaterialsCommand>(&*command)) {
@@ -161,6 +166,15 @@ void CommandHandler::players(const CommandReply& reply) {
                  if (!*rows) return refuse(reply, "players: " + rows->error().message());
                  reply({player_list(**rows, present, visitors), true, true});
                });
+}
+
+void CommandHandler::hand_over(std::optional<SessionId> successor, const CommandReply& reply) {
+  if (const auto why = world_.handover_refusal(successor))
+    return refuse(reply, "handover: " + *why);
+  if (!actions_.hand_over) return refuse(reply, "this server cannot do that");
+  // A player at another server gets no later line: the next owner does not know of the command.
+  reply({"handing the world over", false, true});
+  actions_.hand_over(successor, reply);
 }
 
 void CommandHandler::names(const CommandReply& reply) const {

@@ -3,6 +3,7 @@
 // is done. Thread: the world strand. Reads from the disk run on the workers.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "server/admin/command.hpp"
@@ -33,6 +34,7 @@ class CommandHandler {
   void help(const CommandCaller& caller, const CommandReply& reply) const;
   void status(const CommandReply& reply) const;
   void players(const CommandReply& reply);
+  void hand_over(std::optional<SessionId> successor, const CommandReply& reply);
   void names(const CommandReply& reply) const;
   void say(const CommandCaller& caller, const std::string& text, const Clocks& now,
            const CommandReply& reply);

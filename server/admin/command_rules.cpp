@@ -148,6 +148,12 @@ constexpr std::array kCommandRows = {
     local_row<BackupCommand>(
         "backup DIR                copy the world to a new folder, while people go on playing"),
     local_row<ReloadCommand>("reload                    read the settings again"),
+    row<ServersCommand>({Right::administer},
+                        "servers                   the servers of the world, with their numbers"),
+    row<HandoverCommand>(
+        {Right::administer},
+        "handover [SERVER]         let another server own the world; nobody has to "
+        "connect again"),
     row<StopCommand>({Right::administer}, "stop                      stop the server"),
 };
 

@@ -1,8 +1,10 @@
 // OperatorActions: commands that the program or the runtime around a world carries out.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 
+#include "common/core/ids.hpp"
 #include "server/chat/chat_query.hpp"
 #include "server/rollback/command_reply.hpp"
 
@@ -16,6 +18,9 @@ struct OperatorActions {
   std::function<void(CommandReply)> reload;
   /// Copies the world to a new folder.
   std::function<void(const std::string& folder, CommandReply)> back_up;
+  /// Lets another server take the world over: the one of this number, or nullopt: the one with the most
+  /// players. The last reply has the outcome.
+  std::function<void(std::optional<SessionId> successor, CommandReply)> hand_over;
   /// Answers with lines of the log of the chat. The runtime sets it.
   std::function<void(const ChatQuery&, CommandReply)> list_chat;
 };

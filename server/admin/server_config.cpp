@@ -193,6 +193,9 @@ const SettingsTable<ServerConfig>& settings() {
               "https://HOST/PATH of the pages of runstone-web for this server; empty: browsers are "
               "not told of it",
               page_address_field()),
+          flag("move_to_builders",
+               "hand the world over to a server that follows when most edits come from its players",
+               &C::move_to_builders),
           text("listen", "HOST, HOST:PORT, [V6]:PORT or :PORT; port 0 takes a free one",
                &C::listen),
           flag("insecure", "connections are not encrypted; for 127.0.0.1 and [::1] only",

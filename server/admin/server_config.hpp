@@ -42,6 +42,8 @@ struct ServerConfig {
   std::string player_address;
   std::string
       page_address;  // https://HOST/PATH of its runstone-web; empty: browsers are not told of this server
+  /// Hand the world over to a server that follows when most edits come from the players there.
+  bool move_to_builders = false;
   // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
   std::string listen = "0.0.0.0:" + std::to_string(kDefaultPort);
   /// Connections are not encrypted. Only for an address of this machine, unless `i_know` is set.

@@ -90,7 +90,9 @@ struct Server::Parts {
   ServerConfig config;
   FileLock local_lock;  // of the folder `world`, if the world is in a database
   OpenedWorld world;
-  std::unique_ptr<Store> writer;  // of a server that has taken the world over; null otherwise
+  // Of a server that follows, while it owns the world; null otherwise. One that owned the world at first
+  // writes by `world`.
+  std::unique_ptr<Store> writer;
   asio::io_context io;
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
   std::unique_ptr<asio::thread_pool> workers, decoders;
@@ -270,6 +272,22 @@ Result<void, std::string> Server::take_over() {
     parts.writer->give_up();  // another server need not wait for the lease to run out
   }
   return taken;
+}
+
+Result<void, std::string> Server::hand_over(std::optional<SessionId> successor) {
+  Parts& parts = *parts_;
+  if (!parts.config.standby)
+    return failure("a server that was started without --standby does not follow another one");
+  const auto begun = parts.core->begin_handover(successor);
+  if (!begun) return failure(begun.error());
+  parts.is_following = true;
+  const auto ended = parts.core->end_handover();
+  parts.owned_store().give_up();  // after an error, too: the followers have every edit
+  if (!ended) return ended;
+  parts.writer.reset();
+  logger("app").info("HANDED OVER: server={} takes the world over, and this server follows it",
+                     *begun);
+  return {};
 }
 
 std::uint16_t Server::port() const { return parts_->core->port(); }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/core/result.hpp"
@@ -52,6 +53,11 @@ class Server {
   /// the database. After an error the server must be stopped, unless is_following(): somebody else has
   /// the lease then.
   Result<void, std::string> take_over();
+  /// Lets another server take the world over, and makes the owner a server that follows. Players stay.
+  /// `successor` is as for WorldServer::hand_over(). Blocks on the database. Call connect_to()
+  /// afterwards as long as it follows. After an error the server must be stopped if it is_following();
+  /// otherwise nothing has changed.
+  Result<void, std::string> hand_over(std::optional<SessionId> successor);
   bool is_following() const;
   void log_counters();
   /// Carries out a command as an operator. Replies come from another thread; the last one has

@@ -200,6 +200,8 @@ int run(const ServerOptions& options) {
   Signals signals(main_loop);
   const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };
   std::unique_ptr<Server> running;
+  std::optional<TakeoverWatch> watch;
+  bool has_failed_to_hand_over = false;
   BackupChild backup(config->world);
   OperatorActions actions;
   actions.stop = end;
@@ -213,6 +215,14 @@ int run(const ServerOptions& options) {
       return refuse(reply, "the world is in PostgreSQL: back it up with pg_dump");
     backup.start(folder, std::move(reply));
   };
+  actions.hand_over = [&](std::optional<SessionId> successor, CommandReply reply) {
+    asio::post(main_loop, [&, successor, reply = std::move(reply)] {
+      if (!running) return refuse(reply, "the server starts");
+      if (hand_over(config->store, *running, watch, end, successor, reply)) return;
+      has_failed_to_hand_over = true;
+      main_loop.stop();
+    });
+  };
   const auto start = [&] {
     return Server::start(*config, options.creation, end, actions, options.accept_losses);
   };
@@ -225,7 +235,6 @@ int run(const ServerOptions& options) {
   if (!server) return cannot_start(server.error());
   if (*server == nullptr) return kStopped;
   running = *std::move(server);
-  std::optional<TakeoverWatch> watch;
   if (running->is_following()) watch.emplace(config->store, *running, end);
   if (running->is_unclaimed() && config->operators.empty()) welcome_administrator(*running);
   std::unique_ptr<InputEnd> input;
@@ -253,7 +262,7 @@ int run(const ServerOptions& options) {
   signals.wait_for_the_end(*running, [&] {
     running->reload(read_config(options), [](const CommandAnswer& /*the log has it*/) {});
   });
-  const bool has_failed_to_follow = watch && watch->has_failed();
+  const bool has_failed_to_follow = has_failed_to_hand_over || (watch && watch->has_failed());
   watch.reset();
   backup.stop();
   if (console) console->close();

@@ -16,6 +16,8 @@ constexpr int kLooksWithoutOwner = 4;
 // wait meanwhile.
 constexpr std::chrono::milliseconds kShortPause{10};
 constexpr int kShortPauses = 200;
+// A server that the owner has chosen takes the world over within some 0.1 s.
+constexpr std::chrono::seconds kSuccessorTime{1};
 
 }  // namespace
 
@@ -58,11 +60,18 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
 }
 
 TakeoverWatch::TakeoverWatch(const std::string& place, Server& server,
-                             std::function<void()> on_failure)
+                             std::function<void()> on_failure, CommandReply handed_over)
     : lease_(place),
       server_(server),
       on_failure_(std::move(on_failure)),
-      thread_([this] { run(); }) {}
+      handed_over_(std::move(handed_over)),
+      not_before_(std::chrono::steady_clock::now()) {
+  if (handed_over_) {
+    not_before_ += kSuccessorTime;
+    short_pauses_ = kShortPauses;
+  }
+  thread_ = std::thread([this] { run(); });
+}
 
 TakeoverWatch::~TakeoverWatch() {
   {
@@ -71,6 +80,7 @@ TakeoverWatch::~TakeoverWatch() {
   }
   wake_.notify_all();
   thread_.join();
+  answer("the server stops, and the world has no owner yet", false);
 }
 
 void TakeoverWatch::run() {
@@ -78,20 +88,33 @@ void TakeoverWatch::run() {
     std::unique_lock lock(mutex_);
     return wake_.wait_for(lock, pause, [this] { return is_stopping_; });
   };
-  int short_pauses = 0;
   while (look()) {
     auto left = kPause;
     do {
       const bool is_live = server_.follow_state().is_live;
-      if (is_live) short_pauses = kShortPauses;
+      if (is_live) {
+        short_pauses_ = kShortPauses;
+        answer("another server owns the world now, and this one follows it", true);
+      }
       if (stops_within(kShortPause)) return;
       left -= kShortPause;
-      if (!is_live && short_pauses > 0) {
-        --short_pauses;
+      if ((!is_live || ownerless_since_) && short_pauses_ > 0) {
+        --short_pauses_;
         break;
       }
     } while (left > kShortPause);
   }
+}
+
+bool TakeoverWatch::leaves_lease() {
+  const auto now = std::chrono::steady_clock::now();
+  if (!ownerless_since_) ownerless_since_ = now;
+  return now < not_before_ ||
+         (server_.follow_state().hears_owner && now - *ownerless_since_ < kSuccessorTime);
+}
+
+void TakeoverWatch::answer(const std::string& outcome, bool is_ok) {
+  if (const CommandReply reply = std::exchange(handed_over_, {})) reply({outcome, true, is_ok});
 }
 
 bool TakeoverWatch::look() {
@@ -102,12 +125,17 @@ bool TakeoverWatch::look() {
   const auto owner = lease_.owner();
   if (!owner) return true;  // the database does not answer
   if (*owner) {
+    ownerless_since_.reset();
     if (!(*owner)->address.empty()) server_.connect_to((*owner)->address);
     return true;
   }
+  if (leaves_lease()) return true;
   logger("app").info("STANDBY: nobody owns the world: taking it over");
   const auto taken = server_.take_over();
-  if (taken) return false;
+  if (taken) {
+    answer("handover: no server took the world over, and this one owns it again", false);
+    return false;
+  }
   if (server_.is_following()) {
     logger("app").info("STANDBY: not taken over: {}", taken.error());
     return true;
@@ -120,6 +148,20 @@ void TakeoverWatch::fail(const std::string& why) {
   has_failed_.store(true);
   logger("app").error("STANDBY: {}", why);
   on_failure_();
+}
+
+bool hand_over(const std::string& place, Server& server, std::optional<TakeoverWatch>& watch,
+               const std::function<void()>& on_failure, std::optional<SessionId> successor,
+               const CommandReply& reply) {
+  const auto done = server.hand_over(successor);
+  if (done) {
+    watch.emplace(place, server, on_failure, reply);
+    return true;
+  }
+  refuse(reply, "handover: " + done.error());
+  if (!server.is_following()) return true;
+  logger("app").error("STANDBY: the world was not handed over: {}", done.error());
+  return false;
 }
 
 }  // namespace runstone

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -30,11 +31,15 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
 /// Watches the lease of the world for a server that follows: tells it where the owner is, and lets it
 /// take the world over when nobody has the lease. Has a thread of its own, which ends when the server
 /// owns the world.
+/// An owner that hands the world over gives up the lease to one server. So a server leaves a free lease
+/// alone for a second at most if it still hears the owner, or if it has handed the world over itself.
 class TakeoverWatch {
  public:
   /// `server` must outlive the object. `on_failure` is called at most once, from the thread, if the
-  /// server can neither follow nor own the world any more.
-  TakeoverWatch(const std::string& place, Server& server, std::function<void()> on_failure);
+  /// server can neither follow nor own the world any more. `handed_over` is empty unless the server has
+  /// just handed the world over: it gets one answer, from any thread, when the world has an owner again.
+  TakeoverWatch(const std::string& place, Server& server, std::function<void()> on_failure,
+                CommandReply handed_over = {});
   /// Ends the thread. Waits for a takeover that is under way.
   ~TakeoverWatch();
   /// Returns true if `on_failure` was called. Thread: any.
@@ -46,16 +51,33 @@ class TakeoverWatch {
   void run();
   /// Looks once. Returns false if there is nothing more to watch.
   bool look();
+  /// Returns true if another server may be about to take the world, which nobody owns.
+  bool leaves_lease();
+  void answer(const std::string& outcome, bool is_ok);
   void fail(const std::string& why);
 
   LeaseWatch lease_;
   Server& server_;
   const std::function<void()> on_failure_;
+  CommandReply handed_over_;  // emptied by answer(). Used on the thread, and when it has ended
+  // Used on the thread.
+  std::chrono::steady_clock::time_point not_before_;  // it takes no lease before
+  std::optional<std::chrono::steady_clock::time_point>
+      ownerless_since_;   // nullopt: there is an owner
+  int short_pauses_ = 0;  // that are left
   std::atomic<bool> has_failed_{false};
   std::mutex mutex_;
   std::condition_variable wake_;
   bool is_stopping_ = false;  // guarded by mutex_
   std::thread thread_;
 };
+
+/// Lets another server take the world over (Server::hand_over()), and makes the watch of the server, which
+/// follows from now on. `watch` is the earlier one, if any. `place` and `on_failure` are as for the
+/// watch. `reply` gets the outcome. Returns false if the server must be stopped because its log could not
+/// be written. Blocks on the database. Requires start_logging().
+bool hand_over(const std::string& place, Server& server, std::optional<TakeoverWatch>& watch,
+               const std::function<void()>& on_failure, std::optional<SessionId> successor,
+               const CommandReply& reply);
 
 }  // namespace runstone

@@ -112,7 +112,8 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
   // A worker may still plan chunks. Its answer is dropped, because the job has ended.
   if (!world.accepts_edits()) {
     state_ = State::failed;
-    progress_.error = "the server stops, or its log cannot be written any more";
+    progress_.error =
+        "the server stops, its log cannot be written, or another server owns the world";
     return;
   }
   if (planned_.empty()) return;

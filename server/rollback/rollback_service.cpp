@@ -16,7 +16,8 @@ constexpr std::size_t kPreviewsMax = 16;
 constexpr std::size_t kListedMax = 20;
 constexpr TimeUs kSliceIntervalUs = 45'000;  // of one job: a little less than a tick
 
-constexpr const char* kNotNow = "not now: the server stops, or its log cannot be written";
+constexpr const char* kNotNow =
+    "not now: the server stops, its log cannot be written, or another server owns the world";
 
 std::string name_of(Cause cause) { return cause == Cause::undo ? "undo" : "redo"; }
 
@@ -197,8 +198,7 @@ void RollbackService::apply(const std::string& id, AuthorId author, CommandReply
   if (preview->state == RollbackPreview::State::applied) {
     return refuse(reply, "rollback apply: " + id + " was applied before");
   }
-  if (!world_.accepts_edits())
-    return refuse(reply, "rollback apply: the server stops, or its log cannot be written");
+  if (!world_.accepts_edits()) return refuse(reply, std::string("rollback apply: ") + kNotNow);
   preview->state = RollbackPreview::State::applied;
   RestoreOrder order;
   order.author = author;

@@ -3,6 +3,7 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -47,6 +48,12 @@ OperatorActions on_strand(WorldStrand& strand, const OperatorActions& actions) {
       back_up(folder, posted(std::move(reply)));
     };
   }
+  if (actions.hand_over) {
+    out.hand_over = [posted, hand_over = actions.hand_over](std::optional<SessionId> successor,
+                                                            CommandReply reply) {
+      hand_over(successor, posted(std::move(reply)));
+    };
+  }
   if (actions.list_chat) {
     out.list_chat = [posted, list = actions.list_chat](const ChatQuery& query, CommandReply reply) {
       list(query, posted(std::move(reply)));
@@ -71,6 +78,7 @@ CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReade
 
 void CommandRunner::run(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)] {
+    if (world_.is_following()) return refuse(reply, kGiveThere);
     handler_.run({}, line, read_clocks(), reply);
     tick(read_clocks());
   });
@@ -80,6 +88,7 @@ void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key
                         const std::string& text) {
   // The handler may answer at once, and WorldServer must not be called from within its own call.
   strand_.post([this, session, author, key, text] {
+    if (world_.is_following()) return world_.answer_command(session, {kGiveThere}, true, false);
     const CommandCaller caller{
         author, {key, operators_.contains(key)}, world_.restore_preview_view(session)};
     if (caller.actor.is_operator || has_power(world_.rights().role_of(key).rights))

@@ -1,7 +1,9 @@
 // CommandRunner: carries out the commands of the console, the control socket and clients, and owns
-// the services behind them: rollback, undo and redo.
+// the services behind them: rollback, undo and redo. A server that has handed the world over keeps it,
+// because workers may still answer. Commands are refused then.
 // Threads: run(line, reply) may be called from any thread, everything else from the world strand.
 #pragma once
+#include <cstddef>
 #include <functional>
 #include <set>
 #include <string>
@@ -13,6 +15,10 @@
 #include "server/world/world_server.hpp"
 
 namespace runstone {
+
+/// The answer of a server that follows.
+inline constexpr const char* kGiveThere =
+    "this server follows the owner of the world: give the command there";
 
 class CommandRunner final : private RollbackService::Workers {
  public:
@@ -36,6 +42,8 @@ class CommandRunner final : private RollbackService::Workers {
     rollback_.tick(now);
     handler_.tick();
   }
+  /// Returns the number of rollbacks and undos under way.
+  std::size_t running() const { return rollback_.running(); }
   /// Makes jobs and workers end soon. Call it when the server stops.
   void stop() { rollback_.stop(); }
 

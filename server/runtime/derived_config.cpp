@@ -54,6 +54,7 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, s
   if (!config.store.empty()) {
     world.player_address = player_address_of(config, port);
     world.page_address = config.page_address;
+    world.move_to_builders = config.standby && config.move_to_builders;
   }
   world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
   world.tile_levels_max = static_cast<std::uint8_t>(config.tile_levels_max);

@@ -33,8 +33,10 @@ class OwnerConnection {
   bool send(const EncodedMessage& message) { return link_ != nullptr && link_->send(message); }
   /// Ends the connection. Its end is reported later.
   void leave(const std::string& why);
-  /// Ends the connection and makes no other one.
+  /// Ends the connection and makes no other one until begin().
   void end(const std::string& why);
+  /// Lets connect_to() connect again.
+  void begin() { has_ended_ = false; }
 
  private:
   void connect(const std::string& address);

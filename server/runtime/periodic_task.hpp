@@ -3,6 +3,7 @@
 // the world strand.
 #pragma once
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <utility>
 
@@ -16,25 +17,26 @@ class PeriodicTask {
   PeriodicTask(WorldStrand& strand, std::chrono::milliseconds interval, std::function<void()> task)
       : strand_(strand), interval_(interval), task_(std::move(task)), timer_(strand.make_timer()) {}
 
-  /// Starts the task. The first run comes one interval later. Call it once.
+  /// Starts the task, also after stop(). The first run comes one interval later. Requires that the task
+  /// does not run.
   void start() {
-    strand_.post([this] { schedule(); });
+    strand_.post([this] { schedule(++period_); });
   }
   /// Stops the task: no run starts after this call.
   void stop() {
-    is_stopped_ = true;
+    ++period_;
     timer_.cancel();
   }
 
  private:
-  void schedule() {
-    if (is_stopped_) return;
+  void schedule(std::uint64_t period) {
+    if (period != period_) return;
     timer_.expires_after(interval_);
-    strand_.wait(timer_, [this](const asio::error_code& error) {
+    strand_.wait(timer_, [this, period](const asio::error_code& error) {
       // The timer may have expired just before stop() cancelled it.
-      if (error || is_stopped_) return;
+      if (error || period != period_) return;
       task_();
-      schedule();
+      schedule(period);
     });
   }
 
@@ -42,7 +44,7 @@ class PeriodicTask {
   const std::chrono::milliseconds interval_;
   const std::function<void()> task_;
   asio::steady_timer timer_;
-  bool is_stopped_ = false;
+  std::uint64_t period_ = 0;  // begins with start(), ends with stop()
 };
 
 }  // namespace runstone

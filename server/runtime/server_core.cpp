@@ -23,6 +23,8 @@ constexpr auto kTickInterval = std::chrono::milliseconds(50);
 constexpr auto kChatRetentionInterval = std::chrono::minutes(10);
 constexpr auto kStallInterval = std::chrono::seconds(1);
 constexpr auto kCheckpointInterval = std::chrono::seconds(5);
+// An owner answers a ping each second.
+constexpr TimeUs kOwnerHeardUsMax = 1'500'000;
 constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for the last of them
 
 }  // namespace
@@ -98,8 +100,7 @@ Result<void, std::string> ServerCore::follow() {
   start->log.epoch = std::max(store_.epoch(), start->log.last_epoch);
   if (const auto made = make_world(*start); !made) return made;
   if (const auto ended = store_.end_reads(); !ended) return failure(ended.error().message());
-  world_->follow(start->log.last_epoch);
-  owner_.attach(*world_);
+  world_->follow();
   return {};
 }
 
@@ -117,6 +118,7 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
   const auto replayed = replay_log(store_, start, *world_);
   if (!replayed) return Unexpected<std::string>{replayed.error()};
   environment_.attach(*world_, chat_log_.get());
+  owner_.attach(*world_);
   logger("world").info("world={} seq={} checkpoint={} replayed={} players={} snapshots={}",
                        config_.world, start.log.last, start.checkpoint, *replayed,
                        start.players.size(), start.snapshots.size());
@@ -124,14 +126,16 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
 }
 
 void ServerCore::make_log(Store& store, Sequence durable) {
-  OperatorActions actions = actions_;
-  if (chat_log_) {
-    actions.list_chat = [this](const ChatQuery& query, const CommandReply& reply) {
-      runstone::list_chat(*chat_log_, query, reply);
-    };
+  if (!commands_) {
+    OperatorActions actions = actions_;
+    if (chat_log_) {
+      actions.list_chat = [this](const ChatQuery& query, const CommandReply& reply) {
+        runstone::list_chat(*chat_log_, query, reply);
+      };
+    }
+    commands_ = std::make_unique<CommandRunner>(strand_, *world_, readers_, running_.operators,
+                                                config_.world, actions);
   }
-  commands_ = std::make_unique<CommandRunner>(strand_, *world_, readers_, running_.operators,
-                                              config_.world, actions);
   DurableLog::Options options;
   options.queued_records_max = config_.log_queue_records;
   options.reserve_bytes = config_.disk_reserve_mib << 20;
@@ -171,6 +175,46 @@ Result<void, std::string> ServerCore::take_over(Store& store) {
   }
   logger("world").info("OWNS THE WORLD: epoch={} seq={}", start->epoch, start->read.last);
   return {};
+}
+
+Result<SessionId, std::string> ServerCore::begin_handover(std::optional<SessionId> successor) {
+  auto begun = std::make_shared<std::promise<Result<SessionId, std::string>>>();
+  auto answer = begun->get_future();
+  strand_.post([this, successor, begun] {
+    if (const auto why = world_->handover_refusal(successor))
+      return begun->set_value(Unexpected<std::string>{*why});
+    if (commands_->running() > 0)
+      return begun->set_value(Unexpected<std::string>{
+          "rollbacks or undos are under way: wait, or cancel them (rollback list)"});
+    begun->set_value(world_->hand_over(successor, read_clocks()));
+  });
+  return answer.get();
+}
+
+Result<void, std::string> ServerCore::end_handover() {
+  log_->stop();
+  // The reports of the log are on the strand already.
+  auto ended = std::make_shared<std::promise<bool>>();
+  auto is_written = ended->get_future();
+  strand_.post([this, ended] {
+    const LogWriter::Counters counters = log_counters_now();
+    if (log_->has_failed() || log_->durable() != world_->head() || counters.queued_records > 0)
+      return ended->set_value(false);
+    ended_logs_ = counters;
+    environment_.detach_log();
+    log_.reset();
+    owner_.begin();
+    checkpoints_.start();
+    ended->set_value(true);
+  });
+  if (is_written.get()) return {};
+  return failure("not all edits could be written to the log");
+}
+
+ServerCore::FollowState ServerCore::follow_state() const {
+  const TimeUs heard_us = owner_heard_us_.load();
+  const bool hears_owner = heard_us != 0 && steady_now_us() - heard_us < kOwnerHeardUsMax;
+  return {is_live_.load(), has_forked_.load(), hears_owner};
 }
 
 void ServerCore::read_checkpoint() {
@@ -220,6 +264,16 @@ void ServerCore::tick() {
   const Clocks now = read_clocks();
   world_->tick(now);
   if (commands_) commands_->tick(now);
+  if (const auto successor = world_->take_better_owner()) hand_over_to(*successor);
+}
+
+void ServerCore::hand_over_to(SessionId successor) {
+  if (!actions_.hand_over) return;
+  logger("app").info("move_to_builders: most edits come from server={}: handing the world over",
+                     successor);
+  actions_.hand_over(successor, [](const CommandAnswer& answer) {
+    logger("app").info("move_to_builders: {}", answer.text);
+  });
 }
 
 void ServerCore::close_stalled() {
@@ -233,6 +287,7 @@ void ServerCore::after_task() {
   schedule_tile_resends();
   is_live_.store(world_->is_live());
   has_forked_.store(world_->has_forked());
+  owner_heard_us_.store(world_->owner_heard_us().value_or(0));
   finish_stop_if_flushed();
 }
 
@@ -250,18 +305,26 @@ std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
 }
 
 LogWriter::Counters ServerCore::log_counters_now() const {
-  return log_ ? log_->writer().counters() : LogWriter::Counters{};
+  LogWriter::Counters all = ended_logs_;
+  if (!log_) return all;
+  const LogWriter::Counters now = log_->writer().counters();
+  all.commits += now.commits;
+  all.records += now.records;
+  all.snapshots += now.snapshots;
+  all.keyframes += now.keyframes;
+  all.queued_records = now.queued_records;
+  return all;
 }
 
 void ServerCore::command(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)]() mutable {
-    if (commands_) return commands_->run(line, std::move(reply));
+    if (!world_->is_following()) return commands_->run(line, std::move(reply));
     // The program can be stopped like any other.
     if (line == "stop") {
       actions_.stop();
       return reply({"", true, true});
     }
-    refuse(reply, "this server follows the owner of the world: give the command there");
+    refuse(reply, kGiveThere);
   });
 }
 

@@ -11,6 +11,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,13 +77,21 @@ class ServerCore final : public NetEvents {
   /// must outlive the core. Blocks on the database. Sessions go on. After an error the server must be
   /// stopped. Requires start(). Thread: any but those of `threads`.
   Result<void, std::string> take_over(Store& store);
+  /// Makes the owner a server that follows: begin_handover(), then end_handover(), then the caller gives
+  /// the lease up. Sessions go on. take_over() may follow. `successor` is as for
+  /// WorldServer::hand_over(). Returns the server that is to take the world over, or why nothing has
+  /// changed. Requires start(). Blocks. Thread: any but those of `threads`.
+  Result<SessionId, std::string> begin_handover(std::optional<SessionId> successor);
+  /// Writes the log and ends the log writer. After an error the server must be stopped. Likewise.
+  Result<void, std::string> end_handover();
   /// How a server that follows gets on.
   struct FollowState {
-    bool is_live = false;     // it has reached the owner
-    bool has_forked = false;  // it cannot go on
+    bool is_live = false;      // it has reached the owner
+    bool has_forked = false;   // it cannot go on
+    bool hears_owner = false;  // it is connected with an owner that does not stand still
   };
   /// Thread: any.
-  FollowState follow_state() const { return {is_live_.load(), has_forked_.load()}; }
+  FollowState follow_state() const;
   /// Accepts sessions and ticks from now on. Requires listen(), and recover() or follow().
   void start();
   std::uint16_t port() const { return listener_->port(); }
@@ -141,6 +150,8 @@ class ServerCore final : public NetEvents {
   void read_checkpoint();
   DurableLog::Events log_events();
   void tick();
+  /// Hands the world over for `move_to_builders`.
+  void hand_over_to(SessionId successor);
   /// Closes the sessions whose clients have read nothing for the idle time.
   void close_stalled();
   /// Runs after every task of the world strand.
@@ -182,13 +193,17 @@ class ServerCore final : public NetEvents {
   asio::steady_timer tile_resends_;   // WorldServer::resend_tiles()
   bool is_resend_scheduled_ = false;  // used on the world strand
   PeriodicTask ticks_, stalls_, activity_, chat_retention_, checkpoints_;
-  std::atomic<bool> is_live_{false}, has_forked_{false};  // written by the world strand
+  // Written by the world strand. The time is WorldServer::owner_heard_us(), 0 without a connection.
+  std::atomic<bool> is_live_{false}, has_forked_{false};
+  std::atomic<TimeUs> owner_heard_us_{0};
   ActivitySample sampled_;  // at the last write_activity(). Used on the world strand
   // The answer of begin_stop(), set while it waits. Used on the world strand.
   std::shared_ptr<std::promise<void>> stopping_;
 
-  // These parts exist from recover() or follow() on; the last two of a server that follows only when it
-  // has taken the world over.
+  LogWriter::Counters ended_logs_;  // of the earlier periods in which this server owned the world
+
+  // These parts exist from recover() or follow() on. Of a server that follows, the log exists only while
+  // it owns the world, and the commands from the first time on.
   std::unique_ptr<ChatLog> chat_log_;  // null if chat_days is 0
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<DurableLog> log_;

@@ -41,11 +41,13 @@ class ServerEnvironment final : public WorldEnvironment {
     chat_log_ = chat_log;
   }
   /// Connects what the owner of the world has. Until then, the log has no room. Both must outlive the
-  /// object.
+  /// object, the log until detach_log().
   void attach(DurableLog& log, CommandRunner& commands) {
     log_ = &log;
     commands_ = &commands;
   }
+  /// From now on the log has no room.
+  void detach_log() { log_ = nullptr; }
 
   /// Returns the processor time that send_to_all() took since the start. It does not include the
   /// time of sending.

@@ -20,6 +20,7 @@ std::size_t stack_bytes_of(const EditDescriptor& edit, std::size_t chunks) {
 Authority::Authority(const EditLimits& limits, const LogPosition& log)
     : limits_(limits),
       epoch_(log.epoch),
+      last_epoch_(log.last_epoch),
       head_(log.last),
       log_clock_(log.last_time_us),
       chunks_(limits.chunk_edge),
@@ -51,7 +52,7 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
   if (offers.empty()) return std::nullopt;
   const TimeUs time_us = log_clock_.stamp();
   OrderedBatch batch;
-  batch.commit.epoch = epoch_;
+  batch.commit.epoch = last_epoch_ = epoch_;
   for (const EditOffer& offer : offers) {
     const Version version{epoch_, ++head_};
     OrderedEdit ordered;
@@ -75,7 +76,7 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
 
 OrderedBatch Authority::follow(std::span<const LogPartRecord> records, const Clocks& now) {
   OrderedBatch batch;
-  batch.commit.epoch = records.front().record.version.epoch;
+  batch.commit.epoch = last_epoch_ = records.front().record.version.epoch;
   for (const LogPartRecord& part : records) {
     const EditRecord& record = part.record;
     RUNSTONE_ASSERT(record.version.seq == head_ + 1);

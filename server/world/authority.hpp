@@ -88,6 +88,8 @@ class Authority {
   LogClock& log_clock() { return log_clock_; }
   const LogClock& log_clock() const { return log_clock_; }
   Epoch epoch() const { return epoch_; }
+  /// Returns the epoch of the last record of the log, 0 if there is none.
+  Epoch last_epoch() const { return last_epoch_; }
   /// Returns the last sequence ordered.
   Sequence head() const { return head_; }
 
@@ -98,7 +100,7 @@ class Authority {
   void publish(OrderedBatch& batch);
 
   EditLimits limits_;
-  Epoch epoch_;
+  Epoch epoch_, last_epoch_;
   Sequence head_;
   LogClock log_clock_;
   WorldChunks chunks_;

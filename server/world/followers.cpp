@@ -157,6 +157,13 @@ void on_follower_message(WorldState& world, SessionId link, const Message& messa
   if (const auto refusal =
           refusal_of(info_of(message), Sender::client, SessionStage::open, kFeatureServers))
     return close_follower(world, link, refusal->reason, refusal->text);
+  if (const auto* ping = std::get_if<Ping>(&message)) {
+    static_cast<void>(
+        world.environment.send(link, encode_message(Pong{ping->sent_us, now.steady_us})));
+    return;
+  }
+  // This server has handed the world over. The follower tells the next owner again.
+  if (world.following) return;
   if (const auto* open = std::get_if<RelayOpen>(&message))
     return on_relay_open(world, link, *open, now);
   if (const auto* relay = std::get_if<Relay>(&message)) return on_relay(world, link, *relay, now);
@@ -164,10 +171,6 @@ void on_follower_message(WorldState& world, SessionId link, const Message& messa
     return on_relay_close(world, link, *close);
   if (const auto* request = std::get_if<FollowRequest>(&message))
     return on_follow_request(world, link, *request);
-  if (const auto* ping = std::get_if<Ping>(&message)) {
-    static_cast<void>(
-        world.environment.send(link, encode_message(Pong{ping->sent_us, now.steady_us})));
-  }
 }
 
 void forget_follower(WorldState& world, SessionId link) {
@@ -195,10 +198,10 @@ bool has_live_followers(const WorldState& world) {
                              [](const auto& entry) { return is_served(entry.second); });
 }
 
-void close_followers(WorldState& world) {
+void close_followers(WorldState& world, const std::string& text) {
   while (!world.followers.empty()) {
     const SessionId link = world.followers.begin()->first;
-    world.environment.close(link, GoodbyeReason::closing, "the server stops");
+    world.environment.close(link, GoodbyeReason::closing, text);
     forget_follower(world, link);
   }
 }

@@ -28,6 +28,7 @@ struct Follower {
   bool is_full = false;         // its queue was full: it has missed records, and is closed soon
   TimeUs last_message_us = 0;   // steady clock
   std::map<SessionId, SessionId> sessions;  // its players: by its number, the number here
+  std::uint64_t edits = 0;                  // of its players, accepted since it connected
   // The list of servers (listed_servers.hpp).
   std::string player_address, page_address;  // as in FollowRequest
   bool takes_servers = false;                // it knows the message
@@ -51,9 +52,9 @@ void forget_follower(WorldState& world, SessionId link);
 void close_lost_followers(WorldState& world, const Clocks& now);
 /// Returns true if another server gets the log.
 bool has_live_followers(const WorldState& world);
-/// Closes all followers and forgets the sessions of their players, who stay connected to the followers.
-/// For a server that stops.
-void close_followers(WorldState& world);
+/// Closes all followers, with this text, and forgets the sessions of their players, who stay connected
+/// to the followers.
+void close_followers(WorldState& world, const std::string& text);
 
 /// Queues rows of players and the records of a commit for the log, and sends them to the followers.
 void append_to_log(WorldState& world, std::vector<PlayerRow> players, OrderedBatch& batch);

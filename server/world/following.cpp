@@ -9,6 +9,7 @@
 
 #include "common/core/assert.hpp"
 #include "server/world/broadcast.hpp"
+#include "server/world/followers.hpp"
 #include "server/world/handshake_handlers.hpp"
 #include "server/world/listed_servers.hpp"
 #include "server/world/material_handlers.hpp"
@@ -54,7 +55,8 @@ bool send_session(WorldState& world, SessionId session, WorldSession& mine) {
   open.key = mine.key;
   open.instance = mine.instance;
   open.name = mine.name;
-  open.features = mine.features;
+  // A session that was opened while this server owned the world may have more.
+  open.features = mine.features & world.config.features;
   open.author = mine.state == SessionStage::open ? mine.author : 0;
   open.pose = mine.pose;
   if (mine.join) {
@@ -97,7 +99,6 @@ void follow_records(WorldState& world, std::span<const LogPartRecord> records, c
         records, [epoch](const LogPartRecord& part) { return part.record.version.epoch != epoch; });
     const auto same = records.first(static_cast<std::size_t>(other - records.begin()));
     if (epoch > world.authority.epoch()) begin_epoch(world, epoch);
-    if (world.following) world.following->head_epoch = epoch;
     add_waits(world, same, now);
     const OrderedBatch batch = world.authority.follow(same, now);
     apply_rights(world, batch.records);
@@ -118,7 +119,7 @@ void on_welcome(WorldState& world, const Welcome& welcome) {
     return leave(world, "what answers there is no server of this world");
   if ((welcome.features & kFeatureServers) == 0)
     return leave(world, "the server there does not let others follow");
-  if (welcome.epoch < mine.head_epoch) return leave(world, kTakenOver);
+  if (welcome.epoch < world.authority.last_epoch()) return leave(world, kTakenOver);
   mine.link = Link::authenticating;
   mine.owner_epoch = welcome.epoch;
   const Bytes own = client_transcript(mine.hello, welcome, mine.binding);
@@ -139,6 +140,8 @@ void go_live(WorldState& world, const Clocks& now) {
   if (mine.owner_epoch > world.authority.epoch()) begin_epoch(world, mine.owner_epoch);
   world.environment.report(OperatorLogLevel::info,
                            "follows the owner from seq=" + std::to_string(world.authority.head()));
+  // Those that a former owner still has find the new one in the database.
+  close_followers(world, "another server owns the world");
   send_all_sessions(world);
   while (mine.link == Link::live && !mine.waiting.empty()) {
     Message next = std::move(mine.waiting.front());
@@ -176,7 +179,7 @@ void on_log_part(WorldState& world, LogPart part, const Clocks& now) {
     if (first.seq != next)
       return leave(world, "the owner's next record is " + std::to_string(first.seq) + ", and not " +
                               std::to_string(next));
-    if (first.epoch < world.following->head_epoch) return leave(world, kTakenOver);
+    if (first.epoch < world.authority.last_epoch()) return leave(world, kTakenOver);
   }
   apply_log_part(world, part, now);
   world.following->not_durable.push_back({std::move(part), now.steady_us});
@@ -259,6 +262,11 @@ void on_live_message(WorldState& world, const Message& message, const Clocks& no
 
 }  // namespace
 
+void begin_following(WorldState& world) {
+  world.following = std::make_unique<Following>();
+  world.config.features &= ~kFeaturesOfOwner;
+}
+
 std::optional<std::string> take_read(WorldState& world, const ReadLog& read, const Clocks& now) {
   const Sequence head = world.authority.head();
   if (read.last < head) return std::nullopt;
@@ -266,7 +274,7 @@ std::optional<std::string> take_read(WorldState& world, const ReadLog& read, con
   bool has_head = head == 0;
   for (const EditRecord& record : read.records) {
     const Version& version = record.version;
-    if (version.seq == head) has_head = version.epoch == world.following->head_epoch;
+    if (version.seq == head) has_head = version.epoch == world.authority.last_epoch();
     if (version.seq > head) records.push_back({record, 0});
   }
   if (!has_head) return "the log has other edits than this server";
@@ -343,7 +351,7 @@ void on_log_read(WorldState& world, const Result<ReadLog, std::string>& read, co
     mine.has_forked = true;
     return leave(world, *why);
   }
-  if (mine.head_epoch > mine.owner_epoch) return leave(world, kTakenOver);
+  if (world.authority.last_epoch() > mine.owner_epoch) return leave(world, kTakenOver);
   if (world.authority.head() >= mine.read_to && read->last >= world.authority.head()) {
     // The database has them. Rows without records that it lacks were lost with an earlier owner.
     std::erase_if(mine.not_durable, [last = read->last](const KeptPart& kept) {

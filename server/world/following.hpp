@@ -84,13 +84,18 @@ struct Following {
   TimeUs read_again_us = 0;     // when it reads next, because the records are not durable yet
   std::deque<Message> waiting;  // of the owner, while records are read
   TimeUs heard_us = 0, pinged_us = 0;  // steady clock: the last message, the last ping
-  Epoch head_epoch = 0;                // of the last record that this server has
   std::deque<KeptPart> not_durable;
   // Edits of players here that the owner got, until it answers: when they came (steady clock).
   std::map<OperationId, TimeUs> forwarded;
   bool has_forked = false;
   bool is_taking_over = false;  // messages of an owner are ignored
+  // Of a server that has handed the world over: when the followers that it still has are closed at the
+  // latest (handover.hpp).
+  TimeUs followers_end_us = 0;
 };
+
+/// Makes this server one that follows and has no connection with the owner yet.
+void begin_following(WorldState& world);
 
 // The connection with the owner.
 void owner_connected(WorldState& world, const std::optional<ChannelBinding>& binding,

@@ -385,6 +385,7 @@ void on_key_deposit(WorldState& world, SessionId session, const KeyDeposit& depo
 }
 
 void open_authenticated(WorldState& world, const Clocks& now) {
+  if (world.following) return;  // the owner of the world lets players in
   std::vector<SessionId> ready;
   for (const auto& [id, session] : world.sessions) {
     if (session.state == SessionStage::authenticating && session.is_authenticated &&

@@ -50,10 +50,15 @@ class OperationWatermarks {
     const auto found = instance->second.reasons.find(op.seq);
     return found == instance->second.reasons.end() ? RejectReason::already_resolved : found->second;
   }
-  /// Resolves an operation as accepted. Never lowers a watermark.
+  /// Resolves an operation as accepted. Never lowers a watermark. A rejection of the operation is
+  /// dropped: another owner of the world has ordered an edit whose rejection never reached the client.
   void raise(const OperationId& op) {
     ClientSequence& mark = marks_[{op.author, op.instance}];
     mark = std::max(mark, op.seq);
+    const auto rejected = rejections_.find({op.author, op.instance});
+    if (rejected == rejections_.end() || rejected->second.reasons.erase(op.seq) == 0) return;
+    --rejection_count_;
+    if (rejected->second.reasons.empty()) forget_rejections(rejected);
   }
   /// Drops everything about an author whose number is not used any more.
   void forget(AuthorId author) {

@@ -9,6 +9,7 @@
 #include "protocol/rules/edit_check.hpp"
 #include "protocol/rules/edit_price.hpp"
 #include "server/world/delivery.hpp"
+#include "server/world/handover.hpp"
 #include "server/world/quotas.hpp"
 #include "server/world/rights_handlers.hpp"
 
@@ -108,7 +109,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     refusal = world.authority.submit(
         {op, Cause::player, request.submitted_us, request.edit, 0, request.action, now.steady_us});
   }
-  if (!refusal) return;
+  if (!refusal) return count_edit(world, session);
   if (*refusal == RejectReason::bad_edit && request.fault) detail = fault_text(*request.fault);
   if (*refusal == RejectReason::busy && detail.empty())
     detail = why_busy(world, request.edit, mine.author);

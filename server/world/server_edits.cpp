@@ -35,7 +35,7 @@ ServerEditsResult order_server_edits(WorldState& world, const std::vector<EditOf
                                      AuthorId payer, const Clocks& now) {
   using State = ServerEditsResult::State;
   commit_all(world, now);
-  if (!world.accepts_edits) return {State::closed};
+  if (!accepts_edits(world)) return {State::closed};
   if (offers.empty()) return {};
   // Instances are public, so a client of the author can join with this one and use its client
   // sequences.

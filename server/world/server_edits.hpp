@@ -15,7 +15,7 @@ struct ServerEditsResult {
   enum class State {
     ordered,  // all offers
     busy,     // the first `count` offers; a limit rejects the next one for now: try again
-    closed,   // none: the server stops, or the log cannot be written any more
+    closed,   // none: accepts_edits() returns false
     taken,    // none: a client of the author has used these client sequences
   };
   State state = State::ordered;

@@ -77,6 +77,7 @@ struct WorldConfig {
   MemoryLimits memory;
   SnapshotPolicy snapshots;
   TimeUs stop_us_max = 8'000'000;  // after it, a stop begins no more snapshots
+  bool move_to_builders = false;   // see OwnerChoice
 };
 
 /// The state that the store remembers. The log above the checkpoint follows by

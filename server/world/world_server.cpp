@@ -20,6 +20,7 @@
 #include "server/world/digest_check_scheduler.hpp"
 #include "server/world/followers.hpp"
 #include "server/world/following.hpp"
+#include "server/world/handover.hpp"
 #include "server/world/handshake_handlers.hpp"
 #include "server/world/listed_servers.hpp"
 #include "server/world/log_mark_handlers.hpp"
@@ -155,6 +156,7 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   mine.operators = config.operators;
   mine.link_address = config.link_address;
   mine.message_of_the_day = config.message_of_the_day;
+  mine.move_to_builders = config.move_to_builders;
   rights_changed(*state_, {});
 }
 
@@ -329,6 +331,7 @@ void WorldServer::tick(const Clocks& now) {
   forget_gone_authors(world);
   close_silent_sessions(world, now);
   close_lost_followers(world, now);
+  close_kept_followers(world, now);
   if (world.following) tick_following(world, now);
   apply_due_views(world, now);
   send_due_ground(world);
@@ -337,6 +340,7 @@ void WorldServer::tick(const Clocks& now) {
     broadcast_chat(world);
     broadcast_poses(world, now);
     update_listed_servers(world, now);
+    choose_owner(world, now);
   }
   send_listed_servers(world);
   broadcast_durable(world, now);
@@ -436,12 +440,9 @@ void WorldServer::history_chunk_loaded(SessionId session, HistoryNumber history,
   on_history_chunk(*state_, session, history, key, chunk ? *chunk : nullptr, now);
 }
 
-void WorldServer::follow(Epoch last_epoch) {
+void WorldServer::follow() {
   RUNSTONE_ASSERT(state_->sessions.empty());
-  WorldState& world = *state_;
-  world.following = std::make_unique<Following>();
-  world.following->head_epoch = last_epoch;
-  world.config.features &= ~kFeaturesOfOwner;
+  begin_following(*state_);
 }
 
 bool WorldServer::is_following() const { return state_->following != nullptr; }
@@ -450,9 +451,18 @@ bool WorldServer::is_live() const {
 }
 bool WorldServer::has_forked() const { return state_->following && state_->following->has_forked; }
 Version WorldServer::last_record() const {
-  return {state_->following->head_epoch, state_->authority.head()};
+  return {state_->authority.last_epoch(), state_->authority.head()};
+}
+std::optional<TimeUs> WorldServer::owner_heard_us() const {
+  const Following* mine = state_->following.get();
+  const bool is_connected = mine != nullptr && (mine->link == Following::Link::reading ||
+                                                mine->link == Following::Link::live);
+  return is_connected ? std::optional(mine->heard_us) : std::nullopt;
 }
 std::size_t WorldServer::follower_count() const { return state_->followers.size(); }
+std::vector<KnownServer> WorldServer::known_servers() const {
+  return runstone::known_servers(*state_);
+}
 
 void WorldServer::owner_connected(const std::optional<ChannelBinding>& binding, const Clocks& now) {
   if (state_->following) runstone::owner_connected(*state_, binding, now);
@@ -491,6 +501,8 @@ bool WorldServer::take_over(const Takeover& start, const Clocks& now) {
   }
   world.following.reset();
   world.config.features = start.features;
+  world.edits_here = 0;
+  world.owner_choice.begin(now.steady_us);
   world.durable = world.authority.head();
   world.disk_is_full = false;  // of the owner before; the log of this server says if it is
   world.checkpointer = Checkpointer(world.config.snapshots, start.checkpoint);
@@ -511,6 +523,20 @@ bool WorldServer::take_over(const Takeover& start, const Clocks& now) {
   }
   let_waiting_in(world, now);
   return true;
+}
+
+std::optional<std::string> WorldServer::handover_refusal(std::optional<SessionId> successor) const {
+  return runstone::handover_refusal(*state_, successor);
+}
+
+SessionId WorldServer::hand_over(std::optional<SessionId> successor, const Clocks& now) {
+  const SessionId next = runstone::hand_over(*state_, successor, now);
+  collect_released(*state_);
+  return next;
+}
+
+std::optional<SessionId> WorldServer::take_better_owner() {
+  return std::exchange(state_->better_owner, std::nullopt);
 }
 
 std::optional<View> WorldServer::restore_preview_view(SessionId session) const {
@@ -566,7 +592,7 @@ void WorldServer::begin_stop(const Clocks& now) {
   world.hands_over = has_live_followers(world);
   world.stop_due_us = now.steady_us + (world.hands_over ? 0 : world.config.stop_us_max);
   world.checkpointer.finish();
-  close_followers(world);
+  close_followers(world, "the server stops");
   while (!world.sessions.empty()) {
     close_session(world, world.sessions.begin()->first, GoodbyeReason::closing, "the server stops");
   }
@@ -586,7 +612,7 @@ bool WorldServer::hands_over() const { return state_->hands_over; }
 bool WorldServer::is_stop_overdue() const { return state_->checkpointer.is_abandoned(); }
 std::size_t WorldServer::dirty_chunks() const { return state_->authority.chunks().dirty().size(); }
 
-bool WorldServer::accepts_edits() const { return state_->accepts_edits; }
+bool WorldServer::accepts_edits() const { return runstone::accepts_edits(*state_); }
 bool WorldServer::has_waiting_edit(AuthorId author) const {
   return state_->authority.queue().has_of(author);
 }

@@ -20,6 +20,7 @@
 #include "server/world/added_at.hpp"
 #include "server/world/clocks.hpp"
 #include "server/world/following.hpp"
+#include "server/world/handover.hpp"
 #include "server/world/server_edits.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
@@ -184,17 +185,22 @@ class WorldServer {
 
   // Several servers of one world (followers.hpp, following.hpp).
   /// From now on another server owns the world, and this one follows it. Call it before the first
-  /// session, after replay_onto_stack(). `last_epoch`: of the last record that was replayed.
-  void follow(Epoch last_epoch);
+  /// session, after replay_onto_stack().
+  void follow();
   bool is_following() const;
   /// Returns false if this server follows, and has not reached the owner.
   bool is_live() const;
   /// Returns true if this server has edits that the log does not have. It cannot go on then.
   bool has_forked() const;
-  /// Returns the last record that a server that follows has.
+  /// Returns the last record that this server has.
   Version last_record() const;
+  /// Returns when this server last heard the owner that it follows, by the steady clock, or nullopt if
+  /// it is not connected with one.
+  std::optional<TimeUs> owner_heard_us() const;
   /// Returns the number of servers that follow this one.
   std::size_t follower_count() const;
+  /// See handover.hpp. Requires that this server owns the world.
+  std::vector<KnownServer> known_servers() const;
   // The connection with the owner. Ignored unless is_following().
   void owner_connected(const std::optional<ChannelBinding>& binding, const Clocks& now);
   void owner_received(Message&& message, const Clocks& now);
@@ -209,6 +215,18 @@ class WorldServer {
   /// Makes this server the owner. Sessions go on, and edits that wait are ordered. Returns false if the
   /// log has other edits than this server: nothing may be written then.
   bool take_over(const Takeover& start, const Clocks& now);
+
+  // Handover (handover.hpp).
+  /// Returns why the world cannot be handed over to this server (nullopt: to any), as a sentence, or
+  /// nullopt.
+  std::optional<std::string> handover_refusal(std::optional<SessionId> successor) const;
+  /// Makes the owner a server that follows. Sessions go on, and their edits wait. The caller then writes
+  /// the log and gives the lease up. Reports about the log may come until then. Returns the number of
+  /// the server that is to take the world over. Requires that handover_refusal() returns nullopt.
+  SessionId hand_over(std::optional<SessionId> successor, const Clocks& now);
+  /// Returns the server to which the owner should hand the world over now, or nullopt. Returns each
+  /// answer once. Players may make their edits elsewhere then (OwnerChoice).
+  std::optional<SessionId> take_better_owner();
 
   // Stop.
   /// Closes all sessions, rejects edits, and writes dirty chunks as snapshots for at most
@@ -227,7 +245,7 @@ class WorldServer {
   std::size_t dirty_chunks() const;
 
   // State.
-  /// Returns false if the server stops or the log has failed.
+  /// Returns false if the server stops, the log has failed, or another server owns the world.
   bool accepts_edits() const;
   /// Returns true if an accepted edit of the author is not ordered yet: a large edit, or one behind
   /// it, waits until there is room to send it (EditQueue).

@@ -23,6 +23,7 @@
 #include "server/world/load_queue.hpp"
 #include "server/world/load_retries.hpp"
 #include "server/world/name_claims.hpp"
+#include "server/world/owner_choice.hpp"
 #include "server/world/players.hpp"
 #include "server/world/session_output.hpp"
 #include "server/world/session_turns.hpp"
@@ -124,6 +125,9 @@ struct WorldState {
   std::map<SessionId, Follower> followers;  // other servers, by their session (followers.hpp)
   // Set while another server owns the world, and this one follows it (following.hpp).
   std::unique_ptr<Following> following;
+  std::uint64_t edits_here = 0;  // of players here, accepted since this server owns the world
+  OwnerChoice owner_choice;
+  std::optional<SessionId> better_owner;  // as WorldServer::take_better_owner() returns it
   ListedServers listed;
   std::vector<AuthorId> gone_authors;  // of sessions that ended since the last tick
   WorldCounters counters;
@@ -179,6 +183,11 @@ struct WorldState {
   }
 };
 
+/// Returns false if this server orders no edits: it stops, its log has failed, or another server owns
+/// the world.
+inline bool accepts_edits(const WorldState& world) {
+  return world.accepts_edits && !world.following;
+}
 /// Sends goodbye with a reason and removes the session, if there is one.
 void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
                    const std::string& text);

@@ -244,7 +244,7 @@ class SimProcess final : public SimServer {
     WorldStart start = read_start();
     start.log.epoch = epoch ? *epoch : std::max(database_.epoch(), start.log.last_epoch);
     make_world(start);
-    if (!epoch) world_->follow(start.log.last_epoch);
+    if (!epoch) world_->follow();
     tick_later();
   }
   void watch_later() {

@@ -109,7 +109,7 @@ struct ClusterBench {
     WorldBench& fresh = *servers.back().bench;
     fresh.time_us = time_us;
     for (const EditRecord& record : database.records) fresh.server.replay_onto_stack(record);
-    fresh.server.follow(start.log.last_epoch);
+    fresh.server.follow();
     return servers.size() - 1;
   }
   void connect(std::size_t follower) {
