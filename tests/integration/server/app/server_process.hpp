@@ -6,12 +6,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <asio/io_context.hpp>
+#include <asio/posix/stream_descriptor.hpp>
+#include <asio/post.hpp>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "server/app/standby.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
@@ -82,26 +88,40 @@ class ServerProcess {
     start_logging(values.log_level);
     // A server that has failed ends as if the parent had asked for it.
     const auto on_failure = [socket] { ::shutdown(socket, SHUT_RD); };
-    const auto start = [&] { return Server::start(values, flat_creation(), on_failure); };
+    asio::io_context loop;
+    asio::posix::stream_descriptor end(loop, socket);
+    std::unique_ptr<Server> running;
+    std::optional<TakeoverWatch> watch;
+    bool has_failed = false;
+    OperatorActions actions;
+    actions.hand_over = [&](std::optional<SessionId> successor, CommandReply reply) {
+      asio::post(loop, [&, successor, reply = std::move(reply)] {
+        if (hand_over(values.store, *running, watch, on_failure, successor, reply)) return;
+        has_failed = true;
+        loop.stop();
+      });
+    };
+    const auto start = [&] { return Server::start(values, flat_creation(), on_failure, actions); };
     const auto stops_within = [](std::chrono::milliseconds time) {
       std::this_thread::sleep_for(time);
       return false;
     };
-    const auto follow = [&] { return Server::follow(values, on_failure, {}); };
+    const auto follow = [&] { return Server::follow(values, on_failure, actions); };
     auto server =
         values.standby ? start_as_standby(values.store, stops_within, start, follow) : start();
     if (!server) {
       std::fprintf(stderr, "%s\n", server.error().c_str());
       return 1;
     }
-    const std::uint16_t port = (*server)->port();
+    running = *std::move(server);
+    const std::uint16_t port = running->port();
     if (::write(socket, &port, sizeof port) != static_cast<ssize_t>(sizeof port)) return 1;
-    std::optional<TakeoverWatch> watch;
-    if ((*server)->is_following()) watch.emplace(values.store, **server, on_failure);
-    char end = 0;
-    static_cast<void>(::read(socket, &end, 1) == 0);
+    if (running->is_following()) watch.emplace(values.store, *running, on_failure);
+    end.async_wait(asio::posix::stream_descriptor::wait_read,
+                   [&](const asio::error_code& /*error*/) { loop.stop(); });
+    loop.run();
     watch.reset();
-    return (*server)->stop().state.is_durable() ? 0 : 1;
+    return running->stop().state.is_durable() && !has_failed ? 0 : 1;
   }
 
   /// Waits until the child has ended, and returns its status.

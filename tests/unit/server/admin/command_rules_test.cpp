@@ -41,9 +41,9 @@ TEST_CASE("each command needs its right", "[admin][rights]") {
   }
   for (const char* line : {"grant ana mason", "revoke ana", "grants"})
     CHECK(rule(line).any_of == RightSet{Right::grant});
-  for (const char* line :
-       {"role set mason see", "role remove mason", "role default mason", "names release ana",
-        "stop", "rights undo 3", "password", "password clear", "say hello"}) {
+  for (const char* line : {"role set mason see", "role remove mason", "role default mason",
+                           "names release ana", "stop", "servers", "handover", "rights undo 3",
+                           "password", "password clear", "say hello"}) {
     CHECK(rule(line).any_of == RightSet{Right::administer});
   }
   for (const char* line : {"backup copy", "reload", "materials add wool.toml", "password set"})

@@ -36,6 +36,9 @@ TEST_CASE("commands without arguments are parsed", "[admin][command]") {
   CHECK(parsed<MaterialsCommand>("materials wool").part == "wool");
   CHECK(parsed<MaterialsCommand>("materials add").part == "add");
   CHECK(parsed<AddMaterialsCommand>("materials add \"my wool.toml\"").file == "my wool.toml");
+  parsed<ServersCommand>("servers");
+  CHECK(parsed<HandoverCommand>("handover").server == std::nullopt);
+  CHECK(parsed<HandoverCommand>("handover 17").server == 17U);
   parsed<StopCommand>("stop");
   CHECK_FALSE(parsed<UndoCommand>("undo").is_redo);
   CHECK(parsed<UndoCommand>("redo").is_redo);
@@ -105,6 +108,11 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("names free ana") == "names \"free\": release NAME");
   CHECK(mistake("names release the mole") ==
         "names release: one name comes after it, in quotes if it has blanks");
+  for (const char* wrong : {"handover ana", "handover -1", "handover 4294967296", "handover 1 2"}) {
+    CHECK(mistake(wrong) ==
+          "handover: the number of one server comes after it, or nothing (servers lists them)");
+  }
+  CHECK(mistake("servers all") == "servers \"all\": nothing comes after servers");
   CHECK(mistake("rolback") == "\"rolback\" is no command: `help` names them");
   CHECK(mistake("rollback") == "rollback: preview, apply, cancel, undo or list is missing");
   CHECK(mistake("rollback revert p1") ==

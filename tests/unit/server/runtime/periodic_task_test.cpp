@@ -30,5 +30,22 @@ TEST_CASE("a periodic task that is stopped while it waits does not run", "[serve
   CHECK(runs == 0);
 }
 
+TEST_CASE("a periodic task that was stopped starts again, and runs once in an interval",
+          "[server]") {
+  asio::io_context io;
+  WorldStrand strand(io, [] {});
+  int runs = 0;
+  PeriodicTask* self = nullptr;
+  PeriodicTask task(strand, std::chrono::milliseconds(1), [&] {
+    ++runs;
+    if (runs == 1 || runs == 4) self->stop();
+    if (runs == 1) self->start();
+  });
+  self = &task;
+  task.start();
+  io.run();
+  CHECK(runs == 4);
+}
+
 }  // namespace
 }  // namespace runstone::test

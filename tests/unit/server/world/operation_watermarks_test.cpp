@@ -29,6 +29,19 @@ TEST_CASE("rejections are bounded in all, and the instance rejected longest ago 
   CHECK(marks.answer_to({1, 3, 10}) == RejectReason::busy);
 }
 
+TEST_CASE("a rejected operation that another owner has ordered counts as accepted", "[world]") {
+  OperationWatermarks marks;
+  marks.reject({1, 7, 5}, RejectReason::busy);
+  marks.reject({1, 7, 6}, RejectReason::busy);
+  marks.raise({1, 7, 5});
+  CHECK(marks.answer_to({1, 7, 5}) == RejectReason::already_resolved);
+  CHECK(marks.answer_to({1, 7, 6}) == RejectReason::busy);
+  CHECK(marks.of(1, 7) == 6);
+  CHECK(marks.rejection_count() == 1);
+  marks.raise({1, 7, 6});
+  CHECK(marks.rejection_count() == 0);
+}
+
 TEST_CASE("a hundred thousand instances with one rejection each stay within the bound", "[world]") {
   OperationWatermarks marks;
   for (ClientInstance instance = 1; instance <= 100'000; ++instance) {
