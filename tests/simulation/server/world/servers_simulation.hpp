@@ -1,7 +1,7 @@
 // ServersSimulation: three servers of one world, their database and players at each of them, in
 // virtual time. Servers are killed, stand still for longer than their lease, are stopped by their
-// operators, and are cut off from each other and from the database; the database ends all connections,
-// or its disk is full; clocks of machines jump. Afterwards the log must have each durable edit once,
+// operators, hand the world over, and are cut off from each other and from the database; the database
+// ends all connections, or its disk is full; clocks of machines jump. Afterwards the log must have each durable edit once,
 // and all servers and replicas must agree.
 #pragma once
 #include <iomanip>
@@ -24,6 +24,7 @@ class ServersSimulation {
   struct Counts {
     std::uint64_t steps = 0, kills = 0, pauses = 0, stops = 0, cuts = 0, silences = 0;
     std::uint64_t database_cuts = 0, database_restarts = 0, full_disks = 0, clock_jumps = 0;
+    std::uint64_t handovers = 0;
     std::uint64_t owners = 0;  // of the world, one after the other
     std::uint64_t edits = 0, chunks = 0, rejected = 0, unexplained = 0;
   };
@@ -155,7 +156,7 @@ class ServersSimulation {
     const auto heal_later = [this](TimeUs longest_us, std::function<void()> heal) {
       time_.after(rng_.between(100'000, static_cast<std::int32_t>(longest_us)), std::move(heal));
     };
-    switch (rng_.below(9)) {
+    switch (rng_.below(10)) {
       case 0:
         if (!server.running()) return;
         ++counts_.kills;
@@ -187,6 +188,9 @@ class ServersSimulation {
         ++counts_.full_disks;
         database_.is_disk_full = true;
         return heal_later(8'000'000, [this] { database_.is_disk_full = false; });
+      case 8:
+        for (const auto& one : servers_) counts_.handovers += one->hand_over() ? 1 : 0;
+        return;
       default:
         ++counts_.database_restarts;
         database_.restart();

@@ -32,15 +32,17 @@ void run_seeds(std::uint64_t first, std::uint64_t count, std::uint64_t steps = k
     CHECK(violation(simulation, steps) == "");
   }
   CHECK(sum.owners > count);
+  CHECK(sum.handovers > count / 2);
   CHECK(sum.edits > sum.steps / 4);
   CHECK(sum.unexplained <= 1 + sum.edits / 10'000);
   WARN(count << " seeds, " << sum.steps << " steps: " << sum.edits << " edits, " << sum.rejected
              << " rejected, " << sum.owners << " owners, " << sum.kills << " kills, " << sum.pauses
-             << " pauses, " << sum.stops << " stops, " << sum.cuts << " cuts and " << sum.silences
-             << " silences between servers, " << sum.database_cuts << " cuts and "
-             << sum.database_restarts << " restarts of the database, " << sum.full_disks
-             << " full disks, " << sum.clock_jumps << " clock jumps, " << sum.chunks
-             << " chunks compared, " << sum.unexplained << " edits never explained");
+             << " pauses, " << sum.stops << " stops, " << sum.handovers << " handovers, "
+             << sum.cuts << " cuts and " << sum.silences << " silences between servers, "
+             << sum.database_cuts << " cuts and " << sum.database_restarts
+             << " restarts of the database, " << sum.full_disks << " full disks, "
+             << sum.clock_jumps << " clock jumps, " << sum.chunks << " chunks compared, "
+             << sum.unexplained << " edits never explained");
 }
 
 TEST_CASE("servers of one world lose no durable edit and agree after faults of every kind",

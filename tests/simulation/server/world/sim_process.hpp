@@ -51,12 +51,23 @@ class SimProcess final : public SimServer {
   }
   /// Stops the program as its operator does. It starts again after a while.
   void stop() {
-    if (!running() || is_stopping_) return;
+    if (!running() || is_stopping_ || role_ == Role::handing_over) return;
     tell("is stopped");
     is_stopping_ = true;
     if (link_) link_->cut();
     world_->begin_stop(now());
     finish_stop_later();
+  }
+  /// An owner lets the server with the most players take the world over, and follows it. Returns false if
+  /// it cannot.
+  bool hand_over() {
+    if (role_ != Role::owner || is_stopping_ || is_paused_) return false;
+    if (world_->handover_refusal(std::nullopt)) return false;
+    tell("hands the world over");
+    world_->hand_over(std::nullopt, now());
+    role_ = Role::handing_over;
+    end_handover_later();
+    return true;
   }
   /// The program stands still. What comes to it waits.
   void pause() {
@@ -92,7 +103,7 @@ class SimProcess final : public SimServer {
   static constexpr TimeUs kLeaseUs = 5'000'000;
 
  private:
-  enum class Role { none, following, taking_over, owner };
+  enum class Role { none, following, taking_over, owner, handing_over };
   struct Write {
     std::function<void()> write;  // what the transaction writes
     std::function<void()> done;   // after it
@@ -100,6 +111,7 @@ class SimProcess final : public SimServer {
 
   static constexpr int kFreeLooks = 4;
   static constexpr TimeUs kRunsForUs = 300'000;
+  static constexpr TimeUs kOwnerHeardUsMax = 1'500'000, kSuccessorUs = 1'000'000;
 
   void tell(const std::string& what) const { tell_(address_ + ' ' + what); }
 
@@ -121,6 +133,8 @@ class SimProcess final : public SimServer {
     valid_until_us_ = 0;
     role_ = Role::none;
     free_looks_ = 0;
+    ownerless_us_.reset();
+    not_before_us_ = 0;
   }
   void finish_stop_later(int polls = 1'000) {
     later(5'000, 15'000, [this, polls] {
@@ -142,20 +156,22 @@ class SimProcess final : public SimServer {
   void begin_lease(LeaseTerm term, TimeUs asked_us) {
     term_ = term;
     valid_until_us_ = asked_us + kLeaseUs * 9 / 10;
-    renew_later(kLeaseUs / 3);
+    renew_later(term, kLeaseUs / 3);
   }
-  void renew_later(TimeUs pause_us) {
+  void renew_later(LeaseTerm term, TimeUs pause_us) {
     const auto pause = static_cast<std::int32_t>(pause_us);
-    later(pause, pause, [this] {
-      if (is_database_cut) return renew_later(kLeaseUs / 20);
+    later(pause, pause, [this, term] {
+      if (term_ != term) return;  // it was given up
+      if (is_database_cut) return renew_later(term, kLeaseUs / 20);
       // The database gets the request, and sends its answer, whether this program stands still or not.
-      time_.after(rng_.between(100, 3'000), [this, life = life_, asked_us = time_.now()] {
-        if (life != life_) return;
-        const bool is_renewed = database_.renew(*term_, kLeaseUs);
-        later(100, 3'000, [this, asked_us, is_renewed] {
+      time_.after(rng_.between(100, 3'000), [this, term, life = life_, asked_us = time_.now()] {
+        if (life != life_ || term_ != term) return;
+        const bool is_renewed = database_.renew(term, kLeaseUs);
+        later(100, 3'000, [this, term, asked_us, is_renewed] {
+          if (term_ != term) return;
           if (!is_renewed) return kill();
           valid_until_us_ = asked_us + kLeaseUs * 9 / 10;
-          renew_later(kLeaseUs / 3);
+          renew_later(term, kLeaseUs / 3);
         });
       });
     });
@@ -255,9 +271,35 @@ class SimProcess final : public SimServer {
     if (world_->has_forked()) return kill();
     if (is_database_cut) return watch_later();
     const auto owner = database_.owner();
-    if (!owner) return take_over();
+    if (!owner) return leaves_lease() ? watch_later() : take_over();
+    ownerless_us_.reset();
     if (!owner->address.empty()) connect_to(owner->address);
     watch_later();
+  }
+  /// As TakeoverWatch::leaves_lease().
+  bool leaves_lease() {
+    if (!ownerless_us_) ownerless_us_ = time_.now();
+    const auto heard_us = world_->owner_heard_us();
+    const bool hears_owner = heard_us && now().steady_us - *heard_us < kOwnerHeardUsMax;
+    return time_.now() < not_before_us_ ||
+           (hears_owner && time_.now() - *ownerless_us_ < kSuccessorUs);
+  }
+  /// Writes the log, gives the lease up, and follows.
+  void end_handover_later() {
+    later(500, 5'000, [this] {
+      if (is_disk_full_) return kill();  // the log cannot be written, and the followers have it
+      if (!writes_.empty()) return end_handover_later();
+      ask([this] {
+        database_.release(*term_);
+        term_.reset();
+        valid_until_us_ = 0;
+        role_ = Role::following;
+        not_before_us_ = time_.now() + kSuccessorUs;
+        tell("follows");
+        watch_later();
+        read_checkpoint_later();
+      });
+    });
   }
   void take_over() {
     take_lease(
@@ -333,6 +375,8 @@ class SimProcess final : public SimServer {
     return may_order() && !is_disk_full_;
   }
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override {
+    if (role_ == Role::handing_over || role_ == Role::following)
+      throw SimFault("a server that does not own the world orders edits");
     // A program that goes on after it stood still first orders the edits that it had accepted. Later
     // it may order an edit only while it has the lease.
     const bool ran_on = time_.now() - resumed_us_ > kRunsForUs;
@@ -393,6 +437,8 @@ class SimProcess final : public SimServer {
   TimeUs resumed_us_ = 0;
   std::deque<std::function<void()>> backlog_;  // events that wait while the program stands still
   std::optional<LeaseTerm> term_;
+  std::optional<TimeUs> ownerless_us_;  // since when nobody owns the world
+  TimeUs not_before_us_ = 0;            // it takes no lease before
   TimeUs valid_until_us_ = 0;
   bool is_disk_full_ = false;            // as the world knows
   std::deque<Write> writes_;             // the first one is under way
