@@ -126,6 +126,7 @@ bool TakeoverWatch::look() {
   if (!owner) return true;  // the database does not answer
   if (*owner) {
     ownerless_since_.reset();
+    not_before_ = {};  // the successor has come
     if (!(*owner)->address.empty()) server_.connect_to((*owner)->address);
     return true;
   }

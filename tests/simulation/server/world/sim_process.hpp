@@ -273,6 +273,7 @@ class SimProcess final : public SimServer {
     const auto owner = database_.owner();
     if (!owner) return leaves_lease() ? watch_later() : take_over();
     ownerless_us_.reset();
+    not_before_us_ = 0;
     if (!owner->address.empty()) connect_to(owner->address);
     watch_later();
   }
