@@ -51,12 +51,16 @@ class SimProcess final : public SimServer {
   }
   /// Stops the program as its operator does. It starts again after a while.
   void stop() {
-    if (!running() || is_stopping_ || role_ == Role::handing_over) return;
-    tell("is stopped");
-    is_stopping_ = true;
-    if (link_) link_->cut();
-    world_->begin_stop(now());
-    finish_stop_later();
+    if (!running()) return;
+    // A program that stands still notices it when it goes on.
+    run(life_, [this] {
+      if (is_stopping_ || role_ == Role::handing_over) return;
+      tell("is stopped");
+      is_stopping_ = true;
+      if (link_) link_->cut();
+      world_->begin_stop(now());
+      finish_stop_later();
+    });
   }
   /// An owner lets the server with the most players take the world over, and follows it. Returns false if
   /// it cannot.
