@@ -260,8 +260,9 @@ bool Server::is_following() const { return parts_->is_following; }
 
 Result<void, std::string> Server::take_over() {
   Parts& parts = *parts_;
-  auto writer =
-      open_world(world_place(parts.config), StoreAccess::read_write, "", lease_of(parts.config));
+  LeaseTerms lease = lease_of(parts.config);
+  lease.waits = false;  // if another server was faster, the players here wait for it
+  auto writer = open_world(world_place(parts.config), StoreAccess::read_write, "", lease);
   if (!writer) return failure(writer.error().message());
   parts.writer = *std::move(writer);
   parts.is_following = false;

@@ -107,7 +107,7 @@ Result<std::uint64_t, std::string> replay_log(LogReader& store, const WorldStart
 }
 
 Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<LogPart>& parts,
-                                               Version last, std::uint64_t features) {
+                                               Version last) {
   const auto end = store.last_sequence();
   if (!end) return failure(end.error());
   if (const auto same = is_prefix(store, parts, last, *end); !same) return failure(same.error());
@@ -116,7 +116,6 @@ Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<L
       return failure(written.error().message());
   }
   Takeover out;
-  out.features = features;
   const auto epoch = store.raise_epoch();
   if (!epoch) return failure(epoch.error());
   out.epoch = *epoch;

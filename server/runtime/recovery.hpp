@@ -27,7 +27,7 @@ Result<std::uint64_t, std::string> replay_log(LogReader& store, const WorldStart
 /// what a server needs to take the world over. `last`: the last record of this server. Fails if the log
 /// has other records than this server; nothing is written then.
 Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<LogPart>& parts,
-                                               Version last, std::uint64_t features);
+                                               Version last);
 /// Reads what a server that follows has missed: the records from `first` on, `records_max` at most, and
 /// all players and names. Cost: O(players + names + records).
 Result<ReadLog, std::string> read_missed_log(WorldReader& store, Sequence first,

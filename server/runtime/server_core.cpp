@@ -160,7 +160,7 @@ Result<void, std::string> ServerCore::take_over(Store& store) {
     stopped->set_value(std::move(now));
   });
   const Left mine = left.get();
-  const auto start = prepare_takeover(store, mine.parts, mine.last, kFeaturesKnown);
+  const auto start = prepare_takeover(store, mine.parts, mine.last);
   if (!start) return failure(start.error());
   auto taken = std::make_shared<std::promise<bool>>();
   auto is_taken = taken->get_future();

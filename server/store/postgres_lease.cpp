@@ -203,7 +203,7 @@ StoreResult<std::unique_ptr<PostgresLease>> PostgresLease::take(const std::strin
     if (!row) return failed(row.error());
     if (row->left_us > 0) {
       if (!first) first = *row;
-      if (row->expires_us > first->expires_us || row->term != first->term) {
+      if (!own.waits || row->expires_us > first->expires_us || row->term != first->term) {
         return Unexpected<StoreError>{{StoreError::Kind::locked, writer.file(), "",
                                        "another program is writing this world: " + row->owner}};
       }

@@ -234,7 +234,13 @@ void append_names(WorldState& world, std::vector<NameChange> changes) {
 }
 
 void send_durable_to_followers(WorldState& world) {
-  if (has_live_followers(world)) send_to_followers(world, encoded_durable(world));
+  if (world.followers.empty()) return;
+  const EncodedMessage message = encoded_durable(world);
+  for (auto& [link, follower] : world.followers) {
+    // A former owner still has those to which it has sent the last records.
+    const bool is_wanted = world.following ? !follower.is_full : is_served(follower);
+    if (is_wanted && !world.environment.send(link, message)) follower.is_full = true;
+  }
 }
 
 }  // namespace runstone

@@ -61,7 +61,8 @@ void append_to_log(WorldState& world, std::vector<PlayerRow> players, OrderedBat
 /// The same for rows of players without records.
 void append_players(WorldState& world, std::vector<PlayerRow> players);
 void append_names(WorldState& world, std::vector<NameChange> changes);
-/// Sends the durable watermark to the followers.
+/// Sends the durable watermark to the followers, also to those that a former owner still has
+/// (handover.hpp). So they need not read from the database what they know already.
 void send_durable_to_followers(WorldState& world);
 
 }  // namespace runstone

@@ -264,6 +264,7 @@ void on_live_message(WorldState& world, const Message& message, const Clocks& no
 
 void begin_following(WorldState& world) {
   world.following = std::make_unique<Following>();
+  world.following->owner_features = world.config.features & kFeaturesOfOwner;
   world.config.features &= ~kFeaturesOfOwner;
 }
 

@@ -57,7 +57,6 @@ struct Takeover {
   ReadLog read;     // from the last record of this server on, to the end of the log
   Sequence checkpoint = 0;
   AuthorId author_max = 0;
-  std::uint64_t features = kFeaturesKnown;  // of an owner
 };
 
 /// A part of the log that may not be durable.
@@ -67,6 +66,7 @@ struct KeptPart {
 };
 
 struct Following {
+  std::uint64_t owner_features = 0;  // kFeaturesOfOwner that this server offers when it is the owner
   enum class Link {
     none,            // not connected
     greeting,        // Hello was sent

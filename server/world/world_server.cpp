@@ -499,8 +499,8 @@ bool WorldServer::take_over(const Takeover& start, const Clocks& now) {
     world.following->has_forked = true;
     return false;
   }
+  world.config.features |= world.following->owner_features;
   world.following.reset();
-  world.config.features = start.features;
   world.edits_here = 0;
   world.owner_choice.begin(now.steady_us);
   world.durable = world.authority.head();

@@ -11,7 +11,7 @@ class Faults:
         self.cluster, self.random = cluster, random
         self.made = collections.Counter()
         self.kinds = {
-            "kill": self._kill, "stop": self._stop, "pause": self._pause,
+            "kill": self._kill, "stop": self._stop, "pause": self._pause, "handover": self._hand_over,
             "cut players": self._cut_players, "freeze players": self._freeze_players,
             "cut servers": self._cut_servers, "freeze servers": self._freeze_servers,
             "cut database": self._cut_database, "freeze database": self._freeze_database,
@@ -64,6 +64,10 @@ class Faults:
         server.pause()
         self.cluster.later(self._seconds(), server.resume)
         return True
+
+    def _hand_over(self):
+        owner = self.cluster.owner()
+        return owner is not None and owner.hand_over()
 
     def _cut_players(self):
         self.cluster.players.cut()

@@ -12,6 +12,7 @@ class GameServer:
     def __init__(self, program, folder, name, databases, peers, players, url):
         """`databases` are the wires to the hosts of the database, at `url`. `peers` leads from the other
         servers to this one, `players` from players who know it from the list of servers."""
+        self.program = program
         self.folder = folder / name
         self.name, self.databases, self.peers = name, databases, peers
         self.port_file = self.folder.with_suffix(".port")
@@ -28,6 +29,7 @@ class GameServer:
                         "--digests", self.digests_file, "--sessions-per-address", "0",
                         "--budgets-per-address", "0", "--connections-per-second", "0", "--stop-s", "20"]
         self.process = None
+        self.handover = None  # the command under way, or the last one
         self.start_at = 0.0
         self.is_paused = False
         self.sent = set()  # signals that the test has sent to this process
@@ -74,6 +76,17 @@ class GameServer:
         self.is_paused = False
         self.signal(signal.SIGCONT)
 
+    def hand_over(self):
+        """Tells it to let another server own the world. Returns false if that is under way already."""
+        if self.handover is not None and self.handover.poll() is None:
+            return False
+        # The command ends when the server answers, or with the server.
+        with open(self.log, "ab") as log:
+            self.handover = subprocess.Popen(
+                ["setpriv", "--pdeathsig=KILL", self.program, "control", "--world", self.folder, "handover"],
+                stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+        return True
+
     def stop(self):
         """Stops it in order. Returns its exit code, or None if it does not end."""
         if self.process is None:
@@ -92,6 +105,9 @@ class GameServer:
         return self.digests_file.exists() and '"clean":false' not in self.digests_file.read_text()
 
     def kill(self):
+        if self.handover is not None:
+            self.handover.kill()
+            self.handover.wait()
         self.signal(signal.SIGKILL)
         if self.process is not None:
             self.process.wait()

@@ -107,7 +107,7 @@ struct Node {
 class TwoServers {
  public:
   TwoServers() {
-    other_.server.follow(0);
+    other_.server.follow();
     owner_.server.connected(kLink, now_);
     other_.server.owner_connected(std::nullopt, now_);
     pass_messages();

@@ -320,7 +320,7 @@ class SimProcess final : public SimServer {
   void write_rest(const std::vector<LogPart>& parts, Version last) {
     ask([this, parts, last] {
       ModelStore writer(database_, meta_, term_);
-      const auto start = prepare_takeover(writer, parts, last, kFeaturesKnown);
+      const auto start = prepare_takeover(writer, parts, last);
       if (!start) return kill();
       later(100, 20'000, [this, start = *start] {
         role_ = Role::owner;

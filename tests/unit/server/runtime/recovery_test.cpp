@@ -147,7 +147,7 @@ struct TakeoverBench {
     store = *std::move(opened);
   }
   Result<Takeover, std::string> prepare(const std::vector<LogPart>& parts, Version last) {
-    return prepare_takeover(*store, parts, last, kFeatureChat);
+    return prepare_takeover(*store, parts, last);
   }
   std::span<const EditRecord> some(std::size_t first, std::size_t last) const {
     return std::span(records).subspan(first - 1, last - first + 1);
@@ -185,7 +185,6 @@ TEST_CASE("a takeover writes the records that the log lacks, and no others", "[s
   CHECK(log_of(*bench.store) == bench.records);
   CHECK(taken->epoch == 2);
   CHECK(bench.store->epoch() == 2);
-  CHECK(taken->features == kFeatureChat);
   CHECK(taken->checkpoint == 0);
   CHECK(taken->author_max == 2);
   CHECK(taken->read.last == 10);

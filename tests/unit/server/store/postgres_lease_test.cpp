@@ -84,6 +84,18 @@ TEST_CASE("the owner of a world is named, and gives the world back", "[.postgres
   CHECK_FALSE(watch.owner()->has_value());
 }
 
+TEST_CASE("a program that does not wait for a lease hears at once who has it",
+          "[.postgres-server]") {
+  TempPlace place;
+  const auto store = start_as(place.path(), kLong);  // it is not renewed: others would wait for it
+  LeaseTerms impatient = kShort;
+  impatient.waits = false;
+  const auto other = open_world(place.path(), StoreAccess::read_write, "", impatient);
+  REQUIRE_FALSE(other.has_value());
+  CHECK(other.error().kind == StoreError::Kind::locked);
+  CHECK(other.error().message().find("is writing this world: first") != std::string::npos);
+}
+
 TEST_CASE("the lease of a program that has ended runs out", "[.postgres-server]") {
   TempPlace place;
   create_as(place.path(), kLong).reset();

@@ -217,6 +217,38 @@ TEST_CASE(
   CHECK(bench.world(1).is_live());
 }
 
+TEST_CASE("other followers hear that the last edits are durable, and do not read them",
+          "[world][servers]") {
+  ClusterBench bench(2);
+  bench.join(0, 1, 1);
+  bench.edit(0, 1, 1, block(1));
+  bench.pump();  // it is ordered, and not durable
+  begin_handover(bench, 1);
+  CHECK(bench.world(2).durable() == 1);
+  bench.servers[2].holds_reads = true;
+  end_handover(bench, 1);
+  CHECK(bench.world(2).is_live());
+}
+
+TEST_CASE("a server that takes a world over offers what it offered as its owner before",
+          "[world][servers]") {
+  WorldConfig c = config();
+  c.features &= ~kFeatureTiles;
+  ClusterBench bench(1, c);
+  const auto offered = [&](std::size_t server, SessionId session, std::uint8_t who) {
+    bench.join(server, session, who);
+    return bench.sent<Welcome>(server, session).at(0).features;
+  };
+  const std::uint64_t of_owner = offered(0, 1, 1);
+  CHECK((of_owner & kFeaturesOfOwner) == kFeaturesOfOwner);
+  CHECK((of_owner & kFeatureTiles) == 0);
+  CHECK(offered(1, 1, 2) == (of_owner & ~kFeaturesOfOwner));
+  begin_handover(bench, 1);
+  end_handover(bench, 1);
+  CHECK(offered(0, 2, 3) == (of_owner & ~kFeaturesOfOwner));
+  CHECK(offered(1, 2, 4) == of_owner);
+}
+
 TEST_CASE("a follower hears its owner as long as the owner answers", "[world][servers]") {
   ClusterBench bench;
   CHECK(bench.world(0).owner_heard_us() == std::nullopt);  // it has none
