@@ -122,12 +122,8 @@ struct Server::Parts {
     if (!bound) return failure("gateway_socket: " + bound.error());
     return {};
   }
-  /// Tells the other servers where the owner is. `store` has the lease.
-  Result<void, std::string> publish(Store& store) const {
-    const auto published = store.publish_address(peer_address_of(config, core->port()));
-    if (!published) return failure(published.error().message());
-    return {};
-  }
+  /// Returns where other servers reach this one.
+  std::string peer_address() const { return peer_address_of(config, core->port()); }
   /// Starts the threads and the sockets for questions and commands.
   Result<void, std::string> run() {
     if (!config.gateway_socket.empty()) {
@@ -202,8 +198,8 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   if (!prepared) return failure(prepared.error());
   if (const auto recovered = parts->core->recover(); !recovered) return failure(recovered.error());
   parts->is_unclaimed = parts->core->is_unclaimed();
-  if (const auto published = parts->publish(*parts->world.store); !published)
-    return failure(published.error());
+  const auto published = parts->world.store->publish_address(parts->peer_address());
+  if (!published) return failure(published.error().message());
   if (const auto running = parts->run(); !running) return failure(running.error());
   if (!parts->world.is_new && creation != WorldCreation{}) {
     logger("app").warn("world={} exists: the flags that say how to make one are ignored",
@@ -266,8 +262,7 @@ Result<void, std::string> Server::take_over() {
   if (!writer) return failure(writer.error().message());
   parts.writer = *std::move(writer);
   parts.is_following = false;
-  auto taken = parts.publish(*parts.writer);
-  if (taken) taken = parts.core->take_over(*parts.writer);
+  const auto taken = parts.core->take_over(*parts.writer, parts.peer_address());
   if (!taken) {
     parts.has_failed_to_take_over = true;
     parts.writer->give_up();  // another server need not wait for the lease to run out

@@ -12,10 +12,13 @@ constexpr std::chrono::milliseconds kPause{250};
 // second before it takes a world without an owner. A server that follows takes it earlier, unless it
 // has not noticed yet that the owner is gone.
 constexpr int kLooksWithoutOwner = 4;
+// Between two looks of a server that follows. When a world is handed over to another server, this one
+// connects to the next owner about so much later.
+constexpr std::chrono::milliseconds kLookPause{50};
 // An owner that stops lets go of the connection first, and of the lease a moment later. Edits of players
 // wait meanwhile.
-constexpr std::chrono::milliseconds kShortPause{10};
-constexpr int kShortPauses = 200;
+constexpr std::chrono::milliseconds kShortPause{4};
+constexpr int kShortPauses = 500;
 // A server that the owner has chosen takes the world over within some 0.1 s.
 constexpr std::chrono::seconds kSuccessorTime{1};
 
@@ -89,7 +92,7 @@ void TakeoverWatch::run() {
     return wake_.wait_for(lock, pause, [this] { return is_stopping_; });
   };
   while (look()) {
-    auto left = kPause;
+    auto left = kLookPause;
     do {
       const bool is_live = server_.follow_state().is_live;
       if (is_live) {

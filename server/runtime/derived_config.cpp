@@ -52,6 +52,7 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, s
   world.operators = config.operators;
   world.link_address = link_address(config, port);
   if (!config.store.empty()) {
+    world.may_be_followed = true;
     world.player_address = player_address_of(config, port);
     world.page_address = config.page_address;
     world.move_to_builders = config.standby && config.move_to_builders;

@@ -147,7 +147,7 @@ void ServerCore::make_log(Store& store, Sequence durable) {
   environment_.attach(*log_, *commands_);
 }
 
-Result<void, std::string> ServerCore::take_over(Store& store) {
+Result<void, std::string> ServerCore::take_over(Store& store, const std::string& address) {
   struct Left {
     std::vector<LogPart> parts;
     Version last;
@@ -162,6 +162,9 @@ Result<void, std::string> ServerCore::take_over(Store& store) {
   const Left mine = left.get();
   const auto start = prepare_takeover(store, mine.parts, mine.last);
   if (!start) return failure(start.error());
+  // Now, because the log writer has the store from the next step on. The others connect a moment later.
+  if (const auto published = store.publish_address(address); !published)
+    return failure(published.error().message());
   auto taken = std::make_shared<std::promise<bool>>();
   auto is_taken = taken->get_future();
   strand_.post([this, &store, start = *start, taken] {

@@ -74,9 +74,10 @@ class ServerCore final : public NetEvents {
   /// Connects to the owner at HOST:PORT, unless there is a connection. Thread: any.
   void connect_to(const std::string& address) { owner_.connect_to(address); }
   /// Makes a server that follows the owner of the world, which `store` has open for writing. `store`
-  /// must outlive the core. Blocks on the database. Sessions go on. After an error the server must be
-  /// stopped. Requires start(). Thread: any but those of `threads`.
-  Result<void, std::string> take_over(Store& store);
+  /// must outlive the core. `address`: where the other servers connect to this one. Blocks on the
+  /// database. Sessions go on. After an error the server must be stopped. Requires start(). Thread: any
+  /// but those of `threads`.
+  Result<void, std::string> take_over(Store& store, const std::string& address);
   /// Makes the owner a server that follows: begin_handover(), then end_handover(), then the caller gives
   /// the lease up. Sessions go on. take_over() may follow. `successor` is as for
   /// WorldServer::hand_over(). Returns the server that is to take the world over, or why nothing has

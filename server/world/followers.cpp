@@ -48,8 +48,19 @@ std::size_t records_that_fit(const std::vector<EditRecord>& records, std::size_t
   return count;
 }
 
-void send_batch_to_followers(WorldState& world, const std::vector<PlayerRow>& players,
-                             const OrderedBatch& batch) {
+/// Returns true if a server may follow this one, now or later.
+bool may_be_followed(const WorldState& world) {
+  return world.config.may_be_followed || has_live_followers(world);
+}
+
+/// Sends what is appended to the log next to the followers, and keeps it for those that come.
+void pass_on(WorldState& world, LogPart part) {
+  if (world.config.may_be_followed) world.unwritten.add(part);
+  if (has_live_followers(world)) send_to_followers(world, encode_message(std::move(part)));
+}
+
+void pass_on_batch(WorldState& world, const std::vector<PlayerRow>& players,
+                   const OrderedBatch& batch) {
   const std::vector<EditRecord>& records = batch.records;
   for (std::size_t first = 0; first < records.size();) {
     LogPart part;
@@ -58,7 +69,7 @@ void send_batch_to_followers(WorldState& world, const std::vector<PlayerRow>& pl
     const std::size_t end = first + records_that_fit(records, first);
     for (; first < end; ++first)
       part.records.push_back({records[first], batch.commit.edits[first].submitted_us});
-    send_to_followers(world, encode_message(std::move(part)));
+    pass_on(world, std::move(part));
   }
 }
 
@@ -119,9 +130,17 @@ void on_follow_request(WorldState& world, SessionId link, const FollowRequest& r
   follower.gets_log = true;
   follower.player_address = request.player_address;
   follower.page_address = request.page_address;
-  const Sequence head = world.authority.head();
-  follower.is_full = !world.environment.send(link, encode_message(FollowAnswer{head})) ||
-                     !world.environment.send(link, encoded_durable(world));
+  const auto send = [&](const EncodedMessage& message) {
+    if (!follower.is_full) follower.is_full = !world.environment.send(link, message);
+  };
+  // One that has records that are not durable finds out in the database whether they are those of this
+  // server.
+  const bool sends_rest = world.config.may_be_followed && request.after.seq <= world.durable;
+  send(encode_message(FollowAnswer{sends_rest ? world.durable : world.authority.head()}));
+  if (sends_rest) {
+    for (const LogPart& part : world.unwritten.parts()) send(encode_message(part));
+  }
+  send(encoded_durable(world));
 }
 
 }  // namespace
@@ -207,27 +226,27 @@ void close_followers(WorldState& world, const std::string& text) {
 }
 
 void append_to_log(WorldState& world, std::vector<PlayerRow> players, OrderedBatch& batch) {
-  if (has_live_followers(world)) send_batch_to_followers(world, players, batch);
+  if (may_be_followed(world)) pass_on_batch(world, players, batch);
   world.environment.log_append(std::move(players), std::move(batch.records));
 }
 
 void append_players(WorldState& world, std::vector<PlayerRow> players) {
-  if (has_live_followers(world)) {
+  if (may_be_followed(world)) {
     LogPart part;
     part.epoch = world.authority.epoch();
     add_rows(players, part);
-    send_to_followers(world, encode_message(std::move(part)));
+    pass_on(world, std::move(part));
   }
   world.environment.log_append(std::move(players), {});
 }
 
 void append_names(WorldState& world, std::vector<NameChange> changes) {
-  if (has_live_followers(world)) {
+  if (may_be_followed(world)) {
     for (const auto& [claim, is_release] : changes) {
       LogPart part;
       part.epoch = world.authority.epoch();
       part.names.push_back({claim.folded, claim.name, claim.key, is_release});
-      send_to_followers(world, encode_message(std::move(part)));
+      pass_on(world, std::move(part));
     }
   }
   world.environment.log_names(std::move(changes));

@@ -263,6 +263,7 @@ void on_live_message(WorldState& world, const Message& message, const Clocks& no
 }  // namespace
 
 void begin_following(WorldState& world) {
+  world.unwritten.clear();
   world.following = std::make_unique<Following>();
   world.following->owner_features = world.config.features & kFeaturesOfOwner;
   world.config.features &= ~kFeaturesOfOwner;

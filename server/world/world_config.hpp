@@ -38,6 +38,7 @@ struct WorldConfig {
   std::string link_address = "HOST";        // HOST or HOST:PORT in links for players
   /// This server's entry in the list of servers, see ServerEntry. Without an address it has none.
   std::string player_address, page_address;
+  bool may_be_followed = false;  // the world is where other servers reach it, too
   // Limits of sessions.
   std::size_t sessions_max = 256;             // beyond it: server_full
   std::size_t sessions_per_key = 0;           // likewise; 0: no limit

@@ -558,6 +558,7 @@ void WorldServer::durable(Sequence seq, const Clocks& now) {
   RUNSTONE_ASSERT(seq <= world.authority.head());
   if (seq <= world.durable) return;
   world.durable = seq;
+  world.unwritten.durable(seq);
   send_durable_to_authors(world);
   send_durable_to_followers(world);
   step_checkpointer(now);

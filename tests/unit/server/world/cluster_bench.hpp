@@ -86,9 +86,12 @@ struct ClusterBench {
     std::vector<Message> from_owner;  // all that arrived
   };
 
-  /// Makes an owner and connects followers with it.
-  explicit ClusterBench(std::size_t followers = 1, WorldConfig c = config())
+  /// Makes an owner and connects followers with it. `sends_unwritten`: servers send what is not durable
+  /// to those that come, as all programs but old ones do.
+  explicit ClusterBench(std::size_t followers = 1, WorldConfig c = config(),
+                        bool sends_unwritten = true)
       : config_(std::move(c)) {
+    config_.may_be_followed = sends_unwritten;
     servers.emplace_back().bench = std::make_unique<WorldBench>(config_of(0));
     for (std::size_t i = 0; i < followers; ++i) connect(add_follower());
     pump();

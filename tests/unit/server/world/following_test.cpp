@@ -366,7 +366,7 @@ TEST_CASE("a follower that connects late reads what it lacks, and holds the rest
 
 TEST_CASE("a player who waits for the owner at a late follower gets every commit once",
           "[world][servers]") {
-  ClusterBench bench;
+  ClusterBench bench(1, config(), false);
   bench.join(0, 1, 1);
   bench.join(1, 1, 2);
   bench.at(1).view(1, kSmall);
@@ -722,7 +722,7 @@ TEST_CASE("a load that began before the owner's checkpoint may bring an older sn
 
 TEST_CASE("a follower leaves an owner that has lost the world to another server",
           "[world][servers]") {
-  ClusterBench bench;
+  ClusterBench bench(1, config(), false);
   bench.join(0, 1, 1);
   bench.join(1, 1, 2);
   bench.edit(0, 1, 1, SetVoxel{{1, 1, 1}});
