@@ -66,7 +66,8 @@ struct KeptPart {
 };
 
 struct Following {
-  std::uint64_t owner_features = 0;  // kFeaturesOfOwner that this server offers when it is the owner
+  std::uint64_t owner_features =
+      0;  // kFeaturesOfOwner that this server offers when it is the owner
   enum class Link {
     none,            // not connected
     greeting,        // Hello was sent

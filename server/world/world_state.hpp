@@ -129,7 +129,7 @@ struct WorldState {
   std::uint64_t edits_here = 0;  // of players here, accepted since this server owns the world
   OwnerChoice owner_choice;
   std::optional<SessionId> better_owner;  // as WorldServer::take_better_owner() returns it
-  UnwrittenLog unwritten;  // of the owner, if it may be followed
+  UnwrittenLog unwritten;                 // of the owner, if it may be followed
   ListedServers listed;
   std::vector<AuthorId> gone_authors;  // of sessions that ended since the last tick
   WorldCounters counters;

@@ -89,6 +89,7 @@ class ServersSimulation {
 
   static WorldConfig world_config() {
     WorldConfig config;
+    config.may_be_followed = true;
     config.chunk_edge = kSimEdge;
     config.heights = {-24, 30};
     config.materials = default_material_table();
