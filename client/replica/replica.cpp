@@ -23,6 +23,7 @@ std::vector<ClientSequence> Replica::open(const SessionParameters& parameters) {
   ground_.clear();
   updater_.clear_requests();
   parameters_ = parameters;
+  has_resumed_ = false;
   if (view()) far_tiles_.set_view(*view(), parameters.chunk_edge);
   durable_ = parameters.durable;
   newest_ = parameters.head;
@@ -189,8 +190,8 @@ void Replica::receive(const Reject& reject, TimeUs now_us) {
     }
     chunk->leave_to_snapshot(reject.client_seq);
     // The commit never arrived, so the confirmed chunk may lack it. If the answer was asked for
-    // after a reconnection, every chunk arrives anew.
-    const bool may_lack = rejection->edit.state == LocalEditState::pending;
+    // after a reconnection, every chunk arrives anew, but not after resume().
+    const bool may_lack = rejection->edit.state == LocalEditState::pending || has_resumed_;
     if (chunk->confirmed() && may_lack && !past_.is_past()) updater_.request(*chunk, now_us);
   }
   if (rejection->is_resolved) return retire_durable();
@@ -198,6 +199,7 @@ void Replica::receive(const Reject& reject, TimeUs now_us) {
 }
 
 std::vector<ClientSequence> Replica::resume(ClientSequence resolved) {
+  has_resumed_ = true;
   local_edits_.resume(resolved);
   return local_edits_.unanswered();
 }

@@ -230,6 +230,7 @@ class Replica {
   KnownGround ground_;
   Sequence durable_ = 0;
   Sequence newest_ = 0;
+  bool has_resumed_ = false;  // resume() was called on this connection
   ChangeQueue changes_;
   ReplicaCounters counters_;
   ChunkUpdater updater_{chunks_, changes_, counters_};

@@ -215,6 +215,21 @@ TEST_CASE_METHOD(ReplicaBench, "an edit that was resolved unseen makes its chunk
   CHECK(replica.shown(kHere).get() == &replica.confirmed(kHere)->voxels);
 }
 
+TEST_CASE_METHOD(
+    ReplicaBench,
+    "a prediction is removed when another server orders, and the reject was lost with the first one",
+    "[replica]") {
+  load(kHere);
+  const ClientSequence rejected = submit(set({3, 4, 5}, 2));
+  CHECK(replica.resume(rejected) == std::vector{rejected});
+  replica.receive(Reject{rejected, RejectReason::already_resolved, ""}, 2000);
+  CHECK(replica.take_requests() == std::vector{kHere});
+  replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
+  CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
+  CHECK(replica.local_edits().all().empty());
+  require_in_step(kHere);
+}
+
 TEST_CASE_METHOD(ReplicaBench, "local edits beyond the bound are refused before anything is shown",
                  "[replica]") {
   Replica fresh;
