@@ -270,16 +270,20 @@ Result<void, std::string> Server::take_over() {
   return taken;
 }
 
-Result<void, std::string> Server::hand_over(std::optional<SessionId> successor) {
+Result<void, HandoverError> Server::hand_over(std::optional<SessionId> successor) {
   Parts& parts = *parts_;
+  const auto refused = [](std::string why) {
+    return Unexpected<HandoverError>{{std::move(why), false}};
+  };
+  if (parts.is_following) return refused("this server does not own the world");
   if (!parts.config.standby)
-    return failure("a server that was started without --standby does not follow another one");
+    return refused("a server that was started without --standby does not follow another one");
   const auto begun = parts.core->begin_handover(successor);
-  if (!begun) return failure(begun.error());
+  if (!begun) return refused(begun.error());
   parts.is_following = true;
   const auto ended = parts.core->end_handover();
-  parts.owned_store().give_up();  // after an error, too: the followers have every edit
-  if (!ended) return ended;
+  parts.owned_store().give_up();  // after an error, too: a follower may have the edits
+  if (!ended) return Unexpected<HandoverError>{{ended.error(), true}};
   parts.writer.reset();
   logger("app").info("HANDED OVER: server={} takes the world over, and this server follows it",
                      *begun);

@@ -17,6 +17,13 @@
 
 namespace runstone {
 
+/// Why a server did not hand the world over.
+struct HandoverError {
+  std::string what;  // a sentence
+  bool must_stop =
+      false;  // the log could not be written: stop the server. Otherwise nothing has changed
+};
+
 class Server {
  public:
   /// Returns why a server with these settings cannot start, as far as that shows before the world is
@@ -55,9 +62,8 @@ class Server {
   Result<void, std::string> take_over();
   /// Lets another server take the world over, and makes the owner a server that follows. Players stay.
   /// `successor` is as for WorldServer::hand_over(). Blocks on the database. Call connect_to()
-  /// afterwards as long as it follows. After an error the server must be stopped if it is_following();
-  /// otherwise nothing has changed.
-  Result<void, std::string> hand_over(std::optional<SessionId> successor);
+  /// afterwards as long as it follows.
+  Result<void, HandoverError> hand_over(std::optional<SessionId> successor);
   bool is_following() const;
   void log_counters();
   /// Carries out a command as an operator. Replies come from another thread; the last one has

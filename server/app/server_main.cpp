@@ -270,7 +270,9 @@ int run(const ServerOptions& options) {
   const bool has_followed = running->is_following();
   const StopReport report = running->stop();
   if (has_followed || has_failed_to_follow) {
-    std::cout << "stopped, and another server owns the world\n";
+    std::cout << (has_failed_to_follow
+                      ? "stopped, because the server could not go on: see the log\n"
+                      : "stopped, and another server owns the world\n");
     return has_failed_to_follow ? kFailed : kStopped;
   }
   log_stop(report, *config);

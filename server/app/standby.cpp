@@ -83,7 +83,7 @@ TakeoverWatch::~TakeoverWatch() {
   }
   wake_.notify_all();
   thread_.join();
-  answer("the server stops, and the world has no owner yet", false);
+  answer("the server stops", false);
 }
 
 void TakeoverWatch::run() {
@@ -137,7 +137,7 @@ bool TakeoverWatch::look() {
   logger("app").info("STANDBY: nobody owns the world: taking it over");
   const auto taken = server_.take_over();
   if (taken) {
-    answer("handover: no server took the world over, and this one owns it again", false);
+    answer("handover: no other server owns the world now, and this one owns it again", false);
     return false;
   }
   if (server_.is_following()) {
@@ -162,9 +162,9 @@ bool hand_over(const std::string& place, Server& server, std::optional<TakeoverW
     watch.emplace(place, server, on_failure, reply);
     return true;
   }
-  refuse(reply, "handover: " + done.error());
-  if (!server.is_following()) return true;
-  logger("app").error("STANDBY: the world was not handed over: {}", done.error());
+  refuse(reply, "handover: " + done.error().what);
+  if (!done.error().must_stop) return true;
+  logger("app").error("STANDBY: the world was not handed over: {}", done.error().what);
   return false;
 }
 

@@ -71,6 +71,8 @@ class RollbackService {
   void stop();
   /// Returns the number of jobs that write or are about to.
   std::size_t running() const { return jobs_.size(); }
+  /// Returns true if no job runs, none waits for the disk, and none is looked for in the log.
+  bool is_idle() const { return jobs_.empty() && waiting_.empty() && player_changes_.empty(); }
 
  private:
   struct Job;

@@ -3,7 +3,6 @@
 // because workers may still answer. Commands are refused then.
 // Threads: run(line, reply) may be called from any thread, everything else from the world strand.
 #pragma once
-#include <cstddef>
 #include <functional>
 #include <set>
 #include <string>
@@ -42,8 +41,8 @@ class CommandRunner final : private RollbackService::Workers {
     rollback_.tick(now);
     handler_.tick();
   }
-  /// Returns the number of rollbacks and undos under way.
-  std::size_t running() const { return rollback_.running(); }
+  /// Returns false while rollbacks, undos or redos are under way.
+  bool is_idle() const { return rollback_.is_idle(); }
   /// Makes jobs and workers end soon. Call it when the server stops.
   void stop() { rollback_.stop(); }
 

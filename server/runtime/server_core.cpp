@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <span>
+#include <thread>
 
 #include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
@@ -25,6 +26,7 @@ constexpr auto kStallInterval = std::chrono::seconds(1);
 constexpr auto kCheckpointInterval = std::chrono::seconds(5);
 // An owner answers a ping each second.
 constexpr TimeUs kOwnerHeardUsMax = 1'500'000;
+constexpr TimeUs kWriteBeforeUs = 2'000'000;  // that the log may take before a handover
 constexpr TimeUs kTurnsUs = 500;  // that one task spends on messages, but for the last of them
 
 }  // namespace
@@ -181,12 +183,28 @@ Result<void, std::string> ServerCore::take_over(Store& store, const std::string&
 }
 
 Result<SessionId, std::string> ServerCore::begin_handover(std::optional<SessionId> successor) {
+  // Edits go on while the log is written up to now. If that takes long, the pause would be long, too.
+  auto asked = std::make_shared<std::promise<Result<Sequence, std::string>>>();
+  auto head = asked->get_future();
+  strand_.post([this, successor, asked] {
+    if (const auto why = world_->handover_refusal(successor))
+      return asked->set_value(Unexpected<std::string>{*why});
+    asked->set_value(world_->head());
+  });
+  const Result<Sequence, std::string> needed = head.get();
+  if (!needed) return Unexpected<std::string>{needed.error()};
+  const TimeUs until_us = steady_now_us() + kWriteBeforeUs;
+  while (log_->durable() < *needed) {
+    if (steady_now_us() >= until_us)
+      return Unexpected<std::string>{"the database takes too long to write the log"};
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
   auto begun = std::make_shared<std::promise<Result<SessionId, std::string>>>();
   auto answer = begun->get_future();
   strand_.post([this, successor, begun] {
     if (const auto why = world_->handover_refusal(successor))
       return begun->set_value(Unexpected<std::string>{*why});
-    if (commands_->running() > 0)
+    if (!commands_->is_idle())
       return begun->set_value(Unexpected<std::string>{
           "rollbacks or undos are under way: wait, or cancel them (rollback list)"});
     begun->set_value(world_->hand_over(successor, read_clocks()));
@@ -203,6 +221,7 @@ Result<void, std::string> ServerCore::end_handover() {
     const LogWriter::Counters counters = log_counters_now();
     if (log_->has_failed() || log_->durable() != world_->head() || counters.queued_records > 0)
       return ended->set_value(false);
+    world_->handover_written(read_clocks());
     ended_logs_ = counters;
     environment_.detach_log();
     log_.reset();

@@ -38,6 +38,7 @@ void add_rows(const std::vector<PlayerRow>& rows, LogPart& part) {
 
 /// Returns the number of records from `first` on that one message may hold.
 std::size_t records_that_fit(const std::vector<EditRecord>& records, std::size_t first) {
+  if (records.size() == first + 1) return 1;
   constexpr std::size_t kOverhead = 128;  // of a record besides its descriptor, at most
   std::size_t bytes = 0, count = 0;
   while (first + count < records.size() && count < kLogPartRecordsMax) {
@@ -47,6 +48,9 @@ std::size_t records_that_fit(const std::vector<EditRecord>& records, std::size_t
   }
   return count;
 }
+
+// More would fill the queue of the connection.
+constexpr std::size_t kUnwrittenSentMax = 8'192;
 
 /// Returns true if a server may follow this one, now or later.
 bool may_be_followed(const WorldState& world) {
@@ -133,9 +137,10 @@ void on_follow_request(WorldState& world, SessionId link, const FollowRequest& r
   const auto send = [&](const EncodedMessage& message) {
     if (!follower.is_full) follower.is_full = !world.environment.send(link, message);
   };
-  // One that has records that are not durable finds out in the database whether they are those of this
-  // server.
-  const bool sends_rest = world.config.may_be_followed && request.after.seq <= world.durable;
+  // If the follower has records that are not durable, it compares them with the database first. So it
+  // does if very many are not durable, because the database is slow.
+  const bool sends_rest = world.config.may_be_followed && request.after.seq <= world.durable &&
+                          world.unwritten.parts().size() <= kUnwrittenSentMax;
   send(encode_message(FollowAnswer{sends_rest ? world.durable : world.authority.head()}));
   if (sends_rest) {
     for (const LogPart& part : world.unwritten.parts()) send(encode_message(part));
@@ -181,7 +186,8 @@ void on_follower_message(WorldState& world, SessionId link, const Message& messa
         world.environment.send(link, encode_message(Pong{ping->sent_us, now.steady_us})));
     return;
   }
-  // This server has handed the world over. The follower tells the next owner again.
+  // This server has handed the world over. What its followers send now, they send again to the next
+  // owner.
   if (world.following) return;
   if (const auto* open = std::get_if<RelayOpen>(&message))
     return on_relay_open(world, link, *open, now);

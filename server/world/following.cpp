@@ -140,7 +140,8 @@ void go_live(WorldState& world, const Clocks& now) {
   if (mine.owner_epoch > world.authority.epoch()) begin_epoch(world, mine.owner_epoch);
   world.environment.report(OperatorLogLevel::info,
                            "follows the owner from seq=" + std::to_string(world.authority.head()));
-  // Those that a former owner still has find the new one in the database.
+  // If this server owned the world before, followers may still be connected. They look for the next owner
+  // now.
   close_followers(world, "another server owns the world");
   send_all_sessions(world);
   while (mine.link == Link::live && !mine.waiting.empty()) {

@@ -17,6 +17,7 @@
 #pragma once
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -66,8 +67,8 @@ struct KeptPart {
 };
 
 struct Following {
-  std::uint64_t owner_features =
-      0;  // kFeaturesOfOwner that this server offers when it is the owner
+  // Those of kFeaturesOfOwner that this server offers when it is the owner.
+  std::uint64_t owner_features = 0;
   enum class Link {
     none,            // not connected
     greeting,        // Hello was sent
@@ -92,7 +93,7 @@ struct Following {
   bool is_taking_over = false;  // messages of an owner are ignored
   // Of a server that has handed the world over: when the followers that it still has are closed at the
   // latest (handover.hpp).
-  TimeUs followers_end_us = 0;
+  TimeUs followers_end_us = std::numeric_limits<TimeUs>::max();
 };
 
 /// Makes this server one that follows and has no connection with the owner yet.

@@ -38,6 +38,18 @@ void close_joining_sessions(WorldState& world) {
     close_session(world, session, GoodbyeReason::closing, kConnectAgain);
 }
 
+/// Closes the followers that have not asked for the log yet.
+void close_new_followers(WorldState& world) {
+  std::vector<SessionId> fresh;
+  for (const auto& [link, follower] : world.followers) {
+    if (!follower.gets_log) fresh.push_back(link);
+  }
+  for (const SessionId link : fresh) {
+    world.environment.close(link, GoodbyeReason::closing, kConnectAgain);
+    forget_follower(world, link);
+  }
+}
+
 }  // namespace
 
 std::vector<KnownServer> known_servers(const WorldState& world) {
@@ -80,6 +92,7 @@ SessionId hand_over(WorldState& world, std::optional<SessionId> successor, const
   }
   broadcast_chat(world);
   close_joining_sessions(world);
+  close_new_followers(world);
   for (auto& [link, follower] : world.followers) {
     follower.gets_log = false;
     for (const auto& [remote, session] : std::exchange(follower.sessions, {}))
@@ -89,7 +102,6 @@ SessionId hand_over(WorldState& world, std::optional<SessionId> successor, const
   forget_follower(world, next);
   begin_following(world);
   owner_disconnected(world);  // the open sessions go on when there is an owner
-  world.following->followers_end_us = now.steady_us + kFollowersKeptUs;
   world.better_owner.reset();
   return next;
 }

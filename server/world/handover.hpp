@@ -5,9 +5,9 @@
 //      the next owner, and offer the edits again that have no answer.
 //   3. The connection with the successor is closed, behind all records. It takes the world over when
 //      the caller has written the log and gives the lease up.
-//   4. The other followers stay connected, and get no records. They hear this server, so they leave the
-//      free lease to the successor (TakeoverWatch). They are closed when this server follows the next
-//      owner, or after kFollowersKeptUs.
+//   4. The other followers stay connected, and get no records. Messages of this server still arrive
+//      there, so they leave the free lease to the successor (TakeoverWatch). They are closed when this
+//      server follows the next owner, or kFollowersKeptUs after the log was written.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -24,7 +24,7 @@ namespace runstone {
 
 struct WorldState;
 
-/// Other followers stay connected for so long while there is no next owner.
+/// Other followers stay connected for so long without an owner, from the moment when the log is written.
 inline constexpr TimeUs kFollowersKeptUs = 1'000'000;
 
 /// A server of the world, as the owner knows it.

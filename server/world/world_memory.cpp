@@ -49,7 +49,8 @@ std::set<SessionId> sessions_over_share(const WorldState& world, const WorldMemo
 WorldMemory world_memory_of(const WorldState& world) {
   const WorldChunks& chunks = world.authority.chunks();
   return {chunks.resident_bytes(), chunks.stack_bytes(),
-          world.authority.queue().bytes() + world.environment.log_queued_bytes()};
+          world.authority.queue().bytes() + world.environment.log_queued_bytes() +
+              world.unwritten.bytes()};
 }
 
 bool views_wait_for_memory(const WorldState& world) {

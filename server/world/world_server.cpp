@@ -499,6 +499,7 @@ bool WorldServer::take_over(const Takeover& start, const Clocks& now) {
     world.following->has_forked = true;
     return false;
   }
+  close_followers(world, "this server owns the world again");  // they get its log from the start
   world.config.features |= world.following->owner_features;
   world.following.reset();
   world.edits_here = 0;
@@ -533,6 +534,10 @@ SessionId WorldServer::hand_over(std::optional<SessionId> successor, const Clock
   const SessionId next = runstone::hand_over(*state_, successor, now);
   collect_released(*state_);
   return next;
+}
+
+void WorldServer::handover_written(const Clocks& now) {
+  state_->following->followers_end_us = now.steady_us + kFollowersKeptUs;
 }
 
 std::optional<SessionId> WorldServer::take_better_owner() {

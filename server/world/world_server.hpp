@@ -221,9 +221,11 @@ class WorldServer {
   /// nullopt.
   std::optional<std::string> handover_refusal(std::optional<SessionId> successor) const;
   /// Makes the owner a server that follows. Sessions go on, and their edits wait. The caller then writes
-  /// the log and gives the lease up. Reports about the log may come until then. Returns the number of
-  /// the server that is to take the world over. Requires that handover_refusal() returns nullopt.
+  /// the log, calls handover_written(), and gives the lease up. Reports about the log may come until
+  /// then. Returns the number of the server that is to take the world over. Requires that
+  /// handover_refusal() returns nullopt.
   SessionId hand_over(std::optional<SessionId> successor, const Clocks& now);
+  void handover_written(const Clocks& now);
   /// Returns the server to which the owner should hand the world over now, or nullopt. Returns each
   /// answer once. Players may make their edits elsewhere then (OwnerChoice).
   std::optional<SessionId> take_better_owner();

@@ -274,7 +274,8 @@ void write_table(const std::vector<RelayRow>& rows, std::ostream& out) {
   for (const RelayRow& row : rows) {
     fmt::print(out, "| {} | {:.1f} µs | {:.1f} µs | {:.1f} µs | {:.1f} µs |\n",
                row.commit_edits == 1 ? "1 edit" : fmt::format("{} edits", row.commit_edits),
-               row.owner_own_us, row.owner_relayed_us, row.other_own_us, row.other_foreign_us);
+               row.owner_local_us, row.owner_relayed_us, row.follower_local_us,
+               row.follower_remote_us);
   }
 }
 
@@ -282,10 +283,10 @@ void write_json(const std::vector<RelayRow>& rows, std::ostream& out) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const RelayRow& row : rows) {
     json.push_back({{"commit_edits", row.commit_edits},
-                    {"owner_own_us", row.owner_own_us},
+                    {"owner_local_us", row.owner_local_us},
                     {"owner_relayed_us", row.owner_relayed_us},
-                    {"other_own_us", row.other_own_us},
-                    {"other_foreign_us", row.other_foreign_us}});
+                    {"follower_local_us", row.follower_local_us},
+                    {"follower_remote_us", row.follower_remote_us}});
   }
   out << json.dump(2) << '\n';
 }

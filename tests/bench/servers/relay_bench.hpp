@@ -13,11 +13,11 @@ namespace runstone::bench {
 
 /// Processor time of an edit in microseconds: medians of the repetitions.
 struct RelayRow {
-  std::size_t commit_edits = 0;  // edits of each commit
-  double owner_own_us = 0;       // at the owner: an edit of a player there
-  double owner_relayed_us = 0;   // at the owner: an edit of a player at the other server
-  double other_own_us = 0;       // at the other server: an edit of a player there
-  double other_foreign_us = 0;   // at the other server: an edit of a player at the owner
+  std::size_t commit_edits = 0;   // edits of each commit
+  double owner_local_us = 0;      // at the owner: an edit of a player there
+  double owner_relayed_us = 0;    // at the owner: an edit of a player at the other server
+  double follower_local_us = 0;   // at the other server: an edit of a player there
+  double follower_remote_us = 0;  // at the other server: an edit of a player at the owner
 };
 
 /// In a world of terrain of edge 32, 20 players at each of two servers stand in one place and see 6

@@ -224,6 +224,23 @@ TEST_CASE("runstone-bench rejects unknown options and values", "[bench]") {
   CHECK(run_bench({"mesh", "--quick", "--worlds", "empty", "--csv", nowhere}).exit_code == 1);
 }
 
+TEST_CASE("the costs of an edit at two servers are measured, and the table has them", "[bench]") {
+  const test::TempFolder folder;
+  const std::string json = folder / "relay.json";
+  const BenchOutput output = run_bench({"relay", "--min-runs", "1", "--json", json});
+  REQUIRE(output.exit_code == 0);
+  const auto rows = nlohmann::json::parse(text_of(json));
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0]["commit_edits"] == 1);
+  CHECK(rows[1]["commit_edits"] == 10);
+  for (const auto& row : rows) {
+    for (const char* cost :
+         {"owner_local_us", "owner_relayed_us", "follower_local_us", "follower_remote_us"})
+      CHECK(row[cost] > 0);
+  }
+  CHECK(output.out.find("| 10 edits | ") != std::string::npos);
+}
+
 TEST_CASE("runstone-bench edits has a row for every case and judges every target", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "edits.csv", json = folder / "edits.json";

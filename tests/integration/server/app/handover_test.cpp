@@ -1,6 +1,7 @@
 // The owner of a world in PostgreSQL hands it over to another server by a command, and follows it. The
 // cases need a PostgreSQL server, see scripts/check-postgres.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -186,6 +187,34 @@ TEST_CASE("an owner hands the world over and back while players build, and nothi
     REQUIRE(mine != log.end());
     CHECK(mine->second == all);
   }
+}
+
+TEST_CASE("of two commands at once one hands the world over, and both servers go on",
+          "[.postgres-server]") {
+  const HandoverServers cluster;
+  const auto first = cluster.start("first");
+  const auto second = cluster.start("second");
+  SteadyBuilder builder(*first, 1);
+  for (int i = 0; i < 100; ++i) {
+    if (control(cluster.folder("first"), {"servers"}).text.find("\nserver ") != std::string::npos)
+      break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  std::array<Answer, 2> answers;
+  {
+    std::vector<std::thread> operators;
+    for (Answer& answer : answers)
+      operators.emplace_back([&] { answer = control(cluster.folder("first"), {"handover"}); });
+    for (std::thread& one : operators) one.join();
+  }
+  CHECK(answers[0].is_ok != answers[1].is_ok);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  builder.stop();
+  CHECK_FALSE(builder.has_failed());
+  CHECK(builder.resumes() == 1);
+  CHECK(first->stop());
+  CHECK(second->stop());
+  CHECK(cluster.log().at(builder.author()).size() == builder.edits());
 }
 
 TEST_CASE("an owner whose successor is gone owns the world again, and one alone keeps it",

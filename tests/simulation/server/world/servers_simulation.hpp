@@ -1,8 +1,8 @@
 // ServersSimulation: three servers of one world, their database and players at each of them, in
 // virtual time. Servers are killed, stand still for longer than their lease, are stopped by their
 // operators, hand the world over, and are cut off from each other and from the database; the database
-// ends all connections, or its disk is full; clocks of machines jump. Afterwards the log must have each durable edit once,
-// and all servers and replicas must agree.
+// ends all connections, or its disk is full; clocks of machines jump. Afterwards the log must have each
+// durable edit once, and all servers and replicas must agree.
 #pragma once
 #include <iomanip>
 #include <iostream>

@@ -298,6 +298,7 @@ class SimProcess final : public SimServer {
         database_.release(*term_);
         term_.reset();
         valid_until_us_ = 0;
+        world_->handover_written(now());
         role_ = Role::following;
         not_before_us_ = time_.now() + kSuccessorUs;
         tell("follows");

@@ -21,6 +21,7 @@ void begin_handover(ClusterBench& bench, std::size_t successor) {
   bench.run();
   CHECK(bench.database.last() == world.head());
   CHECK(world.durable() == world.head());
+  world.handover_written(bench.now());
   CHECK_FALSE(bench.servers[successor].owner);  // its connection has ended
 }
 
@@ -215,6 +216,25 @@ TEST_CASE(
   bench.tick();
   CHECK(bench.world(0).is_live());
   CHECK(bench.world(1).is_live());
+}
+
+TEST_CASE("a former owner that owns the world again lets its other followers connect anew",
+          "[world][servers]") {
+  ClusterBench bench(2);
+  bench.join(0, 1, 1);
+  bench.join(2, 1, 3);
+  begin_handover(bench, 1);
+  CHECK(bench.world(2).is_live());
+  REQUIRE(bench.take_over(0));  // the successor is gone
+  bench.run();
+  CHECK_FALSE(bench.world(2).is_live());
+  bench.connect(2);
+  bench.edit(0, 1, 1, block(1));
+  bench.edit(2, 1, 1, block(2));
+  for (int i = 0; i < 3; ++i) bench.tick();
+  CHECK(bench.world(2).is_live());
+  CHECK(bench.world(0).head() == 2);
+  CHECK(bench.world(2).head() == 2);
 }
 
 TEST_CASE("other followers hear that the last edits are durable, and do not read them",

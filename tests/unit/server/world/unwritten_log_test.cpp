@@ -52,8 +52,10 @@ TEST_CASE("what is durable is forgotten, with the rows before it", "[world][serv
   log.durable(9);
   CHECK(ends_of(log) == std::vector<Sequence>{0});
   log.add(records_of(6, 6));
+  CHECK(log.bytes() >= 2 * sizeof(LogPart) + sizeof(LogPartRecord));
   log.durable(6);
   CHECK(ends_of(log).empty());
+  CHECK(log.bytes() == 0);
 }
 
 TEST_CASE("of rows without records, only the newest are kept", "[world][servers]") {
