@@ -90,8 +90,8 @@ struct Server::Parts {
   ServerConfig config;
   FileLock local_lock;  // of the folder `world`, if the world is in a database
   OpenedWorld world;
-  // Of a server that follows, while it owns the world; null otherwise. One that owned the world at first
-  // writes by `world`.
+  // What a server writes that has taken the world over; null otherwise. A server that has owned the
+  // world since its start writes world.store.
   std::unique_ptr<Store> writer;
   asio::io_context io;
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;

@@ -67,7 +67,7 @@ struct KeptPart {
 };
 
 struct Following {
-  // Those of kFeaturesOfOwner that this server offers when it is the owner.
+  // The features of kFeaturesOfOwner that this server offers while it owns the world.
   std::uint64_t owner_features = 0;
   enum class Link {
     none,            // not connected
@@ -91,8 +91,8 @@ struct Following {
   std::map<OperationId, TimeUs> forwarded;
   bool has_forked = false;
   bool is_taking_over = false;  // messages of an owner are ignored
-  // Of a server that has handed the world over: when the followers that it still has are closed at the
-  // latest (handover.hpp).
+  // After a handover some followers are still connected with this server. They are closed at this time
+  // at the latest (handover.hpp).
   TimeUs followers_end_us = std::numeric_limits<TimeUs>::max();
 };
 

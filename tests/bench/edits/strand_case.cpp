@@ -1,63 +1,34 @@
 #include "tests/bench/edits/strand_case.hpp"
 
-#include <fmt/core.h>
-
-#include <algorithm>
 #include <deque>
 #include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
-#include "protocol/codec/handshake.hpp"
-#include "protocol/codec/message_table.hpp"
 #include "protocol/limits.hpp"
 #include "server/tiles/tile_ledger.hpp"
 #include "server/world/world_server.hpp"
 #include "tests/bench/edits/stack_case.hpp"
 #include "tests/bench/harness/clocks.hpp"
+#include "tests/bench/harness/strand_surroundings.hpp"
 
 namespace runstone::bench {
 namespace {
 
-constexpr std::uint16_t kEdge = 32;
 constexpr std::size_t kPlayers = 20;
 constexpr std::size_t kTicks = 200;
 constexpr TimeUs kTickUs = 50'000;
 constexpr std::size_t kEditsPerTick = kStrandEdits / kTicks;
 constexpr std::int32_t kSite = 24;  // edits lie within so many voxels of the origin
 
-/// The world outside of the strand: a wire that loses everything but the handshake, a log without a
-/// disk, and workers whose answers wait until the strand's time is stopped.
-class Outside final : public WorldEnvironment {
+/// With workers that make tiles, whose answers wait until the strand's time is stopped.
+class Outside final : public StrandSurroundings {
  public:
-  std::map<SessionId, EncodedMessage> welcomes;
-  std::deque<ChunkKey> loads;
   std::deque<TileRequest> tiles;
 
-  bool send(SessionId session, const EncodedMessage& message) override {
-    if (message.kind == kKindOf<Welcome>) welcomes.insert_or_assign(session, message);
-    return true;
-  }
-  bool send_snapshot(SessionId /*session*/, std::uint32_t /*view*/, const ChunkKey& /*key*/,
-                     const ChunkPtr& /*chunk*/) override {
-    return true;
-  }
-  void close(SessionId /*session*/, GoodbyeReason /*reason*/, const std::string& text) override {
-    fmt::print(stderr, "closed: {}\n", text);
-    RUNSTONE_ASSERT(false);
-  }
-  bool log_has_room(std::size_t /*records*/) const override { return true; }
-  std::size_t log_queued_bytes() const override { return 0; }
-  void log_append(std::vector<PlayerRow> /*players*/,
-                  std::vector<EditRecord> /*records*/) override {}
-  void log_names(std::vector<NameChange> /*changes*/) override {}
-  void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
-  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> /*chunks*/,
-                      Sequence /*checkpoint*/) override {}
   void make_tile(TileRequest request) override { tiles.push_back(std::move(request)); }
   void tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) override {
     ledger_.edited(chunks, seq);
@@ -73,9 +44,7 @@ class Outside final : public WorldEnvironment {
 class Strand {
  public:
   explicit Strand(std::uint8_t levels)
-      : levels_(levels), server_(config(levels), {}, outside_, [](std::span<std::uint8_t> out) {
-          std::ranges::fill(out, std::uint8_t{7});
-        }) {
+      : levels_(levels), server_(strand_config(levels), {}, outside_, fill_constant) {
     for (SessionId player = 1; player <= kPlayers; ++player) join(player);
     settle();
   }
@@ -103,34 +72,10 @@ class Strand {
   }
 
  private:
-  static WorldConfig config(std::uint8_t levels) {
-    WorldConfig c;
-    c.chunk_edge = kEdge;
-    c.server_keys = key_pair_of({1});
-    c.tile_levels_max = levels;
-    c.idle_us_max = 3'600'000'000;
-    for (int i = 1; i < 8; ++i) {
-      MaterialInfo info;
-      info.name = "m" + std::to_string(i);
-      RUNSTONE_ASSERT(c.materials.add(info).has_value());
-    }
-    return c;
-  }
-
   void join(SessionId player) {
-    server_.connected(player, now_);
     const KeyPair keys = key_pair_of({2, static_cast<std::uint8_t>(player)});
-    Hello hello;
-    hello.key = keys.public_key;
-    hello.instance = 1;
-    hello.name = "player" + std::to_string(player);
-    hello.features = kFeatureTiles;
-    server_.received(player, hello, now_);
-    const EncodedMessage& sent = outside_.welcomes.at(player);
-    const auto welcome = decode_message(Sender::server, sent.kind, *sent.bytes, kEdge);
-    RUNSTONE_ASSERT(welcome.has_value());
-    const Bytes transcript = client_transcript(hello, std::get<Welcome>(*welcome), std::nullopt);
-    server_.received(player, ClientAuth{sign(keys, transcript), {}}, now_);
+    bench::join(server_, outside_, player, keys, "player" + std::to_string(player), kFeatureTiles,
+                now_);
     View view;
     view.radius_h = 6;
     view.radius_v = 3;

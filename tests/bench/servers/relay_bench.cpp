@@ -13,87 +13,48 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
-#include "protocol/codec/handshake.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/world/world_server.hpp"
 #include "tests/bench/edits/stack_case.hpp"
 #include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/harness/strand_surroundings.hpp"
 
 namespace runstone::bench {
 namespace {
 
-constexpr std::uint16_t kEdge = 32;
 constexpr SessionId kPlayers = 20;  // at each server
 constexpr SessionId kLink = 1'000;  // the other server's session at the owner
 constexpr std::size_t kEdits = 10'000;
 constexpr TimeUs kTickUs = 50'000;
-constexpr std::size_t kEditsPerTick = 50;     // 1,000 a second
-constexpr std::int32_t kSite = 24;            // edits lie within so many voxels of a place
-constexpr std::int32_t kApart = 300 * kEdge;  // voxels between the two places
+constexpr std::size_t kEditsPerTick = 50;           // 1,000 a second
+constexpr std::int32_t kSite = 24;                  // edits lie within so many voxels of a place
+constexpr std::int32_t kApart = 300 * kStrandEdge;  // voxels between the two places
 
-/// What surrounds a server: wires to the other server, a log without a disk, and workers whose answers
-/// wait until the clock is stopped. Messages to players are lost but for the handshake.
-class Surroundings final : public WorldEnvironment {
+/// With wires to the other server.
+class Linked final : public StrandSurroundings {
  public:
-  std::map<SessionId, EncodedMessage> welcomes;
   std::deque<EncodedMessage> to_link, to_owner;
-  std::deque<ChunkKey> loads;
 
   bool send(SessionId session, const EncodedMessage& message) override {
-    if (session == kLink) {
-      to_link.push_back(message);
-    } else if (message.kind == kKindOf<Welcome>) {
-      welcomes.insert_or_assign(session, message);
-    }
+    if (session != kLink) return StrandSurroundings::send(session, message);
+    to_link.push_back(message);
     return true;
   }
   bool send_to_owner(const EncodedMessage& message) override {
     to_owner.push_back(message);
     return true;
   }
-  bool send_snapshot(SessionId /*session*/, std::uint32_t /*view*/, const ChunkKey& /*key*/,
-                     const ChunkPtr& /*chunk*/) override {
-    return true;
-  }
-  void close(SessionId /*session*/, GoodbyeReason /*reason*/, const std::string& text) override {
-    fmt::print(stderr, "closed: {}\n", text);
-    RUNSTONE_ASSERT(false);
-  }
   void leave_owner(const std::string& why) override {
     fmt::print(stderr, "left the owner: {}\n", why);
     RUNSTONE_ASSERT(false);
   }
-  bool log_has_room(std::size_t /*records*/) const override { return true; }
-  std::size_t log_queued_bytes() const override { return 0; }
-  void log_append(std::vector<PlayerRow> /*players*/,
-                  std::vector<EditRecord> /*records*/) override {}
-  void log_names(std::vector<NameChange> /*changes*/) override {}
-  void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
-  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> /*chunks*/,
-                      Sequence /*checkpoint*/) override {}
 };
-
-WorldConfig config() {
-  WorldConfig c;
-  c.chunk_edge = kEdge;
-  c.server_keys = key_pair_of({1});
-  c.tile_levels_max = 0;
-  c.idle_us_max = 3'600'000'000;
-  for (int i = 1; i < 8; ++i) {
-    MaterialInfo info;
-    info.name = "m" + std::to_string(i);
-    RUNSTONE_ASSERT(c.materials.add(info).has_value());
-  }
-  return c;
-}
-
-void fill_random(std::span<std::uint8_t> out) { std::ranges::fill(out, std::uint8_t{7}); }
 
 /// One of the servers.
 struct Node {
-  Surroundings outside;
-  WorldServer server{config(), {}, outside, fill_random};
+  Linked outside;
+  WorldServer server{strand_config(0), {}, outside, fill_constant};
   std::uint64_t ns = 0;  // that its strand and its codec have taken
 
   template <class Work>
@@ -142,22 +103,13 @@ class TwoServers {
 
  private:
   void join(Node& node, SessionId player, std::int32_t x) {
-    node.server.connected(player, now_);
     const KeyPair keys =
         key_pair_of({2, static_cast<std::uint8_t>(player), static_cast<std::uint8_t>(x != 0)});
-    Hello hello;
-    hello.key = keys.public_key;
-    hello.instance = 1;
-    hello.name = (x == 0 ? "here" : "there") + std::to_string(player);
-    node.server.received(player, hello, now_);
-    const EncodedMessage& sent = node.outside.welcomes.at(player);
-    const auto welcome = decode_message(Sender::server, sent.kind, *sent.bytes, kEdge);
-    RUNSTONE_ASSERT(welcome.has_value());
-    const Bytes transcript = client_transcript(hello, std::get<Welcome>(*welcome), std::nullopt);
-    node.server.received(player, ClientAuth{sign(keys, transcript), {}}, now_);
+    const std::string name = (x == 0 ? "here" : "there") + std::to_string(player);
+    bench::join(node.server, node.outside, player, keys, name, 0, now_);
     pass_messages();
     View view;
-    view.centre = {x / kEdge, 0, 0};
+    view.centre = {x / kStrandEdge, 0, 0};
     view.radius_h = 6;
     view.radius_v = 3;
     node.server.received(player, view, now_);
@@ -176,7 +128,7 @@ class TwoServers {
   static void pass(std::deque<EncodedMessage>& wire, Sender sender, Node& to, Take&& take) {
     for (; !wire.empty(); wire.pop_front()) {
       to.timed([&] {
-        auto message = decode_message(sender, wire.front().kind, *wire.front().bytes, kEdge);
+        auto message = decode_message(sender, wire.front().kind, *wire.front().bytes, kStrandEdge);
         RUNSTONE_ASSERT(message.has_value());
         take(*std::move(message));
       });

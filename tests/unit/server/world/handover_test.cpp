@@ -337,7 +337,7 @@ TEST_CASE("a session that was opened at the owner goes on at a server that follo
   bench.edit(0, 3, 1, block(9));
   bench.run();
   begin_handover(bench, 1);
-  // What the owner alone offers does no harm.
+  // Messages that only an owner can handle do no harm.
   bench.receive(0, 1, PreviewShare{{{block(1), {}, 1}}});
   CHECK(bench.world(0).restore_preview_view(1).has_value());
   bench.world(0).show_restore(1, {});

@@ -29,7 +29,7 @@ TEST_CASE("a world moves after three windows in which most edits came from one s
   CHECK_FALSE(bench.window(10, 50, 0).has_value());
   CHECK_FALSE(bench.window(16, 50, 0).has_value());
   CHECK(bench.window(0, 100, 33) == 7U);
-  // Whatever became of it, it is not tried again within a minute.
+  // The same move is not tried again within a minute, also if it has failed.
   for (int i = 0; i < 5; ++i) CHECK_FALSE(bench.window(0, 100, 0).has_value());
   CHECK(bench.window(0, 100, 0) == 7U);
 }
