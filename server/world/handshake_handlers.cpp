@@ -148,6 +148,16 @@ bool close_if_authenticated(WorldState& world, SessionId session) {
   return true;
 }
 
+/// Returns the other open session of the session's client, of which there is one at most.
+std::optional<SessionId> other_session_of(const WorldState& world, SessionId session) {
+  const WorldSession& mine = *world.find(session);
+  for (const auto& [other, theirs] : world.sessions) {
+    if (other == session || theirs.state != SessionStage::open) continue;
+    if (theirs.key == mine.key && theirs.instance == mine.instance) return other;
+  }
+  return std::nullopt;
+}
+
 std::vector<SessionId> sessions_that_join(const WorldState& world) {
   std::vector<SessionId> joining;
   for (const auto& [id, session] : world.sessions) {
@@ -158,15 +168,10 @@ std::vector<SessionId> sessions_that_join(const WorldState& world) {
 
 /// Closes a session that goes on if its client has connected again meanwhile.
 bool close_if_replaced(WorldState& world, SessionId session) {
-  const WorldSession& mine = *world.find(session);
-  for (const auto& [other, theirs] : world.sessions) {
-    if (other == session || theirs.state != SessionStage::open) continue;
-    if (theirs.key != mine.key || theirs.instance != mine.instance) continue;
-    close_session(world, session, GoodbyeReason::already_connected,
-                  "the same client connected again");
-    return true;
-  }
-  return false;
+  if (!other_session_of(world, session)) return false;
+  close_session(world, session, GoodbyeReason::already_connected,
+                "the same client connected again");
+  return true;
 }
 
 bool close_if_forged(WorldState& world, SessionId session, const Signature& signature) {
@@ -211,15 +216,14 @@ bool is_server(const WorldState& world, const WorldSession& mine) {
 
 void open_session(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  for (const auto& [other, theirs] : world.sessions) {
-    if (other == session || theirs.state != SessionStage::open) continue;
-    if (theirs.key != mine.key || theirs.instance != mine.instance) continue;
-    close_session(world, other, GoodbyeReason::already_connected,
+  // Its player joined at another server, and has been there since before this server owned the world, or
+  // since before the connection with that server broke.
+  const bool goes_on = mine.author != 0;
+  if (const auto other = other_session_of(world, session))
+    close_session(world, *other, GoodbyeReason::already_connected,
                   "the same client connected again");
-    break;  // there is at most one, and closing it invalidates the iterators
-  }
   if (close_if_no_seat(world, session)) return;
-  if (mine.author == 0) mine.pose.at = world.config.spawn;  // else the session goes on
+  if (!goes_on) mine.pose.at = world.config.spawn;
   enter(world, session, world.players.enter(mine.key, mine.name), now);
   if (world.players.is_renamed(mine.author) &&
       world.environment.log_has_room(world.authority.queue().size() + 1)) {
@@ -230,7 +234,7 @@ void open_session(WorldState& world, SessionId session, const Clocks& now) {
   const SessionAccepted accepted{mine.author,
                                  world.authority.resolved().of(mine.author, mine.instance),
                                  has_tiles ? world.config.tile_rules : 0};
-  if (!send_accepted(world, session, accepted)) return;
+  if (!send_accepted(world, session, accepted) || goes_on) return;
   send_all_poses_to(world, session);
   send_recent_chat(world, session, now);
   // A player who is let in without the invite must not believe that it has worked.

@@ -21,6 +21,9 @@
 
 namespace runstone::test {
 
+/// A voxel in the view kSmall, for x from 0 to 15.
+inline SetVoxel block(std::int32_t x) { return {{x, 1, 1}}; }
+
 /// What is on disk.
 struct WorldDatabase {
   Epoch epoch = 1;

@@ -2,14 +2,11 @@
 #include "server/world/handover.hpp"
 
 #include <catch2/catch.hpp>
-#include <set>
 
 #include "tests/unit/server/world/cluster_bench.hpp"
 
 namespace runstone::test {
 namespace {
-
-SetVoxel block(std::int32_t x) { return {{x, 1, 1}}; }
 
 /// Lets the owner hand the world over to this follower, up to the moment when it has given up the lease.
 void begin_handover(ClusterBench& bench, std::size_t successor) {
