@@ -103,8 +103,10 @@ void send_batch(WorldState& world, const OrderedBatch& batch, const Clocks& now)
   }
 }
 
-/// Returns the work of large edits that the next commit may have if every session sees them.
+/// Returns the work of large edits that the next commit may have if every session sees them. There is no
+/// room while another server may own the world.
 std::uint64_t large_room_of(const WorldState& world, TimeUs now_us) {
+  if (!world.environment.owns_world()) return 0;
   return world.large_edits.room(now_us) / std::max<std::size_t>(1, world.sessions.size());
 }
 

@@ -64,6 +64,19 @@ TEST_CASE("large edits that many see are sent at a bounded rate, small edits at 
   CHECK(paste_count() == kPastes + 2);  // a stop orders all that was accepted
 }
 
+TEST_CASE("large edits that wait are not ordered while another server may own the world",
+          "[world]") {
+  PastedCrowd bench(40);
+  const std::size_t burst = bench.environment.records.size();
+  bench.environment.is_owner = false;
+  for (int i = 0; i < 100; ++i) bench.tick();
+  CHECK(bench.environment.records.size() == burst);
+  CHECK_FALSE(bench.server.has_ready_edits(bench.now().steady_us));
+  bench.environment.is_owner = true;
+  for (int i = 0; i < 20; ++i) bench.tick();
+  CHECK(bench.environment.records.size() > burst);
+}
+
 TEST_CASE("of a commit, a session gets the edits that it sees or made, and no others", "[world]") {
   Bench bench;
   const SetVoxel far_away{{50 * 16 + 1, 1, 1}};
