@@ -62,9 +62,14 @@ Result<FileLock, std::string> take_local_folder(const std::string& folder) {
                                                 : "/world.lock: " + lock.error().what));
 }
 
+// As long as a write waits for a database that does not answer (common/postgres).
+constexpr std::chrono::milliseconds kAloneMin{15'000};
+
 LeaseTerms lease_of(const ServerConfig& config) {
   LeaseTerms lease;
   lease.length = std::chrono::seconds(config.lease_s);
+  // Another server owns the world by then, if any reaches the database. The players here go there.
+  if (config.standby) lease.alone_max = std::max(kAloneMin, 3 * lease.length);
   return lease;
 }
 

@@ -46,23 +46,22 @@ constexpr const char* kPublish =
     "UPDATE lease SET address = ?2 WHERE shard = 0 AND term = ?1 RETURNING term";
 constexpr const char* kRelease = "UPDATE lease SET expires_us = 0 WHERE shard = 0 AND term = ?1";
 
-// The advisory lock of the writer has two numbers: that of the application (?1), and that of the schema.
+// An advisory lock has two numbers: ?1, which is kWriterLock or kTakingLock, and that of the schema.
+constexpr std::int64_t kWriterLock = kApplicationId;
+// A program holds it while it takes the lease. So programs that take the lease at the same time do not end
+// each other's connections.
+constexpr std::int64_t kTakingLock = kApplicationId + 1;
 #define RUNSTONE_SCHEMA \
   "(SELECT oid::int FROM pg_catalog.pg_namespace WHERE nspname = current_schema())"
 constexpr const char* kLock = "SELECT pg_try_advisory_lock(?1::bigint::int, " RUNSTONE_SCHEMA ")";
+constexpr const char* kUnlock = "SELECT pg_advisory_unlock(?1::bigint::int, " RUNSTONE_SCHEMA ")";
 // It looks again whether the lease has run out, because the owner may have renewed it meanwhile.
-constexpr const char* kEndOwner =
+constexpr const char* kEndHolder =
     "SELECT count(pg_terminate_backend(pid)) FROM pg_catalog.pg_locks WHERE locktype = 'advisory' "
     "AND database = (SELECT oid FROM pg_catalog.pg_database WHERE datname = current_database()) "
     "AND classid = ?1::bigint::oid AND objid = " RUNSTONE_SCHEMA
     "::oid AND objsubid = 2 AND granted AND pid <> pg_backend_pid() AND EXISTS(SELECT 1 FROM lease "
     "WHERE shard = 0 AND expires_us <= " RUNSTONE_NOW_US ")";
-// A second advisory lock, which a program holds while it takes the lease. So programs that take the
-// lease at the same time do not end each other's connections.
-constexpr const char* kLockTaking =
-    "SELECT pg_try_advisory_lock(?1::bigint::int + 1, " RUNSTONE_SCHEMA ")";
-constexpr const char* kUnlockTaking =
-    "SELECT pg_advisory_unlock(?1::bigint::int + 1, " RUNSTONE_SCHEMA ")";
 constexpr const char* kHasWriter =
     "SELECT count(*) FROM pg_catalog.pg_locks WHERE locktype = 'advisory' AND classid = "
     "?1::bigint::oid AND objid = " RUNSTONE_SCHEMA
@@ -74,6 +73,9 @@ constexpr const char* kHasTable =
 #undef RUNSTONE_NOW_US
 
 constexpr int kLockTries = 50;
+// A program holds kTakingLock for a moment, or for as long as take_lock() tries, which is half of this time.
+// After it the program stands still, and its connection is ended.
+constexpr int kTakingTries = 2 * kLockTries;
 constexpr milliseconds kPause{100};
 
 /// The row of the lease.
@@ -143,8 +145,15 @@ StoreResult<void> make_table(sql::Database& writer) {
   return store_result(writer.run(kMakeRow));
 }
 
-void bind_application(sql::Statement& statement) {
-  statement.bind(1, std::int64_t{kApplicationId});
+StoreResult<std::optional<std::int64_t>> ask_lock(sql::Database& database, const char* text,
+                                                  std::int64_t lock) {
+  return number_of(database, text, [lock](sql::Statement& statement) { statement.bind(1, lock); });
+}
+
+StoreError lock_is_kept(const sql::Database& database, std::int64_t lock) {
+  return {StoreError::Kind::locked, database.file(), "lease",
+          "another connection keeps the advisory lock " + std::to_string(lock) +
+              " of this schema, and does not end"};
 }
 
 /// Ends the connection of an owner whose lease has run out, and takes its lock. Returns false if the
@@ -155,16 +164,13 @@ StoreResult<bool> take_lock(sql::Database& writer) {
     const auto row = read_row(writer, kRead);
     if (!row) return failed(row.error());
     if (row->left_us > 0) return false;
-    const auto is_locked = number_of(writer, kLock, bind_application);
+    const auto is_locked = ask_lock(writer, kLock, kWriterLock);
     if (!is_locked) return failed(is_locked.error());
     if (*is_locked != 0) return true;
-    if (const auto ended = number_of(writer, kEndOwner, bind_application); !ended)
+    if (const auto ended = ask_lock(writer, kEndHolder, kWriterLock); !ended)
       return failed(ended.error());
   }
-  return Unexpected<StoreError>{{StoreError::Kind::locked, writer.file(), "lease",
-                                 "another connection keeps the advisory lock " +
-                                     std::to_string(kApplicationId) +
-                                     " of this schema, and does not end"}};
+  return Unexpected<StoreError>{lock_is_kept(writer, kWriterLock)};
 }
 
 /// Adds the column of the address if the table lacks it. Requires the lock: no transaction of an earlier
@@ -198,6 +204,7 @@ StoreResult<std::unique_ptr<PostgresLease>> PostgresLease::take(const std::strin
   LeaseTerms own = terms;
   own.owner = name_of(terms);
   std::optional<Row> first;
+  int tries = 0;
   for (;;) {
     const auto row = read_row(writer, kRead);
     if (!row) return failed(row.error());
@@ -211,9 +218,15 @@ StoreResult<std::unique_ptr<PostgresLease>> PostgresLease::take(const std::strin
           kPause, std::chrono::microseconds(row->left_us + 1'000)));
       continue;
     }
-    const auto is_taking = number_of(writer, kLockTaking, bind_application);
+    const auto is_taking = ask_lock(writer, kLock, kTakingLock);
     if (!is_taking) return failed(is_taking.error());
     if (*is_taking == 0) {
+      if (++tries > 2 * kTakingTries)
+        return Unexpected<StoreError>{lock_is_kept(writer, kTakingLock)};
+      if (tries == kTakingTries) {
+        const auto ended = ask_lock(writer, kEndHolder, kTakingLock);
+        if (!ended) return failed(ended.error());
+      }
       std::this_thread::sleep_for(kPause);
       continue;
     }
@@ -221,7 +234,7 @@ StoreResult<std::unique_ptr<PostgresLease>> PostgresLease::take(const std::strin
     const auto term = take_expired(writer, own);
     if (!term) return failed(term.error());
     if (*term) {
-      if (const auto unlocked = number_of(writer, kUnlockTaking, bind_application); !unlocked)
+      if (const auto unlocked = ask_lock(writer, kUnlock, kTakingLock); !unlocked)
         return failed(unlocked.error());
       const auto process = writer.integer("SELECT pg_backend_pid()");
       if (!process) return failed(process.error());
@@ -258,6 +271,7 @@ void PostgresLease::stop_renewals() {
 bool PostgresLease::is_valid() const { return boot_now_us() < valid_until_us_.load(); }
 
 void PostgresLease::on_renewed(TimeUs asked_us) {
+  renewed_us_ = asked_us;
   // A tenth is for clocks of different speed.
   valid_until_us_.store(asked_us + us_of(terms_.length) * 9 / 10);
 }
@@ -269,31 +283,23 @@ void PostgresLease::watch(std::function<void(const StoreError&)> on_lost) {
 }
 
 std::optional<milliseconds> PostgresLease::renew() {
-  const milliseconds soon = terms_.length / 20;
   if (!connection_) {
     auto opened = sql::open_postgres(url_, sql::PostgresMode::write);
-    if (!opened) return soon;
+    if (!opened) return try_again();
     connection_ = *std::move(opened);
   }
   const TimeUs asked_us = boot_now_us();
   const auto term = renewed_term(*connection_, term_, terms_.length);
-  if (!term) {
-    connection_.reset();
-    return soon;
-  }
+  if (!term) return try_again();
   if (!*term) {
     const auto row = read_row(*connection_, kRead);
     on_lost(taken_by(*connection_, row ? row->owner : "another program"));
     return std::nullopt;
   }
   const auto has_writer = number_of(*connection_, kHasWriter, [this](sql::Statement& statement) {
-    bind_application(statement);
-    statement.bind(2, writer_);
+    statement.bind(1, kWriterLock).bind(2, writer_);
   });
-  if (!has_writer) {
-    connection_.reset();
-    return soon;
-  }
+  if (!has_writer) return try_again();
   if (*has_writer == 0) {
     on_lost({StoreError::Kind::io, connection_->file(), "lease",
              "the connection that writes this world has ended"});
@@ -301,6 +307,17 @@ std::optional<milliseconds> PostgresLease::renew() {
   }
   on_renewed(asked_us);
   return terms_.length / 3;
+}
+
+std::optional<milliseconds> PostgresLease::try_again() {
+  connection_.reset();
+  const TimeUs alone_us = boot_now_us() - renewed_us_;
+  if (terms_.alone_max.count() == 0 || alone_us < us_of(terms_.alone_max))
+    return terms_.length / 20;
+  on_lost({StoreError::Kind::io, sql::without_password(url_), "lease",
+           "the database was not reached for " + std::to_string(alone_us / 1'000'000) +
+               " s: another server may own the world"});
+  return std::nullopt;
 }
 
 void PostgresLease::on_lost(const StoreError& error) {

@@ -48,9 +48,9 @@ class PostgresLease {
 
   /// Returns true if nobody else can have the lease now.
   bool is_valid() const;
-  /// `on_lost` is called once, when somebody else has the lease or the writer's connection has ended: on
-  /// the thread of renewals, or in this call if it happened before. An empty function ends the watch; no
-  /// call is under way when this returns.
+  /// `on_lost` is called once, when somebody else has the lease, the writer's connection has ended, or the
+  /// database was away for LeaseTerms::alone_max: on the thread of renewals, or in this call if it happened
+  /// before. An empty function ends the watch; no call is under way when this returns.
   void watch(std::function<void(const StoreError&)> on_lost);
   /// Confirms in the caller's transaction that this program has the lease, and keeps others from
   /// taking it until the transaction is over. A lease that ran out and that nobody took is renewed.
@@ -69,6 +69,8 @@ class PostgresLease {
   void run();
   /// Renews once and returns the time until the next renewal, or nullopt if the lease is lost.
   std::optional<std::chrono::milliseconds> renew();
+  /// Returns the time until the next try, or nullopt if the database was away for too long.
+  std::optional<std::chrono::milliseconds> try_again();
   void on_renewed(TimeUs asked_us);
   void on_lost(const StoreError& error);
 
@@ -76,6 +78,7 @@ class PostgresLease {
   const std::int64_t term_, writer_;  // the process of PostgreSQL that serves the writer
   const LeaseTerms terms_;
   std::atomic<TimeUs> valid_until_us_;  // boot_now_us()
+  TimeUs renewed_us_ = 0;               // likewise; of the thread of renewals, while it runs
   std::mutex mutex_;
   std::condition_variable stop_;
   bool is_stopping_ = false;                        // guarded by mutex_

@@ -45,13 +45,19 @@ std::unique_ptr<Store> start_as(const std::string& place, const LeaseTerms& leas
   return store;
 }
 
+/// Returns a connection that keeps an advisory lock of the world's schema.
+sql::Database holder_of(const std::string& place, std::int64_t lock) {
+  auto holder = *sql::open_postgres(place, sql::PostgresMode::write);
+  const std::string take =
+      "SELECT pg_advisory_lock(" + std::to_string(lock) +
+      ", (SELECT oid::int FROM pg_namespace WHERE nspname = current_schema()))";
+  REQUIRE(holder.run(take.c_str()).has_value());
+  return holder;
+}
+
 /// Returns the connection of an owner that stands still in a transaction.
 sql::Database stuck_owner(const std::string& place) {
-  auto stuck = *sql::open_postgres(place, sql::PostgresMode::write);
-  const std::string lock =
-      "SELECT pg_advisory_lock(" + std::to_string(kApplicationId) +
-      ", (SELECT oid::int FROM pg_namespace WHERE nspname = current_schema()))";
-  REQUIRE(stuck.run(lock.c_str()).has_value());
+  auto stuck = holder_of(place, kApplicationId);
   REQUIRE(stuck
               .run("BEGIN; SELECT * FROM lease FOR SHARE; "
                    "INSERT INTO edit_log SELECT 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, '', 0")
@@ -323,4 +329,58 @@ TEST_CASE("a transaction that its program never ends does not keep others out",
   REQUIRE(store->raise_epoch().has_value());
   CHECK(store->append({}, sample_records(rng, 1, 1, 3)).has_value());
   CHECK_FALSE(stuck.run("COMMIT").has_value());
+}
+
+TEST_CASE("a program that stands still while it takes the lease does not keep others out",
+          "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  auto stuck = holder_of(place.path(), kApplicationId + 1);
+  const auto store = open_as(place.path(), kLong);  // after some ten seconds
+  CHECK(store->is_owned());
+  CHECK_FALSE(stuck.run("SELECT 1").has_value());
+}
+
+TEST_CASE("an owner that does not reach the database for long hears that it may own nothing",
+          "[.postgres-server]") {
+  TempPlace place;
+  create_as(place.path(), kLong).reset();
+  LeaseTerms terms = kShort;
+  terms.alone_max = milliseconds(500);
+  auto store = open_as(place.path(), terms);
+  std::promise<std::string> told;
+  store->watch_ownership([&](const StoreError& error) { told.set_value(error.message()); });
+  auto words = told.get_future();
+  CHECK(words.wait_for(milliseconds(600)) == std::future_status::timeout);  // renewals succeed
+  raw_sql(place.path(), "ALTER TABLE lease RENAME TO hidden");
+  REQUIRE(words.wait_for(std::chrono::minutes(1)) == std::future_status::ready);
+  CHECK(words.get().find("another server may own the world") != std::string::npos);
+  CHECK_FALSE(store->is_owned());
+  raw_sql(place.path(), "ALTER TABLE hidden RENAME TO lease");
+}
+
+TEST_CASE("nobody takes the lease between its confirmation and the commit", "[.postgres-server]") {
+  TempPlace place;
+  auto store = start_as(place.path(), kLong);
+  REQUIRE(raw_sql(place.path(),
+                  "CREATE FUNCTION wait() RETURNS trigger AS $$ BEGIN PERFORM pg_sleep(2); "
+                  "RETURN NULL; END $$ LANGUAGE plpgsql; "
+                  "CREATE CONSTRAINT TRIGGER wait AFTER INSERT ON edit_log DEFERRABLE "
+                  "INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION wait()")
+              .find("ERROR") == std::string::npos);
+  auto written = std::async(std::launch::async, [&] {
+    SplitMix64 rng(1);
+    return store->append({}, sample_records(rng, 1, 1, 1));  // it waits in its commit
+  });
+  CHECK(comes_true([&] {
+    return raw_sql(place.path(),
+                   "SELECT count(*) FROM pg_stat_activity WHERE wait_event = 'PgSleep'") == "1";
+  }));
+  const std::string taken =
+      raw_sql(place.path(),
+              "SET lock_timeout = '200ms'; UPDATE lease SET owner = 'other', term = term + 1");
+  CHECK(taken.find("ERROR") == 0);
+  CHECK(taken.find("lock timeout") != std::string::npos);
+  CHECK(written.get().has_value());
+  CHECK(raw_sql(place.path(), "SELECT owner FROM lease") == "first");
 }
