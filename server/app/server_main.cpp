@@ -218,7 +218,7 @@ int run(const ServerOptions& options) {
   actions.hand_over = [&](std::optional<SessionId> successor, CommandReply reply) {
     asio::post(main_loop, [&, successor, reply = std::move(reply)] {
       if (!running) return refuse(reply, "the server starts");
-      if (hand_over(config->store, *running, watch, end, successor, reply)) return;
+      if (hand_over_and_watch(config->store, *running, watch, end, successor, reply)) return;
       has_failed_to_hand_over = true;
       main_loop.stop();
     });

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/runtime/logging.hpp"
+#include "server/world/handover.hpp"
 
 namespace runstone {
 namespace {
@@ -12,6 +13,9 @@ constexpr std::chrono::milliseconds kPause{250};
 // second before it takes a world without an owner. A server that follows takes it earlier, unless it
 // has not noticed yet that the owner is gone.
 constexpr int kLooksWithoutOwner = 4;
+// A start can fail because of something that passes: another server was faster, or the database takes no
+// further connection. So it is tried several times, kPause apart.
+constexpr int kStartsMax = 20;
 // Between two looks of a server that follows. When a world is handed over to another server, this one
 // connects to the next owner about so much later.
 constexpr std::chrono::milliseconds kLookPause{50};
@@ -20,7 +24,7 @@ constexpr std::chrono::milliseconds kLookPause{50};
 constexpr std::chrono::milliseconds kShortPause{4};
 constexpr int kShortPauses = 500;
 // A server that the owner has chosen takes the world over within some 0.1 s.
-constexpr std::chrono::seconds kSuccessorTime{1};
+constexpr std::chrono::microseconds kSuccessorTime{kFollowersKeptUs};
 
 }  // namespace
 
@@ -28,16 +32,12 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
     const std::string& place, const std::function<bool(std::chrono::milliseconds)>& stops_within,
     const StartServer& start, const StartServer& follow) {
   LeaseWatch lease(place);
-  const auto is_free = [&] {
-    const auto owner = lease.owner();
-    return owner && !*owner;
-  };
   std::string told;
-  int looks_without_owner = 0;
+  int looks_without_owner = 0, starts = 0;
   for (;;) {
     const auto owner = lease.owner();
     std::string reason;
-    if (!owner || *owner) looks_without_owner = 0;
+    if (!owner || *owner) looks_without_owner = starts = 0;
     if (!owner) {
       reason = owner.error().message();
     } else if (*owner) {
@@ -47,14 +47,10 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
     } else if (++looks_without_owner <= kLooksWithoutOwner) {
       reason = "nobody owns the world, and a server that follows may take it over";
     } else {
-      logger("app").info("STANDBY: nobody owns the world: taking it over");
+      if (++starts == 1) logger("app").info("STANDBY: nobody owns the world: taking it over");
       auto started = start();
-      if (started) return started;
-      // Another standby was faster, or the database went away. It may show a moment later.
-      if (stops_within(kPause)) return std::unique_ptr<Server>();
-      if (is_free()) return started;
+      if (started || starts == kStartsMax) return started;
       reason = started.error();
-      looks_without_owner = 0;
     }
     if (reason != told) logger("app").info("STANDBY: waiting, because {}", reason);
     told = reason;
@@ -154,9 +150,10 @@ void TakeoverWatch::fail(const std::string& why) {
   on_failure_();
 }
 
-bool hand_over(const std::string& place, Server& server, std::optional<TakeoverWatch>& watch,
-               const std::function<void()>& on_failure, std::optional<SessionId> successor,
-               const CommandReply& reply) {
+bool hand_over_and_watch(const std::string& place, Server& server,
+                         std::optional<TakeoverWatch>& watch,
+                         const std::function<void()>& on_failure,
+                         std::optional<SessionId> successor, const CommandReply& reply) {
   const auto done = server.hand_over(successor);
   if (done) {
     watch.emplace(place, server, on_failure, reply);

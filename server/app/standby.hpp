@@ -22,8 +22,8 @@ using StartServer = std::function<Result<std::unique_ptr<Server>, std::string>()
 /// Starts the server by `start` if nobody has owned the world for a second, and by `follow` if another
 /// server owns it. Waits while the owner cannot be followed yet, and while the database does not
 /// answer. `stops_within` waits, and returns true if the program has to stop meanwhile. Returns null
-/// then. Fails if `start` fails although nobody owns the world. Requires start_logging(), and that
-/// `place` is a database.
+/// then. Fails if `start` fails again and again for some seconds although nobody owns the world.
+/// Requires start_logging(), and that `place` is a database.
 Result<std::unique_ptr<Server>, std::string> start_as_standby(
     const std::string& place, const std::function<bool(std::chrono::milliseconds)>& stops_within,
     const StartServer& start, const StartServer& follow);
@@ -31,8 +31,8 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
 /// Watches the lease of the world for a server that follows: tells it where the owner is, and lets it
 /// take the world over when nobody has the lease. Has a thread of its own, which ends when the server
 /// owns the world.
-/// An owner that hands the world over gives up the lease to one server. So a server leaves a free lease
-/// alone for a second at most if it still hears the owner, or if it has handed the world over itself.
+/// An owner that hands the world over releases the lease for one server, which it has chosen. So the others
+/// leave a free lease alone for a second at most: those that still hear the owner, and the owner itself.
 class TakeoverWatch {
  public:
   /// `server` must outlive the object. `on_failure` is called at most once, from the thread, if the
@@ -76,8 +76,9 @@ class TakeoverWatch {
 /// follows from now on. `watch` is the earlier one, if any. `place` and `on_failure` are as for the
 /// watch. `reply` gets the outcome. Returns false if the server must be stopped because its log could not
 /// be written. Blocks on the database. Requires start_logging().
-bool hand_over(const std::string& place, Server& server, std::optional<TakeoverWatch>& watch,
-               const std::function<void()>& on_failure, std::optional<SessionId> successor,
-               const CommandReply& reply);
+bool hand_over_and_watch(const std::string& place, Server& server,
+                         std::optional<TakeoverWatch>& watch,
+                         const std::function<void()>& on_failure,
+                         std::optional<SessionId> successor, const CommandReply& reply);
 
 }  // namespace runstone

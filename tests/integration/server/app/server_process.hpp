@@ -96,7 +96,8 @@ class ServerProcess {
     OperatorActions actions;
     actions.hand_over = [&](std::optional<SessionId> successor, CommandReply reply) {
       asio::post(loop, [&, successor, reply = std::move(reply)] {
-        if (hand_over(values.store, *running, watch, on_failure, successor, reply)) return;
+        if (hand_over_and_watch(values.store, *running, watch, on_failure, successor, reply))
+          return;
         has_failed = true;
         loop.stop();
       });
