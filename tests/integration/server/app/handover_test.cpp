@@ -5,17 +5,17 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <map>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <variant>
 #include <vector>
 
+#include "tests/integration/server/app/postgres_servers.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
-#include "tests/integration/server/app/server_process.hpp"
 #include "tests/support/raw_client.hpp"
-#include "tests/support/temp_place.hpp"
+#include "tests/support/raw_sql.hpp"
 
 namespace runstone::test {
 namespace {
@@ -105,44 +105,21 @@ class SteadyBuilder {
   std::thread thread_;
 };
 
-struct HandoverServers {
-  TempPlace place;
-  TempFolder folders;
-  HandoverServers() { REQUIRE(place.is_postgres()); }
-
-  std::string folder(const std::string& name) const { return folders / name; }
-  std::unique_ptr<ServerProcess> start(const std::string& name) const {
-    auto server = std::make_unique<ServerProcess>([&] {
-      ServerConfig config = quiet_config(folder(name));
-      config.store = place.path();
-      config.standby = true;
-      config.player_address = "127.0.0.1";
-      config.lease_s = 2;
-      return config;
-    });
-    REQUIRE(server->port() != 0);
-    return server;
+/// Waits until a server follows the owner, whose folder has this name. Returns what the owner lists then.
+std::string wait_for_follower(const PostgresServers& cluster, const std::string& owner) {
+  std::string servers;
+  for (int i = 0; i < 100 && servers.find("\nserver ") == std::string::npos; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    servers = control(cluster.folder(owner), {"servers"}).text;
   }
-  /// Returns the clients' sequences of the log, by author. Checks that the world is sound.
-  std::map<AuthorId, std::vector<ClientSequence>> log() const {
-    std::map<AuthorId, std::vector<ClientSequence>> edits;
-    const auto store = open_world(place.path(), StoreAccess::read_only);
-    REQUIRE(store.has_value());
-    CHECK((*store)->check().has_value());
-    const auto read = (*store)->read_log(1, kSequenceMax, [&](const EditRecord& record) {
-      edits[record.op.author].push_back(record.op.seq);
-      return true;
-    });
-    CHECK(read.has_value());
-    return edits;
-  }
-};
+  return servers;
+}
 
 }  // namespace
 
 TEST_CASE("an owner hands the world over and back while players build, and nothing is lost",
           "[.postgres-server]") {
-  const HandoverServers cluster;
+  const PostgresServers cluster;
   const auto first = cluster.start("first");
   const auto second = cluster.start("second");
   const auto third = cluster.start("third");
@@ -179,27 +156,16 @@ TEST_CASE("an owner hands the world over and back while players build, and nothi
   CHECK(third->stop());
   CHECK(second->stop());
   CHECK(first->stop());
-  const auto log = cluster.log();
-  for (const auto& builder : builders) {
-    std::vector<ClientSequence> all;
-    for (ClientSequence seq = 1; seq <= builder->edits(); ++seq) all.push_back(seq);
-    const auto mine = log.find(builder->author());
-    REQUIRE(mine != log.end());
-    CHECK(mine->second == all);
-  }
+  for (const auto& builder : builders) cluster.check_log(builder->author(), builder->edits());
 }
 
 TEST_CASE("of two commands at once one hands the world over, and both servers go on",
           "[.postgres-server]") {
-  const HandoverServers cluster;
+  const PostgresServers cluster;
   const auto first = cluster.start("first");
   const auto second = cluster.start("second");
   SteadyBuilder builder(*first, 1);
-  for (int i = 0; i < 100; ++i) {
-    if (control(cluster.folder("first"), {"servers"}).text.find("\nserver ") != std::string::npos)
-      break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
+  wait_for_follower(cluster, "first");
   std::array<Answer, 2> answers;
   {
     std::vector<std::thread> operators;
@@ -214,23 +180,19 @@ TEST_CASE("of two commands at once one hands the world over, and both servers go
   CHECK(builder.resumes() == 1);
   CHECK(first->stop());
   CHECK(second->stop());
-  CHECK(cluster.log().at(builder.author()).size() == builder.edits());
+  cluster.check_log(builder.author(), builder.edits());
 }
 
 TEST_CASE("an owner whose successor is gone owns the world again, and one alone keeps it",
           "[.postgres-server]") {
-  const HandoverServers cluster;
+  const PostgresServers cluster;
   const auto first = cluster.start("first");
   const Answer alone = control(cluster.folder("first"), {"handover"});
   CHECK_FALSE(alone.is_ok);
   CHECK(alone.text.find("no other server follows this one") != std::string::npos);
   const auto second = cluster.start("second");
   SteadyBuilder builder(*first, 1);
-  std::string servers;
-  for (int i = 0; i < 100 && servers.find("\nserver ") == std::string::npos; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    servers = control(cluster.folder("first"), {"servers"}).text;
-  }
+  const std::string servers = wait_for_follower(cluster, "first");
   CAPTURE(servers);
   CHECK(servers.find("this server, the owner at 127.0.0.1:" + std::to_string(first->port())) == 0);
   CHECK(servers.find(" at 127.0.0.1:" + std::to_string(second->port())) != std::string::npos);
@@ -244,7 +206,91 @@ TEST_CASE("an owner whose successor is gone owns the world again, and one alone 
   CHECK_FALSE(builder.has_failed());
   CHECK(builder.resumes() == 1);
   CHECK(first->stop());
-  CHECK(cluster.log().at(builder.author()).size() == builder.edits());
+  cluster.check_log(builder.author(), builder.edits());
+}
+
+TEST_CASE("an owner that was started without --standby keeps the world", "[.postgres-server]") {
+  const PostgresServers cluster;
+  const auto first = cluster.start("first", PostgresServers::Role::alone);
+  const auto second = cluster.start("second");
+  wait_for_follower(cluster, "first");
+  const Answer answer = control(cluster.folder("first"), {"handover"});
+  CHECK_FALSE(answer.is_ok);
+  CHECK(answer.text.find("without --standby") != std::string::npos);
+  CHECK(control(cluster.folder("first"), {"servers"}).text.find("this server, the owner") == 0);
+  CHECK(second->stop());
+  CHECK(first->stop());
+}
+
+TEST_CASE("an owner that is stopped while it hands the world over ends in order, and loses nothing",
+          "[.postgres-server]") {
+  const auto delay = std::chrono::milliseconds(GENERATE(0, 4, 12, 40));
+  CAPTURE(delay.count());
+  const PostgresServers cluster;
+  const auto first = cluster.start("first");
+  const auto second = cluster.start("second");
+  const auto third = cluster.start("third");
+  SteadyBuilder builder(*third, 1);
+  wait_for_follower(cluster, "first");
+  // The server may end before it has answered.
+  std::thread an_operator([&] {
+    std::ostringstream out;
+    (void)control_server({cluster.folder("first"), {"handover"}}, out, read_new_password);
+  });
+  std::this_thread::sleep_for(delay);
+  CHECK(first->stop());
+  an_operator.join();
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  builder.stop();
+  CHECK_FALSE(builder.has_failed());
+  CHECK(builder.resumes() >= 1);
+  CHECK(second->stop());
+  CHECK(third->stop());
+  cluster.check_log(builder.author(), builder.edits());
+}
+
+TEST_CASE(
+    "an owner whose log fails while it hands the world over ends, and the next owner has all edits",
+    "[.postgres-server]") {
+  constexpr ClientSequence kEdits = 160;
+  const PostgresServers cluster;
+  const auto allow_large_edits = [](ServerConfig& config) {
+    config.edit_volume_max = 1'000'000'000;
+  };
+  const auto first = cluster.start("first", PostgresServers::Role::standby, allow_large_edits);
+  // The database refuses the last edit, of the first server only.
+  const std::string made = raw_sql(
+      cluster.place.path(),
+      "CREATE TABLE refused AS SELECT pid FROM pg_stat_activity WHERE application_name = 'runstone'; "
+      "CREATE FUNCTION refuse() RETURNS trigger AS $$ BEGIN "
+      "IF NEW.client_seq = 160 AND pg_backend_pid() IN (SELECT pid FROM refused) "
+      "THEN RAISE EXCEPTION 'refused by a test'; END IF; RETURN NEW; END $$ LANGUAGE plpgsql; "
+      "CREATE TRIGGER refuse BEFORE INSERT ON edit_log FOR EACH ROW EXECUTE FUNCTION refuse()");
+  REQUIRE(made.find("ERROR") == std::string::npos);
+  const auto second = cluster.start("second", PostgresServers::Role::standby, allow_large_edits);
+  wait_for_follower(cluster, "first");
+  RawClient client(first->port());
+  client.features = kFeatureChat;
+  const auto accepted = client.join(1, 7);
+  REQUIRE(accepted.has_value());
+  // Most of these large edits wait for a second or more (LargeEditPace). The handover orders them at once.
+  for (ClientSequence seq = 1; seq <= kEdits; ++seq)
+    client.send(EditRequest{seq, 0, {FillBox{{{0, 0, 0}, {600, 15, 600}}}, {}, 1}});
+  client.send(ChatRequest{"sent"});
+  while (const auto lines = client.next_of<ChatLines>()) {
+    if (lines->lines.back().text == "sent") break;  // the owner has all edits
+  }
+  const Answer answer = control(cluster.folder("first"), {"handover"});
+  CHECK_FALSE(answer.is_ok);
+  INFO(answer.text);
+  CHECK(answer.text.find("not all edits could be written to the log") != std::string::npos);
+  CHECK(first->fails());
+  RawClient again(second->port());
+  const auto resumed = again.join(1, 7);
+  REQUIRE(resumed.has_value());
+  CHECK(resumed->resolved == kEdits);  // the second server was sent all of them
+  CHECK(second->stop());
+  cluster.check_log(accepted->author, kEdits);
 }
 
 }  // namespace runstone::test

@@ -9,13 +9,14 @@
 #include <variant>
 #include <vector>
 
-#include "tests/integration/server/app/server_process.hpp"
+#include "tests/integration/server/app/postgres_servers.hpp"
 #include "tests/support/raw_client.hpp"
 #include "tests/support/raw_sql.hpp"
-#include "tests/support/temp_place.hpp"
 
 namespace runstone::test {
 namespace {
+
+using Role = PostgresServers::Role;
 
 VoxelPos voxel_of(ClientSequence seq) {
   const auto n = static_cast<std::int32_t>(seq);
@@ -42,6 +43,7 @@ class Builder {
     const auto accepted = client_->join(1, kInstance);
     REQUIRE(accepted.has_value());
     CHECK(accepted->resolved >= durable_);
+    author_ = accepted->author;
     for (ClientSequence seq = accepted->resolved + 1; seq <= sent_; ++seq) send(seq);
   }
   Epoch epoch() const { return client_->welcome.epoch; }
@@ -72,6 +74,7 @@ class Builder {
     for (ClientSequence seq = resume->resolved + 1; seq <= sent_; ++seq) send(seq);
     return true;
   }
+  AuthorId author() const { return author_; }
   ClientSequence sent() const { return sent_; }
 
  private:
@@ -83,80 +86,44 @@ class Builder {
   }
 
   std::unique_ptr<RawClient> client_;
+  AuthorId author_ = 0;
   ClientSequence sent_ = 0;
   Sequence durable_ = 0;
-};
-
-struct Cluster {
-  TempPlace place;
-  TempFolder folders;
-  Cluster() { REQUIRE(place.is_postgres()); }
-
-  /// Starts a server with a folder of this name, and waits until it listens.
-  std::unique_ptr<ServerProcess> start(const std::string& name, bool is_standby) const {
-    auto server = std::make_unique<ServerProcess>([&] {
-      ServerConfig config = quiet_config(folders / name);
-      config.store = place.path();
-      config.standby = is_standby;
-      config.player_address = "127.0.0.1";
-      config.lease_s = 2;
-      return config;
-    });
-    REQUIRE(server->port() != 0);
-    return server;
-  }
-  /// Checks that the world is sound and that its log has each edit of the player once, in order.
-  void check_log(const Builder& builder) const {
-    const auto store = open_world(place.path(), StoreAccess::read_only);
-    REQUIRE(store.has_value());
-    CHECK((*store)->check().has_value());
-    ClientSequence edits = 0;
-    bool is_in_order = true;
-    Epoch epoch = 0;
-    const auto read = (*store)->read_log(1, kSequenceMax, [&](const EditRecord& record) {
-      is_in_order = is_in_order && record.op.seq == ++edits && record.version.epoch >= epoch;
-      epoch = record.version.epoch;
-      return is_in_order;
-    });
-    CHECK(read.has_value());
-    CHECK(is_in_order);
-    CHECK(edits == builder.sent());
-  }
 };
 
 }  // namespace
 
 TEST_CASE("a standby takes a world over from a server that stops, and from one that is killed",
           "[.postgres-server]") {
-  const Cluster cluster;
+  const PostgresServers cluster;
   Builder builder;
-  const auto first = cluster.start("first", false);
+  const auto first = cluster.start("first", Role::alone);
   builder.join(*first);
   builder.build(300);
   builder.wait_durable(300);
   CHECK(first->stop());
 
-  const auto second = cluster.start("second", true);
+  const auto second = cluster.start("second");
   builder.join(*second);
   CHECK(builder.epoch() == 2);
   builder.build(300);
   builder.wait_durable(310);
   second->kill();
 
-  const auto third = cluster.start("third", true);
+  const auto third = cluster.start("third");
   builder.join_in(3, *third);
   builder.build(10);
   builder.wait_durable(610);
   CHECK(third->stop());
-  cluster.check_log(builder);
+  cluster.check_log(builder.author(), builder.sent());
 }
 
 TEST_CASE("a player of a server that follows stays when the owner stops, and when it is killed",
           "[.postgres-server]") {
-  const Cluster cluster;
-  const auto first = cluster.start("first", false);
-  const auto second = cluster.start("second", true);
-  const auto third = cluster.start("third", true);
+  const PostgresServers cluster;
+  const auto first = cluster.start("first", Role::alone);
+  const auto second = cluster.start("second");
+  const auto third = cluster.start("third");
   Builder builder;
   builder.join(*third);
   CHECK(builder.epoch() == 1);
@@ -169,17 +136,17 @@ TEST_CASE("a player of a server that follows stays when the owner stops, and whe
   builder.wait_durable(400);
   CHECK(second->stop());
   CHECK(third->stop());
-  cluster.check_log(builder);
+  cluster.check_log(builder.author(), builder.sent());
 }
 
 TEST_CASE("a player learns of the other server, which takes the player in when the first one stops",
           "[.postgres-server]") {
-  const Cluster cluster;
-  const auto first = cluster.start("first", false);
+  const PostgresServers cluster;
+  const auto first = cluster.start("first", Role::alone);
   RawClient client(first->port());
   client.features = kFeatureServerList;
   REQUIRE(client.join(1, 7).has_value());
-  const auto second = cluster.start("second", true);
+  const auto second = cluster.start("second");
   const auto list = client.next_of<Servers>();
   REQUIRE(list.has_value());
   CHECK(list->servers.size() == 2);
@@ -198,29 +165,29 @@ TEST_CASE("a player learns of the other server, which takes the player in when t
 
 TEST_CASE("a server that stood still beyond its lease adds nothing to the log, and ends",
           "[.postgres-server]") {
-  const Cluster cluster;
+  const PostgresServers cluster;
   Builder builder;
-  const auto first = cluster.start("first", false);
+  const auto first = cluster.start("first", Role::alone);
   builder.join(*first);
   builder.build(2'000);
   builder.wait_durable(100);  // others are under way
   first->pause();
 
-  const auto second = cluster.start("second", true);
+  const auto second = cluster.start("second");
   builder.join_in(2, *second);
   builder.build(50);
   first->resume();
   CHECK(first->fails());
   builder.wait_durable(2'050);
   CHECK(second->stop());
-  cluster.check_log(builder);
+  cluster.check_log(builder.author(), builder.sent());
 }
 
 TEST_CASE("a server whose database drops its connections ends, and the next start has every edit",
           "[.postgres-server]") {
-  const Cluster cluster;
+  const PostgresServers cluster;
   Builder builder;
-  const auto first = cluster.start("first", false);
+  const auto first = cluster.start("first", Role::alone);
   builder.join(*first);
   builder.build(500);
   builder.wait_durable(50);
@@ -230,11 +197,11 @@ TEST_CASE("a server whose database drops its connections ends, and the next star
   builder.build(10);
   CHECK(first->fails());
 
-  const auto again = cluster.start("first", false);
+  const auto again = cluster.start("first", Role::alone);
   builder.join(*again);
   builder.wait_durable(510);
   CHECK(again->stop());
-  cluster.check_log(builder);
+  cluster.check_log(builder.author(), builder.sent());
 }
 
 }  // namespace runstone::test
