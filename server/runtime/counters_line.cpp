@@ -14,6 +14,13 @@ std::string sessions_part(const WorldServer& world, const NetCounters& net) {
                      w.sessions_opened, w.sessions_closed, net.malformed.load());
 }
 
+/// The place of the server among the servers of its world.
+std::string ownership_part(const WorldServer& world) {
+  return fmt::format("epoch={} owns_world={:d} follows_owner={:d} followers={}", world.epoch(),
+                     world.owns_world(), world.is_following() && world.is_live(),
+                     world.follower_count());
+}
+
 std::string log_part(const WorldServer& world, const LogWriter::Counters& log) {
   const WorldCounters& w = world.counters();
   return fmt::format(
@@ -62,10 +69,11 @@ std::string waits_part(const WaitHistogram& waits) {
 
 std::string counters_line(const WorldServer& world, const NetCounters& net,
                           const LogWriter::Counters& log, const RuntimeCounters& runtime) {
-  return fmt::format("counters {} {} {} {} {} stack_depths=\"{}\" dense_expansions={}",
-                     sessions_part(world, net), log_part(world, log), chunks_part(world, runtime),
-                     sending_part(world, net, runtime), waits_part(world.edit_waits()),
-                     world.stack_depths().text(), dense_expansions());
+  return fmt::format("counters {} {} {} {} {} {} stack_depths=\"{}\" dense_expansions={}",
+                     sessions_part(world, net), ownership_part(world), log_part(world, log),
+                     chunks_part(world, runtime), sending_part(world, net, runtime),
+                     waits_part(world.edit_waits()), world.stack_depths().text(),
+                     dense_expansions());
 }
 
 }  // namespace runstone

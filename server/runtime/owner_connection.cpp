@@ -46,7 +46,8 @@ void OwnerConnection::connect(const std::string& address) {
     return;
   }
   OutgoingLink::Events events;
-  events.on_connected = [this](const std::optional<ChannelBinding>& binding) {
+  events.on_connected = [this, address](const std::optional<ChannelBinding>& binding) {
+    logger("world").info("connected with the owner at {}", address);
     strand_.post([this, binding] { world_->owner_connected(binding, read_clocks()); });
   };
   events.on_message = [this](Message&& message, std::size_t bytes) {

@@ -31,6 +31,8 @@ class OwnerConnection {
   void connect_to(const std::string& address);
   /// Queues a message. Returns false if there is no room, or no connection.
   bool send(const EncodedMessage& message) { return link_ != nullptr && link_->send(message); }
+  /// Returns HOST:PORT to which the connection leads, or led.
+  const std::string& address() const { return address_; }
   /// Ends the connection. Its end is reported later.
   void leave(const std::string& why);
   /// Ends the connection and makes no other one until begin().

@@ -195,6 +195,7 @@ Result<SessionId, std::string> ServerCore::begin_handover(std::optional<SessionI
   if (!needed) return Unexpected<std::string>{needed.error()};
   const TimeUs until_us = steady_now_us() + kWriteBeforeUs;
   while (log_->durable() < *needed) {
+    if (log_->has_failed()) return Unexpected<std::string>{"the log cannot be written"};
     if (steady_now_us() >= until_us)
       return Unexpected<std::string>{"the database takes too long to write the log"};
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -338,14 +339,23 @@ LogWriter::Counters ServerCore::log_counters_now() const {
   return all;
 }
 
+std::string ServerCore::status_of_follower() const {
+  const std::string owner = world_->is_live()
+                                ? "this server follows the owner at " + owner_.address()
+                                : "this server waits for an owner of the world";
+  return fmt::format("{}\nsessions {}, edits {} (on disk {})", owner, world_->session_count(),
+                     world_->head(), world_->durable());
+}
+
 void ServerCore::command(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)]() mutable {
     if (!world_->is_following()) return commands_->run(line, std::move(reply));
-    // The program can be stopped like any other.
     if (line == "stop") {
       actions_.stop();
       return reply({"", true, true});
     }
+    if (line == "reload") return actions_.reload(std::move(reply));
+    if (line == "status") return reply({status_of_follower(), true, true});
     refuse(reply, kGiveThere);
   });
 }

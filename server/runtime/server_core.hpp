@@ -168,6 +168,8 @@ class ServerCore final : public NetEvents {
   void schedule_tile_resends();
   void finish_stop_if_flushed();
   std::string all_counters(std::uint64_t memory_bytes) const;
+  /// Returns the answer to the command `status` at a server that follows.
+  std::string status_of_follower() const;
   /// Logs what happened since the last call, if anything did.
   void write_activity();
 

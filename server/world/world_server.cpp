@@ -446,6 +446,7 @@ void WorldServer::follow() {
 }
 
 bool WorldServer::is_following() const { return state_->following != nullptr; }
+bool WorldServer::owns_world() const { return !is_following() && state_->environment.owns_world(); }
 bool WorldServer::is_live() const {
   return !state_->following || state_->following->link == Following::Link::live;
 }

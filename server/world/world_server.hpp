@@ -188,6 +188,8 @@ class WorldServer {
   /// session, after replay_onto_stack().
   void follow();
   bool is_following() const;
+  /// Returns true if this server is the owner, and no other one can be it.
+  bool owns_world() const;
   /// Returns false if this server follows, and has not reached the owner.
   bool is_live() const;
   /// Returns true if this server has edits that the log does not have. It cannot go on then.
