@@ -34,6 +34,7 @@ class GameServer:
         self.is_paused = False
         self.sent = set()  # signals that the test has sent to this process
         self.bad_ends = []  # exit codes of starts that gave up, and signals that the test did not send
+        self.gave_up = 0  # ends with exit code 1
 
     def create(self):
         """Makes the world, with this server as its first owner."""
@@ -51,6 +52,7 @@ class GameServer:
 
     def _judge(self, code):
         # 0: it was stopped. 1: it lost the world or the database. Below 0: a signal.
+        self.gave_up += code == 1
         if code > 1 or (code < 0 and -code not in self.sent):
             self.bad_ends.append(code)
 
@@ -122,6 +124,10 @@ class GameServer:
             return int(text) if text else None
         except FileNotFoundError:
             return None
+
+    def handovers(self):
+        """Returns how often it handed the world over while it went on."""
+        return self.log.read_text().count("HANDED OVER: server=")
 
     def epochs(self):
         """Returns the epoch of each start that took the world over."""

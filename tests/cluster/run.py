@@ -52,13 +52,19 @@ class Run:
         """Returns the numbers of edits of all bots."""
         return self.builders.edits + self.latecomers.edits
 
+    def handovers(self):
+        """Returns how many handovers were begun, and how many succeeded."""
+        return (self.faults.made["handover"],
+                sum(server.handovers() for server in self.cluster.servers))
+
     def summary(self):
         edits = self.edits()
         database = self.cluster.database
         panics = sum(host.panics() for host in database.hosts)
         return (f"{edits['submitted']} edits, {edits['durable']} durable, {edits['rejected']} rejections, "
                 f"{self.world.logged} in the log; longest wait {self.builders.longest_s:.1f} s; "
-                f"{len(self.world.epochs)} starts took the world; "
+                f"{len(self.world.epochs)} starts took the world, {self.handovers()[1]} of them by a handover; "
+                f"servers ended by themselves {sum(s.gave_up for s in self.cluster.servers)} times; "
                 f"PostgreSQL ended itself {panics} times, its disks held {database.used_mib()} MiB at most; "
                 f"faults: {dict(sorted(self.faults.made.items()))}")
 
