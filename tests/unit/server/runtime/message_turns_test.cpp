@@ -59,3 +59,31 @@ TEST_CASE("the messages of a session that ends are taken in their order", "[serv
   CHECK_FALSE(turns.next_of(3));
   CHECK(all_turns(turns) == std::vector<SentPing>{{2, 0}, {2, 1}});
 }
+
+TEST_CASE("players at another server take turns like those here, each in order",
+          "[server][servers]") {
+  MessageTurns turns;
+  const auto relayed = [](SessionId player) {
+    return Message(Relay{{player}, encode_message(Message(ChatRequest{"a line"}))});
+  };
+  RelayOpen first, second;
+  first.session = 8;
+  second.session = 9;
+  // Session 2 is another server, 3 and 4 are players here.
+  turns.push(2, first, 1);
+  turns.push(2, second, 2);
+  for (std::size_t i = 3; i < 6; ++i) turns.push(2, relayed(8), i);
+  turns.push(2, relayed(9), 6);
+  turns.push(2, RelayClose{9, 1, ""}, 7);
+  turns.push(2, Ping{0}, 8);
+  for (std::size_t i = 11; i < 13; ++i) turns.push(3, Ping{0}, i);
+  turns.push(4, Ping{0}, 21);
+  std::vector<std::size_t> order;
+  for (int i = 0; i < 9; ++i) order.push_back(turns.next()->bytes);
+  CHECK(order == std::vector<std::size_t>{8, 1, 2, 11, 21, 3, 6, 12, 4});
+  // When the other server is gone, what is left of its players is taken, in order for each of them.
+  CHECK(turns.next_of(2)->bytes == 5);
+  CHECK(turns.next_of(2)->bytes == 7);
+  CHECK_FALSE(turns.next_of(2));
+  CHECK(turns.is_empty());
+}
