@@ -11,7 +11,7 @@ SERVERS = 3
 
 
 class Cluster:
-    def __init__(self, programs, folder, has_disks, is_synchronous):
+    def __init__(self, programs, folder, has_disks, is_synchronous, lease_s=2):
         self.heals = []  # (time, what ends a fault)
         self.servers = []
         self.wires = Wires()
@@ -24,7 +24,8 @@ class Cluster:
                 peers, players = [self.wires.add(lambda i=i: self.servers[i].port()) for _ in range(2)]
                 own_wires.append(players)
                 self.servers.append(GameServer(programs / "runstone-server", folder, f"server{i}",
-                                               WireBundle(databases), peers, players, url_of(databases)))
+                                               WireBundle(databases), peers, players, url_of(databases),
+                                               lease_s))
             # Players come to any server, and from there to those of its list.
             self.door = self.wires.add(self.player_port)
             self.players = WireBundle([self.door, *own_wires])

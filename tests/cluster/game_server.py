@@ -9,7 +9,7 @@ from server_clock import ServerClock
 
 
 class GameServer:
-    def __init__(self, program, folder, name, databases, peers, players, url):
+    def __init__(self, program, folder, name, databases, peers, players, url, lease_s):
         """`databases` are the wires to the hosts of the database, at `url`. `peers` leads from the other
         servers to this one, `players` from players who know it from the list of servers."""
         self.program = program
@@ -23,7 +23,7 @@ class GameServer:
         self.clock.set_off(0)
         # The kernel ends it if the test ends.
         self.command = ["setpriv", "--pdeathsig=KILL", program, "--world", self.folder, "--store", url,
-                        "--standby", "--lease-s", "2", "--listen", "127.0.0.1:0",
+                        "--standby", "--lease-s", str(lease_s), "--listen", "127.0.0.1:0",
                         "--peer-address", f"127.0.0.1:{peers.port}",
                         "--player-address", f"127.0.0.1:{players.port}", "--port-file", self.port_file,
                         "--digests", self.digests_file, "--sessions-per-address", "0",
