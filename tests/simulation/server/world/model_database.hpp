@@ -65,13 +65,18 @@ class ModelDatabase {
   /// Returns true if nobody but the owner of this term can write.
   bool holds(LeaseTerm term) const { return term == lease_.term && owner().has_value(); }
 
-  // Transactions. A program has one at a time. It confirms the lease when it begins.
+  // Transactions. A program has one at a time. It confirms the lease when it has written, just before
+  // it commits.
   using Transaction = std::uint64_t;
-  /// Returns nullopt if somebody else has taken the lease.
-  std::optional<Transaction> begin(LeaseTerm term, TimeUs length_us) {
-    if (!confirm(term, length_us)) return std::nullopt;
+  Transaction begin() {
     open_.insert(++transactions_);
     return transactions_;
+  }
+  /// Returns false if somebody else has taken the lease, or if the transaction was ended.
+  bool confirm(Transaction transaction, LeaseTerm term, TimeUs length_us) {
+    if (!open_.contains(transaction) || !may_write(term)) return false;
+    if (term == lease_.term && !owner()) lease_.expires_us = time_.now() + length_us;
+    return true;
   }
   /// Returns false if the transaction was ended: nothing may be written in it.
   bool commit(Transaction transaction) { return open_.erase(transaction) != 0; }
@@ -140,11 +145,6 @@ class ModelDatabase {
   bool is_there(Protection protection) const { return without_ != protection; }
 
  private:
-  bool confirm(LeaseTerm term, TimeUs length_us) {
-    if (!may_write(term)) return false;
-    if (term == lease_.term && !owner()) lease_.expires_us = time_.now() + length_us;
-    return true;
-  }
   void check_writer(LeaseTerm term) const {
     if (term != lease_.term) throw SimFault("a server without the lease has written");
   }

@@ -198,9 +198,13 @@ class SimProcess final : public SimServer {
     ask([this] {
       report_space();
       if (is_disk_full_) return later(1'000'000, 1'000'000, [this] { write_next(); });
-      const auto transaction = database_.begin(*term_, kLeaseUs);
-      if (!transaction) return kill();
-      later(100, 20'000, [this, transaction] { commit(*transaction); });
+      later(100, 10'000, [this, transaction = database_.begin()] { confirm(transaction); });
+    });
+  }
+  void confirm(ModelDatabase::Transaction transaction) {
+    ask_now([this, transaction] {
+      if (!database_.confirm(transaction, *term_, kLeaseUs)) return kill();
+      later(100, 10'000, [this, transaction] { commit(transaction); });
     });
   }
   void commit(ModelDatabase::Transaction transaction) {
@@ -310,7 +314,6 @@ class SimProcess final : public SimServer {
   void take_over() {
     take_lease(
         [this] {
-          if (!database_.publish(*term_, address_)) return kill();
           role_ = Role::taking_over;
           if (link_) link_->cut();
           write_rest(world_->stop_following(), world_->last_record());
@@ -323,10 +326,14 @@ class SimProcess final : public SimServer {
       ModelStore writer(database_, meta_, term_);
       const auto start = prepare_takeover(writer, parts, last);
       if (!start) return kill();
-      later(100, 20'000, [this, start = *start] {
-        role_ = Role::owner;
-        tell("takes the world over, epoch " + std::to_string(start.epoch));
-        if (!world_->take_over(start, now())) kill();
+      ask([this, start = *start] {
+        // The others may connect before this server owns the world.
+        if (!database_.publish(*term_, address_)) return kill();
+        later(100, 20'000, [this, start] {
+          role_ = Role::owner;
+          tell("takes the world over, epoch " + std::to_string(start.epoch));
+          if (!world_->take_over(start, now())) kill();
+        });
       });
     });
   }
