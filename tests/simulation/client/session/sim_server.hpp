@@ -88,7 +88,7 @@ class SimServer : public WorldEnvironment {
         if (!sessions_.contains(id)) return;
         auto message = decode_message(Sender::client, kind, copy, kSimEdge);
         if (!message) throw SimFault(std::string("server cannot decode: ") + message.error().what);
-        world_->received(id, std::move(*message), now());
+        receive(id, std::move(*message));
         turn_later();
       });
       return {};
@@ -155,6 +155,10 @@ class SimServer : public WorldEnvironment {
       throw SimFault(replayed.error());
   }
 
+  /// Handles a message of a client.
+  virtual void receive(SessionId id, Message&& message) {
+    world_->received(id, std::move(message), now());
+  }
   /// Runs an event of the start number `life`, unless the server has crashed since.
   void run(std::uint64_t life, std::function<void()> event) {
     if (life == life_) run_now(std::move(event));

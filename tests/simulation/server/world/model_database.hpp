@@ -95,6 +95,13 @@ class ModelDatabase {
     }
   }
 
+  /// Notes that a server has told a player the reason why an edit is rejected.
+  void rejected(AuthorId author, ClientSequence seq) { rejected_.emplace(author, seq); }
+  bool was_rejected(AuthorId author, ClientSequence seq) const {
+    return rejected_.contains({author, seq});
+  }
+  bool has(const OperationId& op) const { return operations_.contains(op); }
+
   // Writes of a transaction. `term` is that of the program that writes.
   void append(LeaseTerm term, std::span<const PlayerRow> players,
               std::span<const EditRecord> records) {
@@ -176,6 +183,7 @@ class ModelDatabase {
   std::vector<EditRecord> log_;
   std::set<OperationId> operations_;
   std::map<Version, OperationId> ordered_;  // written or not
+  std::set<std::pair<AuthorId, ClientSequence>> rejected_;
   std::map<AuthorId, PlayerRow> players_;
   std::map<std::string, NameClaim> names_;
   std::map<ChunkKey, Chunk> snapshots_;

@@ -14,12 +14,16 @@ enum class Protection {
   epoch,         // whoever takes the world over raises the epoch
   durable_last,  // an edit is called durable after its transaction, not before
   watermarks,    // a server that starts knows the operations that the log has
+  // These are in the product, and have no effect: the simulation alters what passes to it.
+  resumed,     // edits that a client sent before it knew of the next owner are ignored
+  head_epoch,  // a server that reads the log compares the epoch of its last record
 };
 
 inline constexpr std::array kProtections = {Protection::fence,        Protection::locked_row,
                                             Protection::expiry,       Protection::renewal,
                                             Protection::owner_clock,  Protection::epoch,
-                                            Protection::durable_last, Protection::watermarks};
+                                            Protection::durable_last, Protection::watermarks,
+                                            Protection::resumed,      Protection::head_epoch};
 
 constexpr const char* name_of(Protection protection) {
   switch (protection) {
@@ -39,6 +43,10 @@ constexpr const char* name_of(Protection protection) {
       return "durable last";
     case Protection::watermarks:
       return "watermarks";
+    case Protection::resumed:
+      return "resumed";
+    case Protection::head_epoch:
+      return "head epoch";
   }
   return "";
 }

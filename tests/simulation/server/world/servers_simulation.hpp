@@ -73,6 +73,7 @@ class ServersSimulation {
     r.check_exactly_once(database_.log(), clients_);
     r.check_voxels(database_.log(), worlds, clients_);
     r.check_heights(database_.log(), world_config().heights, clients_);
+    check_unseen(r);
     for (const auto& client : clients_)
       r.expect(client->replica().counters().drifted == 0, "a replica has drifted");
     counts_.edits += r.edits;
@@ -125,6 +126,20 @@ class ServersSimulation {
     come_to_rest();
     if (database_.last() != before + clients_.size())
       throw SimFault("nothing fails any more, and edits of the players are not in the log");
+  }
+
+  /// Checks that the log has each edit whose answer its client has missed, or that a server has rejected
+  /// it.
+  void check_unseen(FinalCheck& r) const {
+    for (const auto& client : clients_) {
+      const AuthorId author = client->session().author();
+      for (const ClientSequence seq : client->unseen()) {
+        r.expect(
+            database_.has({author, client->instance(), seq}) || database_.was_rejected(author, seq),
+            "an edit is not in the log, and no server has rejected it, client seq " +
+                std::to_string(seq));
+      }
+    }
   }
 
   SimProcess* find(const std::string& address) {

@@ -5,6 +5,7 @@
 #pragma once
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -132,6 +133,7 @@ class SimProcess final : public SimServer {
     crash();
     backlog_.clear();
     writes_.clear();
+    relayed_.clear();
     is_paused_ = is_stopping_ = is_disk_full_ = false;
     term_.reset();
     valid_until_us_ = 0;
@@ -324,8 +326,9 @@ class SimProcess final : public SimServer {
   void write_rest(const std::vector<LogPart>& parts, Version last) {
     ask([this, parts, last] {
       ModelStore writer(database_, meta_, term_);
-      const auto start = prepare_takeover(writer, parts, last);
+      auto start = prepare_takeover(writer, parts, last);
       if (!start) return kill();
+      start->read = as_followed(std::move(start->read));
       ask([this, start = *start] {
         // The others may connect before this server owns the world.
         if (!database_.publish(*term_, address_)) return kill();
@@ -382,8 +385,56 @@ class SimProcess final : public SimServer {
     world_->owner_connected(std::nullopt, now());
   }
 
+  /// Keeps what note_rejection() needs. Without `resumed`, send() has already answered a Resume.
+  void receive(SessionId id, Message&& message) override {
+    if (const auto* open = std::get_if<RelayOpen>(&message))
+      relayed_[{id, open->session}] = open->key;
+    if (!database_.is_there(Protection::resumed) && std::holds_alternative<Resumed>(message))
+      return;
+    SimServer::receive(id, std::move(message));
+  }
+  /// Tells the final check of a rejection: its client may never get it.
+  void note_rejection(SessionId id, const EncodedMessage& message) {
+    if (message.kind != kKindOf<Reject> && message.kind != kKindOf<Relay>) return;
+    const auto decoded = decode_message(Sender::server, message.kind, *message.bytes, kSimEdge);
+    if (const auto* reject = std::get_if<Reject>(&*decoded)) {
+      for (const auto& player : world_->online_players()) {
+        if (player.session == id) note_rejection(player.author, *reject);
+      }
+      return;
+    }
+    const Relay& relay = std::get<Relay>(*decoded);
+    if (relay.message.kind != kKindOf<Reject>) return;
+    const auto inner =
+        decode_message(Sender::server, relay.message.kind, *relay.message.bytes, kSimEdge);
+    if (const auto author = world_->author_of(relayed_.at({id, relay.sessions.front()})))
+      note_rejection(*author, std::get<Reject>(*inner));
+  }
+  void note_rejection(AuthorId author, const Reject& reject) {
+    if (reject.reason != RejectReason::already_resolved)
+      database_.rejected(author, reject.client_seq);
+  }
+  /// Without the comparison of epochs, what is read from the log looks like the log of this server.
+  ReadLog as_followed(ReadLog read) const {
+    if (database_.is_there(Protection::head_epoch)) return read;
+    for (EditRecord& record : read.records) {
+      if (record.version.seq == world_->head()) record.version = world_->last_record();
+    }
+    return read;
+  }
+
   // WorldEnvironment.
   bool owns_world() const override { return may_order(); }
+  bool send(SessionId id, const EncodedMessage& message) override {
+    note_rejection(id, message);
+    // The server takes the edits that come before the client's answer.
+    if (message.kind == kKindOf<Resume> && !database_.is_there(Protection::resumed)) {
+      later(0, 0, [this, id] {
+        if (sessions_.contains(id)) world_->received(id, Resumed{}, now());
+      });
+    }
+    return SimServer::send(id, message);
+  }
   bool log_has_room(std::size_t /*records*/) const override {
     return may_order() && !is_disk_full_;
   }
@@ -429,8 +480,10 @@ class SimProcess final : public SimServer {
   }
   void read_log(Sequence first) override {
     ask([this, first] {
-      if (role_ == Role::following)
-        world_->log_read(read_missed_log(*store_, first, 1 + rng_.below(60)), now());
+      if (role_ != Role::following) return;
+      auto read = read_missed_log(*store_, first, 1 + rng_.below(60));
+      if (read) read = as_followed(*std::move(read));
+      world_->log_read(read, now());
     });
   }
   void report(OperatorLogLevel level, const std::string& line) override {
@@ -458,6 +511,8 @@ class SimProcess final : public SimServer {
   std::shared_ptr<SimConnection> link_;  // with the owner; null: there is none
   std::string link_address_;
   std::uint64_t link_number_ = 0;
+  // The players at servers that follow, by the connection and the session there.
+  std::map<std::pair<SessionId, SessionId>, PublicKey> relayed_;
 };
 
 }  // namespace runstone::test
