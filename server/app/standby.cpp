@@ -108,8 +108,8 @@ void TakeoverWatch::run() {
 bool TakeoverWatch::leaves_lease() {
   const auto now = std::chrono::steady_clock::now();
   if (!ownerless_since_) ownerless_since_ = now;
-  return now < not_before_ ||
-         (server_.follow_state().hears_owner && now - *ownerless_since_ < kSuccessorTime);
+  const bool others_come_first = !has_followed_ || server_.follow_state().hears_owner;
+  return now < not_before_ || (others_come_first && now - *ownerless_since_ < kSuccessorTime);
 }
 
 void TakeoverWatch::answer(const std::string& outcome, bool is_ok) {
@@ -126,6 +126,8 @@ bool TakeoverWatch::look() {
   if (*owner) {
     ownerless_since_.reset();
     not_before_ = {};  // the successor has come
+    if (std::exchange(term_, (*owner)->term) != (*owner)->term) has_followed_ = false;
+    has_followed_ = has_followed_ || server_.follow_state().is_live;
     if (!(*owner)->address.empty()) server_.connect_to((*owner)->address);
     return true;
   }

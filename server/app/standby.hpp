@@ -33,6 +33,7 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
 /// owns the world.
 /// An owner that hands the world over releases the lease for one server, which it has chosen. So the others
 /// leave a free lease alone for a second at most: those that still hear the owner, and the owner itself.
+/// So does a server that has not followed the last owner, because others may have edits that it lacks.
 class TakeoverWatch {
  public:
   /// `server` must outlive the object. `on_failure` is called at most once, from the thread, if the
@@ -63,8 +64,10 @@ class TakeoverWatch {
   // Used on the thread.
   std::chrono::steady_clock::time_point not_before_;  // it takes no lease before
   std::optional<std::chrono::steady_clock::time_point>
-      ownerless_since_;   // nullopt: there is an owner
-  int short_pauses_ = 0;  // that are left
+      ownerless_since_;        // nullopt: there is an owner
+  std::int64_t term_ = 0;      // of the last owner
+  bool has_followed_ = false;  // this owner
+  int short_pauses_ = 0;       // that are left
   std::atomic<bool> has_failed_{false};
   std::mutex mutex_;
   std::condition_variable wake_;

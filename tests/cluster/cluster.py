@@ -11,7 +11,8 @@ SERVERS = 3
 
 
 class Cluster:
-    def __init__(self, programs, folder, has_disks, is_synchronous, lease_s=2):
+    def __init__(self, programs, folder, has_disks, is_synchronous, lease_s=2, has_wires=True):
+        """Wires cost time: without them, only servers and the database can fail."""
         self.heals = []  # (time, what ends a fault)
         self.servers = []
         self.wires = Wires()
@@ -19,6 +20,10 @@ class Cluster:
         own_wires = []  # of the players, one for each server
         try:
             for i in range(SERVERS):
+                if not has_wires:
+                    self.servers.append(GameServer(programs / "runstone-server", folder, f"server{i}", None,
+                                                   None, None, url_of(self.database.hosts), lease_s))
+                    continue
                 # The hosts keep their wires, as machines keep their addresses: the server finds the primary.
                 databases = [self.wires.add(lambda host=host: host.port) for host in self.database.hosts]
                 peers, players = [self.wires.add(lambda i=i: self.servers[i].port()) for _ in range(2)]
@@ -39,7 +44,7 @@ class Cluster:
             address = self.database.primary.text("SELECT address FROM lease")
         except subprocess.SubprocessError:  # there is no world yet, or the database is down
             return None
-        return next((one for one in self.servers if address == f"127.0.0.1:{one.peers.port}"), None)
+        return next((one for one in self.servers if address == one.peer_address()), None)
 
     def player_port(self):
         """Returns the port of any server that listens."""
@@ -104,8 +109,9 @@ class Cluster:
         self.wires.stop()
 
 
-def url_of(wires):
-    """Returns the address of a database with several hosts, one of which can be written."""
-    hosts = ",".join(f"127.0.0.1:{wire.port}" for wire in wires)
+def url_of(ends):
+    """Returns the address of a database with several hosts, or wires to them, one of which can be
+    written."""
+    hosts = ",".join(f"127.0.0.1:{end.port}" for end in ends)
     return (f"postgresql://runstone@{hosts}/postgres?target_session_attrs=read-write&"
             f"connect_timeout={CONNECT_S}")

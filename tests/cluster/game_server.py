@@ -8,10 +8,16 @@ import time
 from server_clock import ServerClock
 
 
+def address_of(wire):
+    """Returns where a wire begins. Without one, the server adds its own port."""
+    return "127.0.0.1" if wire is None else f"127.0.0.1:{wire.port}"
+
+
 class GameServer:
     def __init__(self, program, folder, name, databases, peers, players, url, lease_s):
         """`databases` are the wires to the hosts of the database, at `url`. `peers` leads from the other
-        servers to this one, `players` from players who know it from the list of servers."""
+        servers to this one, `players` from players who know it from the list of servers. None: they
+        connect without wires."""
         self.program = program
         self.folder = folder / name
         self.name, self.databases, self.peers = name, databases, peers
@@ -24,8 +30,8 @@ class GameServer:
         # The kernel ends it if the test ends.
         self.command = ["setpriv", "--pdeathsig=KILL", program, "--world", self.folder, "--store", url,
                         "--standby", "--lease-s", str(lease_s), "--listen", "127.0.0.1:0",
-                        "--peer-address", f"127.0.0.1:{peers.port}",
-                        "--player-address", f"127.0.0.1:{players.port}", "--port-file", self.port_file,
+                        "--peer-address", address_of(peers), "--player-address", address_of(players),
+                        "--port-file", self.port_file,
                         "--digests", self.digests_file, "--sessions-per-address", "0",
                         "--budgets-per-address", "0", "--connections-per-second", "0", "--stop-s", "20"]
         self.process = None
@@ -124,6 +130,10 @@ class GameServer:
             return int(text) if text else None
         except FileNotFoundError:
             return None
+
+    def peer_address(self):
+        """Returns where the other servers reach it."""
+        return f"127.0.0.1:{self.port()}" if self.peers is None else address_of(self.peers)
 
     def handovers(self):
         """Returns how often it handed the world over while it went on."""

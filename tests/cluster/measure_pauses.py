@@ -4,7 +4,7 @@
     tests/cluster/measure_pauses.py build/release/bin > docs/figures/pauses.md
 
 Three servers, the database with its synchronous standby, and bots run on this machine, so it must be idle
-otherwise. Some bots build through each server that is to stay. It takes some ten minutes, and needs the
+otherwise. Some bots build through each server that is to stay. It takes some seven minutes, and needs the
 packages of the set `postgres` (scripts/packages).
 """
 import argparse
@@ -22,9 +22,9 @@ from measure_servers import machine
 
 LEASE_S = 5    # the setting's default
 BOTS = 6       # at each server that is to stay
-BUILD_S = 20   # in which the owner changes once
+BUILD_S = 15   # in which the owner changes once
 BEFORE_S = 5
-RUNS = 5
+RUNS = 3
 
 
 class Bots:
@@ -82,7 +82,7 @@ CASES = [
 def measure(programs, change, has_owner):
     """Returns the longest wait of an edit of a bot that stays, in seconds."""
     folder = make_folder()
-    cluster = Cluster(programs, folder, False, True, LEASE_S)
+    cluster = Cluster(programs, folder, False, True, LEASE_S, has_wires=False)
     bots = []
     try:
         if not cluster.create():

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/integration/server/app/postgres_servers.hpp"
+#include "tests/integration/server/app/server_commands.hpp"
 #include "tests/support/raw_client.hpp"
 #include "tests/support/raw_sql.hpp"
 
@@ -134,6 +135,30 @@ TEST_CASE("a player of a server that follows stays when the owner stops, and whe
   CHECK(builder.resumes_in(2));
   builder.build(100);
   builder.wait_durable(400);
+  CHECK(second->stop());
+  CHECK(third->stop());
+  cluster.check_log(builder.author(), builder.sent());
+}
+
+TEST_CASE(
+    "a server that came too late to follow the owner leaves the world to one that has followed",
+    "[.postgres-server]") {
+  const int round = GENERATE(1, 2, 3);  // without this rule, either may be faster
+  CAPTURE(round);
+  // A server that follows looks often for two seconds after it has lost the owner, and then as often as one
+  // that has just started.
+  const auto keep_lease = [](ServerConfig& config) { config.lease_s = 5; };
+  const PostgresServers cluster;
+  const auto first = cluster.start("first", Role::standby, keep_lease);
+  const auto second = cluster.start("second", Role::standby, keep_lease);
+  Builder builder;
+  builder.join(*second);
+  builder.build(100);
+  builder.wait_durable(100);
+  first->kill();
+  const auto third = cluster.start("third", Role::standby, keep_lease);
+  CHECK(builder.resumes_in(2));
+  CHECK(control(cluster.folder("second"), {"servers"}).text.find("this server, the owner") == 0);
   CHECK(second->stop());
   CHECK(third->stop());
   cluster.check_log(builder.author(), builder.sent());
