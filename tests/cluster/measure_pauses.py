@@ -8,6 +8,7 @@ otherwise. Some bots build through each server that is to stay. It takes some se
 packages of the set `postgres` (scripts/packages).
 """
 import argparse
+import collections
 import json
 import pathlib
 import shutil
@@ -44,13 +45,17 @@ class Bots:
     def has_ended(self):
         return self.process.poll() is not None
 
-    def longest_s(self):
-        """Returns the longest wait of an edit. Ends the program if an edit was lost or a bot drifted."""
+    def result(self):
+        """Returns the longest wait of an edit in seconds, and the numbers of edits. Ends the program if an
+        edit was lost or a bot drifted."""
         seen = json.loads(self.report.read_text())
-        edits = seen["edits"]
-        if seen["drifted"] != 0 or edits["durable"] != edits["submitted"] or seen["local_us"]["infinite"]:
-            sys.exit(f"not all is well: {edits}, drifted {seen['drifted']}, see {self.report}")
-        return seen["local_us"]["max"] / 1e6
+        edits = collections.Counter(seen["edits"])
+        if (seen["drifted"] != 0 or edits["durable"] + edits["rejected"] != edits["submitted"]
+                or seen["local_us"]["infinite"] != edits["rejected"]):
+            sys.exit(f"not all is well: {seen['edits']}, drifted {seen['drifted']}, see {self.report}")
+        waits = seen["local_us"]
+        longest_us = waits["max"] if waits["infinite"] == 0 else waits["rows"][-1][1]
+        return longest_us / 1e6, edits
 
 
 def kill(cluster, owner):
@@ -80,7 +85,7 @@ CASES = [
 
 
 def measure(programs, change, has_owner):
-    """Returns the longest wait of an edit of a bot that stays, in seconds."""
+    """Returns the longest wait of an edit of a bot that stays, in seconds, and the numbers of edits."""
     folder = make_folder()
     cluster = Cluster(programs, folder, False, True, LEASE_S, has_wires=False)
     bots = []
@@ -96,7 +101,9 @@ def measure(programs, change, has_owner):
         change(cluster, owner)
         if not cluster.wait(BUILD_S + 60, lambda: all(one.has_ended() for one in bots)):
             sys.exit("the bots do not end")
-        return max(one.longest_s() for one in bots)
+        results = [one.result() for one in bots]
+        return max(longest for longest, _ in results), sum((edits for _, edits in results),
+                                                           collections.Counter())
     finally:
         for one in bots:
             one.process.kill()
@@ -115,16 +122,18 @@ def main():
 `tests/cluster/measure_pauses.py build/release/bin` prints this page. Three servers, PostgreSQL with a
 synchronous standby, and {BOTS} bots at each server that stays are on one machine, and encrypted;
 `lease_s = {LEASE_S}`. Each bot makes five edits a second. The figure of a run is the longest time from an edit
-to its commit. Every edit of every run became durable, and no replica drifted.
+to its commit. Every edit became durable, unless it was rejected as busy, and no replica drifted.
 
 {machine(programs)}
 
-| what happens | target | median of {RUNS} runs | all runs |
-|---|---|---|---|""")
+| what happens | target | median of {RUNS} runs | all runs | edits made | rejected |
+|---|---|---|---|---|---|""")
     for name, change, has_owner, target_s in CASES:
-        waits = sorted(measure(programs, change, has_owner) for _ in range(RUNS))
+        runs = [measure(programs, change, has_owner) for _ in range(RUNS)]
+        waits = sorted(longest for longest, _ in runs)
+        edits = sum((counts for _, counts in runs), collections.Counter())
         print(f"| {name} | {text(target_s)} | {text(statistics.median(waits))} | "
-              f"{', '.join(map(text, waits))} |", flush=True)
+              f"{', '.join(map(text, waits))} | {edits['submitted']} | {edits['rejected']} |", flush=True)
 
 
 def text(seconds):
