@@ -74,7 +74,7 @@ TEST_CASE("without any one of its protections, a simulation finds the harm",
     ServersSimulation::Counts counts;
     std::string found;
     std::uint64_t seed = 0;
-    while (seed < 40 && !is_harm(found)) {
+    while (seed < 400 && !is_harm(found)) {
       ServersSimulation simulation(++seed, counts, protection);
       found = violation(simulation);
     }
