@@ -95,8 +95,8 @@ struct Server::Parts {
   ServerConfig config;
   FileLock local_lock;  // of the folder `world`, if the world is in a database
   OpenedWorld world;
-  // What a server writes that has taken the world over; null otherwise. A server that has owned the
-  // world since its start writes world.store.
+  // The store that this server writes since it took the world over; null before. A server that has
+  // owned the world since its start writes world.store.
   std::unique_ptr<Store> writer;
   asio::io_context io;
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;

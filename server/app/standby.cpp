@@ -23,7 +23,8 @@ constexpr std::chrono::milliseconds kLookPause{50};
 // wait meanwhile.
 constexpr std::chrono::milliseconds kShortPause{4};
 constexpr int kShortPauses = 500;
-// A server that the owner has chosen takes the world over within some 0.1 s.
+// A server that the owner has chosen, or that has followed an owner that is gone, takes the world over
+// within some 0.1 s.
 constexpr std::chrono::microseconds kSuccessorTime{kFollowersKeptUs};
 
 }  // namespace
@@ -126,8 +127,9 @@ bool TakeoverWatch::look() {
   if (*owner) {
     ownerless_since_.reset();
     not_before_ = {};  // the successor has come
-    if (std::exchange(term_, (*owner)->term) != (*owner)->term) has_followed_ = false;
-    has_followed_ = has_followed_ || server_.follow_state().is_live;
+    // When another server has become the owner, the connection may still be with the one before.
+    const bool is_same_owner = std::exchange(term_, (*owner)->term) == (*owner)->term;
+    has_followed_ = is_same_owner && (has_followed_ || server_.follow_state().is_live);
     if (!(*owner)->address.empty()) server_.connect_to((*owner)->address);
     return true;
   }

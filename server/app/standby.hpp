@@ -65,8 +65,8 @@ class TakeoverWatch {
   std::chrono::steady_clock::time_point not_before_;  // it takes no lease before
   std::optional<std::chrono::steady_clock::time_point>
       ownerless_since_;        // nullopt: there is an owner
-  std::int64_t term_ = 0;      // of the last owner
-  bool has_followed_ = false;  // this owner
+  std::int64_t term_ = 0;      // of the lease of the last owner
+  bool has_followed_ = false;  // this server was live with that owner
   int short_pauses_ = 0;       // that are left
   std::atomic<bool> has_failed_{false};
   std::mutex mutex_;

@@ -354,7 +354,7 @@ void ServerCore::command(const std::string& line, CommandReply reply) {
       actions_.stop();
       return reply({"", true, true});
     }
-    if (line == "reload") return actions_.reload(std::move(reply));
+    if (line == "reload" && actions_.reload) return actions_.reload(std::move(reply));
     if (line == "status") return reply({status_of_follower(), true, true});
     refuse(reply, kGiveThere);
   });

@@ -73,8 +73,8 @@ constexpr const char* kHasTable =
 #undef RUNSTONE_NOW_US
 
 constexpr int kLockTries = 50;
-// A program holds kTakingLock for a moment, or for as long as take_lock() tries, which is half of this time.
-// After it the program stands still, and its connection is ended.
+// A program holds kTakingLock while take_lock() tries, for half of this time at most. A program that holds it
+// for longer does not run, and its connection is ended.
 constexpr int kTakingTries = 2 * kLockTries;
 constexpr milliseconds kPause{100};
 

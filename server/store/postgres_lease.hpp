@@ -78,7 +78,8 @@ class PostgresLease {
   const std::int64_t term_, writer_;  // the process of PostgreSQL that serves the writer
   const LeaseTerms terms_;
   std::atomic<TimeUs> valid_until_us_;  // boot_now_us()
-  TimeUs renewed_us_ = 0;               // likewise; of the thread of renewals, while it runs
+  // When the last renewal that succeeded was asked for, boot_now_us(). Used by the thread of renewals.
+  TimeUs renewed_us_ = 0;
   std::mutex mutex_;
   std::condition_variable stop_;
   bool is_stopping_ = false;                        // guarded by mutex_

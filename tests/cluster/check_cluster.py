@@ -24,7 +24,7 @@ from server_clock import library
 from small_disk import can_mount
 
 
-# Of so many handovers one at least must succeed. Most are refused or fail, because other faults are under way.
+# If so many handovers were begun, one at least must succeed. Many are refused or fail, because of other faults.
 HANDOVERS_BEGUN = 10
 
 

@@ -1,5 +1,5 @@
-// What a server does while it follows the owner of its world: its connection with the owner, the log that
-// it gets, and its chunks. For its players see relayed_players_test.cpp.
+// A server that follows the owner of its world: its connection with the owner, the log that it gets, and
+// its chunks. The tests of its players are in relayed_players_test.cpp.
 #include "server/world/following.hpp"
 
 #include <catch2/catch.hpp>

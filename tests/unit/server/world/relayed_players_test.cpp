@@ -444,7 +444,7 @@ TEST_CASE("a follower measures how long the edits of its players wait for the ow
   CHECK(bench.world(1).edit_waits().count() == 1);
   CHECK(bench.world(1).edit_waits().sum_us() == 30'000);
   CHECK(bench.world(0).edit_waits().count() == 3);
-  // What a lost connection leaves without an answer is not measured.
+  // An edit whose answer was lost with a connection is not measured.
   bench.servers[1].holds_to_owner = true;
   bench.edit(1, 1, 3, kAtOrigin);
   bench.cut(1);
