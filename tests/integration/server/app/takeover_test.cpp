@@ -155,6 +155,8 @@ TEST_CASE(
   builder.join(*second);
   builder.build(100);
   builder.wait_durable(100);
+  // A server looks every 50 ms whether it follows the owner.
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
   first->kill();
   const auto third = cluster.start("third", Role::standby, keep_lease);
   CHECK(builder.resumes_in(2));
