@@ -30,7 +30,7 @@ class Idle final : public Behaviour {
  public:
   explicit Idle(const BotPlace& place) : at_(above_middle(site_corner(place))) {}
   WorldPos position(double /*seconds*/) const override { return at_; }
-  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override {
+  std::optional<EditDescriptor> next_edit(const GroundHeight& /*ground*/) override {
     return std::nullopt;
   }
 
@@ -45,7 +45,7 @@ class Walk final : public Behaviour {
     const double radius = kSiteSide / 2.0, angle = seconds * kWalkSpeed / radius;
     return {middle_.x + radius * std::cos(angle), middle_.y, middle_.z + radius * std::sin(angle)};
   }
-  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override {
+  std::optional<EditDescriptor> next_edit(const GroundHeight& /*ground*/) override {
     return std::nullopt;
   }
 
@@ -63,7 +63,7 @@ class RunAway final : public Behaviour {
     const double distance = seconds * kRunSpeed;
     return {from_.x + distance * std::cos(angle_), from_.y, from_.z + distance * std::sin(angle_)};
   }
-  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override {
+  std::optional<EditDescriptor> next_edit(const GroundHeight& /*ground*/) override {
     return std::nullopt;
   }
 
@@ -79,7 +79,7 @@ class Build final : public Behaviour {
 
   WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
 
-  std::optional<EditDescriptor> next_edit(const Ground& ground) override {
+  std::optional<EditDescriptor> next_edit(const GroundHeight& ground) override {
     if (ground_.empty() && next_ == plan_.size() && !begin_plot(ground)) return std::nullopt;
     if (!ground_.empty()) {
       const EditDescriptor edit = ground_.back();
@@ -92,7 +92,7 @@ class Build final : public Behaviour {
 
  private:
   // Clears the plot, fills a foundation below it the first time, and plans the house.
-  bool begin_plot(const Ground& ground) {
+  bool begin_plot(const GroundHeight& ground) {
     const VoxelPos plot = {corner_.x + plot_ % kPlotsAlong * kPlotSide, 0,
                            corner_.z + plot_ / kPlotsAlong % kPlotsAlong * kPlotSide};
     auto& level = levels_[static_cast<std::size_t>(plot_ % (kPlotsAlong * kPlotsAlong))];
@@ -142,7 +142,7 @@ class Brush final : public Behaviour {
 
   WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
 
-  std::optional<EditDescriptor> next_edit(const Ground& ground) override {
+  std::optional<EditDescriptor> next_edit(const GroundHeight& ground) override {
     const auto from = on_ground(ground), to = on_ground(ground);
     if (!from || !to) return std::nullopt;
     const auto radius = static_cast<std::uint16_t>(random_.between(2, 5));
@@ -154,7 +154,7 @@ class Brush final : public Behaviour {
   }
 
  private:
-  std::optional<VoxelPos> on_ground(const Ground& ground) {
+  std::optional<VoxelPos> on_ground(const GroundHeight& ground) {
     const std::int32_t x = corner_.x + random_.between(6, kSiteSide - 7);
     const std::int32_t z = corner_.z + random_.between(6, kSiteSide - 7);
     const auto y = ground.surface(x, z);
@@ -176,7 +176,7 @@ class Grief final : public Behaviour {
 
   WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
 
-  std::optional<EditDescriptor> next_edit(const Ground& ground) override {
+  std::optional<EditDescriptor> next_edit(const GroundHeight& ground) override {
     if (left_ == 0) move_to_next_site();
     const std::int32_t x = corner_.x + random_.between(0, kSiteSide - 1);
     const std::int32_t z = corner_.z + random_.between(0, kSiteSide - 1);

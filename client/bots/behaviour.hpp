@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "client/bots/ground.hpp"
+#include "client/bots/ground_height.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
@@ -46,7 +46,7 @@ class Behaviour {
   virtual WorldPos position(double seconds) const = 0;
   /// Returns the next edit. Returns nullopt if the ground that it needs is not loaded, or if the
   /// role makes no edits.
-  virtual std::optional<EditDescriptor> next_edit(const Ground& ground) = 0;
+  virtual std::optional<EditDescriptor> next_edit(const GroundHeight& ground) = 0;
 };
 
 /// `materials` must outlive the behaviour and have a material that is not empty.

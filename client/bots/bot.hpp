@@ -74,7 +74,7 @@ class Bot {
   virtual const Welcome* world() const = 0;
   virtual void set_view(const View& view) = 0;
   virtual void set_pose(const Pose& pose) = 0;
-  virtual const Ground& ground() const = 0;
+  virtual const GroundHeight& ground() const = 0;
   virtual void tick(TimeUs now_us) = 0;
   virtual TimeUs tick_due_us(TimeUs now_us) const = 0;
   virtual void drain_changes() {}

@@ -22,7 +22,7 @@ class HeadlessBot final : public Bot {
   }
   void set_view(const View& view) override { session_.set_view(view); }
   void set_pose(const Pose& pose) override { session_.set_pose(pose); }
-  const Ground& ground() const override { return fleet_.ground; }
+  const GroundHeight& ground() const override { return fleet_.ground; }
   void tick(TimeUs now_us) override { session_.tick(now_us); }
   TimeUs tick_due_us(TimeUs /*now_us*/) const override { return session_.tick_due_us(); }
   bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;

@@ -26,7 +26,7 @@ class ReplicaBot final : public Bot {
   }
   void set_view(const View& view) override { session_.set_view(view); }
   void set_pose(const Pose& pose) override { session_.set_pose(pose); }
-  const Ground& ground() const override { return ground_; }
+  const GroundHeight& ground() const override { return ground_; }
   void tick(TimeUs now_us) override { session_.tick(now_us); }
   TimeUs tick_due_us(TimeUs now_us) const override;
   void drain_changes() override;

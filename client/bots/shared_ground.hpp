@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 
-#include "client/bots/ground.hpp"
+#include "client/bots/ground_height.hpp"
 #include "common/core/coords.hpp"
 #include "common/runs/run_chunk.hpp"
 
@@ -14,7 +14,7 @@ namespace runstone {
 
 inline constexpr std::size_t kGroundChunksMax = 65'536;
 
-class SharedGround final : public Ground {
+class SharedGround final : public GroundHeight {
  public:
   /// Keeps the voxels unless the chunk is known. Requires chunks of one edge: 16, 32, 64 or 128.
   void add(ChunkCoord at, const RunChunk& voxels);

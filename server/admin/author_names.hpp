@@ -8,7 +8,7 @@
 
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
-#include "server/world/player_rows.hpp"
+#include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 

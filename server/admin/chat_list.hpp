@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "server/world/chat_entry.hpp"
+#include "server/world/environment/chat_entry.hpp"
 
 namespace runstone {
 

@@ -85,9 +85,10 @@ bool CommandHandler::run_action(const Command& command, const CommandReply& repl
 void CommandHandler::run(const CommandCaller& caller, const std::string& line, const Clocks& now,
                          CommandReply reply) {
   // Restrictions end by the clock of the log, which may be ahead of the system's.
-  const auto command = parse_command(line, std::max(now.utc_us, world_.rights_time()));
+  const auto command = parse_command(line, std::max(now.utc_us, world_.rights().time()));
   if (!command) return refuse(reply, command.error());
-  if (auto why = why_not(caller, world_.rights(), rule_of(*command), world_.rights_time()))
+  if (auto why =
+          why_not(caller, world_.rights().state(), rule_of(*command), world_.rights().time()))
     return refuse(reply, *std::move(why));
   if (const auto* rights = std::get_if<RightsCommand>(&*command))
     return rights_.run(caller, *rights, now, reply);
@@ -96,13 +97,13 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
   if (std::holds_alternative<PlayersCommand>(*command)) return players(reply);
   if (std::holds_alternative<NamesCommand>(*command)) return names(reply);
   if (std::holds_alternative<ServersCommand>(*command))
-    return reply({server_list(world_.known_servers()), true, true});
+    return reply({server_list(world_.cluster().known_servers()), true, true});
   if (const auto* handover = std::get_if<HandoverCommand>(&*command))
     return hand_over(handover->server, reply);
   if (const auto* release = std::get_if<ReleaseNameCommand>(&*command))
     return release_name(release->name, reply);
   if (const auto* list = std::get_if<MaterialsCommand>(&*command)) {
-    return reply({material_list(world_.materials(), list->part), true, true});
+    return reply({material_list(world_.order().materials(), list->part), true, true});
   }
   if (const auto* add = std::get_if<AddMaterialsCommand>(&*command))
     return add_materials(add->file, now, reply);
@@ -138,30 +139,32 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
 
 void CommandHandler::help(const CommandCaller& caller, const CommandReply& reply) const {
   const auto has = [&](Right right) {
-    return has_right(caller, world_.rights(), right, world_.rights_time());
+    return has_right(caller, world_.rights().state(), right, world_.rights().time());
   };
   reply({command_help(has, !caller.actor.key), true, true});
 }
 
 void CommandHandler::status(const CommandReply& reply) const {
   const WorldCounters& c = world_.counters();
-  const WorldMemory memory = world_.memory();
+  const WorldMemory memory = world_.order().memory();
   reply({"sessions " + std::to_string(world_.session_count()) + ", edits " +
-             std::to_string(world_.head()) + " (on disk " + std::to_string(world_.durable()) +
-             "), since the start " + std::to_string(c.edits_ordered) + " ordered and " +
-             std::to_string(c.edits_rejected) + " rejected\nchunks in memory " +
-             std::to_string(world_.resident_chunks()) + " (" + memory_text(memory.voxels) +
-             "), waiting edits " + memory_text(memory.stacked + memory.queued) +
-             ", damaged chunks " + std::to_string(c.chunks_failed) +
-             ", rollbacks and undos under way " + std::to_string(rollback_.running()),
+             std::to_string(world_.order().head()) + " (on disk " +
+             std::to_string(world_.order().durable()) + "), since the start " +
+             std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
+             " rejected\nchunks in memory " +
+             std::to_string(world_.order().chunks().resident_count()) + " (" +
+             memory_text(memory.voxels) + "), waiting edits " +
+             memory_text(memory.stacked + memory.queued) + ", damaged chunks " +
+             std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
+             std::to_string(rollback_.running()),
          true, true});
 }
 
 void CommandHandler::players(const CommandReply& reply) {
   auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
   workers_.run([rows](WorldReader& reader, const Generator&) { *rows = reader.players(); },
-               [rows, present = world_.online_players(), visitors = world_.visitors(),
-                reply](const std::string& error) {
+               [rows, present = world_.people().online(),
+                visitors = world_.order().players().visitors(), reply](const std::string& error) {
                  if (!error.empty()) return refuse(reply, "players: " + error);
                  if (!*rows) return refuse(reply, "players: " + rows->error().message());
                  reply({player_list(**rows, present, visitors), true, true});
@@ -169,7 +172,7 @@ void CommandHandler::players(const CommandReply& reply) {
 }
 
 void CommandHandler::hand_over(std::optional<SessionId> successor, const CommandReply& reply) {
-  if (const auto why = world_.handover_refusal(successor))
+  if (const auto why = world_.cluster().handover_refusal(successor))
     return refuse(reply, "handover: " + *why);
   if (!actions_.hand_over) return refuse(reply, "this server cannot do that");
   // A player at another server gets no later line: the next owner does not know of the command.
@@ -179,13 +182,13 @@ void CommandHandler::hand_over(std::optional<SessionId> successor, const Command
 
 void CommandHandler::names(const CommandReply& reply) const {
   std::vector<OwnedName> owned;
-  for (const NameClaim& claim : world_.name_claims())
-    owned.push_back({claim.name, claim.key, world_.author_of(claim.key)});
+  for (const NameClaim& claim : world_.order().names().all())
+    owned.push_back({claim.name, claim.key, world_.order().players().author_of(claim.key)});
   reply({name_list(owned), true, true});
 }
 
 void CommandHandler::release_name(const std::string& name, const CommandReply& reply) {
-  const auto released = world_.release_name(name);
+  const auto released = world_.people().names().release(name);
   if (!released) return refuse(reply, "names release: " + released.error());
   reply({"\"" + released->name + "\" was owned by " + key_fingerprint(released->key) +
              "; the next player who joins under it owns it",
@@ -194,7 +197,8 @@ void CommandHandler::release_name(const std::string& name, const CommandReply& r
 
 void CommandHandler::say(const CommandCaller& caller, const std::string& text, const Clocks& now,
                          const CommandReply& reply) {
-  const std::size_t sessions = world_.say(text, caller.actor.key.value_or(PublicKey{}), now);
+  const std::size_t sessions =
+      world_.people().chat().say(text, caller.actor.key.value_or(PublicKey{}), now);
   reply({"sent to " + std::to_string(sessions) + (sessions == 1 ? " session" : " sessions"), true,
          true});
 }
@@ -237,7 +241,7 @@ void CommandHandler::log(const LogCommand& command, const Clocks& now, const Com
   resolve(command.filter, "log", reply,
           [this, limit = command.limit, reply](const SelectionFilter& filter) {
             SelectionFilter on_disk = filter;
-            on_disk.last = world_.durable();
+            on_disk.last = world_.order().durable();
             auto text = std::make_shared<std::string>();
             auto wrong = std::make_shared<std::string>();
             workers_.run(
@@ -274,7 +278,7 @@ void CommandHandler::add_materials(const std::string& file, const Clocks& now,
                  if (!*read) return refuse(reply, command + read->error());
                  std::vector<MaterialRow> rows;
                  for (const MaterialFileRow& each : **read) rows.push_back(each.row);
-                 const auto added = world_.add_materials(rows, now);
+                 const auto added = world_.changes().add_materials(rows, now);
                  if (added) return reply({added_text(*added, rows), true, true});
                  TextError wrong{file, 0, "", added.error().what};
                  if (const auto row = added.error().row) {

@@ -26,7 +26,7 @@ std::int32_t voxel_of(double coordinate) {
 }  // namespace
 
 std::string player_list(const std::vector<PlayerRow>& stored,
-                        const std::vector<WorldServer::OnlinePlayer>& present,
+                        const std::vector<OnlinePlayer>& present,
                         const std::vector<PlayerRow>& visitors) {
   std::map<AuthorId, std::string> lines;
   for (const PlayerRow& row : stored) {
@@ -34,7 +34,7 @@ std::string player_list(const std::vector<PlayerRow>& stored,
     lines[row.author] = line_of(row);
   }
   for (const PlayerRow& row : visitors) lines[row.author] = line_of(row) + " left without an edit";
-  for (const WorldServer::OnlinePlayer& player : present) {
+  for (const OnlinePlayer& player : present) {
     lines[player.author] =
         line_of({player.author, player.key, player.name}) + " is here, at " +
         text_of(VoxelPos{voxel_of(player.at.x), voxel_of(player.at.y), voxel_of(player.at.z)});

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "server/world/player_rows.hpp"
+#include "server/world/environment/player_rows.hpp"
 #include "server/world/world_server.hpp"
 
 namespace runstone {
@@ -13,7 +13,7 @@ namespace runstone {
 /// left. Anybody can make any number of keys, so at most 500 players of the store who are not
 /// present are listed; a last line counts the others.
 std::string player_list(const std::vector<PlayerRow>& stored,
-                        const std::vector<WorldServer::OnlinePlayer>& present,
+                        const std::vector<OnlinePlayer>& present,
                         const std::vector<PlayerRow>& visitors);
 
 }  // namespace runstone

@@ -31,12 +31,12 @@ std::vector<PublicKey> keys_of(const RightsState& state) {
 /// Returns what the world strand knows about players. A worker adds what the store has.
 KnownPlayers::Sources sources_of(const WorldServer& world, const std::vector<std::string>& words) {
   KnownPlayers::Sources sources;
-  for (const WorldServer::OnlinePlayer& player : world.online_players())
+  for (const OnlinePlayer& player : world.people().online())
     sources.present.push_back({player.author, player.key, player.name});
-  sources.visitors = world.visitors();
+  sources.visitors = world.order().players().visitors();
   // Only a fingerprint finds a key without a name.
   if (std::any_of(words.begin(), words.end(), is_fingerprint))
-    sources.others = keys_of(world.rights());
+    sources.others = keys_of(world.rights().state());
   return sources;
 }
 
@@ -105,9 +105,9 @@ void RightsCommands::run(const CommandCaller& caller, const RightsCommand& comma
 void RightsCommands::tick() {
   std::vector<Waiting> waiting = std::exchange(waiting_, {});
   for (Waiting& each : waiting) {
-    if (world_.durable() >= each.needed) {
+    if (world_.order().durable() >= each.needed) {
       each.begin();
-    } else if (!world_.accepts_edits()) {
+    } else if (!world_.order().accepts_edits()) {
       refuse(each.reply, "rights undo: the log cannot be written any more");
     } else {
       waiting_.push_back(std::move(each));
@@ -132,7 +132,8 @@ void RightsCommands::with_players(const Call& call, std::vector<std::string> wor
 void RightsCommands::change(const Call& call, const RightsChange& change, const std::string& text) {
   if (const auto valid = validate(change); !valid) return refuse(call.reply, valid.error().what);
   const std::size_t sessions = world_.session_count();
-  const auto seq = world_.change_rights(change, call.caller.actor, call.caller.author, call.now);
+  const auto seq =
+      world_.changes().change_rights(change, call.caller.actor, call.caller.author, call.now);
   if (!seq) return refuse(call.reply, seq.error());
   std::string line = text + " (record " + std::to_string(*seq) + ")";
   const std::size_t left = world_.session_count();
@@ -142,7 +143,7 @@ void RightsCommands::change(const Call& call, const RightsChange& change, const 
 
 void RightsCommands::carry_out(const ListRolesCommand& /*command*/, const Call& call) {
   with_players(call, {}, [this, call](const Players& players, const Keys&) {
-    call.reply({role_list(world_.rights(), *players), true, true});
+    call.reply({role_list(world_.rights().state(), *players), true, true});
   });
 }
 
@@ -175,16 +176,16 @@ void RightsCommands::carry_out(const GrantCommand& command, const Call& call) {
 void RightsCommands::carry_out(const RevokeCommand& command, const Call& call) {
   with_players(call, {command.player}, [this, call](const Players& players, const Keys& keys) {
     const std::string who = players->text_of(keys[0]);
-    if (!world_.rights().grants().contains(keys[0]))
+    if (!world_.rights().state().grants().contains(keys[0]))
       return refuse(call.reply, who + " has no granted role (grants lists them)");
     change(call, GrantRole{keys[0], ""},
-           who + " has the default role " + world_.rights().default_role().value);
+           who + " has the default role " + world_.rights().state().default_role().value);
   });
 }
 
 void RightsCommands::carry_out(const ListGrantsCommand& /*command*/, const Call& call) {
   with_players(call, {}, [this, call](const Players& players, const Keys&) {
-    call.reply({grant_list(world_.rights(), *players), true, true});
+    call.reply({grant_list(world_.rights().state(), *players), true, true});
   });
 }
 
@@ -221,8 +222,8 @@ void RightsCommands::carry_out(const LiftCommand& command, const Call& call) {
 
 void RightsCommands::lift_subject(const LiftCommand& command, const RestrictionSubject& subject,
                                   const std::string& who, const Call& call) {
-  const RightsState& state = world_.rights();
-  const TimeUs now_us = world_.rights_time();
+  const RightsState& state = world_.rights().state();
+  const TimeUs now_us = world_.rights().time();
   const std::string kind = restricted_text(command.kind);
   const Decided<Restrict>* found = state.find_restriction(command.kind, subject);
   if (found == nullptr || (found->value.until_us != 0 && found->value.until_us <= now_us)) {
@@ -239,7 +240,8 @@ void RightsCommands::lift_subject(const LiftCommand& command, const RestrictionS
 
 void RightsCommands::carry_out(const ListRestrictionsCommand& /*command*/, const Call& call) {
   with_players(call, {}, [this, call](const Players& players, const Keys&) {
-    call.reply({restriction_list(world_.rights(), world_.rights_time(), *players), true, true});
+    call.reply(
+        {restriction_list(world_.rights().state(), world_.rights().time(), *players), true, true});
   });
 }
 
@@ -250,9 +252,9 @@ void RightsCommands::carry_out(const KickCommand& command, const Call& call) {
         const std::string who = players->text_of(keys[0]);
         // A player may kick whom the player may mute: those who have fewer rights.
         const Restrict mute{RestrictionKind::mute, keys[0], 0, ""};
-        if (auto why = world_.change_refusal(mute, call.caller.actor))
+        if (auto why = world_.rights().change_refusal(mute, call.caller.actor))
           return refuse(call.reply, *std::move(why));
-        const std::size_t ended = world_.kick(keys[0], reason);
+        const std::size_t ended = world_.people().kick(keys[0], reason);
         if (ended == 0) return refuse(call.reply, who + " is not here");
         call.reply({who + " was kicked; sessions ended: " + std::to_string(ended), true, true});
       });
@@ -262,7 +264,7 @@ void RightsCommands::carry_out(const ProtectCommand& command, const Call& call) 
   std::vector<std::string> words;
   if (command.owner) words.push_back(*command.owner);
   with_players(call, words, [this, command, call](const Players& players, const Keys& keys) {
-    const Decided<ProtectedBox>* old = world_.rights().find_box(command.name);
+    const Decided<ProtectedBox>* old = world_.rights().state().find_box(command.name);
     if (old == nullptr && !command.box) return refuse(call.reply, no_box(command.name));
     ProtectedBox box = old == nullptr ? ProtectedBox{} : old->value;
     box.name = command.name;
@@ -279,7 +281,7 @@ void RightsCommands::carry_out(const ProtectCommand& command, const Call& call) 
 void RightsCommands::carry_out(const BoxMembersCommand& command, const Call& call) {
   with_players(
       call, command.players, [this, command, call](const Players& players, const Keys& keys) {
-        const Decided<ProtectedBox>* old = world_.rights().find_box(command.name);
+        const Decided<ProtectedBox>* old = world_.rights().state().find_box(command.name);
         if (old == nullptr) return refuse(call.reply, no_box(command.name));
         ProtectedBox box = old->value;
         const std::string unchanged = command.is_removal ? " is no member of " : " is a member of ";
@@ -307,7 +309,7 @@ void RightsCommands::carry_out(const ClaimCommand& command, const Call& call) {
     return refuse(call.reply, "claims are for players: protect " + command.name +
                                   " ... owner PLAYER protects ground for one");
   }
-  const Decided<ProtectedBox>* old = world_.rights().find_box(command.name);
+  const Decided<ProtectedBox>* old = world_.rights().state().find_box(command.name);
   if (old != nullptr && old->value.owner != owner) {
     return refuse(call.reply, "there is a protected box \"" + command.name +
                                   "\" of somebody else: choose another name");
@@ -320,7 +322,7 @@ void RightsCommands::carry_out(const ClaimCommand& command, const Call& call) {
 }
 
 void RightsCommands::carry_out(const UnprotectCommand& command, const Call& call) {
-  if (world_.rights().find_box(command.name) == nullptr)
+  if (world_.rights().state().find_box(command.name) == nullptr)
     return refuse(call.reply, no_box(command.name));
   change(call, Unprotect{command.name}, command.name + " protects nothing any more");
 }
@@ -329,9 +331,9 @@ void RightsCommands::carry_out(const ListBoxesCommand& command, const Call& call
   with_players(call, {}, [this, at = command.at, call](const Players& players, const Keys&) {
     std::vector<const Decided<ProtectedBox>*> boxes;
     if (at) {
-      boxes = world_.rights().boxes_in({*at, {at->x + 1, at->y + 1, at->z + 1}});
+      boxes = world_.rights().state().boxes_in({*at, {at->x + 1, at->y + 1, at->z + 1}});
     } else {
-      for (const auto& [name, box] : world_.rights().boxes()) boxes.push_back(&box);
+      for (const auto& [name, box] : world_.rights().state().boxes()) boxes.push_back(&box);
     }
     if (at && boxes.empty()) return call.reply({"no box protects " + text_of(*at), true, true});
     call.reply({box_list(boxes, *players), true, true});
@@ -347,8 +349,8 @@ void RightsCommands::carry_out(const WhyCommand& command, const Call& call) {
 
 void RightsCommands::answer_why(const WhyCommand& command, const PublicKey& key,
                                 const KnownPlayers& players, const Call& call) {
-  const RightsState& state = world_.rights();
-  const TimeUs now_us = world_.rights_time();
+  const RightsState& state = world_.rights().state();
+  const TimeUs now_us = world_.rights().time();
   if (call.caller.actor.key != key) {
     const CommandRule about_others{{Right::moderate}, false};
     if (auto why = why_not(call.caller, state, about_others, now_us))
@@ -364,8 +366,8 @@ void RightsCommands::answer_why(const WhyCommand& command, const PublicKey& key,
 
 void RightsCommands::carry_out(const UndoRightsCommand& command, const Call& call) {
   // The inverse depends on the records after this one, so all of them must be on disk.
-  const Sequence newest = world_.newest_rights();
-  if (world_.durable() < newest) {
+  const Sequence newest = world_.rights().newest();
+  if (world_.order().durable() < newest) {
     waiting_.push_back({newest, [this, command, call] { carry_out(command, call); }, call.reply});
     return;
   }
@@ -376,7 +378,7 @@ void RightsCommands::carry_out(const UndoRightsCommand& command, const Call& cal
       [this, records, command, call, newest](const std::string& error) {
         if (!error.empty()) return refuse(call.reply, "rights undo: " + error);
         if (!*records) return refuse(call.reply, "rights undo: " + records->error().message());
-        if (newest != world_.newest_rights()) return carry_out(command, call);
+        if (newest != world_.rights().newest()) return carry_out(command, call);
         undo_record(command.seq, **records, call);
       });
 }
@@ -402,9 +404,10 @@ void RightsCommands::undo_record(Sequence seq, const std::vector<RightsRecord>& 
 }
 
 void RightsCommands::carry_out(const CreateInviteCommand& command, const Call& call) {
-  const Invite invite{world_.new_invite_id(), command.role, command.uses, command.until_us};
+  const Invite invite{world_.people().new_invite_id(), command.role, command.uses,
+                      command.until_us};
   change(call, CreateInvite{invite},
-         world_.invite_link(invite.id) + "\ninvite " + invite_text(invite) +
+         world_.people().invite_link(invite.id) + "\ninvite " + invite_text(invite) +
              ". Whoever has the link can use it: pass it on in private");
 }
 
@@ -416,13 +419,14 @@ void RightsCommands::carry_out(const CancelInviteCommand& command, const Call& c
 
 void RightsCommands::carry_out(const ListInvitesCommand& /*command*/, const Call& call) {
   with_players(call, {}, [this, call](const Players& players, const Keys&) {
-    call.reply({invite_list(world_.rights(), world_.rights_time(), *players), true, true});
+    call.reply(
+        {invite_list(world_.rights().state(), world_.rights().time(), *players), true, true});
   });
 }
 
 void RightsCommands::carry_out(const ListRefusalsCommand& /*command*/, const Call& call) {
   with_players(call, {}, [this, call](const Players& players, const Keys&) {
-    call.reply({refusal_list(world_.refusals(), *players), true, true});
+    call.reply({refusal_list(world_.rights().refusals(), *players), true, true});
   });
 }
 
@@ -434,7 +438,8 @@ void RightsCommands::carry_out(const SetPasswordCommand& command, const Call& ca
   }
   std::string text = "players without a granted role join with the password and get the role " +
                      command.password.role;
-  const Decided<Role>* usual = world_.rights().find_role(world_.rights().default_role().value);
+  const Decided<Role>* usual =
+      world_.rights().state().find_role(world_.rights().state().default_role().value);
   if (usual != nullptr && usual->value.rights.has(Right::see))
     text += "; others still join as " + usual->value.name + " (role default nobody keeps them out)";
   change(call, SetPassword{command.password}, text);
@@ -447,7 +452,7 @@ void RightsCommands::carry_out(const ClearPasswordCommand& /*command*/, const Ca
 
 void RightsCommands::carry_out(const ShowPasswordCommand& /*command*/, const Call& call) {
   with_players(call, {}, [this, call](const Players& players, const Keys&) {
-    call.reply({password_line(world_.rights(), *players), true, true});
+    call.reply({password_line(world_.rights().state(), *players), true, true});
   });
 }
 

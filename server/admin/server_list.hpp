@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "server/world/handover.hpp"
+#include "server/world/cluster/handover.hpp"
 
 namespace runstone {
 

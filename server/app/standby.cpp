@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "server/runtime/logging.hpp"
-#include "server/world/handover.hpp"
+#include "server/world/cluster/handover.hpp"
 
 namespace runstone {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "common/sql/database.hpp"
 #include "server/chat/chat_query.hpp"
-#include "server/world/chat_entry.hpp"
+#include "server/world/environment/chat_entry.hpp"
 
 namespace runstone {
 

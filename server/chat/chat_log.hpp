@@ -24,7 +24,7 @@
 #include "common/core/result.hpp"
 #include "server/chat/chat_database.hpp"
 #include "server/chat/chat_query.hpp"
-#include "server/world/chat_entry.hpp"
+#include "server/world/environment/chat_entry.hpp"
 
 namespace runstone {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/core/ids.hpp"
-#include "server/world/chat_entry.hpp"
+#include "server/world/environment/chat_entry.hpp"
 
 namespace runstone {
 

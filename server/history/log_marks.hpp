@@ -2,7 +2,7 @@
 #pragma once
 #include "protocol/codec/log_mark_messages.hpp"
 #include "server/store/log_reader.hpp"
-#include "server/world/world_environment.hpp"
+#include "server/world/environment/world_environment.hpp"
 
 namespace runstone {
 

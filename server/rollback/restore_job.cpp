@@ -53,19 +53,19 @@ bool RestoreJob::is_careful(const ChunkKey& key) const {
 }
 
 std::optional<RestoreWork> RestoreJob::next_work(const WorldServer& world) {
-  if (!world.accepts_edits()) return std::nullopt;
+  if (!world.order().accepts_edits()) return std::nullopt;
   if (state_ != State::applying || is_working_ || planned_.size() >= limits_.work_chunks)
     return std::nullopt;
   RestoreWork work;
   work.selection = order_.selection;
-  work.end = world.durable();
+  work.end = world.order().durable();
   // Only the durable log can be read. The plan of a chunk whose last edit is not in it would have
   // an old version.
   for (std::size_t looked = waiting_.size(); looked > 0 && work.items.size() < limits_.work_chunks;
        --looked) {
     const ChunkKey key = waiting_.front();
     waiting_.pop_front();
-    const bool is_durable = world.chunk_version(key).seq <= work.end;
+    const bool is_durable = world.order().chunks().version(key).seq <= work.end;
     if (!is_durable && ++passes_[key] >= kPassesMax) collisions_[key] = kCollisionsMax;
     if (is_durable || is_careful(key)) {
       work.items.push_back({key, is_careful(key)});
@@ -110,7 +110,7 @@ void RestoreJob::cancel() {
 void RestoreJob::step(WorldServer& world, const Clocks& now) {
   if (state_ != State::applying) return;
   // A worker may still plan chunks. Its answer is dropped, because the job has ended.
-  if (!world.accepts_edits()) {
+  if (!world.order().accepts_edits()) {
     state_ = State::failed;
     progress_.error =
         "the server stops, its log cannot be written, or another server owns the world";
@@ -126,7 +126,8 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
          (slice.empty() || voxels + planned_.front().voxels <= limits_.slice_voxels)) {
     RestoredChunk chunk = std::move(planned_.front());
     planned_.pop_front();
-    if (!is_careful(chunk.key) && world.chunk_version(chunk.key).seq != chunk.version.seq) {
+    if (!is_careful(chunk.key) &&
+        world.order().chunks().version(chunk.key).seq != chunk.version.seq) {
       ++progress_.collisions;
       ++collisions_[chunk.key];
       waiting_.push_back(chunk.key);
@@ -146,8 +147,8 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
     slice.push_back(std::move(chunk));
   }
   if (slice.empty()) return end_if_done();
-  const Sequence before = world.head();
-  const ServerEditsResult answer = world.order_server_edits(offers, order_.payer, now);
+  const Sequence before = world.order().head();
+  const ServerEditsResult answer = world.changes().order_edits(offers, order_.payer, now);
   if (answer.state == ServerEditsResult::State::taken) {
     state_ = State::failed;
     progress_.error =
@@ -159,7 +160,7 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
     next_seq_ += answer.count;
     progress_.edits += answer.count;
     if (progress_.first == 0) progress_.first = before + 1;
-    progress_.last = world.head();
+    progress_.last = world.order().head();
   }
   take_written(std::move(slice), answer.count, world);
   end_if_done();
@@ -167,7 +168,7 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
 
 void RestoreJob::leave_protected(RestoredChunk& chunk, const WorldServer& world) {
   std::erase_if(chunk.edits, [&](const EditDescriptor& edit) {
-    auto why = world.edit_refusal(order_.author, edit);
+    auto why = world.rights().edit_refusal(order_.author, edit);
     if (!why) return false;
     ++progress_.edits_refused;
     chunk.voxels -= counted_voxels(edit);
@@ -191,7 +192,7 @@ void RestoreJob::take_written(std::vector<RestoredChunk> slice, std::size_t coun
     if (begun_.insert(chunk->key).second) ++progress_.chunks_changed;
     if (!chunk->edits.empty()) {
       // No other edit came in between, so the rest of the plan fits the new version.
-      chunk->version = world.chunk_version(chunk->key);
+      chunk->version = world.order().chunks().version(chunk->key);
       break;
     }
     ++progress_.chunks_done;

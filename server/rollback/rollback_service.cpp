@@ -63,9 +63,9 @@ ClientInstance RollbackService::new_instance() {
 void RollbackService::when_durable(const Clocks& now, const CommandReply& reply,
                                    std::function<void()> begin) {
   world_.commit(now);
-  if (!world_.accepts_edits()) return refuse(reply, kNotNow);
-  if (world_.durable() >= world_.head()) return begin();
-  waiting_.push_back({world_.head(), std::move(begin), reply});
+  if (!world_.order().accepts_edits()) return refuse(reply, kNotNow);
+  if (world_.order().durable() >= world_.order().head()) return begin();
+  waiting_.push_back({world_.order().head(), std::move(begin), reply});
 }
 
 std::string RollbackService::busy_text(AuthorId author) const {
@@ -82,7 +82,7 @@ void RollbackService::change_player_actions(AuthorId author, Cause cause, const 
   const std::string name = name_of(cause);
   if (player_changes_.contains(author)) return refuse(reply, name + ": " + busy_text(author));
   world_.commit(now);
-  if (world_.has_waiting_edit(author))
+  if (world_.order().has_waiting_edit(author))
     return refuse(
         reply,
         name + ": an edit of yours still waits for its turn; it is large, or behind a large one");
@@ -91,7 +91,7 @@ void RollbackService::change_player_actions(AuthorId author, Cause cause, const 
       return refuse(reply, name + ": " + busy_text(author));
     auto found = std::make_shared<SearchResult>(PlayerActionSearch());
     workers_.run(
-        [found, author, cause, end = world_.durable(), should_continue = should_continue()](
+        [found, author, cause, end = world_.order().durable(), should_continue = should_continue()](
             WorldReader& reader, const Generator& generator) {
           *found = next_player_change(reader, generator, author, cause, end, should_continue);
         },
@@ -121,7 +121,7 @@ void RollbackService::start_player_change(AuthorId author, Cause cause, SearchRe
   RestoreOrder order;
   order.author = author;
   order.instance = player_instance_;
-  order.first_seq = std::max(world_.resolved(author, player_instance_), kGroupBegins) + 1;
+  order.first_seq = std::max(world_.order().resolved(author, player_instance_), kGroupBegins) + 1;
   order.payer = author;
   order.cause = cause;
   order.subject = change.action;
@@ -142,9 +142,9 @@ void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, 
       previews_.erase(previews_.begin());
     }
     SelectionFilter until_now = filter;
-    until_now.last = std::min(filter.last, world_.durable());
+    until_now.last = std::min(filter.last, world_.order().durable());
     workers_.run(
-        [preview, until_now, view_plan, summarise, end = world_.durable()](
+        [preview, until_now, view_plan, summarise, end = world_.order().durable()](
             WorldReader& reader, const Generator& generator) {
           preview->compute(reader, generator, until_now, end, view_plan, summarise);
         },
@@ -198,7 +198,8 @@ void RollbackService::apply(const std::string& id, AuthorId author, CommandReply
   if (preview->state == RollbackPreview::State::applied) {
     return refuse(reply, "rollback apply: " + id + " was applied before");
   }
-  if (!world_.accepts_edits()) return refuse(reply, std::string("rollback apply: ") + kNotNow);
+  if (!world_.order().accepts_edits())
+    return refuse(reply, std::string("rollback apply: ") + kNotNow);
   preview->state = RollbackPreview::State::applied;
   RestoreOrder order;
   order.author = author;
@@ -260,7 +261,7 @@ void RollbackService::undo_rollback(const std::string& id, AuthorId author, cons
   const Sequence seq = rollback_named(id, reply);
   if (seq == 0) return;
   when_durable(now, reply, [this, seq, author, reply] {
-    if (seq > world_.head())
+    if (seq > world_.order().head())
       return refuse(reply, "rollback undo: there is no edit " + std::to_string(seq));
     auto found = std::make_shared<StoreResult<Selection>>(Selection());
     workers_.run(
@@ -364,8 +365,8 @@ bool RollbackService::answer_if_ended(Job& job) {
   const RestoreJob::Progress& p = job.job.progress();
   const RestoreJob::State state = job.job.state();
   if (state == RestoreJob::State::applying) return false;
-  const bool is_on_disk = world_.durable() >= p.last;
-  if (!is_on_disk && world_.accepts_edits()) return false;  // the answer waits for the disk
+  const bool is_on_disk = world_.order().durable() >= p.last;
+  if (!is_on_disk && world_.order().accepts_edits()) return false;  // the answer waits for the disk
   const std::string what = counted(p.voxels, "voxel") + " in " + counted(p.chunks_changed, "chunk");
   const std::string undo_hint =
       p.first == 0 || job.player_change_of
@@ -399,14 +400,14 @@ bool RollbackService::answer_if_ended(Job& job) {
 
 void RollbackService::tick(const Clocks& now) {
   std::vector<Waiting> ready;
-  const bool is_closed = !world_.accepts_edits();
+  const bool is_closed = !world_.order().accepts_edits();
   std::erase_if(waiting_, [&](Waiting& w) {
-    if (world_.durable() < w.needed && !is_closed) return false;
+    if (world_.order().durable() < w.needed && !is_closed) return false;
     ready.push_back(std::move(w));
     return true;
   });
   for (Waiting& w : ready) {
-    if (world_.durable() >= w.needed) {
+    if (world_.order().durable() >= w.needed) {
       w.begin();
     } else {
       refuse(w.reply, kNotNow);

@@ -20,7 +20,7 @@
 #include "server/rollback/restore_job.hpp"
 #include "server/rollback/rollback_preview.hpp"
 #include "server/rollback/selection.hpp"
-#include "server/world/world_config.hpp"
+#include "server/world/environment/world_config.hpp"
 
 namespace runstone {
 

@@ -4,7 +4,7 @@
 
 #include "server/admin/chat_list.hpp"
 #include "server/runtime/logging.hpp"
-#include "server/world/chat_state.hpp"
+#include "server/world/people/chat_state.hpp"
 
 namespace runstone {
 

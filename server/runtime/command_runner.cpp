@@ -78,7 +78,7 @@ CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReade
 
 void CommandRunner::run(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)] {
-    if (world_.is_following()) return refuse(reply, kGiveThere);
+    if (world_.cluster().is_following()) return refuse(reply, kGiveThere);
     handler_.run({}, line, read_clocks(), reply);
     tick(read_clocks());
   });
@@ -88,15 +88,18 @@ void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key
                         const std::string& text) {
   // The handler may answer at once, and WorldServer must not be called from within its own call.
   strand_.post([this, session, author, key, text] {
-    if (world_.is_following()) return world_.answer_command(session, {kGiveThere}, true, false);
-    const CommandCaller caller{
-        author, {key, operators_.contains(key)}, world_.restore_preview_view(session)};
-    if (caller.actor.is_operator || has_power(world_.rights().role_of(key).rights))
+    if (world_.cluster().is_following())
+      return world_.people().commands().answer(session, {kGiveThere}, true, false);
+    const CommandCaller caller{author,
+                               {key, operators_.contains(key)},
+                               world_.people().commands().restore_preview_view(session)};
+    if (caller.actor.is_operator || has_power(world_.rights().state().role_of(key).rights))
       logger("app").info("command author={} key={} command=\"{}\"", author, key_fingerprint(key),
                          logged_text(text));
     const auto reply = [this, session](const CommandAnswer& answer) {
-      if (answer.restore) world_.show_restore(session, *answer.restore);
-      world_.answer_command(session, answer_lines(answer.text), answer.is_done, answer.is_ok);
+      if (answer.restore) world_.people().commands().show_restore(session, *answer.restore);
+      world_.people().commands().answer(session, answer_lines(answer.text), answer.is_done,
+                                        answer.is_ok);
     };
     handler_.run(caller, text, read_clocks(), reply);
     tick(read_clocks());

@@ -6,7 +6,7 @@
 
 #include "server/net/net_session.hpp"
 #include "server/runtime/world_strand.hpp"
-#include "server/world/commit_pace.hpp"
+#include "server/world/order/commit_pace.hpp"
 
 namespace runstone {
 

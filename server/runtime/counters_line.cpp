@@ -16,9 +16,10 @@ std::string sessions_part(const WorldServer& world, const NetCounters& net) {
 
 /// The place of the server among the servers of its world.
 std::string ownership_part(const WorldServer& world) {
-  return fmt::format("epoch={} owns_world={:d} follows_owner={:d} followers={}", world.epoch(),
-                     world.owns_world(), world.is_following() && world.is_live(),
-                     world.follower_count());
+  return fmt::format("epoch={} owns_world={:d} follows_owner={:d} followers={}",
+                     world.order().epoch(), world.cluster().owns_world(),
+                     world.cluster().is_following() && world.cluster().is_live(),
+                     world.cluster().follower_count());
 }
 
 std::string log_part(const WorldServer& world, const LogWriter::Counters& log) {
@@ -26,22 +27,22 @@ std::string log_part(const WorldServer& world, const LogWriter::Counters& log) {
   return fmt::format(
       "edits_ordered={} edits_rejected={} commits={} seq={} durable={} checkpoint={} log_queue={} "
       "group_commits={} snapshots_written={} keyframes={}",
-      w.edits_ordered, w.edits_rejected, w.commits, world.head(), world.durable(),
-      world.checkpoint(), log.queued_records, log.commits, log.snapshots, log.keyframes);
+      w.edits_ordered, w.edits_rejected, w.commits, world.order().head(), world.order().durable(),
+      world.order().checkpoint(), log.queued_records, log.commits, log.snapshots, log.keyframes);
 }
 
 std::string chunks_part(const WorldServer& world, const RuntimeCounters& runtime) {
   const WorldCounters& w = world.counters();
-  const WorldMemory memory = world.memory();
+  const WorldMemory memory = world.order().memory();
   return fmt::format(
       "chunks_resident={} resident_bytes={} stacked_bytes={} queued_bytes={} chunks_failed={} "
       "snapshots_sent={} snapshots_encoded={} same_sent={} updates_sent={} claims_drifted={} "
       "tiles_sent={} tiles_same={} "
       "chunks_requested={} unavailable_sent={} chunks_stale={}",
-      world.resident_chunks(), memory.voxels, memory.stacked, memory.queued, w.chunks_failed,
-      w.snapshots_sent, runtime.snapshots_encoded, w.not_modified_sent, w.updates_sent,
-      w.claims_drifted, w.tiles_sent, w.tiles_not_modified, w.chunks_requested, w.unavailable_sent,
-      w.chunks_stale);
+      world.order().chunks().resident_count(), memory.voxels, memory.stacked, memory.queued,
+      w.chunks_failed, w.snapshots_sent, runtime.snapshots_encoded, w.not_modified_sent,
+      w.updates_sent, w.claims_drifted, w.tiles_sent, w.tiles_not_modified, w.chunks_requested,
+      w.unavailable_sent, w.chunks_stale);
 }
 
 std::string sending_part(const WorldServer& world, const NetCounters& net,
@@ -72,8 +73,8 @@ std::string counters_line(const WorldServer& world, const NetCounters& net,
   return fmt::format("counters {} {} {} {} {} {} stack_depths=\"{}\" dense_expansions={}",
                      sessions_part(world, net), ownership_part(world), log_part(world, log),
                      chunks_part(world, runtime), sending_part(world, net, runtime),
-                     waits_part(world.edit_waits()), world.stack_depths().text(),
-                     dense_expansions());
+                     waits_part(world.order().authority().edit_waits()),
+                     world.order().chunks().stack_depths().text(), dense_expansions());
 }
 
 }  // namespace runstone

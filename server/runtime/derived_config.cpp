@@ -7,7 +7,7 @@
 #include "protocol/default_port.hpp"
 #include "server/admin/player_address.hpp"
 #include "server/admin/reserved_names.hpp"
-#include "server/world/chat_state.hpp"
+#include "server/world/people/chat_state.hpp"
 
 namespace runstone {
 namespace {

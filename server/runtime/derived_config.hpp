@@ -4,7 +4,7 @@
 #include "server/admin/server_config.hpp"
 #include "server/net/net_session.hpp"
 #include "server/store/store.hpp"
-#include "server/world/world_config.hpp"
+#include "server/world/environment/world_config.hpp"
 
 namespace runstone {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "server/limits/line_throttle.hpp"
-#include "server/world/world_environment.hpp"
+#include "server/world/environment/world_environment.hpp"
 
 namespace runstone {
 

@@ -34,7 +34,7 @@ void OwnerConnection::connect_to(const std::string& address) {
     if (address == address_) return;
     // The server there may stand still, and would later speak as if it were the owner.
     leave("another server owns the world");
-    world_->owner_disconnected();
+    world_->cluster().owner_disconnected();
   });
 }
 
@@ -48,19 +48,19 @@ void OwnerConnection::connect(const std::string& address) {
   OutgoingLink::Events events;
   events.on_connected = [this, address](const std::optional<ChannelBinding>& binding) {
     logger("world").info("connected with the owner at {}", address);
-    strand_.post([this, binding] { world_->owner_connected(binding, read_clocks()); });
+    strand_.post([this, binding] { world_->cluster().owner_connected(binding, read_clocks()); });
   };
   events.on_message = [this](Message&& message, std::size_t bytes) {
     strand_.post([this, link = link_, message = std::move(message), bytes]() mutable {
-      world_->owner_received(std::move(message), read_clocks());
-      if (world_->is_live()) logged_reasons_.clear();
+      world_->cluster().owner_received(std::move(message), read_clocks());
+      if (world_->cluster().is_live()) logged_reasons_.clear();
       if (link != nullptr) link->handled(bytes);
     });
   };
   events.on_ended = [this, address](const std::string& why) {
     strand_.post([this, address, why] {
       link_.reset();
-      world_->owner_disconnected();
+      world_->cluster().owner_disconnected();
       const std::string line = address + ": " + why;
       if (!has_ended_ && is_not_logged_yet(line)) logger("world").warn("OWNER LOST: {}", line);
     });

@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "common/os/steady_clock.hpp"
-#include "server/world/clocks.hpp"
+#include "server/world/environment/clocks.hpp"
 
 namespace runstone {
 

@@ -8,7 +8,7 @@
 #include "common/core/result.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_reader.hpp"
-#include "server/world/world_config.hpp"
+#include "server/world/environment/world_config.hpp"
 #include "server/world/world_server.hpp"
 
 namespace runstone {

@@ -15,7 +15,7 @@
 #include "server/runtime/logging.hpp"
 #include "server/runtime/read_clocks.hpp"
 #include "server/runtime/recovery.hpp"
-#include "server/world/tile_resends.hpp"
+#include "server/world/ground/tile_resends.hpp"
 
 namespace runstone {
 namespace {
@@ -61,7 +61,7 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       chat_retention_(strand_, kChatRetentionInterval,
                       [this] {
                         const TimeUs log_us =
-                            world_->rights_time();  // may be ahead of the system's clock
+                            world_->rights().time();  // may be ahead of the system's clock
                         chat_log_->forget_before(
                             chat_kept_from_us(config_, std::min(log_us, read_clocks().utc_us)));
                       }),
@@ -102,7 +102,7 @@ Result<void, std::string> ServerCore::follow() {
   start->log.epoch = std::max(store_.epoch(), start->log.last_epoch);
   if (const auto made = make_world(*start); !made) return made;
   if (const auto ended = store_.end_reads(); !ended) return failure(ended.error().message());
-  world_->follow();
+  world_->cluster().follow();
   return {};
 }
 
@@ -158,7 +158,7 @@ Result<void, std::string> ServerCore::take_over(Store& store, const std::string&
   auto left = stopped->get_future();
   strand_.post([this, stopped] {
     owner_.end("this server takes the world over");
-    Left now{world_->stop_following(), world_->last_record()};
+    Left now{world_->cluster().stop_following(), world_->order().last_record()};
     stopped->set_value(std::move(now));
   });
   const Left mine = left.get();
@@ -172,7 +172,7 @@ Result<void, std::string> ServerCore::take_over(Store& store, const std::string&
   strand_.post([this, &store, start = *start, taken] {
     checkpoints_.stop();
     make_log(store, start.read.last);
-    taken->set_value(world_->take_over(start, read_clocks()));
+    taken->set_value(world_->cluster().take_over(start, read_clocks()));
   });
   if (!is_taken.get()) {
     log_->stop();
@@ -187,9 +187,9 @@ Result<SessionId, std::string> ServerCore::begin_handover(std::optional<SessionI
   auto asked = std::make_shared<std::promise<Result<Sequence, std::string>>>();
   auto head = asked->get_future();
   strand_.post([this, successor, asked] {
-    if (const auto why = world_->handover_refusal(successor))
+    if (const auto why = world_->cluster().handover_refusal(successor))
       return asked->set_value(Unexpected<std::string>{*why});
-    asked->set_value(world_->head());
+    asked->set_value(world_->order().head());
   });
   const Result<Sequence, std::string> needed = head.get();
   if (!needed) return Unexpected<std::string>{needed.error()};
@@ -203,12 +203,12 @@ Result<SessionId, std::string> ServerCore::begin_handover(std::optional<SessionI
   auto begun = std::make_shared<std::promise<Result<SessionId, std::string>>>();
   auto answer = begun->get_future();
   strand_.post([this, successor, begun] {
-    if (const auto why = world_->handover_refusal(successor))
+    if (const auto why = world_->cluster().handover_refusal(successor))
       return begun->set_value(Unexpected<std::string>{*why});
     if (!commands_->is_idle())
       return begun->set_value(Unexpected<std::string>{
           "rollbacks or undos are under way: wait, or cancel them (rollback list)"});
-    begun->set_value(world_->hand_over(successor, read_clocks()));
+    begun->set_value(world_->cluster().hand_over(successor, read_clocks()));
   });
   return answer.get();
 }
@@ -220,9 +220,10 @@ Result<void, std::string> ServerCore::end_handover() {
   auto is_written = ended->get_future();
   strand_.post([this, ended] {
     const LogWriter::Counters counters = log_counters_now();
-    if (log_->has_failed() || log_->durable() != world_->head() || counters.queued_records > 0)
+    if (log_->has_failed() || log_->durable() != world_->order().head() ||
+        counters.queued_records > 0)
       return ended->set_value(false);
-    world_->handover_written(read_clocks());
+    world_->cluster().handover_written(read_clocks());
     ended_logs_ = counters;
     environment_.detach_log();
     log_.reset();
@@ -246,7 +247,7 @@ void ServerCore::read_checkpoint() {
     if (const auto read = reader.checkpoint()) *checkpoint = *read;
   };
   readers_.read_log(work, [this, checkpoint](const std::string& /*error*/) {
-    world_->checkpoint_moved(*checkpoint);
+    world_->cluster().checkpoint_moved(*checkpoint);
   });
 }
 
@@ -287,7 +288,7 @@ void ServerCore::tick() {
   const Clocks now = read_clocks();
   world_->tick(now);
   if (commands_) commands_->tick(now);
-  if (const auto successor = world_->take_better_owner()) hand_over_to(*successor);
+  if (const auto successor = world_->cluster().take_better_owner()) hand_over_to(*successor);
 }
 
 void ServerCore::hand_over_to(SessionId successor) {
@@ -308,9 +309,9 @@ void ServerCore::after_task() {
   if (world_->has_ready_edits(steady_now_us())) commits_.schedule();
   schedule_delivery();
   schedule_tile_resends();
-  is_live_.store(world_->is_live());
-  has_forked_.store(world_->has_forked());
-  owner_heard_us_.store(world_->owner_heard_us().value_or(0));
+  is_live_.store(world_->cluster().is_live());
+  has_forked_.store(world_->cluster().has_forked());
+  owner_heard_us_.store(world_->cluster().owner_heard_us().value_or(0));
   finish_stop_if_flushed();
 }
 
@@ -340,16 +341,16 @@ LogWriter::Counters ServerCore::log_counters_now() const {
 }
 
 std::string ServerCore::status_of_follower() const {
-  const std::string owner = world_->is_live()
+  const std::string owner = world_->cluster().is_live()
                                 ? "this server follows the owner at " + owner_.address()
                                 : "this server waits for an owner of the world";
   return fmt::format("{}\nsessions {}, edits {} (on disk {})", owner, world_->session_count(),
-                     world_->head(), world_->durable());
+                     world_->order().head(), world_->order().durable());
 }
 
 void ServerCore::command(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)]() mutable {
-    if (!world_->is_following()) return commands_->run(line, std::move(reply));
+    if (!world_->cluster().is_following()) return commands_->run(line, std::move(reply));
     if (line == "stop") {
       actions_.stop();
       return reply({"", true, true});
@@ -364,7 +365,7 @@ void ServerCore::answer_gateway(const std::string& question, CommandReply reply)
   if (question != "status") return refuse(reply, "the only question is `status`");
   strand_.post([this, memory_bytes = process_memory_bytes(), reply = std::move(reply)] {
     std::string text = all_counters(memory_bytes);
-    for (const auto& player : world_->online_players()) {
+    for (const auto& player : world_->people().online()) {
       text += "\nplayer " + player.name;
       text += fmt::format("\nplace {:.1f} {:.1f} {:.1f} {}", player.at.x, player.at.y, player.at.z,
                           player.name);
@@ -391,7 +392,7 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
 
 void ServerCore::write_activity() {
   ActivitySample sample = sample_activity(*world_, listener_->counters(), log_counters_now());
-  const ActivityNow now{world_->online_players().size(), world_->memory().total()};
+  const ActivityNow now{world_->people().online().size(), world_->order().memory().total()};
   const std::string line = activity_line(sampled_, sample, now, config_.counters_s);
   sampled_ = sample;
   if (!line.empty()) logger("app").info("{}", line);
@@ -419,10 +420,10 @@ std::future<void> ServerCore::begin_stop() {
 void ServerCore::finish_stop_if_flushed() {
   // Sessions end within the linger time of NetSession, which is a second.
   // Another server waits for the world, and not for the sessions here.
-  if (!stopping_ || (!sessions_.is_empty() && !world_->hands_over())) return;
+  if (!stopping_ || (!sessions_.is_empty() && !world_->cluster().hands_over())) return;
   const bool gives_up =
-      log_ && (log_->has_failed() || (log_->is_full() && world_->is_stop_overdue()));
-  if (!gives_up && !world_->is_flushed()) return;
+      log_ && (log_->has_failed() || (log_->is_full() && world_->order().is_stop_overdue()));
+  if (!gives_up && !world_->order().is_flushed()) return;
   ticks_.stop();
   stalls_.stop();
   activity_.stop();
@@ -435,7 +436,8 @@ void ServerCore::finish_stop_if_flushed() {
 
 StopState ServerCore::stop_state() const {
   if (!log_) return {};
-  return {log_->has_failed(), world_->head() - log_->durable(), world_->dirty_chunks()};
+  return {log_->has_failed(), world_->order().head() - log_->durable(),
+          world_->order().dirty_chunks()};
 }
 
 void ServerCore::stop_writer() {
@@ -480,19 +482,19 @@ void ServerCore::schedule_turn() {
 }
 
 void ServerCore::schedule_delivery() {
-  if (!world_->has_deliveries() || std::exchange(is_delivery_posted_, true)) return;
+  if (!world_->ground().has_deliveries() || std::exchange(is_delivery_posted_, true)) return;
   strand_.post([this] {
     is_delivery_posted_ = false;
-    world_->deliver_next(read_clocks());
+    world_->ground().deliver_next(read_clocks());
   });
 }
 
 void ServerCore::schedule_tile_resends() {
-  if (!world_->has_tile_resends() || std::exchange(is_resend_scheduled_, true)) return;
+  if (!world_->ground().has_tile_resends() || std::exchange(is_resend_scheduled_, true)) return;
   tile_resends_.expires_after(std::chrono::microseconds(kTileResendBurstUs));
   strand_.wait(tile_resends_, [this](const asio::error_code& error) {
     is_resend_scheduled_ = false;
-    if (!error) world_->resend_tiles(read_clocks());
+    if (!error) world_->ground().resend_tiles(read_clocks());
   });
 }
 

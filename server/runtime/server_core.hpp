@@ -108,18 +108,18 @@ class ServerCore final : public NetEvents {
   void stop_writer();
   /// Returns true if another server waits to take the world over. Requires that the future of
   /// begin_stop() is ready.
-  bool hands_over() const { return world_->hands_over(); }
+  bool hands_over() const { return world_->cluster().hands_over(); }
   /// Returns what the stop has left undone. Requires stop_writer(), and that no thread runs the
   /// strand any more.
   StopState stop_state() const;
   /// Returns the edited chunks in memory, ascending. Requires that no thread runs the strand any
   /// more.
   std::vector<std::pair<ChunkKey, ChunkPtr>> edited_chunks() const {
-    return world_->edited_chunks();
+    return world_->order().chunks().edited();
   }
   /// Returns true if no role was ever granted and no invite ever made. Requires recover(), and that
   /// no thread runs the strand yet.
-  bool is_unclaimed() const { return !world_->rights().has_ever_granted(); }
+  bool is_unclaimed() const { return !world_->rights().state().has_ever_granted(); }
   /// Writes one line of all counters at info. Thread: any.
   void log_counters();
   /// Carries out a command of the console or the control socket. The replies come on the world

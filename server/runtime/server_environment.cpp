@@ -79,7 +79,7 @@ void ServerEnvironment::read_log(Sequence first) {
   };
   readers_.read_log(work, [this, found](const std::string& error) {
     if (!error.empty()) *found = failure(error);
-    world_->log_read(*found, read_clocks());
+    world_->cluster().log_read(*found, read_clocks());
   });
 }
 
@@ -120,11 +120,11 @@ void ServerEnvironment::load_chunk(const ChunkKey& key) {
 }
 
 void ServerEnvironment::make_tile(TileRequest request) {
-  tiles_.make(std::move(request), world_->materials(),
+  tiles_.make(std::move(request), world_->order().materials(),
               [this](const ChunkKey& key, const std::vector<MadeTile>& made, TileMaking::End end) {
                 if (end == TileMaking::End::stopped)
-                  return world_->tile_stopped(key, made, read_clocks());
-                world_->tiles_made(key, made, read_clocks());
+                  return world_->ground().tiles().stopped(key, made, read_clocks());
+                world_->ground().tiles().made(key, made, read_clocks());
               });
 }
 
@@ -133,10 +133,10 @@ void ServerEnvironment::make_past_tile(SessionId session, TileRequest request) {
                                              const std::vector<MadeTile>& made,
                                              TileMaking::End end) {
     if (end == TileMaking::End::stopped)
-      return world_->past_tile_stopped(session, request, made, read_clocks());
-    world_->past_tile_made(session, request, made, read_clocks());
+      return world_->ground().tiles().past_stopped(session, request, made, read_clocks());
+    world_->ground().tiles().past_made(session, request, made, read_clocks());
   };
-  tiles_.make(std::move(request), world_->materials(), then);
+  tiles_.make(std::move(request), world_->order().materials(), then);
 }
 
 void ServerEnvironment::tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) {
@@ -158,7 +158,7 @@ void ServerEnvironment::save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> ti
 void ServerEnvironment::open_history(SessionId session, const HistoryRequest& request) {
   readers_.open_history(request, [this, session, request = request.request](
                                      const WorldReaders::OpenedHistoryResult& opened) {
-    world_->history_opened(session, request, opened, read_clocks());
+    world_->ground().history_opened(session, request, opened, read_clocks());
   });
 }
 
@@ -166,14 +166,14 @@ void ServerEnvironment::load_history_chunk(SessionId session, HistoryNumber hist
                                            const ChunkKey& key) {
   readers_.load_history_chunk(
       at, key, [this, session, history, key](const Result<ChunkPtr, std::string>& chunk) {
-        world_->history_chunk_loaded(session, history, key, chunk, read_clocks());
+        world_->ground().history_chunk_loaded(session, history, key, chunk, read_clocks());
       });
 }
 
 void ServerEnvironment::read_log_marks(SessionId session, const LogMarksRequest& request) {
   readers_.read_log_marks(request, [this, session, request = request.request](
                                        const WorldReaders::FoundLogMarksResult& found) {
-    world_->log_marks_read(session, request, found, read_clocks());
+    world_->ground().log_marks_read(session, request, found, read_clocks());
   });
 }
 

@@ -18,7 +18,7 @@
 #include "server/runtime/owner_connection.hpp"
 #include "server/runtime/tile_making.hpp"
 #include "server/runtime/world_readers.hpp"
-#include "server/world/world_environment.hpp"
+#include "server/world/environment/world_environment.hpp"
 
 namespace runstone {
 

@@ -21,7 +21,7 @@
 #include "server/store/log_writer.hpp"
 #include "server/tiles/tile_ledger.hpp"
 #include "server/tiles/tile_source.hpp"
-#include "server/world/tile_request.hpp"
+#include "server/world/environment/tile_request.hpp"
 
 namespace runstone {
 

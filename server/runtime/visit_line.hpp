@@ -3,7 +3,7 @@
 #include <string>
 
 #include "server/net/net_session.hpp"
-#include "server/world/world_environment.hpp"
+#include "server/world/environment/world_environment.hpp"
 
 namespace runstone {
 

@@ -18,7 +18,7 @@
 #include "server/rollback/rollback_service.hpp"
 #include "server/runtime/low_priority_threads.hpp"
 #include "server/runtime/world_strand.hpp"
-#include "server/world/world_environment.hpp"
+#include "server/world/environment/world_environment.hpp"
 
 namespace runstone {
 

@@ -9,7 +9,7 @@
 #include "server/store/meta_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/store_error.hpp"
-#include "server/world/player_rows.hpp"
+#include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 

@@ -9,7 +9,7 @@
 
 #include "common/sql/database.hpp"
 #include "server/store/log_reader.hpp"
-#include "server/world/player_rows.hpp"
+#include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "server/store/store_error.hpp"
-#include "server/world/player_rows.hpp"
+#include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 

@@ -12,7 +12,7 @@
 #include "common/runs/chunk.hpp"
 #include "server/store/keyframe_reader.hpp"
 #include "server/store/store_error.hpp"
-#include "server/world/player_rows.hpp"
+#include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 

@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "server/interest/chunk_key_hash.hpp"
-#include "server/world/tile_request.hpp"
+#include "server/world/environment/tile_request.hpp"
 
 namespace runstone {
 

@@ -24,7 +24,7 @@
 #include "server/history/chunk_source.hpp"
 #include "server/tiles/tile_cache.hpp"
 #include "server/tiles/tile_ledger.hpp"
-#include "server/world/tile_request.hpp"
+#include "server/world/environment/tile_request.hpp"
 
 namespace runstone {
 

@@ -94,7 +94,7 @@ class Strand {
   }
 
   void deliver() {
-    while (server_.has_deliveries()) server_.deliver_next(now_);
+    while (server_.ground().has_deliveries()) server_.ground().deliver_next(now_);
   }
 
   /// Answers what the workers were asked for. Returns the time that the strand takes for the answers.
@@ -113,7 +113,7 @@ class Strand {
         outside_.tiles.pop_front();
         const MadeTile made = tile_of(request);
         const std::uint64_t start = core_ns();
-        server_.tiles_made(request.key, {made}, now_);
+        server_.ground().tiles().made(request.key, {made}, now_);
         ns += core_ns() - start;
       }
       const std::uint64_t start = core_ns();

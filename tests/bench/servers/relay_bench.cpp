@@ -68,11 +68,11 @@ struct Node {
 class TwoServers {
  public:
   TwoServers() {
-    other_.server.follow();
+    other_.server.cluster().follow();
     owner_.server.connected(kLink, now_);
-    other_.server.owner_connected(std::nullopt, now_);
+    other_.server.cluster().owner_connected(std::nullopt, now_);
     pass_messages();
-    RUNSTONE_ASSERT(other_.server.is_live());
+    RUNSTONE_ASSERT(other_.server.cluster().is_live());
     for (SessionId player = 1; player <= kPlayers; ++player) {
       join(owner_, player, 0);
       join(other_, player, kApart);
@@ -87,7 +87,7 @@ class TwoServers {
   Costs run(bool are_at_owner, std::size_t commit_edits) {
     owner_.ns = other_.ns = 0;
     SplitMix64 rng(1);
-    const Sequence before = owner_.server.head();
+    const Sequence before = owner_.server.order().head();
     for (std::size_t i = 0; i < kEdits; ++i) {
       edit(are_at_owner ? owner_ : other_, 1 + static_cast<SessionId>(i % kPlayers),
            are_at_owner ? 0 : kApart, rng);
@@ -95,8 +95,8 @@ class TwoServers {
       if ((i + 1) % kEditsPerTick == 0) tick();
     }
     tick();
-    RUNSTONE_ASSERT(owner_.server.head() == before + kEdits);
-    RUNSTONE_ASSERT(other_.server.head() == owner_.server.head());
+    RUNSTONE_ASSERT(owner_.server.order().head() == before + kEdits);
+    RUNSTONE_ASSERT(other_.server.order().head() == owner_.server.order().head());
     const auto us = [](const Node& node) { return static_cast<double>(node.ns) / 1000 / kEdits; };
     return {us(owner_), us(other_)};
   }
@@ -120,8 +120,9 @@ class TwoServers {
     while (!other_.outside.to_owner.empty() || !owner_.outside.to_link.empty()) {
       pass(other_.outside.to_owner, Sender::client, owner_,
            [this](Message&& message) { owner_.server.received(kLink, std::move(message), now_); });
-      pass(owner_.outside.to_link, Sender::server, other_,
-           [this](Message&& message) { other_.server.owner_received(std::move(message), now_); });
+      pass(owner_.outside.to_link, Sender::server, other_, [this](Message&& message) {
+        other_.server.cluster().owner_received(std::move(message), now_);
+      });
     }
   }
   template <class Take>
@@ -155,7 +156,7 @@ class TwoServers {
   void tick() {
     commit();
     owner_.timed([this] {
-      owner_.server.durable(owner_.server.head(), now_);
+      owner_.server.durable(owner_.server.order().head(), now_);
       owner_.server.tick(now_);
     });
     other_.timed([this] { other_.server.tick(now_); });
@@ -185,7 +186,7 @@ class TwoServers {
       node.timed([&] { node.server.chunk_loaded(key, std::move(chunk), now_); });
     }
     node.timed([&] {
-      while (node.server.has_deliveries()) node.server.deliver_next(now_);
+      while (node.server.ground().has_deliveries()) node.server.ground().deliver_next(now_);
     });
     return chunks;
   }

@@ -232,10 +232,10 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
     CHECK(is_wrong("common/edits/apply/edit_stack.cpp", "#include <" + std::string(header) + ">"));
     CHECK(is_wrong("protocol/codec/frame.hpp", "#include <" + std::string(header) + ">"));
   }
-  CHECK(is_wrong("server/world/authority.cpp", "#include <chrono>"));
+  CHECK(is_wrong("server/world/order/authority.cpp", "#include <chrono>"));
   CHECK(is_wrong("client/replica/replica.cpp", "#include <asio.hpp>"));
   CHECK(is_wrong("client/replica/replica.cpp", "#include \"common/os/steady_clock.hpp\""));
-  CHECK(is_wrong("server/world/authority.cpp", "#include \"common/os/steady_clock.hpp\""));
+  CHECK(is_wrong("server/world/order/authority.cpp", "#include \"common/os/steady_clock.hpp\""));
   // Test code in the product.
   CHECK(is_wrong("client/schedule/mesh_job.cpp", "#include \"tests/reference/binary_greedy.hpp\""));
   CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"tests/reference/dense_grid.hpp\""));
@@ -261,7 +261,7 @@ TEST_CASE("right includes pass", "[house]") {
   CHECK_FALSE(is_wrong("server/net/session.cpp", "#include \"common/os/steady_clock.hpp\""));
   CHECK_FALSE(is_wrong("client/net/link.cpp", "#include \"common/os/steady_clock.hpp\""));
   CHECK_FALSE(is_wrong("server/net/session.cpp", "#include <asio.hpp>"));
-  CHECK_FALSE(is_wrong("server/rollback/job.cpp", "#include \"server/world/authority.hpp\""));
+  CHECK_FALSE(is_wrong("server/rollback/job.cpp", "#include \"server/world/world_server.hpp\""));
   CHECK_FALSE(is_wrong("client/replica/replica.cpp", "#include \"protocol/codec/frame.hpp\""));
   CHECK_FALSE(is_wrong("tests/simulation/client/session/replica_test.cpp",
                        "#include \"client/replica/replica.hpp\""));

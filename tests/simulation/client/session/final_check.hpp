@@ -104,7 +104,7 @@ struct FinalCheck {
       const std::string name = "chunk " + std::to_string(key.at.x) + "," +
                                std::to_string(key.at.y) + "," + std::to_string(key.at.z);
       for (const WorldServer* world : worlds) {
-        const ChunkPtr live = world->find_chunk(key);
+        const ChunkPtr live = world->order().chunks().find(key);
         if (!live) continue;
         expect(digest_of(live->voxels) == expected, name + ": a server differs from the log");
         expect(live->digest == expected,

@@ -137,7 +137,7 @@ class Joined {
 void require_equal(Joined& joined) {
   REQUIRE(joined.session().loaded());
   for (const ChunkKey& key : joined.replica().confirmed_keys()) {
-    const ChunkPtr theirs = joined.bench.server.find_chunk(key);
+    const ChunkPtr theirs = joined.bench.server.order().chunks().find(key);
     const ChunkPtr ours = joined.replica().confirmed(key);
     REQUIRE(theirs != nullptr);
     REQUIRE(ours->version == theirs->version);

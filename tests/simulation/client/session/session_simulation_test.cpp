@@ -59,7 +59,7 @@ class Simulation {
   FinalCheck check() {
     FinalCheck r;
     std::vector<EditRecord> log;
-    const Sequence last = server_.world().head();
+    const Sequence last = server_.world().order().head();
     if (last > 0) {
       const auto read = server_.store().read_log(1, last, [&](const EditRecord& record) {
         log.push_back(record);
@@ -176,7 +176,7 @@ class Simulation {
   }
 
   void crash() {
-    const Sequence durable = server_.world().durable();
+    const Sequence durable = server_.world().order().durable();
     if (durable > 0) {
       remembered_.clear();
       const auto read = server_.store().read_log(1, durable, [&](const EditRecord& record) {
@@ -194,7 +194,7 @@ class Simulation {
 
   bool at_rest() {
     server_.log_full = false;
-    if (!server_.running() || server_.world().durable() != server_.world().head()) return false;
+    if (!server_.running() || server_.world().order().durable() != server_.world().order().head()) return false;
     return std::all_of(clients_.begin(), clients_.end(),
                        [](const auto& c) { return c->is_idle(); });
   }

@@ -173,7 +173,7 @@ class SimServer : public WorldEnvironment {
   void tick_later() {
     later(40'000, 60'000, [this] {
       world_->tick(now());
-      while (world_->has_deliveries()) world_->deliver_next(now());
+      while (world_->ground().has_deliveries()) world_->ground().deliver_next(now());
       tick_later();
     });
   }

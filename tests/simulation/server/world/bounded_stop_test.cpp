@@ -62,14 +62,14 @@ struct StopBench {
       const auto seq = static_cast<ClientSequence>(layer + 1);
       offers.push_back({{0, 5, seq}, Cause::console, 0, wide_box(layer), 0});
     }
-    const auto ordered = server.world().order_server_edits(offers, 0, server.now());
+    const auto ordered = server.world().changes().order_edits(offers, 0, server.now());
     REQUIRE(ordered.count == offers.size());
   }
   /// Stops the server in order and returns the time that it took.
   TimeUs stop() {
     const TimeUs began_us = time.now();
     server.world().begin_stop(server.now());
-    while (!server.world().is_flushed()) time.run_until(time.now() + 1'000);
+    while (!server.world().order().is_flushed()) time.run_until(time.now() + 1'000);
     return time.now() - began_us;
   }
 
@@ -92,15 +92,15 @@ TEST_CASE("ten thousand changed chunks that load slowly do not keep a stop beyon
   while (left > 0 && ++stops < 20) {
     const TimeUs took_us = bench.stop();
     CHECK(took_us < kStopUs + 200'000);  // a tick, and the log
-    CHECK(bench.server.world().durable() == kEdits);
-    const bool is_overdue = bench.server.world().is_stop_overdue();
-    CHECK(is_overdue == (bench.server.world().dirty_chunks() > 0));
+    CHECK(bench.server.world().order().durable() == kEdits);
+    const bool is_overdue = bench.server.world().order().is_stop_overdue();
+    CHECK(is_overdue == (bench.server.world().order().dirty_chunks() > 0));
     bench.server.crash();  // ends the server: a slice that is on its way is lost
     bench.server.start();
     // Written slices stay, so every start replays fewer chunks.
-    const std::size_t now = bench.server.world().dirty_chunks();
+    const std::size_t now = bench.server.world().order().dirty_chunks();
     CHECK(now < left);
-    CHECK(bench.server.world().checkpoint() == (now == 0 ? kEdits : 0));
+    CHECK(bench.server.world().order().checkpoint() == (now == 0 ? kEdits : 0));
     left = now;
   }
   CHECK(left == 0);
@@ -126,12 +126,12 @@ TEST_CASE("a start after a bounded stop writes the snapshots that are left in it
   bench.server.start();
   bench.edit();
   bench.stop();
-  REQUIRE(bench.server.world().dirty_chunks() > 0);
+  REQUIRE(bench.server.world().order().dirty_chunks() > 0);
   bench.server.crash();
   bench.server.start();
   bench.time.run_until(bench.time.now() + 120'000'000);
-  CHECK(bench.server.world().dirty_chunks() == 0);
-  CHECK(bench.server.world().checkpoint() == kEdits);
+  CHECK(bench.server.world().order().dirty_chunks() == 0);
+  CHECK(bench.server.world().order().checkpoint() == kEdits);
 }
 
 }  // namespace runstone::test

@@ -15,7 +15,7 @@
 
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
-#include "server/world/player_rows.hpp"
+#include "server/world/environment/player_rows.hpp"
 #include "tests/simulation/client/session/sim_server.hpp"
 #include "tests/simulation/server/world/protection.hpp"
 

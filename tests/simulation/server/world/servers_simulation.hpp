@@ -232,9 +232,9 @@ class ServersSimulation {
 
   bool is_at_rest() const {
     const auto follows_all = [&](const auto& server) {
-      return server->running() && server->world().is_live() &&
-             server->world().head() == database_.last() &&
-             server->world().durable() == database_.last();
+      return server->running() && server->world().cluster().is_live() &&
+             server->world().order().head() == database_.last() &&
+             server->world().order().durable() == database_.last();
     };
     return std::ranges::count_if(servers_, [](const auto& s) { return s->is_owner(); }) == 1 &&
            std::ranges::all_of(servers_, follows_all) &&
@@ -249,9 +249,9 @@ class ServersSimulation {
         continue;
       }
       text += std::string(server->is_owner() ? " owns" : " follows") +
-              " head=" + std::to_string(server->world().head()) +
-              " durable=" + std::to_string(server->world().durable()) +
-              (server->world().is_live() ? "" : " not live");
+              " head=" + std::to_string(server->world().order().head()) +
+              " durable=" + std::to_string(server->world().order().durable()) +
+              (server->world().cluster().is_live() ? "" : " not live");
     }
     for (const auto& client : clients_) {
       if (client->is_idle()) continue;

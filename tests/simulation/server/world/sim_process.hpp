@@ -67,9 +67,9 @@ class SimProcess final : public SimServer {
   /// it cannot.
   bool hand_over() {
     if (role_ != Role::owner || is_stopping_ || is_paused_) return false;
-    if (world_->handover_refusal(std::nullopt)) return false;
+    if (world_->cluster().handover_refusal(std::nullopt)) return false;
     tell("hands the world over");
-    world_->hand_over(std::nullopt, now());
+    world_->cluster().hand_over(std::nullopt, now());
     role_ = Role::handing_over;
     end_handover_later();
     return true;
@@ -144,7 +144,7 @@ class SimProcess final : public SimServer {
   }
   void finish_stop_later(int polls = 1'000) {
     later(5'000, 15'000, [this, polls] {
-      if (!world_->is_flushed() && polls > 0) return finish_stop_later(polls - 1);
+      if (!world_->order().is_flushed() && polls > 0) return finish_stop_later(polls - 1);
       if (term_ && !is_database_cut) database_.release(*term_);
       kill();
     });
@@ -270,7 +270,7 @@ class SimProcess final : public SimServer {
     WorldStart start = read_start();
     start.log.epoch = epoch ? *epoch : std::max(database_.epoch(), start.log.last_epoch);
     make_world(start);
-    if (!epoch) world_->follow();
+    if (!epoch) world_->cluster().follow();
     tick_later();
   }
   void watch_later() {
@@ -278,7 +278,7 @@ class SimProcess final : public SimServer {
   }
   void watch() {
     if (role_ != Role::following || is_stopping_) return;
-    if (world_->has_forked()) return kill();
+    if (world_->cluster().has_forked()) return kill();
     if (is_database_cut) return watch_later();
     const auto owner = database_.owner();
     if (!owner) return leaves_lease() ? watch_later() : take_over();
@@ -290,7 +290,7 @@ class SimProcess final : public SimServer {
   /// As TakeoverWatch::leaves_lease().
   bool leaves_lease() {
     if (!ownerless_us_) ownerless_us_ = time_.now();
-    const auto heard_us = world_->owner_heard_us();
+    const auto heard_us = world_->cluster().owner_heard_us();
     const bool hears_owner = heard_us && now().steady_us - *heard_us < kOwnerHeardUsMax;
     return time_.now() < not_before_us_ ||
            (hears_owner && time_.now() - *ownerless_us_ < kSuccessorUs);
@@ -304,7 +304,7 @@ class SimProcess final : public SimServer {
         database_.release(*term_);
         term_.reset();
         valid_until_us_ = 0;
-        world_->handover_written(now());
+        world_->cluster().handover_written(now());
         role_ = Role::following;
         not_before_us_ = time_.now() + kSuccessorUs;
         tell("follows");
@@ -318,7 +318,7 @@ class SimProcess final : public SimServer {
         [this] {
           role_ = Role::taking_over;
           if (link_) link_->cut();
-          write_rest(world_->stop_following(), world_->last_record());
+          write_rest(world_->cluster().stop_following(), world_->order().last_record());
         },
         [this] { watch_later(); });
   }
@@ -335,7 +335,7 @@ class SimProcess final : public SimServer {
         later(100, 20'000, [this, start] {
           role_ = Role::owner;
           tell("takes the world over, epoch " + std::to_string(start.epoch));
-          if (!world_->take_over(start, now())) kill();
+          if (!world_->cluster().take_over(start, now())) kill();
         });
       });
     });
@@ -343,7 +343,7 @@ class SimProcess final : public SimServer {
   void read_checkpoint_later() {
     later(1'000'000, 1'000'000, [this] {
       if (role_ != Role::following) return;
-      if (!is_database_cut) world_->checkpoint_moved(database_.checkpoint());
+      if (!is_database_cut) world_->cluster().checkpoint_moved(database_.checkpoint());
       read_checkpoint_later();
     });
   }
@@ -365,7 +365,7 @@ class SimProcess final : public SimServer {
         auto message = decode_message(Sender::server, kind, copy, kSimEdge);
         if (!message)
           throw SimFault(std::string("follower cannot decode: ") + message.error().what);
-        world_->owner_received(*std::move(message), now());
+        world_->cluster().owner_received(*std::move(message), now());
       });
       return {};
     };
@@ -377,12 +377,12 @@ class SimProcess final : public SimServer {
         if (number != link_number_) return;
         ++link_number_;
         link_.reset();
-        if (role_ == Role::following) world_->owner_disconnected();
+        if (role_ == Role::following) world_->cluster().owner_disconnected();
       });
     };
     end.on_drained = [] {};
     link_ = peer->accept(peer_faults, std::move(end));
-    world_->owner_connected(std::nullopt, now());
+    world_->cluster().owner_connected(std::nullopt, now());
   }
 
   /// Keeps what note_rejection() needs. Without `resumed`, send() has already answered a Resume.
@@ -398,7 +398,7 @@ class SimProcess final : public SimServer {
     if (message.kind != kKindOf<Reject> && message.kind != kKindOf<Relay>) return;
     const auto decoded = decode_message(Sender::server, message.kind, *message.bytes, kSimEdge);
     if (const auto* reject = std::get_if<Reject>(&*decoded)) {
-      for (const auto& player : world_->online_players()) {
+      for (const auto& player : world_->people().online()) {
         if (player.session == id) note_rejection(player.author, *reject);
       }
       return;
@@ -407,7 +407,8 @@ class SimProcess final : public SimServer {
     if (relay.message.kind != kKindOf<Reject>) return;
     const auto inner =
         decode_message(Sender::server, relay.message.kind, *relay.message.bytes, kSimEdge);
-    if (const auto author = world_->author_of(relayed_.at({id, relay.sessions.front()})))
+    if (const auto author =
+            world_->order().players().author_of(relayed_.at({id, relay.sessions.front()})))
       note_rejection(*author, std::get<Reject>(*inner));
   }
   void note_rejection(AuthorId author, const Reject& reject) {
@@ -418,7 +419,8 @@ class SimProcess final : public SimServer {
   ReadLog as_followed(ReadLog read) const {
     if (database_.is_there(Protection::head_epoch)) return read;
     for (EditRecord& record : read.records) {
-      if (record.version.seq == world_->head()) record.version = world_->last_record();
+      if (record.version.seq == world_->order().head())
+        record.version = world_->order().last_record();
     }
     return read;
   }
@@ -483,7 +485,7 @@ class SimProcess final : public SimServer {
       if (role_ != Role::following) return;
       auto read = read_missed_log(*store_, first, 1 + rng_.below(60));
       if (read) read = as_followed(*std::move(read));
-      world_->log_read(read, now());
+      world_->cluster().log_read(read, now());
     });
   }
   void report(OperatorLogLevel level, const std::string& line) override {

@@ -46,7 +46,7 @@ constexpr const char* kTwoRows =
 
 TEST_CASE("materials add answers with the record, ids and names", "[admin][materials]") {
   AddBench bench;
-  const std::size_t first = bench.bench.server.materials().size();
+  const std::size_t first = bench.bench.server.order().materials().size();
   const CommandAnswer added = bench.add(kTwoRows);
   CHECK(added.is_ok);
   CHECK(added.text == "2 materials added (record 1)\n" + std::to_string(first) + " lime\n" +
@@ -77,8 +77,8 @@ TEST_CASE("materials add refuses a bad file with file, line and key, and adds no
   CHECK(bench.add(many).text == begin + ": 513 materials: 1 to 512 can be added at a time");
   CHECK(bench.add(std::string(kMaterialFileBytesMax + 1, '#')).text ==
         begin + ": is larger than 1048576 bytes");
-  CHECK(bench.bench.server.head() == 0);
-  CHECK(bench.bench.server.materials() == sample_meta().materials);
+  CHECK(bench.bench.server.order().head() == 0);
+  CHECK(bench.bench.server.order().materials() == sample_meta().materials);
 }
 
 TEST_CASE("materials add reads regular files only, for the console and control",

@@ -38,7 +38,7 @@ TEST_CASE("an undo reads the log once for all edits that it considers", "[rollba
   BuiltOver bench(16);
   std::size_t calls = 0;
   const auto found = next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
-                                        bench.bench.server.durable(), [&] { return ++calls > 0; });
+                                        bench.bench.server.order().durable(), [&] { return ++calls > 0; });
   REQUIRE(found.has_value());
   REQUIRE(found->change.has_value());
   CHECK(found->change->action == 1);
@@ -53,7 +53,7 @@ TEST_CASE("a cancelled undo ends at once", "[rollback][undo]") {
     std::size_t calls = 0;
     const auto found =
         next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
-                           bench.bench.server.durable(), [&] { return ++calls <= allowed; });
+                           bench.bench.server.order().durable(), [&] { return ++calls <= allowed; });
     REQUIRE_FALSE(found.has_value());
     CHECK(found.error().kind == StoreError::Kind::cancelled);
     CHECK(calls == allowed + 1);

@@ -41,7 +41,7 @@ struct JobBench {
   RestoredChunk planned(const ChunkKey& key, int count) const {
     RestoredChunk chunk;
     chunk.key = key;
-    chunk.version = bench.server.chunk_version(key);
+    chunk.version = bench.server.order().chunks().version(key);
     chunk.voxels = static_cast<std::uint64_t>(count);
     for (int i = 0; i < count; ++i)
       chunk.edits.push_back({SetVoxel{{key.at.x * int{kEdge} + i, 2, 2}}, {}, 1});
@@ -53,7 +53,8 @@ struct JobBench {
   }
   void write_log() {
     bench.environment.log_written = bench.environment.records.size();
-    if (bench.server.head() > 0) bench.server.durable(bench.server.head(), bench.now());
+    if (bench.server.order().head() > 0)
+      bench.server.durable(bench.server.order().head(), bench.now());
   }
   void step() {
     bench.tick();

@@ -118,14 +118,14 @@ class RollbackBench : public RollbackService::Workers {
     edit(session, SetVoxel{at}, material);
   }
   Material at(VoxelPos p) {
-    const ChunkPtr chunk = bench.server.find_chunk({0, chunk_of(p, kEdge)});
+    const ChunkPtr chunk = bench.server.order().chunks().find({0, chunk_of(p, kEdge)});
     REQUIRE(chunk != nullptr);
     return material_at(chunk->voxels, local_of(p, kEdge));
   }
   /// Returns the digest of each edited chunk in memory.
   std::vector<std::pair<ChunkKey, Digest>> digests() {
     std::vector<std::pair<ChunkKey, Digest>> out;
-    for (const auto& [key, chunk] : bench.server.edited_chunks()) {
+    for (const auto& [key, chunk] : bench.server.order().chunks().edited()) {
       if (chunk->digest != Digest{}) out.emplace_back(key, chunk->digest);
     }
     return out;

@@ -383,7 +383,7 @@ TEST_CASE("an undo is refused while an edit of the player waits, not done to an 
   CHECK_FALSE(bench.answer().is_ok);
   CHECK(bench.answer().text ==
         "undo: an edit of yours still waits for its turn; it is large, or behind a large one");
-  while (bench.bench.server.has_waiting_edit(ana)) bench.tick();
+  while (bench.bench.server.order().has_waiting_edit(ana)) bench.tick();
   bench.service.undo(ana, bench.bench.now(), bench.reply());
   CHECK(bench.answers.size() == 1);  // it waits for the log, as an undo does
 }

@@ -51,7 +51,7 @@ TEST_CASE("a start reads the state of the store and replays its log", "[server]"
   CHECK(*replayed == kRecords);
   const auto touched = touched_chunks(records.back().edit, kSampleEdge);
   REQUIRE_FALSE(touched.empty());
-  CHECK(world.chunk_version({0, touched.front()}) == records.back().version);
+  CHECK(world.order().chunks().version({0, touched.front()}) == records.back().version);
 }
 
 TEST_CASE("the replay begins above the checkpoint", "[server]") {

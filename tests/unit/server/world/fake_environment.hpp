@@ -11,7 +11,7 @@
 
 #include "common/core/tile_keys.hpp"
 #include "protocol/codec/message_table.hpp"
-#include "server/world/world_environment.hpp"
+#include "server/world/environment/world_environment.hpp"
 
 namespace runstone::test {
 

@@ -24,20 +24,20 @@ TEST_CASE("a stop ends at its limit once the log is durable, and leaves chunks t
   bench.server.begin_stop(bench.now());
   CHECK(bench.environment.loads.size() == 2);  // nobody answers them
   bench.tick(1'999'999);
-  CHECK_FALSE(bench.server.is_stop_overdue());
+  CHECK_FALSE(bench.server.order().is_stop_overdue());
   bench.tick(1);
-  CHECK(bench.server.is_stop_overdue());
-  CHECK_FALSE(bench.server.is_flushed());  // no limit for the log
+  CHECK(bench.server.order().is_stop_overdue());
+  CHECK_FALSE(bench.server.order().is_flushed());  // no limit for the log
   bench.server.durable(9, bench.now());
-  CHECK_FALSE(bench.server.is_flushed());
+  CHECK_FALSE(bench.server.order().is_flushed());
   bench.server.durable(10, bench.now());
-  CHECK(bench.server.is_flushed());
-  CHECK(bench.server.dirty_chunks() == 10);
-  CHECK(bench.server.checkpoint() == 0);
+  CHECK(bench.server.order().is_flushed());
+  CHECK(bench.server.order().dirty_chunks() == 10);
+  CHECK(bench.server.order().checkpoint() == 0);
   bench.answer_loads();  // late answers start no further loads and no snapshots
   CHECK(bench.environment.loads.empty());
   CHECK(bench.environment.saves.empty());
-  CHECK(bench.server.is_flushed());
+  CHECK(bench.server.order().is_flushed());
 }
 
 TEST_CASE("a slice that is written when a stop reaches its limit counts, and no slice follows it",
@@ -54,11 +54,11 @@ TEST_CASE("a slice that is written when a stop reaches its limit counts, and no 
   bench.answer_loads();
   REQUIRE(bench.environment.saves.size() == 1);
   bench.tick(2'000'000);
-  CHECK(bench.server.is_flushed());
+  CHECK(bench.server.order().is_flushed());
   bench.server.snapshots_saved(bench.now());
   CHECK(bench.environment.saves.size() == 1);
-  CHECK(bench.server.dirty_chunks() == 2);
-  CHECK(bench.server.checkpoint() == 0);
+  CHECK(bench.server.order().dirty_chunks() == 2);
+  CHECK(bench.server.order().checkpoint() == 0);
 }
 
 TEST_CASE(
@@ -99,7 +99,7 @@ TEST_CASE("while the disk is full edits are rejected with that reason, and accep
         std::vector<Reject>{{2, RejectReason::busy, "the world's disk is full", 0}});
   const std::vector<EditOffer> offers = {{{1, 99, 1}, Cause::rollback, 0, {kAtOrigin, {}, 2}, 0}};
   bench.environment.log_room = false;
-  const auto busy = bench.server.order_server_edits(offers, 0, bench.now());
+  const auto busy = bench.server.changes().order_edits(offers, 0, bench.now());
   CHECK(busy.state == ServerEditsResult::State::busy);
   CHECK(std::string(busy.reason) == "the world's disk is full");
   CHECK(bench.environment.records.size() == 1);  // the edit that was accepted before

@@ -88,8 +88,8 @@ struct WorldBench {
     answer_loads();
   }
   void answer_loads() {
-    while (!environment.loads.empty() || server.has_deliveries()) {
-      server.deliver_next(now());
+    while (!environment.loads.empty() || server.ground().has_deliveries()) {
+      server.ground().deliver_next(now());
       if (environment.loads.empty()) continue;
       const ChunkKey key = environment.loads.front();
       environment.loads.pop_front();
@@ -102,7 +102,7 @@ struct WorldBench {
   void tick(TimeUs later_us = 50'000) {
     time_us += later_us;
     server.tick(now());
-    while (server.has_deliveries()) server.deliver_next(now());
+    while (server.ground().has_deliveries()) server.ground().deliver_next(now());
   }
   std::vector<Commit> commits(SessionId session) const {
     return environment.messages<Commit>(session, kEdge);

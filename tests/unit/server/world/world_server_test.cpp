@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "protocol/codec/handshake.hpp"
-#include "tests/unit/server/world/pasted_crowd.hpp"
+#include "tests/unit/server/world/commit/pasted_crowd.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone {
@@ -75,7 +75,7 @@ TEST_CASE("a player's large edits beyond what may wait are refused, those of oth
   for (const SessionId session : {2U, 3U})
     CHECK(bench.environment.messages<Reject>(session, kEdge).empty());
   CHECK(bench.environment.records.back().op.author == 2);
-  CHECK(bench.server.has_waiting_edit(3));
+  CHECK(bench.server.order().has_waiting_edit(3));
 }
 
 TEST_CASE("the row of a player who left is kept while an edit waits, whatever others do",
@@ -85,11 +85,11 @@ TEST_CASE("the row of a player who left is kept while an edit waits, whatever ot
   bench.server.disconnected(1);
   bench.server.disconnected(3);
   bench.tick();
-  CHECK(bench.server.has_waiting_edit(1));
+  CHECK(bench.server.order().has_waiting_edit(1));
   // The player without edits is forgotten although the queue is not empty.
-  REQUIRE(bench.server.visitors().size() == 1);
-  CHECK(bench.server.visitors()[0].author == 3);
-  while (bench.server.has_waiting_edit(1)) bench.tick();
+  REQUIRE(bench.server.order().players().visitors().size() == 1);
+  CHECK(bench.server.order().players().visitors()[0].author == 3);
+  while (bench.server.order().has_waiting_edit(1)) bench.tick();
   CHECK(bench.environment.records.size() == kPastes);
   CHECK(bench.environment.players.size() == 1);
   CHECK(bench.environment.players[0].author == 1);
@@ -103,9 +103,9 @@ TEST_CASE("edits of the server leave room in the log for the large edits that wa
   const AuthorId author = bench.environment.records.front().op.author;
   const EditOffer undo{{author, 77, 1}, Cause::undo, 0, {kAtOrigin, {}, 1}, 1};
   bench.environment.log_records_max = kPastes;
-  CHECK(bench.server.order_server_edits({undo}, 0, bench.now()).count == 0);
+  CHECK(bench.server.changes().order_edits({undo}, 0, bench.now()).count == 0);
   bench.environment.log_records_max = kPastes + 1;
-  CHECK(bench.server.order_server_edits({undo}, 0, bench.now()).count == 1);
+  CHECK(bench.server.changes().order_edits({undo}, 0, bench.now()).count == 1);
   CHECK(bench.environment.records.back().cause == Cause::undo);
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("once an edit of an action is rejected, so are its later edits", "[wor
   CHECK(rejects[1].client_seq == 3);
   CHECK(rejects[1].reason == rejects[0].reason);
   CHECK(rejects[1].detail == "an earlier edit of the same action was refused");
-  CHECK(bench.server.head() == 3);  // the edits 1, 4 and 5
+  CHECK(bench.server.order().head() == 3);  // the edits 1, 4 and 5
 }
 
 TEST_CASE("rejections and requests for chunks count as much that was read", "[world]") {
@@ -280,7 +280,7 @@ TEST_CASE("a session that edits too fast is rejected, and accepted again later",
   bench.tick(100'000);
   bench.edit(1, 4, kAtOrigin);
   bench.server.commit(bench.now());
-  CHECK(bench.server.head() == 3);
+  CHECK(bench.server.order().head() == 3);
 }
 
 TEST_CASE("a jump of the wall clock is reported to the operator, and no edit gets its time",
@@ -367,7 +367,7 @@ TEST_CASE("edits beyond the world's heights are rejected", "[world]") {
   REQUIRE(rejects.size() == 1);
   CHECK(rejects[0].client_seq == 1);
   CHECK(rejects[0].reason == RejectReason::outside_world);
-  CHECK(bench.server.head() == 1);
+  CHECK(bench.server.order().head() == 1);
 }
 
 TEST_CASE("digest checks have version and digest of chunks that the session has", "[world]") {
@@ -381,7 +381,7 @@ TEST_CASE("digest checks have version and digest of chunks that the session has"
   REQUIRE(checks.size() == 1);
   REQUIRE(checks[0].entries.size() == 5);  // every chunk, once each
   for (const DigestCheckEntry& entry : checks[0].entries) {
-    const ChunkPtr chunk = bench.server.find_chunk(entry.key);
+    const ChunkPtr chunk = bench.server.order().chunks().find(entry.key);
     CHECK(entry.version == chunk->version);
     CHECK(entry.digest == digest_of(chunk->voxels));
   }
@@ -410,15 +410,15 @@ TEST_CASE("a stop sends goodbye, rejects edits and ends with every edit in snaps
   CHECK(bench.environment.records.size() == 2);  // accepted edits are ordered and logged
   bench.answer_loads();
   CHECK(bench.environment.saves.empty());
-  CHECK_FALSE(bench.server.is_flushed());
+  CHECK_FALSE(bench.server.order().is_flushed());
   bench.server.durable(2, bench.now());
   REQUIRE(bench.environment.saves.size() == 1);
   CHECK(bench.environment.saves[0].chunks.size() == 2);
   CHECK(bench.environment.saves[0].checkpoint == 2);
-  CHECK_FALSE(bench.server.is_flushed());
+  CHECK_FALSE(bench.server.order().is_flushed());
   bench.server.snapshots_saved(bench.now());
-  CHECK(bench.server.is_flushed());
-  CHECK(bench.server.checkpoint() == 2);
+  CHECK(bench.server.order().is_flushed());
+  CHECK(bench.server.order().checkpoint() == 2);
 }
 
 TEST_CASE("after a failed log every edit is rejected busy", "[world]") {
@@ -439,7 +439,7 @@ TEST_CASE("a restarted world continues its log: versions, previous sequences and
   bench.server.replay_onto_stack({{1, 2}, {1, 1, 2}, 0, Cause::player, {kAtOrigin, {}, 3}});
   bench.join(1, 1);
   bench.view(1, kSmall);
-  const ChunkPtr chunk = bench.server.find_chunk({});
+  const ChunkPtr chunk = bench.server.order().chunks().find({});
   CHECK(chunk->version == Version{1, 2});
   CHECK(material_at(chunk->voxels, {1, 1, 1}) == 3);
   bench.edit(1, 3, kAtOrigin, 4);
@@ -493,7 +493,7 @@ TEST_CASE("an invalid descriptor is rejected as bad_edit, costs one unit and is 
   CHECK(offer(2).reason == RejectReason::bad_edit);
   CHECK(offer(3).reason == RejectReason::rate_limited);
   CHECK_FALSE(bench.server.has_ready_edits(bench.now().steady_us));
-  CHECK(bench.server.resolved(1, 1) == 3);
+  CHECK(bench.server.order().resolved(1, 1) == 3);
   CHECK(bench.server.session_count() == 1);
 }
 

@@ -1,0 +1,115 @@
+#include "server/world/commit/changes.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/core/assert.hpp"
+#include "protocol/rules/edit_price.hpp"
+
+namespace runstone {
+namespace {
+
+Unexpected<MaterialsRefusal> refusal(std::string what,
+                                     std::optional<std::size_t> row = std::nullopt) {
+  return {{std::move(what), row}};
+}
+
+}  // namespace
+
+/// Returns who pays for edits of an author: its key, and the address of its first session. Returns
+/// nullopt if nobody has the number.
+std::optional<Payer> Changes::payer_of(AuthorId author) const {
+  const std::optional<PublicKey> key = order_.players().key_of(author);
+  if (!key) return std::nullopt;
+  for (const Session* session : sessions_.open()) {
+    if (session->author == author) return quotas_.edit_payer(*key, session->address);
+  }
+  return quotas_.edit_payer(*key, std::nullopt);
+}
+
+/// Returns true for those whose changes take rights from others.
+bool Changes::has_power(const RightsActor& actor) const {
+  if (!actor.key || actor.is_operator) return true;
+  const RightSet rights = rights_.state().role_of(*actor.key).rights;
+  return rights.has(Right::moderate) || rights.has(Right::protect) || rights.has(Right::grant) ||
+         rights.has(Right::administer);
+}
+
+ServerEditsResult Changes::order_edits(const std::vector<EditOffer>& offers, AuthorId payer,
+                                       const Clocks& now) {
+  using State = ServerEditsResult::State;
+  commits_.commit_all(LargeEdits::paced, now);
+  if (!order_.accepts_edits()) return {State::closed};
+  if (offers.empty()) return {};
+  // Instances are public, so a client of the author can join with this one and use its client
+  // sequences.
+  if (order_.authority().resolved().knows(offers.front().op) || offers.back().op.seq > kSequenceMax)
+    return {State::taken};
+  const std::optional<Payer> paying = payer_of(payer);
+  ServerEditsResult out;
+  for (const EditOffer& offer : offers) {
+    RUNSTONE_ASSERT(offer.cause != Cause::player);
+    if (!order_.log_has_room()) {
+      out.reason =
+          order_.is_disk_full() ? kDiskIsFull : "the log has no room now (log_queue_records)";
+      break;
+    }
+    if (order_.is_memory_full()) {
+      out.reason = kMemoryIsFull;
+      break;
+    }
+    if (paying) {
+      const std::uint64_t price = edit_price(offer.edit, config_.chunk_edge, paying->budget);
+      if (const auto unpaid = quotas_.charge_edit(*paying, price, now.steady_us)) {
+        out.reason = "the player's edit budget is used up (builder_budget)";
+        break;
+      }
+    }
+    const auto refused = order_.authority().submit(offer);
+    RUNSTONE_ASSERT(!refused);
+    ++out.count;
+  }
+  if (out.count < offers.size()) out.state = State::busy;
+  commits_.commit_all(LargeEdits::paced, now);
+  return out;
+}
+
+Result<Sequence, std::string> Changes::change_rights(const RightsChange& change,
+                                                     const RightsActor& actor, AuthorId author,
+                                                     const Clocks& now) {
+  if (auto why = rights_.change_refusal(change, actor)) return Unexpected<std::string>{*why};
+  if (author != 0 && !order_.players().key_of(author))
+    return Unexpected<std::string>{"the player has left"};
+  // What waits was allowed, and is ordered before the change that may forbid it. A claim does not
+  // hurry: players could use it to send large edits faster than others.
+  if (has_power(actor)) commits_.commit_all(LargeEdits::all, now);
+  const OperationId op = order_.next_own_operation(author);
+  const EditOffer offer{op, Cause::rights, now.steady_us, rights_edit(change), 0};
+  const ServerEditsResult ordered = order_edits({offer}, author, now);
+  if (ordered.state == ServerEditsResult::State::ordered) return rights_.newest();
+  if (ordered.state == ServerEditsResult::State::closed)
+    return Unexpected<std::string>{"the world takes no changes any more"};
+  return Unexpected<std::string>{std::string(ordered.reason) + ": try again later"};
+}
+
+Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<MaterialRow>& rows,
+                                                         const Clocks& now) {
+  const MaterialTable& table = order_.materials();
+  if (rows.empty() || rows.size() > kAddedMaterialsMax) {
+    return refusal(std::to_string(rows.size()) + " materials: 1 to " +
+                   std::to_string(kAddedMaterialsMax) + " can be added at a time");
+  }
+  if (const auto sound = table.check_rows(rows); !sound)
+    return refusal(sound.error().what, static_cast<std::size_t>(sound.error().offset));
+  const auto first = static_cast<Material>(table.size());
+  const OperationId op = order_.next_own_operation(0);
+  const EditOffer offer{op, Cause::materials, now.steady_us, materials_edit({first, rows}), 0};
+  const ServerEditsResult ordered = order_edits({offer}, 0, now);
+  if (ordered.state == ServerEditsResult::State::ordered)
+    return AddedAt{order_.newest_materials(), first};
+  if (ordered.state == ServerEditsResult::State::busy)
+    return refusal(std::string(ordered.reason) + ": try again later");
+  return refusal("the world takes no changes any more");
+}
+
+}  // namespace runstone

@@ -1,0 +1,70 @@
+// Changes: edits that the server makes itself: rollback, undo, redo, changes of rights, and new
+// materials. All are records of the log.
+// Thread: the world strand.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/world/commit/added_at.hpp"
+#include "server/world/commit/commits.hpp"
+#include "server/world/rights/quotas.hpp"
+
+namespace runstone {
+
+struct ServerEditsResult {
+  enum class State {
+    ordered,  // all offers
+    busy,     // the first `count` offers; a limit rejects the next one for now: try again
+    closed,   // none: accepts_edits() returns false
+    taken,    // none: a client of the author has used these client sequences
+  };
+  State state = State::ordered;
+  std::size_t count = 0;    // ordered offers, from the first on
+  const char* reason = "";  // names the limit if busy
+};
+
+class Changes {
+ public:
+  /// The arguments must outlive the object.
+  Changes(const WorldConfig& config, Sessions& sessions, Order& order, const Rights& rights,
+          Quotas& quotas, Commits& commits)
+      : config_(config),
+        sessions_(sessions),
+        order_(order),
+        rights_(rights),
+        quotas_(quotas),
+        commits_(commits) {}
+
+  /// Orders the offers at once and in order, behind all queued edits, as far as the log has room.
+  /// Requires that they pass check_server_edit(), that their client sequences ascend, that they
+  /// have one author and instance, and that their cause is not player. Each offer costs its
+  /// edit_price(), paid by the key of the author `payer` and the address of the author's first
+  /// session. An author without a session pays by the key alone. Nobody pays if `payer` is 0.
+  ServerEditsResult order_edits(const std::vector<EditOffer>& offers, AuthorId payer,
+                                const Clocks& now);
+  /// Orders a change of rights as a record of the log, made by the author (0: the console), who pays
+  /// for it as for an edit. Sessions that may not stay are closed. Returns its sequence, or why it was
+  /// refused, as a sentence.
+  Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
+                                              AuthorId author, const Clocks& now);
+  /// Orders the addition of materials by the console, as one record of the log: all or none. Refuses
+  /// bad rows (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them, and while
+  /// the log takes no edits.
+  Result<AddedAt, MaterialsRefusal> add_materials(const std::vector<MaterialRow>& rows,
+                                                  const Clocks& now);
+
+ private:
+  std::optional<Payer> payer_of(AuthorId author) const;
+  bool has_power(const RightsActor& actor) const;
+
+  const WorldConfig& config_;
+  Sessions& sessions_;
+  Order& order_;
+  const Rights& rights_;
+  Quotas& quotas_;
+  Commits& commits_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,61 @@
+// LogClock: the time of the edit log. The wall clock may be set to a wrong time and back, but a
+// time in the log stays, and no later edit may have an earlier one. So the log's time does not
+// follow a jump of the wall clock at once:
+//   - It begins with the wall clock. From then on it advances with the steady clock, and is slewed
+//     towards the wall clock by at most kSlewPpm.
+//   - A wall clock that differs from it by more than kJumpUs has jumped. A jump is not slewed. If
+//     the wall clock keeps it for kAcceptUs, the log's time becomes the wall clock's: a time
+//     service may set a clock long after the start, and a suspended computer stops its steady
+//     clock.
+//   - The times of edits never decrease. While the last edit of the log is ahead of the log's time,
+//     edits get the time of that edit again. Their order is that of their sequences.
+// Each jump makes a warning for the operator, and so does a log that ends ahead of the wall clock.
+// Pure: the times of both clocks are arguments. One thread.
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "server/world/environment/clocks.hpp"
+
+namespace runstone {
+
+class LogClock {
+ public:
+  static constexpr TimeUs kJumpUs = 60'000'000;
+  static constexpr TimeUs kAcceptUs = 60 * kJumpUs;
+  static constexpr TimeUs kSlewPpm = 500;
+
+  /// `last_us` is the time of the last edit in the log, or 0 if the log is empty.
+  explicit LogClock(TimeUs last_us) : last_us_(last_us) {}
+
+  /// Reads both clocks. A jump is noticed by the next call.
+  void advance(const Clocks& now);
+  /// Returns the time for an edit that is ordered at the last advance().
+  TimeUs stamp();
+  /// Reports an edit that another server has ordered at this time.
+  void follow(TimeUs time_us) { last_us_ = time_us > last_us_ ? time_us : last_us_; }
+  /// Returns the log's time at the last advance(), at least that of the last edit.
+  TimeUs time() const { return last_us_ > time_us_ ? last_us_ : time_us_; }
+  /// Returns the newest warning that was not taken, if there is one.
+  std::optional<std::string> take_warning() { return std::exchange(warning_, std::nullopt); }
+
+ private:
+  struct Jump {
+    TimeUs error_us = 0;   // the wall clock minus the log's time
+    TimeUs steady_us = 0;  // when the jump was noticed
+  };
+
+  void begin(const Clocks& now);
+  void slew(TimeUs error_us, TimeUs passed_us);
+  void jump(TimeUs error_us, const Clocks& now);
+
+  TimeUs last_us_;                   // of the last edit
+  TimeUs time_us_ = 0;               // the log's time at steady_us_
+  std::optional<TimeUs> steady_us_;  // of the last advance(); nullopt before the first
+  TimeUs slew_left_ = 0;             // millionths of 1 us of slew, below one million
+  std::optional<Jump> jump_;         // a jump that the log's time does not follow
+  std::optional<std::string> warning_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,124 @@
+#include "server/world/order/receipts.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace runstone {
+namespace {
+
+// A session with more pending rejects does not read at all.
+constexpr std::size_t kPendingRejectsMax = 4096;
+
+/// Returns the rows of the table from `first` on, as many as one record may have.
+MaterialsAdded rows_from(const MaterialTable& table, std::size_t first) {
+  const auto rows = table.rows().subspan(first, std::min(table.size() - first, kAddedMaterialsMax));
+  MaterialsAdded message;
+  message.first = static_cast<Material>(first);
+  for (const MaterialInfo& info : rows) message.rows.push_back(row_of(info));
+  return message;
+}
+
+}  // namespace
+
+void Receipts::welcomed(const Session& session, const Welcome& welcome) {
+  Told& told = told_[session.id];
+  told.epoch = welcome.epoch;
+  told.durable = welcome.durable;
+  told.materials = welcome.materials.size();
+}
+
+void Receipts::reject(Session& session, Reject reject) {
+  if (session.is_closed) return;
+  std::vector<Reject>& pending = told_[session.id].rejects;
+  pending.push_back(std::move(reject));
+  if (pending.size() == 1) {
+    send_pending(session);
+  } else if (pending.size() > kPendingRejectsMax) {
+    sessions_.close_slow(session);
+  }
+}
+
+void Receipts::send_pending(Session& session) {
+  if (session.is_closed) return;
+  Told& told = told_[session.id];
+  std::size_t sent = 0;
+  while (sent < told.rejects.size() &&
+         sessions_.send_or_skip(session, encode_message(told.rejects[sent])))
+    ++sent;
+  told.rejects.erase(told.rejects.begin(),
+                     told.rejects.begin() + static_cast<std::ptrdiff_t>(sent));
+  if (told.durable < order_.durable() && told.durable < told.awaits_durable)
+    send_durable(session, told, encode_message(durable()));
+}
+
+bool Receipts::has_pending(const Session& session) const {
+  const auto found = told_.find(session.id);
+  return found != told_.end() && !found->second.rejects.empty();
+}
+
+void Receipts::await(const Session& session, Sequence seq) {
+  Sequence& awaited = told_[session.id].awaits_durable;
+  awaited = std::max(awaited, seq);
+}
+
+void Receipts::send_durable(const Session& session, Told& told, const EncodedMessage& encoded) {
+  if (session.is_closed || session.is_relayed || !told.rejects.empty()) return;
+  const bool is_known =
+      told.durable == order_.durable() && told.is_read_only == order_.is_disk_full();
+  if (is_known || !sessions_.send_or_skip(session, encoded)) return;
+  told.durable = order_.durable();
+  told.is_read_only = order_.is_disk_full();
+}
+
+void Receipts::send_durable_to_authors() {
+  const EncodedMessage encoded = encode_message(durable());
+  for (const Session* session : sessions_.open()) {
+    Told& told = told_[session->id];
+    if (told.durable < told.awaits_durable) send_durable(*session, told, encoded);
+  }
+}
+
+void Receipts::broadcast_durable(const Clocks& now) {
+  if (now.steady_us < durable_due_us_) return;
+  durable_due_us_ = now.steady_us + config_.durable_interval_us;
+  const EncodedMessage encoded = encode_message(durable());
+  for (const Session* session : sessions_.open())
+    send_durable(*session, told_[session->id], encoded);
+}
+
+void Receipts::send_epoch(Session& session) {
+  if (session.is_closed || session.is_relayed) return;
+  Told& told = told_[session.id];
+  if (told.epoch == order_.epoch()) return;
+  told.epoch = order_.epoch();
+  if (!session.has(kFeatureResume))
+    return sessions_.close(session, GoodbyeReason::closing, kConnectAgain);
+  // It precedes the commits of the epoch, which the client would refuse otherwise.
+  if (!sessions_.send(session, encode_message(durable()))) sessions_.close_slow(session);
+}
+
+void Receipts::send_epoch_to_all() {
+  for (Session* session : sessions_.open()) send_epoch(*session);
+}
+
+void Receipts::send_materials(Session& session) {
+  if (session.is_closed || session.is_relayed) return;
+  const MaterialTable& table = order_.materials();
+  std::size_t& known = told_[session.id].materials;
+  if (known == table.size()) return;
+  if (!session.has(kFeatureMaterials)) {
+    return sessions_.close(session, GoodbyeReason::closing,
+                           "the world has new materials: connect again");
+  }
+  while (known < table.size()) {
+    const MaterialsAdded message = rows_from(table, known);
+    if (!sessions_.send_or_close(session, message)) return;
+    known += message.rows.size();
+  }
+}
+
+void Receipts::send_materials_to_all() {
+  for (Session* session : sessions_.open()) send_materials(*session);
+}
+
+}  // namespace runstone

@@ -1,0 +1,81 @@
+// Receipts: what each session was told of its edits and of the log: rejects, how far the log is durable,
+// its epoch, and new materials.
+// Bounds: a session with too many rejects that do not fit its queue is closed.
+// Thread: the world strand.
+#pragma once
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "server/world/order/order.hpp"
+#include "server/world/sessions/sessions.hpp"
+
+namespace runstone {
+
+/// Why a session ends if its client cannot resume.
+inline constexpr const char* kConnectAgain =
+    "another server has taken the world over: connect again";
+
+class Receipts {
+ public:
+  Receipts(const WorldConfig& config, Sessions& sessions, const Order& order)
+      : config_(config), sessions_(sessions), order_(order) {}
+
+  /// Reports that the session gets `welcome`, which says the epoch, the durable watermark, and the
+  /// materials.
+  void welcomed(const Session& session, const Welcome& welcome);
+  void forget(SessionId session) { told_.erase(session); }
+
+  // Rejects.
+  /// Sends a reject. If the session's queue is full, the reject is sent later, in order. A session
+  /// with too many pending rejects is closed.
+  void reject(Session& session, Reject reject);
+  /// Sends pending rejects as far as they fit, then the durable watermark if the session awaits it.
+  void send_pending(Session& session);
+  bool has_pending(const Session& session) const;
+
+  // The durable watermark.
+  Durable durable() const { return {order_.epoch(), order_.durable(), order_.is_disk_full()}; }
+  /// The session's client has an edit up to `seq`, and gets the watermark at once until it covers that.
+  void await(const Session& session, Sequence seq);
+  /// Sends the watermark to the sessions whose client has edits that are not yet acknowledged.
+  void send_durable_to_authors();
+  /// Sends the watermark to every session, once in durable_interval_us. Sessions without edits need it
+  /// only to resume, so they do not get a message for every group commit of the log.
+  void broadcast_durable(const Clocks& now);
+  /// The next broadcast_durable() sends it.
+  void hurry_durable() { durable_due_us_ = 0; }
+
+  // The epoch.
+  /// Tells an open session of the epoch, unless it knows it. Closes the session if its client cannot go
+  /// on in another epoch.
+  void send_epoch(Session& session);
+  void send_epoch_to_all();
+
+  // Materials.
+  /// Sends the materials that an open session lacks. Closes a session without the feature, and one
+  /// whose queue is full.
+  void send_materials(Session& session);
+  void send_materials_to_all();
+
+ private:
+  struct Told {
+    Epoch epoch = 0;
+    Sequence durable = 0;
+    bool is_read_only = false;
+    std::size_t materials = 0;    // rows of the material table that it has
+    Sequence awaits_durable = 0;  // of its client's last edit
+    std::vector<Reject> rejects;  // that did not fit the session's queue, in order
+  };
+  /// Sends the watermark, which `encoded` holds, unless the session has it. Does nothing while rejects
+  /// are pending, because they precede it. If the session's queue is full, a later call sends it.
+  void send_durable(const Session& session, Told& told, const EncodedMessage& encoded);
+
+  const WorldConfig& config_;
+  Sessions& sessions_;
+  const Order& order_;
+  std::map<SessionId, Told> told_;
+  TimeUs durable_due_us_ = 0;  // when every session gets the watermark next
+};
+
+}  // namespace runstone

@@ -1,0 +1,68 @@
+#include "server/world/people/names.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "common/names/folded_name.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
+
+namespace runstone {
+
+std::optional<std::string> Names::refusal(const Session& session) const {
+  const std::string named = "the name \"" + session.name + "\"";
+  if (const auto fault = name_fault(session.name)) return named + " is refused: " + *fault;
+  const std::string folded = folded_name(session.name);
+  if (config_.reserved_names.contains(folded)) return named + " is reserved: choose another name";
+  const NameClaim* const claim = order_.names().find(folded);
+  if (claim != nullptr && claim->key == session.key) return std::nullopt;
+  if (claim != nullptr) {
+    return named + " belongs to the player with the key " + key_fingerprint(claim->key) +
+           ": choose another name, or ask the server's host to release it";
+  }
+  if (!session.has(kFeatureNames)) return std::nullopt;
+  const std::vector<std::string> owned = order_.names().names_of(session.key);
+  if (owned.size() < config_.names_per_key) return std::nullopt;
+  std::string list;
+  for (const std::string& name : owned) list += (list.empty() ? "\"" : ", \"") + name + "\"";
+  return "your key owns " + std::to_string(owned.size()) + " names and no more are allowed: " +
+         "choose one of them, or ask the server's host to release one: " + list;
+}
+
+void Names::claim(const Session& session, TimeUs now_us) {
+  if (!session.has(kFeatureNames)) return;
+  std::string folded = folded_name(session.name);
+  NameClaims& names = order_.names();
+  if (names.find(folded) != nullptr) return;
+  const auto report = [&](const std::string& what) {
+    environment_.report(OperatorLogLevel::info, "session=" + std::to_string(session.id) +
+                                                    " name=\"" + session.name + "\" " + what);
+  };
+  if (!order_.log_has_room()) return report("not claimed: the log has no room");
+  if (names.size() >= kNameClaimsMax)
+    return report("not claimed: this world has " + std::to_string(kNameClaimsMax) +
+                  " names (names release NAME)");
+  if (!ledger_.take(session.address, kClaimPrice, now_us))
+    return report("not claimed: too many names of its address in an hour (names_per_address)");
+  order_.append_names({names.claim({std::move(folded), session.name, session.key})});
+  report("claimed by key=" + key_fingerprint(session.key));
+}
+
+bool Names::is_claim_unwritten(const Session& session) const {
+  if (order_.is_disk_full()) return false;
+  const std::string folded = folded_name(session.name);
+  const NameClaim* const claim = order_.names().find(folded);
+  return claim != nullptr && claim->key == session.key && !order_.names().is_durable(folded);
+}
+
+Result<NameClaim, std::string> Names::release(const std::string& name) {
+  const std::string folded = folded_name(name);
+  if (order_.names().find(folded) == nullptr)
+    return Unexpected<std::string>{"nobody owns \"" + name + "\" (names lists who owns what)"};
+  if (!order_.log_has_room())
+    return Unexpected<std::string>{"the log has no room; try again later"};
+  NameChange change = *order_.names().release(folded);
+  order_.append_names({change});
+  return std::move(change.claim);
+}
+
+}  // namespace runstone

@@ -1,0 +1,46 @@
+// Names: who may join under which name, and when a name becomes the property of a key.
+// Thread: the world strand.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "server/limits/address_ledger.hpp"
+#include "server/world/order/order.hpp"
+#include "server/world/sessions/session.hpp"
+
+namespace runstone {
+
+/// A claim of a name costs its address so much, of names_per_address units a second: an hour's worth.
+inline constexpr std::uint64_t kClaimPrice = 3'600;
+
+class Names {
+ public:
+  Names(const WorldConfig& config, WorldEnvironment& environment, Order& order)
+      : config_(config),
+        environment_(environment),
+        order_(order),
+        ledger_({config.names_per_address, config.names_per_address * kClaimPrice}) {}
+
+  /// Returns why the session may not have its name, for goodbye name_refused, or nullopt. The name
+  /// breaks a rule of name_fault(), is reserved, belongs to another key, or the key owns
+  /// names_per_key others already. Changes nothing. Cost: O(log claims).
+  std::optional<std::string> refusal(const Session& session) const;
+  /// Makes the session's key own its name, if the client keeps its key (kFeatureNames) and nobody
+  /// owns the name. Nothing is claimed while the log has no room, once the address has claimed
+  /// names_per_address in an hour, and beyond kNameClaimsMax: the player then joins as one whose
+  /// client does not keep its key, and the next join tries again. Requires !refusal().
+  void claim(const Session& session, TimeUs now_us);
+  /// Returns true if the session's key owns its name and the claim is not on disk yet. Nobody waits
+  /// for a full disk.
+  bool is_claim_unwritten(const Session& session) const;
+  /// Frees a name. Returns the claim that it had, or the reason why nothing changed.
+  Result<NameClaim, std::string> release(const std::string& name);
+
+ private:
+  const WorldConfig& config_;
+  WorldEnvironment& environment_;
+  Order& order_;
+  AddressLedger ledger_;
+};
+
+}  // namespace runstone

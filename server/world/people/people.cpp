@@ -1,0 +1,74 @@
+#include "server/world/people/people.hpp"
+
+#include <array>
+#include <set>
+#include <utility>
+
+#include "protocol/codec/invite_token.hpp"
+#include "protocol/codec/server_link.hpp"
+
+namespace runstone {
+
+People::People(const World& world, const WorldStart& start, const RandomBytes& random)
+    : world_(world),
+      random_(random),
+      names_(world.config, world.environment, world.order),
+      presence_(world.config, world.sessions, world.order, world.rights),
+      chat_(world.config, start, world.environment, world.sessions, world.order, world.rights),
+      commands_(world.environment, world.sessions, world.ground),
+      previews_(world.config, world.sessions, world.order, world.receipts, world.ground),
+      edits_(world.config, world.counters, world.sessions, world.order, world.receipts,
+             world.rights, world.quotas),
+      joining_({world.config, world.environment, world.sessions, world.order, world.receipts,
+                world.rights, world.quotas, world.ground, world.changes, names_, presence_, chat_},
+               random) {}
+
+std::vector<OnlinePlayer> People::online() const {
+  std::vector<OnlinePlayer> out;
+  for (const Session* session : std::as_const(world_.sessions).open())
+    out.push_back({session->id, session->author, session->name, session->key, session->pose.at});
+  return out;
+}
+
+InviteId People::new_invite_id() {
+  std::array<std::uint8_t, sizeof(InviteId)> bytes{};
+  random_(bytes);
+  return ByteReader(bytes).u64();
+}
+
+std::string People::invite_link(InviteId invite) const {
+  const WorldConfig& config = world_.config;
+  const std::string token = invite_token(invite, config.world_id, config.server_keys);
+  return text_of(ServerLink{config.link_address, token});
+}
+
+void People::close_silent(const Clocks& now) {
+  for (Session* session : world_.sessions.all()) {
+    if (session->is_relayed) continue;  // the server that it is connected to closes it
+    const bool is_open = session->is_open();
+    const TimeUs since = is_open ? session->last_message_us : session->connected_us;
+    const TimeUs limit = is_open ? world_.config.idle_us_max : world_.config.handshake_us_max;
+    if (now.steady_us - since < limit) continue;
+    world_.sessions.close(*session, GoodbyeReason::timed_out,
+                          is_open ? "no message for too long" : "the handshake took too long");
+  }
+}
+
+void People::forget_gone_authors() {
+  if (!world_.order.has_gone_authors()) return;
+  std::set<AuthorId> present;
+  for (const Session* session : world_.sessions.open()) present.insert(session->author);
+  world_.order.forget_gone_authors(present);
+}
+
+void People::forget(const Session& session) {
+  if (session.stage == SessionStage::open) world_.order.author_left(session.author);
+  presence_.forget(session);
+  chat_.forget(session.id);
+  commands_.forget(session.id);
+  previews_.forget(session.id);
+  edits_.forget(session.id);
+  joining_.forget(session.id);
+}
+
+}  // namespace runstone

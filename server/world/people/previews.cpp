@@ -1,0 +1,97 @@
+#include "server/world/people/previews.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+#include <utility>
+
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "protocol/rules/edit_check.hpp"
+
+namespace runstone {
+namespace {
+
+// Bytes that count as read, so that messages that gain nothing do not keep the world busy.
+constexpr std::size_t kDroppedPreviewBytes = 4'096;
+
+}  // namespace
+
+/// Returns true if the edit could be ordered as far as its geometry and its materials say.
+bool Previews::is_possible(Session& session, const EditDescriptor& edit, const Clocks& now) const {
+  if (!is_light_preview(edit, config_.chunk_edge)) return false;
+  if (order_.authority().check(edit)) return false;
+  if (config_.reach_max == 0) return true;
+  const WorldPos& from = session.position.follow(session.pose.at, config_.speed_max, now.steady_us);
+  return within_reach(edit, from, config_.reach_max);
+}
+
+bool Previews::reads_previews(const Session& other, const Session& sender) const {
+  if (!other.is_open() || !other.has(kFeaturePreviews) || other.author == sender.author)
+    return false;
+  const bool is_behind = ground_.lags(other) || receipts_.has_pending(other);
+  return !is_behind && !ground_.sees_past(other);
+}
+
+/// Returns the sessions that see a touched chunk which the sender sees too, ascending.
+std::vector<SessionId> Previews::viewers(SessionId session,
+                                         const std::vector<EditDescriptor>& edits) const {
+  std::vector<SessionId> out, merged;
+  std::vector<ChunkCoord> touched;
+  for (const EditDescriptor& edit : edits) {
+    touched_chunks(edit, config_.chunk_edge, touched);
+    for (const ChunkCoord at : touched) {
+      const std::span<const SessionId> all = ground_.subscribers({0, at});
+      if (!std::binary_search(all.begin(), all.end(), session)) continue;
+      merged.clear();
+      std::set_union(out.begin(), out.end(), all.begin(), all.end(), std::back_inserter(merged));
+      std::swap(out, merged);
+    }
+  }
+  return out;
+}
+
+void Previews::pass_on(const Session& sender, const std::vector<SessionId>& to,
+                       const PlayerPreview& preview) {
+  if (to.empty()) return;
+  const EncodedMessage encoded = encode_message(preview);
+  sessions_.send_to_all(to, encoded);
+  sessions_.charge_reading(sender, to.size() * encoded.bytes->size());
+}
+
+void Previews::on_share(Session& session, const PreviewShare& share, const Clocks& now) {
+  Of& mine = of_[session.id];
+  if (!mine.sent.take(1, now.steady_us))
+    return sessions_.charge_reading(session, kDroppedPreviewBytes);
+  const bool are_possible =
+      ground_.sees_present(session) && std::ranges::all_of(share.edits, [&](const auto& edit) {
+        return is_possible(session, edit, now);
+      });
+  // `waiting` show the preview before, and get none now: the next one comes soon.
+  std::vector<SessionId> readers, waiting;
+  if (are_possible) {
+    for (const SessionId id : viewers(session.id, share.edits)) {
+      const Session* const other = sessions_.find(id);
+      if (readers.size() == kPreviewReadersMax) break;
+      if (other == nullptr || !reads_previews(*other, session)) continue;
+      if (of_[id].read.take(1, now.steady_us)) {
+        readers.push_back(id);
+      } else if (std::ranges::binary_search(mine.readers, id)) {
+        waiting.push_back(id);
+      }
+    }
+  } else {
+    sessions_.charge_reading(session, kDroppedPreviewBytes);
+  }
+  std::vector<SessionId> showing, gone;
+  std::ranges::set_union(readers, waiting, std::back_inserter(showing));
+  std::ranges::set_difference(mine.readers, showing, std::back_inserter(gone));
+  std::erase_if(gone, [&](SessionId id) {
+    const Session* const other = sessions_.find(id);
+    return other == nullptr || !other->is_open();
+  });
+  pass_on(session, gone, {session.author, {}});
+  pass_on(session, readers, {session.author, share.edits});
+  mine.readers = std::move(showing);
+}
+
+}  // namespace runstone

@@ -1,0 +1,137 @@
+#include "server/world/order/log_clock.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace runstone {
+namespace {
+
+constexpr TimeUs kSecond = 1'000'000;
+constexpr TimeUs kMinute = 60 * kSecond;
+constexpr TimeUs kYear = 365 * 24 * 60 * kMinute;
+constexpr TimeUs kStart = 1'700'000'000 * kSecond;
+
+/// Both clocks of a machine. `wrong_us` is what the wall clock is ahead of the right time.
+struct ClockPair {
+  LogClock log;
+  TimeUs steady_us = 5 * kSecond;
+  TimeUs wrong_us = 0;
+
+  explicit ClockPair(TimeUs last_us = 0) : log(last_us) { log.advance(now()); }
+  Clocks now() const { return {steady_us, right() + wrong_us}; }
+  TimeUs right() const { return kStart + steady_us; }
+  void pass(TimeUs us, TimeUs step_us = 50'000) {
+    for (const TimeUs end_us = steady_us + us; steady_us < end_us;) {
+      steady_us += step_us;
+      log.advance(now());
+    }
+  }
+};
+
+TEST_CASE("the time of the log is the wall clock's, and advances with it", "[world]") {
+  ClockPair clocks;
+  CHECK(clocks.log.stamp() == clocks.right());
+  clocks.pass(3 * kMinute);
+  CHECK(clocks.log.stamp() == clocks.right());
+  CHECK_FALSE(clocks.log.take_warning().has_value());
+}
+
+TEST_CASE("clocks that were read before the last call move nothing", "[world]") {
+  ClockPair clocks;
+  const Clocks early = clocks.now();
+  clocks.pass(kMinute);
+  for (int i = 0; i < 10; ++i) {
+    clocks.log.advance(early);
+    clocks.log.advance(clocks.now());
+  }
+  CHECK(clocks.log.stamp() == clocks.right());
+  CHECK_FALSE(clocks.log.take_warning().has_value());
+}
+
+TEST_CASE("a wall clock that is three years ahead for a minute stamps no edit with its time",
+          "[world]") {
+  ClockPair clocks;
+  clocks.wrong_us = 3 * kYear;
+  clocks.pass(kMinute);
+  CHECK(clocks.log.stamp() == clocks.right());
+  const auto warning = clocks.log.take_warning();
+  REQUIRE(warning.has_value());
+  CHECK(warning->find("2026-11-13T22:13:25Z, the time of the log is 2023-11-14T22:13:25Z") !=
+        std::string::npos);
+  CHECK_FALSE(clocks.log.take_warning().has_value());  // one warning for one jump
+  clocks.wrong_us = 0;
+  clocks.pass(kMinute);
+  CHECK(clocks.log.stamp() == clocks.right());
+  CHECK(clocks.log.take_warning() == "the wall clock agrees with the time of the log again");
+}
+
+TEST_CASE("a jump of the wall clock is taken over once it was kept for an hour", "[world]") {
+  ClockPair clocks;
+  const TimeUs before_us = clocks.log.stamp();
+  SECTION("ahead") {
+    clocks.wrong_us = 5 * kMinute;
+    clocks.pass(LogClock::kAcceptUs, kSecond);
+    CHECK(clocks.log.stamp() == clocks.right());
+    clocks.pass(kSecond);
+    CHECK(clocks.log.stamp() == clocks.right() + 5 * kMinute);
+  }
+  SECTION("back, and no time decreases") {
+    clocks.wrong_us = -2 * LogClock::kAcceptUs;
+    clocks.pass(LogClock::kAcceptUs, kSecond);
+    const TimeUs last_us = clocks.log.stamp();
+    CHECK(last_us == before_us + LogClock::kAcceptUs);
+    clocks.pass(LogClock::kAcceptUs, kSecond);
+    CHECK(clocks.log.stamp() == last_us);  // the wall clock has not reached it
+    clocks.pass(2 * LogClock::kAcceptUs, kSecond);
+    CHECK(clocks.log.stamp() == clocks.right() + clocks.wrong_us);
+  }
+  SECTION("but not one that changes again within the hour") {
+    for (int i = 1; i <= 4; ++i) {
+      clocks.wrong_us = i * kYear;
+      clocks.pass(LogClock::kAcceptUs / 2, kSecond);
+      CHECK(clocks.log.take_warning().has_value());
+    }
+    CHECK(clocks.log.stamp() == clocks.right());
+  }
+}
+
+TEST_CASE("a small error of the wall clock is slewed by 500 ppm, whatever the steps", "[world]") {
+  const TimeUs step_us = GENERATE(TimeUs{100}, TimeUs{50'000}, 100 * kSecond);
+  ClockPair clocks;
+  clocks.wrong_us = 40'000;
+  clocks.pass(100 * kSecond, step_us);
+  // A step of 100 us allows a slew of 0.05 us. These must add up.
+  CHECK(clocks.log.stamp() == clocks.right() + 40'000);
+  clocks.wrong_us = -1 * kSecond;
+  const TimeUs error_us = clocks.log.stamp() - clocks.right();
+  clocks.pass(100 * kSecond, step_us);
+  CHECK(clocks.log.stamp() - clocks.right() == error_us - 50'000);
+  CHECK_FALSE(clocks.log.take_warning().has_value());
+}
+
+TEST_CASE("small jumps that add up to more than a minute are reported", "[world]") {
+  ClockPair clocks;
+  clocks.wrong_us = 50 * kSecond;
+  clocks.pass(kSecond);
+  CHECK_FALSE(clocks.log.take_warning().has_value());
+  clocks.wrong_us = 100 * kSecond;
+  clocks.pass(kSecond);
+  CHECK(clocks.log.take_warning().has_value());
+}
+
+TEST_CASE("a log that ends ahead of the wall clock is reported, and keeps its time until then",
+          "[world]") {
+  ClockPair ahead(kStart + 3 * kMinute);
+  const auto warning = ahead.log.take_warning();
+  REQUIRE(warning.has_value());
+  CHECK(warning->find("ends at 2023-11-14T22:16:20Z, but the wall clock reads "
+                      "2023-11-14T22:13:25Z") != std::string::npos);
+  ahead.pass(kMinute);
+  CHECK(ahead.log.stamp() == kStart + 3 * kMinute);
+  ahead.pass(2 * kMinute);
+  CHECK(ahead.log.stamp() == ahead.right());
+  ClockPair little(kStart + kMinute);
+  CHECK_FALSE(little.log.take_warning().has_value());
+}
+
+}  // namespace
+}  // namespace runstone
