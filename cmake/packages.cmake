@@ -61,7 +61,9 @@ target_link_libraries(runstone_beast INTERFACE Boost::headers OpenSSL::SSL OpenS
 
 if(RUNSTONE_TESTS)
   find_package(Catch2 2.13 REQUIRED CONFIG)
-  find_package(benchmark 1.7 REQUIRED CONFIG)
-  find_package(ZLIB REQUIRED)  # a foreign format that is measured
-  find_package(PNG REQUIRED)   # reads the pictures of the map
+  find_package(PNG REQUIRED)  # reads the pictures of the map
+  if(RUNSTONE_BENCH)
+    find_package(benchmark 1.7 REQUIRED CONFIG)
+    find_package(ZLIB REQUIRED)  # a foreign format that is measured
+  endif()
 endif()

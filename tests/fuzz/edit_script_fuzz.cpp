@@ -12,9 +12,9 @@
 #include "common/core/assert.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/apply/edit_stack_strategies.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

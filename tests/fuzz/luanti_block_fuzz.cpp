@@ -5,7 +5,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/formats/luanti_block.hpp"
-#include "tests/support/luanti_bytes.hpp"
+#include "tests/support/formats/luanti_bytes.hpp"
 
 using namespace runstone;
 

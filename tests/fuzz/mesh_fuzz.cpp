@@ -20,9 +20,9 @@
 
 #include "common/core/hash.hpp"
 #include "common/runs/run_builder.hpp"
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/mesher_checks.hpp"
-#include "tests/support/polygon_checks.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/mesh/mesher_checks.hpp"
+#include "tests/support/mesh/polygon_checks.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "common/core/assert.hpp"
-#include "tests/support/rlog_bytes.hpp"
+#include "tests/support/rlog/rlog_bytes.hpp"
 
 using namespace runstone;
 

@@ -9,7 +9,7 @@
 #include "common/core/bytes.hpp"
 #include "common/runs/reorder.hpp"
 #include "common/runs/run_chunk.hpp"
-#include "tests/support/dense_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/worlds/seeded_worlds.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/runs/reorder.hpp"
-#include "tests/bench/worlds/seeded_worlds.hpp"
 #include "tests/reference/culled_mesher.hpp"
 #include "tests/reference/rle_rdm.hpp"
 #include "tests/wireframe/wireframe.hpp"

@@ -4,11 +4,11 @@
 #include <map>
 #include <string>
 
-#include "tests/bench/meshing/mesh_figures.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
-#include "tests/bench/worlds/measured_worlds.hpp"
+#include "bench/meshing/mesh_figures.hpp"
+#include "bench/meshing/mesher_case.hpp"
+#include "bench/worlds/measured_worlds.hpp"
 #include "tests/reference/poly2tri_mesher.hpp"
-#include "tests/support/scenario_scene.hpp"
+#include "tests/support/scenarios/scenario_scene.hpp"
 
 namespace runstone::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "tests/bench/worlds/seeded_worlds.hpp"
+#include "bench/worlds/seeded_worlds.hpp"
 #include "tests/reference/binary_greedy.hpp"
 #include "tests/reference/culled_mesher.hpp"
 #include "tests/reference/greedy_mesher.hpp"
@@ -12,7 +12,7 @@
 #include "tests/reference/naive_greedy_mesher.hpp"
 #include "tests/reference/optimal_greedy_mesher.hpp"
 #include "tests/reference/run_strip_mesher.hpp"
-#include "tests/support/scenario_scene.hpp"
+#include "tests/support/scenarios/scenario_scene.hpp"
 
 namespace runstone::test {
 namespace {

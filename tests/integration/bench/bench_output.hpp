@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/app/bench_program.hpp"
+#include "bench/app/bench_program.hpp"
 
 namespace runstone::bench {
 

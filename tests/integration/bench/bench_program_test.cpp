@@ -9,11 +9,11 @@
 #include <set>
 #include <sstream>
 
-#include "tests/bench/meshing/mesher_case.hpp"
-#include "tests/bench/storage/stores.hpp"
-#include "tests/bench/wire/transfer_form.hpp"
+#include "bench/meshing/mesher_case.hpp"
+#include "bench/storage/stores.hpp"
+#include "bench/wire/transfer_form.hpp"
 #include "tests/integration/bench/bench_output.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

@@ -1,14 +1,14 @@
 // A mesher case returns the mesh that it made.
-#include "tests/bench/meshing/mesher_case.hpp"
+#include "bench/meshing/mesher_case.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "tests/bench/worlds/measured_worlds.hpp"
-#include "tests/bench/worlds/seeded_worlds.hpp"
+#include "bench/worlds/measured_worlds.hpp"
+#include "bench/worlds/seeded_worlds.hpp"
 #include "tests/reference/culled_mesher.hpp"
-#include "tests/support/polygon_checks.hpp"
-#include "tests/support/triangle_oracle.hpp"
+#include "tests/support/mesh/polygon_checks.hpp"
+#include "tests/support/mesh/triangle_oracle.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

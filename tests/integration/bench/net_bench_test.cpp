@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/bench/app/bench_program.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "bench/app/bench_program.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

@@ -1,10 +1,10 @@
-#include "tests/bench/network/sample_row.hpp"
+#include "bench/network/sample_row.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/bench/network/fleet.hpp"
+#include "bench/network/fleet.hpp"
 
 using namespace runstone::bench;
 using nlohmann::json;

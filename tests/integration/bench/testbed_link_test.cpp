@@ -1,6 +1,6 @@
 // The testbed's links with real sockets: what is sent arrives, not earlier than the profile allows.
 // No test checks how much later.
-#include "tests/bench/network/testbed_link.hpp"
+#include "bench/network/testbed_link.hpp"
 
 #include <array>
 #include <asio/buffer.hpp>
@@ -17,9 +17,9 @@
 #include <thread>
 #include <vector>
 
+#include "bench/network/child.hpp"
 #include "common/core/hash.hpp"
-#include "tests/bench/network/child.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

@@ -1,19 +1,19 @@
 // The forms that are compared must be correct: every form decodes to the same voxels, and Luanti's
 // is the game's.
-#include "tests/bench/wire/transfer_form.hpp"
+#include "bench/wire/transfer_form.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <array>
 
+#include "bench/wire/luanti_form.hpp"
+#include "bench/wire/palette_form.hpp"
 #include "common/runs/dense.hpp"
 #include "common/runs/reorder.hpp"
 #include "common/runs/run_builder.hpp"
 #include "server/import/luanti_map.hpp"
-#include "tests/bench/wire/luanti_form.hpp"
-#include "tests/bench/wire/palette_form.hpp"
-#include "tests/support/luanti_bytes.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/formats/luanti_bytes.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::bench {
 namespace {

@@ -1,10 +1,10 @@
 // The four forms of a scene end in the same faces, in whatever pieces the stream arrives.
-#include "tests/bench/network/transfer_scene.hpp"
+#include "bench/network/transfer_scene.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

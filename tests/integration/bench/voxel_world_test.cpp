@@ -1,11 +1,11 @@
 // Volumes cut from a world with bounds, and edits timed on them.
-#include "tests/bench/worlds/voxel_world.hpp"
+#include "bench/worlds/voxel_world.hpp"
 
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "tests/bench/edits/edit_case.hpp"
-#include "tests/bench/worlds/seeded_worlds.hpp"
+#include "bench/edits/edit_case.hpp"
+#include "bench/worlds/seeded_worlds.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

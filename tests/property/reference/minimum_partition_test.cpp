@@ -4,8 +4,8 @@
 
 #include "common/core/hash.hpp"
 #include "tests/reference/minimum_partition.hpp"
-#include "tests/support/partition_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/mesh/partition_oracle.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -3,9 +3,9 @@
 // outlines.
 #include <catch2/catch.hpp>
 
-#include "tests/support/polygon_checks.hpp"
-#include "tests/support/random_chunk.hpp"
-#include "tests/support/scenario_scene.hpp"
+#include "tests/support/mesh/polygon_checks.hpp"
+#include "tests/support/runs/random_chunk.hpp"
+#include "tests/support/scenarios/scenario_scene.hpp"
 
 namespace runstone::test {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "tests/reference/binary_greedy.hpp"
 #include "tests/reference/material_octree.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/mesher_checks.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/mesh/mesher_checks.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

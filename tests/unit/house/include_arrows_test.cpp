@@ -80,13 +80,13 @@ Arrows::const_iterator module_of(std::string_view path) {
   return found;
 }
 
-/// Returns true if no module of this build can contain the path: tests are not modules, and a build
-/// without the client has no modules below client/.
+/// Returns true if no module of this build need contain the path: tests are not modules, and a build
+/// without the client or the benchmarks has no modules below client/ or bench/.
 bool is_outside(std::string_view path) {
 #ifndef RUNSTONE_HAS_CLIENT
   if (below(path, "client")) return true;
 #endif
-  return below(path, "tests");
+  return below(path, "tests") || below(path, "bench");
 }
 
 /// Headers that a folder may not include, as <...> or "...". A prefix that ends in '/' names a
@@ -122,7 +122,8 @@ bool names(const std::string& header, const std::string& banned) {
 
 /// Returns one line for each wrong include: "file includes header: rule".
 std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
-  static constexpr std::string_view kRoots[] = {"common", "protocol", "server", "client", "tests"};
+  static constexpr std::string_view kRoots[] = {"common", "protocol", "server",
+                                                "client", "bench",    "tests"};
   std::vector<std::string> out;
   for (const SourceFile& file : files) {
     const auto home = module_of(file.path);
@@ -167,7 +168,7 @@ std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
 
 std::vector<SourceFile> source_tree(const std::filesystem::path& root) {
   std::vector<SourceFile> out;
-  for (const char* folder : {"common", "protocol", "server", "client", "tests"}) {
+  for (const char* folder : {"common", "protocol", "server", "client", "bench", "tests"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const auto extension = entry.path().extension();
       if (!entry.is_regular_file() ||
@@ -223,7 +224,7 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   CHECK(is_wrong("protocol/codec/frame.cpp", "#include \"common/os/steady_clock.hpp\""));
   CHECK(is_wrong("common/os/open_files.cpp", "#include \"protocol/limits.hpp\""));
   CHECK(is_wrong("common/os/open_files.cpp", "#include \"server/app/server.hpp\""));
-  CHECK(is_wrong("client/app/client_main.cpp", "#include \"tests/support/dense_chunk.hpp\""));
+  CHECK(is_wrong("client/app/client_main.cpp", "#include \"tests/support/runs/dense_chunk.hpp\""));
   // System headers in the pure libraries.
   for (const char* header :
        {"asio.hpp", "asio/ip/tcp.hpp", "spdlog/spdlog.h", "sqlite3.h", "libpq-fe.h", "GL/gl.h",
@@ -239,6 +240,7 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   // Test code in the product.
   CHECK(is_wrong("client/schedule/mesh_job.cpp", "#include \"tests/reference/binary_greedy.hpp\""));
   CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"tests/reference/dense_grid.hpp\""));
+  CHECK(is_wrong("client/schedule/mesh_job.cpp", "#include \"bench/worlds/town.hpp\""));
   // Other spellings.
   CHECK(is_wrong("common/core/ids.hpp", "  #  include\t\"common/runs/run_list.hpp\""));
   CHECK(is_wrong("common/core/ids.hpp", "#include <common/core/hash.hpp>"));

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/text_scene.hpp"
+#include "tests/support/mesh/text_scene.hpp"
 
 namespace runstone::test {
 namespace {

@@ -7,7 +7,7 @@
 #include "common/mesh/quad_corners.hpp"
 #include "tests/reference/t_junctions.hpp"
 #include "tests/reference/thin_triangles.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 namespace runstone::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "tests/reference/greedy_mesher.hpp"
 #include "tests/reference/grid_rdm.hpp"
-#include "tests/support/text_scene.hpp"
+#include "tests/support/mesh/text_scene.hpp"
 
 namespace runstone::test {
 namespace {

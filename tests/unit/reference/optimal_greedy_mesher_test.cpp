@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/partition_oracle.hpp"
-#include "tests/support/text_scene.hpp"
+#include "tests/support/mesh/partition_oracle.hpp"
+#include "tests/support/mesh/text_scene.hpp"
 
 namespace runstone::test {
 namespace {

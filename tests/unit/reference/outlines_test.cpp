@@ -8,8 +8,8 @@
 #include <numeric>
 #include <set>
 
-#include "tests/support/face_text.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/face_text.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 namespace runstone::test {
 namespace {

@@ -15,8 +15,8 @@
 #include "tests/reference/rle_rdm.hpp"
 #include "tests/reference/row_compare.hpp"
 #include "tests/reference/simple_mesher.hpp"
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -7,7 +7,7 @@
 #include "tests/reference/monotone_triangulation.hpp"
 #include "tests/reference/sweep_delaunay.hpp"
 #include "tests/reference/t_junctions.hpp"
-#include "tests/support/face_text.hpp"
+#include "tests/support/mesh/face_text.hpp"
 
 namespace runstone::test {
 namespace {

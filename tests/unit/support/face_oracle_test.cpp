@@ -1,6 +1,6 @@
 // Tests of the oracle: every possible fault of a mesh is made on purpose, and the oracle must name
 // it.
-#include "tests/support/face_oracle.hpp"
+#include "tests/support/mesh/face_oracle.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/mesh/quad.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 namespace runstone::test {
 namespace {

@@ -1,6 +1,6 @@
 // The model of a link must behave like a link of that rate, delay and queue. The tests run in
 // virtual time.
-#include "tests/support/link_model.hpp"
+#include "tests/support/net/link_model.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // Tests of the triangle oracle, like face_oracle_test: every possible fault of a mesh of triangles
 // is made on purpose. Then the oracle is compared with a second method: counting the triangles over
 // many points.
-#include "tests/support/triangle_oracle.hpp"
+#include "tests/support/mesh/triangle_oracle.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@
 #include <map>
 
 #include "common/mesh/quad_corners.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 namespace runstone::test {
 namespace {

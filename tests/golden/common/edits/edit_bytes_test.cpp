@@ -3,8 +3,8 @@
 #include "common/edits/clipboard/clipboard_builder.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/pinned_record.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/edits/pinned_record.hpp"
 
 // Bytes derived by hand from docs/edit-log.md. They are stored in logs: a change here is a new kind
 // or version.

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 
+#include "bench/worlds/seeded_worlds.hpp"
 #include "common/core/hash.hpp"
-#include "tests/bench/worlds/seeded_worlds.hpp"
-#include "tests/support/scenario_scene.hpp"
+#include "tests/support/scenarios/scenario_scene.hpp"
 
 namespace runstone::test {
 namespace {

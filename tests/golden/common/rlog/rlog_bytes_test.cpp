@@ -1,8 +1,8 @@
 // The bytes of .rlog version 1, as docs/edit-log.md specifies them. A change here is a new version.
 #include <catch2/catch.hpp>
 
-#include "tests/support/hex.hpp"
-#include "tests/support/rlog_bytes.hpp"
+#include "tests/support/core/hex.hpp"
+#include "tests/support/rlog/rlog_bytes.hpp"
 
 namespace runstone::test {
 namespace {

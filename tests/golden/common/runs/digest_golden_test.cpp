@@ -4,7 +4,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/runs/run_builder.hpp"
-#include "tests/support/dense_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
 
 using namespace runstone;
 

@@ -3,8 +3,8 @@
 
 #include "common/runs/run_builder.hpp"
 #include "protocol/codec/chunk_codec.hpp"
-#include "tests/support/hex.hpp"
-#include "tests/support/page_example.hpp"
+#include "tests/support/core/hex.hpp"
+#include "tests/support/core/page_example.hpp"
 
 // The bytes were computed by hand from docs/protocol.md, coded bodies by a second decoder that was
 // written from it. They are on the wire and in stores: a change here is a new version of chunk

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "common/core/hex.hpp"
-#include "tests/support/page_example.hpp"
+#include "tests/support/core/page_example.hpp"
 
 using namespace runstone;
 using runstone::test::page_example;

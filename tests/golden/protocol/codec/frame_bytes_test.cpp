@@ -4,8 +4,8 @@
 
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/message_table.hpp"
-#include "tests/support/hex.hpp"
-#include "tests/support/page_example.hpp"
+#include "tests/support/core/hex.hpp"
+#include "tests/support/core/page_example.hpp"
 
 // The bytes were computed by hand from docs/protocol.md: a change here is a new protocol version.
 namespace runstone::test {

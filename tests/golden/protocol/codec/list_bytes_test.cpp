@@ -7,8 +7,8 @@
 #include "protocol/codec/key_list.hpp"
 #include "protocol/codec/ordered_edit_reader.hpp"
 #include "protocol/codec/uniform_list.hpp"
-#include "tests/support/hex.hpp"
-#include "tests/support/page_example.hpp"
+#include "tests/support/core/hex.hpp"
+#include "tests/support/core/page_example.hpp"
 
 // The byte lists have the bytes of the examples in docs/protocol.md, which were computed from the
 // page by another program. A change here is a new protocol version.

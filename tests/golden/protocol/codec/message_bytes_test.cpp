@@ -10,8 +10,8 @@
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
-#include "tests/support/hex.hpp"
-#include "tests/support/page_example.hpp"
+#include "tests/support/core/hex.hpp"
+#include "tests/support/core/page_example.hpp"
 
 // Messages as version 2 of the protocol wrote them. How they are decoded must never change.
 // Releases of FlatBuffers may arrange fields differently, so the encoder's bytes are not pinned.

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "tests/support/pinned_record.hpp"
+#include "tests/support/edits/pinned_record.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

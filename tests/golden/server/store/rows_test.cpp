@@ -7,10 +7,10 @@
 
 #include "common/core/hex.hpp"
 #include "server/store/sqlite_backend.hpp"
-#include "tests/support/compact_by_hand.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/store/compact_by_hand.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

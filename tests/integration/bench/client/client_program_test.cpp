@@ -6,7 +6,7 @@
 
 #include "client/platform/gl_context.hpp"
 #include "tests/integration/bench/bench_output.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

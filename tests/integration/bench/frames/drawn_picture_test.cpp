@@ -1,5 +1,5 @@
 // The rules for seams and pinholes.
-#include "tests/bench/frames/drawn_picture.hpp"
+#include "bench/frames/drawn_picture.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,12 +1,12 @@
 // The results as files and tables.
-#include "tests/bench/frames/frames_result.hpp"
+#include "bench/frames/frames_result.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/bench/frames/frames_options.hpp"
+#include "bench/frames/frames_options.hpp"
 
 using namespace runstone::bench;
 

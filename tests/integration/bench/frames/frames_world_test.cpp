@@ -1,10 +1,10 @@
 // The drawn blocks of chunks, in which chunks know each other and nothing else.
-#include "tests/bench/frames/frames_world.hpp"
+#include "bench/frames/frames_world.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "tests/bench/worlds/seeded_worlds.hpp"
+#include "bench/worlds/seeded_worlds.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

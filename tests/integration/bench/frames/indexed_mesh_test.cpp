@@ -1,6 +1,6 @@
 // The uploaded mesh is the mesher's mesh: every polygon, wound to the outside, with its normal and
 // material.
-#include "tests/bench/frames/indexed_mesh.hpp"
+#include "bench/frames/indexed_mesh.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // The cases draw off screen. If there is no OpenGL context, they say so with WARN and pass.
-#include "tests/bench/frames/gl/plain_renderer.hpp"
+#include "bench/frames/gl/plain_renderer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,15 +9,15 @@
 #include <set>
 #include <string>
 
+#include "bench/frames/frames_options.hpp"
+#include "bench/frames/frames_world.hpp"
+#include "bench/frames/gl/orbit.hpp"
+#include "bench/meshing/mesher_case.hpp"
+#include "bench/worlds/seeded_worlds.hpp"
 #include "client/platform/egl_context.hpp"
 #include "client/platform/gl_context.hpp"
 #include "client/platform/osmesa_context.hpp"
 #include "common/core/hash.hpp"
-#include "tests/bench/frames/frames_options.hpp"
-#include "tests/bench/frames/frames_world.hpp"
-#include "tests/bench/frames/gl/orbit.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
-#include "tests/bench/worlds/seeded_worlds.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

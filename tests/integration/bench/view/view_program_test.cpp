@@ -4,12 +4,12 @@
 #include <map>
 #include <stdexcept>
 
+#include "bench/view/view_bench.hpp"
+#include "bench/view/view_pane.hpp"
+#include "bench/view/view_world.hpp"
 #include "client/platform/gl_context.hpp"
-#include "tests/bench/view/view_bench.hpp"
-#include "tests/bench/view/view_pane.hpp"
-#include "tests/bench/view/view_world.hpp"
 #include "tests/integration/bench/bench_output.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;

@@ -7,7 +7,7 @@
 
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
-#include "tests/support/shell_run.hpp"
+#include "tests/support/core/shell_run.hpp"
 
 namespace runstone::test {
 namespace {

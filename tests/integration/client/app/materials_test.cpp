@@ -4,7 +4,7 @@
 
 #include "client/app/material_list.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/shell_run.hpp"
+#include "tests/support/core/shell_run.hpp"
 
 namespace runstone::test {
 namespace {

@@ -16,9 +16,9 @@
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "tests/integration/client/window/child_process.hpp"
-#include "tests/support/temp_folder.hpp"
-#include "tests/support/test_keys.hpp"
-#include "tests/support/worst_chunk.hpp"
+#include "tests/support/codec/test_keys.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/runs/worst_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -8,8 +8,8 @@
 #include "tests/integration/client/travel/live_session.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
-#include "tests/support/face_oracle.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/mesh/face_oracle.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -13,8 +13,8 @@
 #include "common/os/steady_clock.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/raw_sql.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 
 namespace runstone::test::tile_cache_test {
 namespace {

@@ -11,8 +11,8 @@
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/run_replay.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/replay/run_replay.hpp"
 
 namespace runstone::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/run_replay.hpp"
-#include "tests/support/sample_world.hpp"
+#include "tests/support/replay/run_replay.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -14,8 +14,8 @@
 #include <string>
 
 #include "tests/integration/client/draw/png_file.hpp"
-#include "tests/support/temp_folder.hpp"
-#include "tests/support/text_contains.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/core/text_contains.hpp"
 
 namespace runstone {
 namespace {

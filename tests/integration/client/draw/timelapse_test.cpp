@@ -14,10 +14,10 @@
 #include "server/draw/draw_child.hpp"
 #include "server/replay/timelapse.hpp"
 #include "tests/integration/client/draw/png_file.hpp"
-#include "tests/support/run_replay.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
-#include "tests/support/text_contains.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/core/text_contains.hpp"
+#include "tests/support/replay/run_replay.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone {
 namespace {

@@ -13,8 +13,8 @@
 #include "client/local/local_worlds.hpp"
 #include "common/os/child_program.hpp"
 #include "tests/integration/client/window/child_process.hpp"
-#include "tests/support/shell_run.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/shell_run.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 namespace runstone {
 namespace {

@@ -17,7 +17,7 @@
 #include "common/core/hash.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/visibility.hpp"
-#include "tests/support/plane_colours.hpp"
+#include "tests/support/mesh/plane_colours.hpp"
 
 namespace runstone {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "tests/integration/client/window/title_bench.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "tests/integration/client/window/child_process.hpp"
 #include "tests/integration/client/window/virtual_display.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 namespace runstone::test {
 

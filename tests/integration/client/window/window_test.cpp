@@ -9,7 +9,7 @@
 #include "tests/integration/client/window/child_process.hpp"
 #include "tests/integration/client/window/virtual_display.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone {
 namespace {

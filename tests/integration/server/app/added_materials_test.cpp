@@ -12,8 +12,8 @@
 #include "server/store/world_folder.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/server_process.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/run_replay.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/replay/run_replay.hpp"
 
 namespace runstone::test {
 namespace {

@@ -5,7 +5,7 @@
 #include "common/edits/apply/edit_stack.hpp"
 #include "server/history/base_chunk.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

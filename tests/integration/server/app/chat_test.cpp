@@ -8,9 +8,9 @@
 #include "server/backup/backup_program.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
-#include "tests/support/full_disk_vfs.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/text_contains.hpp"
+#include "tests/support/core/text_contains.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/sql/full_disk_vfs.hpp"
 
 namespace runstone::test {
 namespace {

@@ -13,8 +13,8 @@
 #include "tests/integration/server/app/honest_builder.hpp"
 #include "tests/integration/server/app/hostile_clients.hpp"
 #include "tests/integration/server/app/server_process.hpp"
-#include "tests/support/power_loss_vfs.hpp"
-#include "tests/support/run_replay.hpp"
+#include "tests/support/replay/run_replay.hpp"
+#include "tests/support/sql/power_loss_vfs.hpp"
 
 namespace runstone::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "tests/integration/server/app/server_process.hpp"
-#include "tests/support/crash_image.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/sql/crash_image.hpp"
 
 namespace runstone::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/raw_sql.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 
 namespace runstone {
 namespace {

@@ -14,8 +14,8 @@
 #include "common/os/steady_clock.hpp"
 #include "common/tls/openssl_ptr.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/pem_files.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/tls/pem_files.hpp"
 
 namespace runstone::test {
 namespace {

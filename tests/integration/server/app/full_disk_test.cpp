@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/full_disk_vfs.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/sql/full_disk_vfs.hpp"
 
 namespace runstone::test {
 namespace {

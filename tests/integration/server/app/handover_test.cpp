@@ -14,8 +14,8 @@
 
 #include "tests/integration/server/app/postgres_servers.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/raw_sql.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 
 namespace runstone::test {
 namespace {

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "server/store/store.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 

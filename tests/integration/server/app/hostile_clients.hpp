@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "tests/support/hostile_edits.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/edits/hostile_edits.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 

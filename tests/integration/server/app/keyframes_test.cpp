@@ -6,10 +6,10 @@
 
 #include "server/history/world_at.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/run_replay.hpp"
-#include "tests/support/sample_world.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/replay/run_replay.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 namespace {

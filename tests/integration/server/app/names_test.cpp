@@ -7,7 +7,7 @@
 #include "protocol/codec/key_fingerprint.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/server_process.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/integration/server/app/server_process.hpp"
-#include "tests/support/temp_place.hpp"
+#include "tests/support/sql/temp_place.hpp"
 
 namespace runstone::test {
 

@@ -9,7 +9,7 @@
 #include "server/app/server.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/store/store.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 namespace runstone::test {
 

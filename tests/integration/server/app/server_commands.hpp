@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "server/admin/control_program.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 

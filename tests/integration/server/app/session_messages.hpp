@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 

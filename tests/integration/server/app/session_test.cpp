@@ -10,8 +10,8 @@
 #include "common/runs/dense.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/view_distance.hpp"
+#include "tests/support/codec/view_distance.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

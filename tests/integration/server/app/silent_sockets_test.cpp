@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

@@ -10,11 +10,11 @@
 
 #include "common/core/epoch_branch.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/compact_by_hand.hpp"
-#include "tests/support/crash_image.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/text_contains.hpp"
+#include "tests/support/core/text_contains.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/sql/crash_image.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/store/compact_by_hand.hpp"
 
 namespace runstone::test {
 namespace {

@@ -23,8 +23,8 @@
 #include "protocol/codec/view_tiles.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/raw_sql.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 
 namespace runstone::test::tiles_test {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "server/store/world_folder.hpp"
 #include "tests/integration/server/replay/read_json.hpp"
-#include "tests/support/run_replay.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/replay/run_replay.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

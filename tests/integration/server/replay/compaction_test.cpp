@@ -12,12 +12,12 @@
 #include "server/admin/compact_program.hpp"
 #include "server/history/keyframe_maker.hpp"
 #include "server/history/named_moment.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/power_loss_vfs.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/run_replay.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/replay/run_replay.hpp"
+#include "tests/support/sql/power_loss_vfs.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

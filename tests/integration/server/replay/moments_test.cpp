@@ -9,11 +9,11 @@
 #include "server/history/world_at.hpp"
 #include "server/replay/world_copy.hpp"
 #include "tests/integration/server/replay/read_json.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/run_replay.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
-#include "tests/support/text_contains.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/core/text_contains.hpp"
+#include "tests/support/replay/run_replay.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

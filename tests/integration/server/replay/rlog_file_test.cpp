@@ -9,12 +9,12 @@
 #include <sstream>
 
 #include "server/replay/replay_program.hpp"
-#include "tests/support/compact_by_hand.hpp"
-#include "tests/support/crash_image.hpp"
-#include "tests/support/rlog_bytes.hpp"
-#include "tests/support/run_replay.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/replay/run_replay.hpp"
+#include "tests/support/rlog/rlog_bytes.hpp"
+#include "tests/support/sql/crash_image.hpp"
+#include "tests/support/store/compact_by_hand.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

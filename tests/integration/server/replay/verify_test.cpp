@@ -12,11 +12,11 @@
 #include "common/runs/run_chunk.hpp"
 #include "server/replay/digest_list.hpp"
 #include "server/tiles/tile_source.hpp"
-#include "tests/support/crash_image.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/run_replay.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/replay/run_replay.hpp"
+#include "tests/support/sql/crash_image.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -11,8 +11,8 @@
 #include "server/web/web_frame.hpp"
 #include "tests/integration/server/web/fake_server.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/sample_frame.hpp"
-#include "tests/support/text_contains.hpp"
+#include "tests/support/codec/sample_frame.hpp"
+#include "tests/support/core/text_contains.hpp"
 
 namespace runstone::test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "server/web/certificate.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/pem_files.hpp"
-#include "tests/support/web_player.hpp"
+#include "tests/support/net/web_player.hpp"
+#include "tests/support/tls/pem_files.hpp"
 
 namespace runstone::test {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "tests/integration/server/web/web_bench.hpp"
 #include "tests/integration/server/web/web_program.hpp"
-#include "tests/support/text_contains.hpp"
-#include "tests/support/web_player.hpp"
+#include "tests/support/core/text_contains.hpp"
+#include "tests/support/net/web_player.hpp"
 
 namespace runstone::test {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "protocol/codec/proxy_header.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

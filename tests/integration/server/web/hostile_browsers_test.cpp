@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/sample_frame.hpp"
-#include "tests/support/web_player.hpp"
+#include "tests/support/codec/sample_frame.hpp"
+#include "tests/support/net/web_player.hpp"
 
 namespace runstone::test {
 namespace {

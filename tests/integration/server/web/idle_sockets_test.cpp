@@ -10,8 +10,8 @@
 #include "common/os/open_files.hpp"
 #include "common/os/process_memory.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/pem_files.hpp"
-#include "tests/support/web_player.hpp"
+#include "tests/support/net/web_player.hpp"
+#include "tests/support/tls/pem_files.hpp"
 
 namespace runstone::test {
 namespace {

@@ -11,7 +11,7 @@
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/session_messages.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/raw_client.hpp"
+#include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
 namespace {

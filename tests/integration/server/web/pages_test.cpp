@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/web_player.hpp"
+#include "tests/support/net/web_player.hpp"
 
 namespace runstone::test {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "tests/integration/server/app/session_messages.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/pem_files.hpp"
-#include "tests/support/raw_client.hpp"
-#include "tests/support/web_player.hpp"
+#include "tests/support/net/raw_client.hpp"
+#include "tests/support/net/web_player.hpp"
+#include "tests/support/tls/pem_files.hpp"
 
 namespace runstone::test {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "common/os/child_program.hpp"
 #include "tests/integration/server/web/web_program.hpp"
-#include "tests/support/shell_run.hpp"
-#include "tests/support/temp_folder.hpp"
-#include "tests/support/web_peer.hpp"
+#include "tests/support/core/shell_run.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/net/web_peer.hpp"
 
 namespace runstone::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "tests/integration/server/web/fake_server.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
-#include "tests/support/web_player.hpp"
+#include "tests/support/net/web_player.hpp"
 
 namespace runstone::test {
 namespace {

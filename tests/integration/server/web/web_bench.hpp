@@ -8,7 +8,7 @@
 
 #include "server/web/web_gateway.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
-#include "tests/support/web_peer.hpp"
+#include "tests/support/net/web_peer.hpp"
 
 namespace runstone::test {
 

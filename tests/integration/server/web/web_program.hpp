@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "common/os/child_program.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 namespace runstone::test {
 

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <map>
 
+#include "bench/storage/flat_array.hpp"
+#include "bench/storage/interval_map.hpp"
+#include "bench/storage/morton_array.hpp"
+#include "bench/storage/palette_store.hpp"
+#include "bench/storage/run_store.hpp"
+#include "bench/storage/voxel_tree.hpp"
 #include "common/core/hash.hpp"
 #include "common/runs/run_builder.hpp"
-#include "tests/bench/storage/flat_array.hpp"
-#include "tests/bench/storage/interval_map.hpp"
-#include "tests/bench/storage/morton_array.hpp"
-#include "tests/bench/storage/palette_store.hpp"
-#include "tests/bench/storage/run_store.hpp"
-#include "tests/bench/storage/voxel_tree.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 using namespace runstone;
 using namespace runstone::bench::storage;

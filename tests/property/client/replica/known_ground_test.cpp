@@ -7,8 +7,8 @@
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/rights/rights_state.hpp"
 #include "protocol/rules/refusal_text.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/random_rights.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/rights/random_rights.hpp"
 
 namespace runstone::test {
 namespace {

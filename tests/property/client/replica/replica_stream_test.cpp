@@ -10,9 +10,9 @@
 
 #include "client/replica/replica.hpp"
 #include "common/core/hash.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/chunks_message.hpp"
-#include "tests/support/edit_oracle.hpp"
+#include "tests/support/codec/authority_model.hpp"
+#include "tests/support/codec/chunks_message.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
 
 using namespace runstone;
 using runstone::test::AuthorityModel;

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <optional>
 
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

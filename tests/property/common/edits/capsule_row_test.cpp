@@ -4,8 +4,8 @@
 
 #include "common/edits/descriptor/capsule_row.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 // Capsules at the limits of a stroke, where an overflowing product would show first.
 namespace runstone::test {

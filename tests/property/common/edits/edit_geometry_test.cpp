@@ -4,8 +4,8 @@
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 

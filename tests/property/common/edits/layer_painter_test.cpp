@@ -5,9 +5,9 @@
 
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/apply/edit_stack_strategies.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 // Compares the layer painter with the dense oracle: at every chunk edge and axis order, with lines
 // that fill vectors and lines that do not, on each instruction set, and with capsules whose numbers

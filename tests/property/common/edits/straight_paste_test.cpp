@@ -4,8 +4,8 @@
 #include <variant>
 
 #include "common/edits/apply/edit_stack.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -6,7 +6,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
-#include "tests/support/random_look.hpp"
+#include "tests/support/core/random_look.hpp"
 
 namespace runstone::test {
 namespace {

@@ -6,9 +6,9 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "tests/support/equal_quads.hpp"
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/mesh/equal_quads.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "tests/support/mesher_checks.hpp"
-#include "tests/support/scenario_scene.hpp"
+#include "tests/support/mesh/mesher_checks.hpp"
+#include "tests/support/scenarios/scenario_scene.hpp"
 
 namespace runstone::test {
 namespace {

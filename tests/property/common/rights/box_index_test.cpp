@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "tests/support/random_rights.hpp"
+#include "tests/support/rights/random_rights.hpp"
 
 namespace runstone::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "tests/support/random_rights.hpp"
+#include "tests/support/rights/random_rights.hpp"
 
 namespace runstone::test {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "common/runs/reorder.hpp"
 #include "common/runs/span_boxes.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 

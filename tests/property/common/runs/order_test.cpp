@@ -3,8 +3,8 @@
 
 #include "common/runs/layer.hpp"
 #include "common/runs/reorder.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 using namespace runstone;
 using test::DenseChunk;

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/generate/generator.hpp"
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/random_chunk.hpp"
-#include "tests/support/tile_oracle.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/runs/random_chunk.hpp"
+#include "tests/support/tiles/tile_oracle.hpp"
 
 namespace runstone::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/random_chunk.hpp"
-#include "tests/support/tile_oracle.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/runs/random_chunk.hpp"
+#include "tests/support/tiles/tile_oracle.hpp"
 
 namespace runstone::test {
 namespace {

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "protocol/codec/chunk_codec.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/random_message.hpp"
+#include "tests/support/codec/random_message.hpp"
 
 namespace runstone::test {
 

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "tests/support/random_message.hpp"
+#include "tests/support/codec/random_message.hpp"
 
 namespace runstone::test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/message_table.hpp"
-#include "tests/support/random_message.hpp"
+#include "tests/support/codec/random_message.hpp"
 
 namespace runstone::test {
 namespace {

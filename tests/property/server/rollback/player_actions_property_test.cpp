@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/edits/restore/restore.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

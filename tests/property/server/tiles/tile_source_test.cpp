@@ -7,8 +7,8 @@
 
 #include "common/runs/run_builder.hpp"
 #include "common/tiles/tile_rules.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/tile_oracle.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/tiles/tile_oracle.hpp"
 #include "tests/unit/server/tiles/tile_world.hpp"
 
 using namespace runstone;

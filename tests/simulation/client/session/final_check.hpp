@@ -10,7 +10,7 @@
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "tests/simulation/client/session/sim_client.hpp"
 #include "tests/simulation/client/session/sim_server.hpp"
-#include "tests/support/edit_oracle.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
 
 namespace runstone::test {
 

@@ -10,7 +10,7 @@
 #include "common/runs/run_builder.hpp"
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/message_table.hpp"
-#include "tests/support/chunks_message.hpp"
+#include "tests/support/codec/chunks_message.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone::test {

@@ -11,9 +11,9 @@
 
 #include "server/store/sqlite_backend.hpp"
 #include "tests/simulation/client/session/final_check.hpp"
-#include "tests/support/power_loss_vfs.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/sql/power_loss_vfs.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 namespace {

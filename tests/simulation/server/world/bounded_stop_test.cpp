@@ -6,8 +6,8 @@
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/store/sqlite_backend.hpp"
 #include "tests/simulation/client/session/sim_server.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 namespace {

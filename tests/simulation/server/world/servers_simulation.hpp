@@ -14,7 +14,7 @@
 
 #include "tests/simulation/client/session/final_check.hpp"
 #include "tests/simulation/server/world/sim_process.hpp"
-#include "tests/support/sample_world.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 

@@ -1,4 +1,4 @@
-#include "tests/bench/app/program_options.hpp"
+#include "bench/app/program_options.hpp"
 
 #include <catch2/catch.hpp>
 #include <sstream>

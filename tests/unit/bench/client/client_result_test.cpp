@@ -1,4 +1,4 @@
-#include "tests/bench/client/client_result.hpp"
+#include "bench/client/client_result.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

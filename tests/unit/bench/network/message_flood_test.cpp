@@ -1,4 +1,4 @@
-#include "tests/bench/network/message_flood.hpp"
+#include "bench/network/message_flood.hpp"
 
 #include <catch2/catch.hpp>
 #include <set>

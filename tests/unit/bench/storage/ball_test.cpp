@@ -1,4 +1,4 @@
-#include "tests/bench/storage/ball.hpp"
+#include "bench/storage/ball.hpp"
 
 #include <catch2/catch.hpp>
 #include <set>

@@ -2,15 +2,15 @@
 // many.
 #include <catch2/catch.hpp>
 
-#include "tests/bench/storage/flat_array.hpp"
-#include "tests/bench/storage/heap_bytes.hpp"
-#include "tests/bench/storage/interval_map.hpp"
-#include "tests/bench/storage/morton_array.hpp"
-#include "tests/bench/storage/palette_store.hpp"
-#include "tests/bench/storage/run_store.hpp"
-#include "tests/bench/storage/voxel_tree.hpp"
-#include "tests/support/count_allocations.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "bench/storage/flat_array.hpp"
+#include "bench/storage/heap_bytes.hpp"
+#include "bench/storage/interval_map.hpp"
+#include "bench/storage/morton_array.hpp"
+#include "bench/storage/palette_store.hpp"
+#include "bench/storage/run_store.hpp"
+#include "bench/storage/voxel_tree.hpp"
+#include "tests/support/core/count_allocations.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 #if defined(__GLIBC__)
 #include <malloc.h>

@@ -1,4 +1,4 @@
-#include "tests/bench/storage/morton_code.hpp"
+#include "bench/storage/morton_code.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "tests/bench/storage/palette_store.hpp"
+#include "bench/storage/palette_store.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "tests/bench/storage/shared_pool.hpp"
+#include "bench/storage/shared_pool.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>

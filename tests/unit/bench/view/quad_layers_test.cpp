@@ -1,11 +1,11 @@
-#include "tests/bench/view/quad_layers.hpp"
+#include "bench/view/quad_layers.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "bench/worlds/seeded_worlds.hpp"
 #include "common/core/hash.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "tests/bench/worlds/seeded_worlds.hpp"
 
 namespace runstone::bench {
 

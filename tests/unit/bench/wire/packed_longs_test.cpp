@@ -1,4 +1,4 @@
-#include "tests/bench/wire/packed_longs.hpp"
+#include "bench/wire/packed_longs.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "client/net/key_file.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 namespace runstone::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "client/app/player_defaults.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 

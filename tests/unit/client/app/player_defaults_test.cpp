@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 namespace runstone {
 namespace {

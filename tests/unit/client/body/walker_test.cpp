@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "tests/support/chunks_message.hpp"
+#include "tests/support/codec/chunks_message.hpp"
 
 using namespace runstone;
 

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/chunks_message.hpp"
-#include "tests/support/test_keys.hpp"
+#include "tests/support/codec/chunks_message.hpp"
+#include "tests/support/codec/test_keys.hpp"
 
 using namespace runstone;
 

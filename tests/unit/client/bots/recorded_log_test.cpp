@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "protocol/limits.hpp"
-#include "tests/support/rlog_bytes.hpp"
+#include "tests/support/rlog/rlog_bytes.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/chunks_message.hpp"
+#include "tests/support/codec/chunks_message.hpp"
 
 using namespace runstone;
 using runstone::test::chunks_of;

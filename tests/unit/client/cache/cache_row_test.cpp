@@ -4,7 +4,7 @@
 
 #include "client/cache/cache_drops.hpp"
 #include "common/core/hash.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test::cache_row_test {
 namespace {

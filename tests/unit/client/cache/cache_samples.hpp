@@ -7,7 +7,7 @@
 
 #include "client/replica/cache_lookup.hpp"
 #include "common/core/hash.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 

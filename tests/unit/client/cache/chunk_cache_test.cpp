@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "common/core/hash.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 #include "tests/unit/client/cache/cache_samples.hpp"
 
 namespace runstone::test {

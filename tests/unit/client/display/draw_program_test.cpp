@@ -14,7 +14,7 @@
 #include "client/report/exit_code.hpp"
 #include "protocol/codec/draw_answer.hpp"
 #include "protocol/codec/draw_order.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 #include "tests/unit/client/display/fake_screen.hpp"
 
 namespace runstone {

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "client/net/wake_up.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 #include "tests/unit/client/display/draw_samples.hpp"
 #include "tests/unit/client/display/fake_screen.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/authority_model.hpp"
-#include "tests/support/chunks_message.hpp"
+#include "tests/support/codec/authority_model.hpp"
+#include "tests/support/codec/chunks_message.hpp"
 
 using namespace runstone;
 

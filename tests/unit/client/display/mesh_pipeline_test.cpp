@@ -6,10 +6,10 @@
 
 #include "client/net/wake_up.hpp"
 #include "common/os/steady_clock.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/chunks_message.hpp"
-#include "tests/support/temp_folder.hpp"
-#include "tests/support/worst_chunk.hpp"
+#include "tests/support/codec/authority_model.hpp"
+#include "tests/support/codec/chunks_message.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/runs/worst_chunk.hpp"
 #include "tests/unit/client/display/fake_screen.hpp"
 
 using namespace runstone;

@@ -9,7 +9,7 @@
 #include "client/far/far_cover.hpp"
 #include "common/core/hash.hpp"
 #include "common/core/tile_keys.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 #include "tests/unit/client/far/cover_model.hpp"
 #include "tests/unit/client/far/some_tile.hpp"
 

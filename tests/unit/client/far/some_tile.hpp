@@ -1,6 +1,6 @@
 // Tiles for tests.
 #pragma once
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 

@@ -5,8 +5,8 @@
 
 #include "client/far/stand_in.hpp"
 #include "common/materials/material_table.hpp"
-#include "tests/support/face_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/mesh/face_oracle.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

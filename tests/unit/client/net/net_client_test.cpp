@@ -9,7 +9,7 @@
 
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/message_table.hpp"
-#include "tests/support/worst_chunk.hpp"
+#include "tests/support/runs/worst_chunk.hpp"
 #include "tests/unit/client/net/next_event.hpp"
 
 using namespace runstone;

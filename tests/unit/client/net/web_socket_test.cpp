@@ -4,7 +4,7 @@
 #include <string>
 
 #include "protocol/codec/frame.hpp"
-#include "tests/support/sample_frame.hpp"
+#include "tests/support/codec/sample_frame.hpp"
 
 using namespace runstone;
 using runstone::test::frame_of;

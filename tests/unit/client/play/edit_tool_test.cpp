@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "client/play/tool_actions.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/chunks_message.hpp"
-#include "tests/support/test_keys.hpp"
+#include "tests/support/codec/authority_model.hpp"
+#include "tests/support/codec/chunks_message.hpp"
+#include "tests/support/codec/test_keys.hpp"
 
 using namespace runstone;
 using runstone::test::keys;

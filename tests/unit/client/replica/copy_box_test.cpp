@@ -5,10 +5,10 @@
 
 #include "common/core/hash.hpp"
 #include "common/runs/reorder.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/chunks_message.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/codec/authority_model.hpp"
+#include "tests/support/codec/chunks_message.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "common/core/hash.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/chunks_message.hpp"
+#include "tests/support/codec/authority_model.hpp"
+#include "tests/support/codec/chunks_message.hpp"
 
 using namespace runstone;
 

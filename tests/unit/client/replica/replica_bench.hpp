@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "client/replica/replica.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/chunks_message.hpp"
+#include "tests/support/codec/authority_model.hpp"
+#include "tests/support/codec/chunks_message.hpp"
 
 namespace runstone::test {
 

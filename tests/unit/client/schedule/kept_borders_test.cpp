@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "common/runs/run_chunk.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 #include "tests/unit/client/schedule/planner_bench.hpp"
 
 namespace runstone::test {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "client/replica/replica.hpp"
-#include "tests/support/chunks_message.hpp"
-#include "tests/support/worst_chunk.hpp"
+#include "tests/support/codec/chunks_message.hpp"
+#include "tests/support/runs/worst_chunk.hpp"
 
 using namespace runstone;
 

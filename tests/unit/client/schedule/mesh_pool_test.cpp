@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "common/runs/layer_diff.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 using namespace runstone;
 

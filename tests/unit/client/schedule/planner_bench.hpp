@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "client/schedule/mesh_planner.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/chunks_message.hpp"
+#include "tests/support/codec/authority_model.hpp"
+#include "tests/support/codec/chunks_message.hpp"
 
 namespace runstone::test {
 

@@ -1,4 +1,4 @@
-#include "tests/support/chunks_message.hpp"
+#include "tests/support/codec/chunks_message.hpp"
 #include "tests/unit/client/script/script_bench.hpp"
 
 using namespace runstone;

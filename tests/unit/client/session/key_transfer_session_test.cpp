@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "protocol/codec/key_fingerprint.hpp"
-#include "tests/support/test_keys.hpp"
+#include "tests/support/codec/test_keys.hpp"
 
 using namespace runstone;
 using runstone::test::keys;

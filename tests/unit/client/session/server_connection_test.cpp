@@ -1,5 +1,5 @@
 #include "client/session/server_connection.hpp"
-#include "tests/support/test_keys.hpp"
+#include "tests/support/codec/test_keys.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "client/session/client_session.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/chunks_message.hpp"
-#include "tests/support/test_keys.hpp"
+#include "tests/support/codec/authority_model.hpp"
+#include "tests/support/codec/chunks_message.hpp"
+#include "tests/support/codec/test_keys.hpp"
 
 namespace runstone::test::session_bench {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "common/os/private_file.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 namespace runstone {
 namespace {

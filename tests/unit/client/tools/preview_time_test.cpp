@@ -13,7 +13,7 @@
 #include "common/materials/material_table.hpp"
 #include "common/os/thread_cpu_ns.hpp"
 #include "common/runs/reorder.hpp"
-#include "tests/support/chunks_message.hpp"
+#include "tests/support/codec/chunks_message.hpp"
 
 namespace runstone::test {
 namespace {

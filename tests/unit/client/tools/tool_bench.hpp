@@ -6,8 +6,8 @@
 
 #include "client/tools/tool_box.hpp"
 #include "common/core/hash.hpp"
-#include "tests/support/chunks_message.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/codec/chunks_message.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "common/core/hash.hpp"
-#include "tests/support/luanti_bytes.hpp"
+#include "tests/support/formats/luanti_bytes.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 using namespace runstone;
 using test::DenseChunk;

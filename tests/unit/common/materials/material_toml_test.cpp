@@ -2,7 +2,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/materials/material_table.hpp"
-#include "tests/support/random_look.hpp"
+#include "tests/support/core/random_look.hpp"
 
 using namespace runstone;
 

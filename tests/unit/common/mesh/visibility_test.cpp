@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 namespace runstone::test {
 namespace {

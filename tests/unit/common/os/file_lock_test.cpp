@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

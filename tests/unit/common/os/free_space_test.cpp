@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 namespace runstone::test {
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using runstone::test::TempFolder;

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/sql/transaction.hpp"
-#include "tests/support/temp_place.hpp"
+#include "tests/support/sql/temp_place.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -5,7 +5,7 @@
 
 #include "common/rights/box_index.hpp"
 #include "common/rights/rights_state.hpp"
-#include "tests/support/random_rights.hpp"
+#include "tests/support/rights/random_rights.hpp"
 
 namespace runstone::test {
 namespace {

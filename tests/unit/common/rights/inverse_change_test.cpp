@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/rights/change_rules.hpp"
-#include "tests/support/random_rights.hpp"
+#include "tests/support/rights/random_rights.hpp"
 
 namespace runstone::test {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "tests/support/builder_session.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/rlog_bytes.hpp"
-#include "tests/support/sample_world.hpp"
+#include "tests/support/edits/builder_session.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/rlog/rlog_bytes.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/dense_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
 
 using namespace runstone;
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/runs/run_chunk.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 using namespace runstone;
 

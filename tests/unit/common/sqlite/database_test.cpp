@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "common/sql/transaction.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "common/sqlite/sqlite_file.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

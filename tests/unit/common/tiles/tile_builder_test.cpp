@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <utility>
 
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/tile_oracle.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/tiles/tile_oracle.hpp"
 
 namespace runstone::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/tls/self_signed_certificate.hpp"
-#include "tests/support/pem_files.hpp"
+#include "tests/support/tls/pem_files.hpp"
 
 using namespace runstone;
 using Status = TlsChannel::Status;

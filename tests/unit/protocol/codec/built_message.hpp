@@ -10,7 +10,7 @@
 
 #include "protocol/codec/messages.hpp"
 #include "protocol/schema/runstone_generated.h"
-#include "tests/support/random_message.hpp"
+#include "tests/support/codec/random_message.hpp"
 
 namespace runstone::test {
 

@@ -5,9 +5,9 @@
 #include "common/runs/run_builder.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/limits.hpp"
-#include "tests/support/hex.hpp"
-#include "tests/support/packed_spelling.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/codec/packed_spelling.hpp"
+#include "tests/support/core/hex.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/runs/run_builder.hpp"
-#include "tests/support/random_message.hpp"
+#include "tests/support/codec/random_message.hpp"
 
 namespace runstone::test {
 namespace {

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "protocol/codec/chunk_codec.hpp"
-#include "tests/support/count_allocations.hpp"
-#include "tests/support/packed_spelling.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/codec/packed_spelling.hpp"
+#include "tests/support/core/count_allocations.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/runs/run_builder.hpp"
-#include "tests/support/count_allocations.hpp"
+#include "tests/support/core/count_allocations.hpp"
 #include "tests/unit/protocol/codec/built_message.hpp"
 
 namespace runstone::test {

@@ -8,7 +8,7 @@
 #include "common/core/hash.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/range_coder.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/core/hex.hpp"
 
 namespace runstone::test {
 namespace {

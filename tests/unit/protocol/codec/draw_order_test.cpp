@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "tests/support/hex.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/core/hex.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/message_table.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/core/hex.hpp"
 
 namespace runstone::test {
 namespace {

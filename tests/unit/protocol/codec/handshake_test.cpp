@@ -3,8 +3,8 @@
 #include <functional>
 
 #include "protocol/codec/handshake.hpp"
-#include "tests/support/hex.hpp"
-#include "tests/support/random_message.hpp"
+#include "tests/support/codec/random_message.hpp"
+#include "tests/support/core/hex.hpp"
 
 namespace runstone::test {
 namespace {

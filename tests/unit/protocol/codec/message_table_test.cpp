@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "protocol/schema/runstone_generated.h"
-#include "tests/support/random_message.hpp"
+#include "tests/support/codec/random_message.hpp"
 
 namespace runstone::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/core/hash.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/core/hex.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -9,8 +9,8 @@
 
 #include "server/backup/backup_program.hpp"
 #include "server/store/store.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 

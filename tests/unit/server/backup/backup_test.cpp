@@ -8,8 +8,8 @@
 #include <set>
 
 #include "common/core/epoch_branch.hpp"
-#include "tests/support/full_disk_vfs.hpp"
-#include "tests/support/raw_sql.hpp"
+#include "tests/support/sql/full_disk_vfs.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 #include "tests/unit/server/backup/backup_bench.hpp"
 
 using namespace runstone;

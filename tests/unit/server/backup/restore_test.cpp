@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "common/core/epoch_branch.hpp"
-#include "tests/support/raw_sql.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 #include "tests/unit/server/backup/backup_bench.hpp"
 
 using namespace runstone;

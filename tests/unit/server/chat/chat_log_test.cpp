@@ -12,9 +12,9 @@
 #include "common/sqlite/sqlite_file.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/runtime/read_clocks.hpp"
-#include "tests/support/full_disk_vfs.hpp"
-#include "tests/support/temp_folder.hpp"
-#include "tests/support/text_contains.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/core/text_contains.hpp"
+#include "tests/support/sql/full_disk_vfs.hpp"
 
 namespace runstone::test {
 namespace {

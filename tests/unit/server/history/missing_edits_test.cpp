@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "common/formats/luanti_block.hpp"
-#include "tests/support/luanti_bytes.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/formats/luanti_bytes.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -7,8 +7,8 @@
 #include "common/materials/material_lookup.hpp"
 #include "server/import/import_luanti.hpp"
 #include "server/store/store.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

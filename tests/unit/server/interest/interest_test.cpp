@@ -5,7 +5,7 @@
 #include <set>
 
 #include "common/core/hash.hpp"
-#include "tests/support/view_distance.hpp"
+#include "tests/support/codec/view_distance.hpp"
 
 namespace runstone {
 namespace {

@@ -10,9 +10,9 @@
 #include "server/map/map_world.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_folder.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/store/sample_world.hpp"
 #include "tests/unit/server/map/png_pixels.hpp"
 
 using namespace runstone;

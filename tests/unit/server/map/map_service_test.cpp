@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <latch>
 
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "protocol/codec/proxy_header.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -12,7 +12,7 @@
 
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/message_table.hpp"
-#include "tests/support/hostile_edits.hpp"
+#include "tests/support/edits/hostile_edits.hpp"
 
 using namespace runstone;
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/os/output_file.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -9,7 +9,7 @@
 #include "server/replay/diff_command.hpp"
 #include "server/replay/play_command.hpp"
 #include "server/replay/timelapse_command.hpp"
-#include "tests/support/run_replay.hpp"
+#include "tests/support/replay/run_replay.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

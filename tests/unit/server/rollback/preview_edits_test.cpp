@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 #include "tests/unit/server/rollback/rollback_bench.hpp"
 
 namespace runstone::test {

@@ -10,8 +10,8 @@
 #include "server/rollback/chunk_past.hpp"
 #include "server/rollback/restore_paste.hpp"
 #include "server/rollback/selection.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 namespace {

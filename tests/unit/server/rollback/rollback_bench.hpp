@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "server/rollback/rollback_service.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/store/sample_world.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone::test {

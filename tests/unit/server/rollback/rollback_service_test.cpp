@@ -1,6 +1,6 @@
 #include "server/rollback/rollback_service.hpp"
 
-#include "tests/support/hostile_edits.hpp"
+#include "tests/support/edits/hostile_edits.hpp"
 #include "tests/unit/server/rollback/rollback_bench.hpp"
 
 namespace runstone::test {

@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/runtime/derived_config.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/store/sample_world.hpp"
 #include "tests/unit/server/world/fake_environment.hpp"
 
 namespace runstone::test {

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "server/store/sqlite_backend.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_place.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/sql/temp_place.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 namespace {

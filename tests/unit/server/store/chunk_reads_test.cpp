@@ -5,8 +5,8 @@
 #include "server/store/chunk_row.hpp"
 #include "server/store/read_span.hpp"
 #include "server/store/store.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_place.hpp"
+#include "tests/support/sql/temp_place.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -7,9 +7,9 @@
 
 #include "server/store/log_writer.hpp"
 #include "server/store/sqlite_backend.hpp"
-#include "tests/support/power_loss_vfs.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/sql/power_loss_vfs.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 namespace {

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <semaphore>
 
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_place.hpp"
+#include "tests/support/sql/temp_place.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -8,10 +8,10 @@
 
 #include "common/core/epoch_branch.hpp"
 #include "server/store/store.hpp"
-#include "tests/support/crash_image.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/sql/crash_image.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -5,9 +5,9 @@
 
 #include "server/store/copy_stored_world.hpp"
 #include "server/store/sqlite_backend.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_place.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/sql/temp_place.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

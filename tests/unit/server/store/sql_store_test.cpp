@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_place.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/sql/temp_place.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

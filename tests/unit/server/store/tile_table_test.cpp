@@ -6,9 +6,9 @@
 #include "common/core/tile_keys.hpp"
 #include "common/tiles/tile_rules.hpp"
 #include "server/store/store.hpp"
-#include "tests/support/raw_sql.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_place.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/sql/temp_place.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;

@@ -10,7 +10,7 @@
 
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/chunk_codec.hpp"
-#include "tests/support/raw_sql.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 #include "tests/unit/server/tiles/tile_world.hpp"
 
 namespace runstone::test {

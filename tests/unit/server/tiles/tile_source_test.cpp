@@ -6,7 +6,7 @@
 
 #include "common/tiles/tile_builder.hpp"
 #include "common/tiles/tile_rules.hpp"
-#include "tests/support/raw_sql.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 #include "tests/unit/server/tiles/tile_world.hpp"
 
 using namespace runstone;

@@ -18,8 +18,8 @@
 #include "server/history/chunk_source.hpp"
 #include "server/store/store.hpp"
 #include "server/tiles/tile_source.hpp"
-#include "tests/support/sample_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 

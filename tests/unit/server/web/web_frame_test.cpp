@@ -6,7 +6,7 @@
 
 #include "common/core/hash.hpp"
 #include "protocol/codec/frame.hpp"
-#include "tests/support/sample_frame.hpp"
+#include "tests/support/codec/sample_frame.hpp"
 
 using namespace runstone;
 using runstone::test::frame_of;

@@ -10,8 +10,8 @@
 
 #include "common/generate/scenarios/scenario_world.hpp"
 #include "common/runs/reorder.hpp"
-#include "tests/support/scenario_scene.hpp"
-#include "tests/support/thesis_table.hpp"
+#include "tests/support/scenarios/scenario_scene.hpp"
+#include "tests/support/scenarios/thesis_table.hpp"
 
 namespace runstone::test {
 namespace {

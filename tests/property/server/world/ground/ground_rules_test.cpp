@@ -5,7 +5,7 @@
 
 #include "client/replica/known_ground.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "tests/support/random_rights.hpp"
+#include "tests/support/rights/random_rights.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone::test {

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
 #include "common/edits/apply/edit_stack.hpp"
-#include "tests/support/count_allocations.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/core/count_allocations.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 

@@ -3,7 +3,7 @@
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/apply/edit_stack_strategies.hpp"
 #include "common/runs/run_builder.hpp"
-#include "tests/support/edit_oracle.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
 
 // The cases of figures 7.16 to 7.19 of the thesis, on a chunk of 8 x 8 x 8 in order xyz (a line is
 // 8 voxels, a layer 64), and further cases with a stack. `A` .. `C` are materials, `_` is empty.

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/runs/reorder.hpp"
-#include "tests/support/edit_oracle.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
 
 namespace runstone::test {
 

@@ -6,7 +6,7 @@
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/runs/reorder.hpp"
 #include "common/runs/run_builder.hpp"
-#include "tests/support/edit_oracle.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
 
 namespace runstone::test {
 namespace {

@@ -5,8 +5,8 @@
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/edits/descriptor/edit_memory.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
-#include "tests/support/edit_oracle.hpp"
-#include "tests/support/sample_world.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 namespace runstone::test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/edits/descriptor/ordered_shape.hpp"
-#include "tests/support/edit_oracle.hpp"
+#include "tests/support/edits/edit_oracle.hpp"
 
 namespace runstone::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "common/generate/scenarios/scenario_world.hpp"
 #include "common/runs/dense.hpp"
-#include "tests/support/scenario_oracle.hpp"
+#include "tests/support/scenarios/scenario_oracle.hpp"
 
 namespace runstone::test {
 namespace {

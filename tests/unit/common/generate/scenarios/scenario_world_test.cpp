@@ -2,9 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/random_chunk.hpp"
-#include "tests/support/scenario_oracle.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
+#include "tests/support/scenarios/scenario_oracle.hpp"
 
 namespace runstone::test {
 namespace {

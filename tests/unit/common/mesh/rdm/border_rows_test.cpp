@@ -5,9 +5,9 @@
 
 #include "common/mesh/rdm/chunk_borders.hpp"
 #include "common/runs/dense.hpp"
-#include "tests/support/dense_chunk.hpp"
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "common/runs/run_list.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 namespace runstone::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 namespace runstone::test {
 namespace {

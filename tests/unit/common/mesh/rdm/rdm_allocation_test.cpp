@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "tests/support/count_allocations.hpp"
-#include "tests/support/mesh_scene.hpp"
-#include "tests/support/random_chunk.hpp"
+#include "tests/support/core/count_allocations.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
+#include "tests/support/runs/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "common/mesh/quad_corners.hpp"
 #include "common/runs/run_builder.hpp"
-#include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesh/mesh_scene.hpp"
 
 namespace runstone::test {
 namespace {

@@ -1,7 +1,7 @@
 // PastedCrowd: 20 players in one place, of whom the first has sent more large pastes than may be
 // ordered at once.
 #pragma once
-#include "tests/support/hostile_edits.hpp"
+#include "tests/support/edits/hostile_edits.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone::test {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "tests/support/view_distance.hpp"
+#include "tests/support/codec/view_distance.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone {

@@ -6,7 +6,7 @@
 #include "common/edits/clipboard/clipboard_builder.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "protocol/codec/messages.hpp"
-#include "tests/support/dense_chunk.hpp"
+#include "tests/support/runs/dense_chunk.hpp"
 
 namespace runstone {
 namespace {

@@ -1,0 +1,27 @@
+#include "bench/harness/target.hpp"
+
+#include <fmt/ostream.h>
+
+namespace runstone::bench {
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::met:
+      return "met";
+    case Verdict::missed:
+      return "missed";
+    case Verdict::not_measured:
+      return "not measured";
+  }
+  return "";
+}
+
+void write_targets(std::span<const Target> targets, std::ostream& out) {
+  fmt::print(out, "| case | target | measured | |\n|---|---|---|---|\n");
+  for (const Target& target : targets) {
+    fmt::print(out, "| {} | {} | {} | {} |\n", target.what, target.wanted, target.measured,
+               name_of(target.verdict));
+  }
+}
+
+}  // namespace runstone::bench

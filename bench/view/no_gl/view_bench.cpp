@@ -1,0 +1,10 @@
+#include "bench/view/view_bench.hpp"
+
+namespace runstone::bench {
+
+Result<ViewResult, std::string> run_view(const ViewOptions&) {
+  return Unexpected<std::string>{
+      "this build has no client, so it cannot draw: build with RUNSTONE_CLIENT=ON"};
+}
+
+}  // namespace runstone::bench
