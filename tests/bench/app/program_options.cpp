@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <string>
 
+#include "common/core/version.hpp"
 #include "tests/bench/edits/edit_options.hpp"
 #include "tests/bench/map/map_options.hpp"
 #include "tests/bench/meshing/mesh_options.hpp"
@@ -56,6 +58,7 @@ ParsedProgramOptions parse_program_options(int argc, const char* const* argv, st
       "and prints tables of Markdown.",
       "runstone-bench");
   app.require_subcommand(1);
+  app.set_version_flag("--version", "runstone-bench " + std::string(version()));
   ProgramOptions options;
   options.net.luanti = options.frames.luanti = kSmallLuanti;
   options.view.luanti = options.client.luanti = kSmallLuanti;
