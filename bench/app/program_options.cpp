@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <string>
 
 #include "bench/edits/edit_options.hpp"
 #include "bench/map/map_options.hpp"
@@ -11,6 +12,7 @@
 #include "bench/thesis/scenario_bench.hpp"
 #include "bench/tiles/tiles_options.hpp"
 #include "bench/wire/bytes_options.hpp"
+#include "common/core/version.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -56,6 +58,7 @@ ParsedProgramOptions parse_program_options(int argc, const char* const* argv, st
       "and prints tables of Markdown.",
       "runstone-bench");
   app.require_subcommand(1);
+  app.set_version_flag("--version", "runstone-bench " + std::string(version()));
   ProgramOptions options;
   options.net.luanti = options.frames.luanti = kSmallLuanti;
   options.view.luanti = options.client.luanti = kSmallLuanti;

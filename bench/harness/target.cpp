@@ -2,6 +2,8 @@
 
 #include <fmt/ostream.h>
 
+#include <utility>
+
 namespace runstone::bench {
 
 const char* name_of(Verdict verdict) {
@@ -12,8 +14,14 @@ const char* name_of(Verdict verdict) {
       return "missed";
     case Verdict::not_measured:
       return "not measured";
+    case Verdict::no_target:
+      return "no target";
   }
   return "";
+}
+
+Target without_target(std::string what, std::string measured) {
+  return {std::move(what), "–", std::move(measured), Verdict::no_target};
 }
 
 void write_targets(std::span<const Target> targets, std::ostream& out) {

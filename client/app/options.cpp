@@ -16,6 +16,7 @@
 #include "protocol/codec/server_link.hpp"
 #include "protocol/codec/view_tiles.hpp"
 #include "protocol/limits.hpp"
+#include "protocol/program_version.hpp"
 
 namespace runstone {
 namespace {
@@ -240,8 +241,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   // The last value wins, so that a user can append options to the fixed command line of a
   // container.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  app.set_version_flag("--version",
-                       std::string("runstone-client protocol ") + std::to_string(kProtocolVersion));
+  app.set_version_flag("--version", program_version("runstone-client"));
   add_session_options(app, out, raw);
   add_output_options(app, out, raw);
   add_modes(app, out);

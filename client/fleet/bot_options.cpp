@@ -6,6 +6,7 @@
 #include "common/os/output_file.hpp"
 #include "common/os/passphrase.hpp"
 #include "protocol/limits.hpp"
+#include "protocol/program_version.hpp"
 
 namespace runstone {
 namespace {
@@ -81,6 +82,7 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   CLI::App app{"Runstone bots: many players in one process, seeded, open loop.", "runstone-bot"};
   // The last value wins, as in the other programs.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  app.set_version_flag("--version", program_version("runstone-bot"));
   std::string address, role = "build", mix, password_file;
   unsigned view = out.view_radius, far_levels = out.far_levels;
   std::uint64_t edits = 0;

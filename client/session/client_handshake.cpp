@@ -19,7 +19,9 @@ std::optional<WelcomeFault> check_welcome(const Hello& hello, const Welcome& wel
                                           const std::optional<ChannelBinding>& binding,
                                           std::map<WorldId, PublicKey>& pinned) {
   if (welcome.protocol != kProtocolVersion) {
-    return WelcomeFault{GoodbyeReason::wrong_protocol, "server speaks another protocol version"};
+    return WelcomeFault{GoodbyeReason::wrong_protocol,
+                        "server speaks protocol " + std::to_string(welcome.protocol) + ", client " +
+                            std::to_string(kProtocolVersion)};
   }
   if (!verify(welcome.server_key, server_transcript(hello, welcome, binding), welcome.signature)) {
     return WelcomeFault{GoodbyeReason::not_authenticated, "server signature is wrong"};

@@ -22,7 +22,7 @@ function(runstone_check_conform_notices what from to)
   file(CONFIGURE OUTPUT ${file} CONTENT "${broken}" @ONLY)
   add_test(NAME schema.${what}_are_noticed
            COMMAND flatbuffers::flatc --conform
-                   ${PROJECT_SOURCE_DIR}/protocol/schema/frozen/runstone_v1.fbs ${file})
+                   ${PROJECT_SOURCE_DIR}/protocol/schema/frozen/runstone_v2.fbs ${file})
   set_tests_properties(schema.${what}_are_noticed PROPERTIES WILL_FAIL TRUE)
 endfunction()
 runstone_check_conform_notices(swapped_fields "table Durable { epoch:uint; seq:ulong; is_read_only:bool; }"

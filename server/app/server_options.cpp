@@ -6,16 +6,17 @@
 #include <string_view>
 
 #include "common/os/output_file.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/program_version.hpp"
 #include "server/admin/server_config.hpp"
+#include "server/store/world_schema.hpp"
 
 namespace runstone {
 
 namespace {
 
 void add_flags(CLI::App& app, ServerOptions& out) {
-  app.set_version_flag("--version",
-                       "runstone-server 0.1.0 protocol " + std::to_string(kProtocolVersion));
+  app.set_version_flag("--version", program_version("runstone-server") + ", world format " +
+                                        std::to_string(kWorldFormat));
   app.add_option("--config", out.config_file,
                  "TOML file of settings; environment and flags win over it");
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "common/core/version.hpp"
 #include "server/replay/bench_command.hpp"
 #include "server/replay/copy_command.hpp"
 #include "server/replay/diff_command.hpp"
@@ -21,6 +22,7 @@
 #include "server/replay/subcommand.hpp"
 #include "server/replay/timelapse_command.hpp"
 #include "server/replay/verify_command.hpp"
+#include "server/store/world_schema.hpp"
 
 namespace runstone {
 namespace {
@@ -76,7 +78,7 @@ std::string new_spelling(int argc, const char* const* argv) {
 bool lacks_subcommand(int argc, const char* const* argv) {
   if (argc < 2) return true;
   const std::string_view first = argv[1];
-  return first.starts_with('-') && first != "--help" && first != "-h";
+  return first.starts_with('-') && first != "--help" && first != "-h" && first != "--version";
 }
 
 /// Returns "" if the program has the subcommand, otherwise a line that lists the subcommands.
@@ -108,6 +110,8 @@ int replay_program(int argc, const char* const* argv, std::ostream& out, std::os
       "2: cannot read.",
       "runstone-replay");
   program.require_subcommand(1);
+  program.set_version_flag("--version", "runstone-replay " + std::string(version()) +
+                                            ", world format " + std::to_string(kWorldFormat));
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   struct Entry {
     CLI::App* app;

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/os/output_file.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/program_version.hpp"
 #include "server/web/web_config.hpp"
 
 namespace runstone {
@@ -14,8 +14,7 @@ ParsedWebOptions parse_web_options(int argc, const char* const* argv) {
   // The last value wins, so that arguments appended to a fixed command line (a container's) change
   // it.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  app.set_version_flag("--version",
-                       "runstone-web 0.1.0 protocol " + std::to_string(kProtocolVersion));
+  app.set_version_flag("--version", program_version("runstone-web"));
   app.add_option("--config", out.config_file,
                  "TOML file of settings; environment and flags win over it");
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");

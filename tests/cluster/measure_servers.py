@@ -211,7 +211,7 @@ of these servers cost: their moves and poses, and what they see of each other.
     print(row("two servers against one: median (and each pair of runs)",
               [f"{statistics.median(load.ratios):.2f} ({', '.join(f'{ratio:.2f}' for ratio in load.ratios)})"
                for load in loads]))
-    print("\nTarget: at most 1.25.\n")
+    print()
     print(row("cost, µs of processor time", [f"{load.edits_each_second:,} edits/s" for load in loads]))
     print("|---|" + "---|" * len(loads))
     for number, name in enumerate(COSTS):

@@ -13,13 +13,17 @@
 #include "tests/support/core/hex.hpp"
 #include "tests/support/core/page_example.hpp"
 
-// Messages as version 2 of the protocol wrote them. How they are decoded must never change.
+// Messages as version 2 of the protocol writes them. How they are decoded must never change.
+// Messages that a later version adds get a list of their own, in a file of that version.
 // Releases of FlatBuffers may arrange fields differently, so the encoder's bytes are not pinned.
 // The byte lists inside are pinned by list_bytes_test.cpp.
 namespace runstone::test {
 namespace {
 
 constexpr std::uint16_t kChunkEdge = 16;
+constexpr std::size_t kKindCountOfVersion2 = 51;
+static_assert(kMessageKindCount == kKindCountOfVersion2,
+              "the kinds of version 3 need golden bytes of their own");
 
 template <std::size_t N>
 std::array<std::uint8_t, N> counting(std::uint8_t first) {
@@ -546,7 +550,7 @@ TEST_CASE("messages of version 2 are read", "[protocol][golden]") {
     CHECK(*decoded == golden.message);
     kinds.insert(kind);
   }
-  CHECK(kinds.size() == kMessageKindCount);
+  CHECK(kinds.size() == kKindCountOfVersion2);
 }
 
 TEST_CASE("the signature of a recorded welcome holds", "[protocol][golden]") {

@@ -284,7 +284,7 @@ TEST_CASE("a world of a newer version does not start", "[integration]") {
   run_sql(config.world + "/world.sqlite",
           "CREATE TABLE t(x); INSERT INTO t VALUES(1); PRAGMA user_version = 99");
   const std::string error = start_error(config, flat_creation());
-  CHECK(contains(error, "world.sqlite"));
+  CHECK(contains(error, "world.sqlite: is of world format 99; this program knows format "));
 }
 
 }  // namespace

@@ -156,6 +156,18 @@ TEST_CASE_METHOD(ConnectionFixture, "messages for the session are left as they a
   CHECK(receive(Durable{1, 7}) == Dispatch::handled);
 }
 
+TEST_CASE_METHOD(ConnectionFixture, "a server of another protocol is refused with both versions",
+                 "[session]") {
+  greet();
+  Welcome newer;
+  newer.protocol = kProtocolVersion + 1;
+  receive(newer);
+  REQUIRE(connection.end());
+  CHECK(connection.end()->reason == GoodbyeReason::wrong_protocol);
+  CHECK(connection.end()->text == "server speaks protocol " + std::to_string(newer.protocol) +
+                                      ", client " + std::to_string(kProtocolVersion));
+}
+
 TEST_CASE_METHOD(ConnectionFixture,
                  "a goodbye of the server is not answered, and some reasons are final",
                  "[session]") {

@@ -1,0 +1,14 @@
+// The newest entry of CHANGELOG.md is about the version that the programs print.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <string>
+
+#include "common/core/version.hpp"
+
+TEST_CASE("the changelog begins with the version of the programs", "[house][docs]") {
+  std::ifstream in(RUNSTONE_SOURCE_DIR "/CHANGELOG.md");
+  std::string line;
+  while (std::getline(in, line) && !line.starts_with("## ")) {
+  }
+  CHECK(line == "## " + std::string(runstone::version()));
+}
