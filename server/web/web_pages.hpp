@@ -30,7 +30,5 @@ std::string gateway_status_page(const WebConfig& config, std::span<const WorldSt
 /// `is_one_of_several`: the gateway has a page of its own.
 std::string status_page(const WebConfig& config, const ServerStatus& server, const WebCounters& web,
                         std::string_view recent_edits = {}, bool is_one_of_several = false);
-/// Returns the style sheet of both pages.
-std::string_view style_sheet();
 
 }  // namespace runstone
