@@ -9,17 +9,29 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
-#include "server/map/map_answer.hpp"
 #include "server/map/map_caches.hpp"
 #include "server/map/map_request.hpp"
 #include "server/map/map_threads.hpp"
 #include "server/map/map_world.hpp"
 
 namespace runstone {
+
+/// The answer to a request of the map, in the terms of HTTP.
+struct MapAnswer {
+  unsigned status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  std::shared_ptr<const std::string> body;  // null: empty
+  std::string etag;                         // of a picture; empty: none
+  std::uint64_t work_us = 0;                // time of the worker
+};
+
+/// Returns an answer that is one sentence.
+MapAnswer map_words(unsigned status, const std::string& sentence);
 
 class MapService final : MapThreads::Map {
  public:

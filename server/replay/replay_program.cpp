@@ -11,16 +11,8 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "server/replay/bench_command.hpp"
-#include "server/replay/copy_command.hpp"
-#include "server/replay/diff_command.hpp"
-#include "server/replay/export_command.hpp"
-#include "server/replay/import_command.hpp"
-#include "server/replay/keyframes_command.hpp"
-#include "server/replay/play_command.hpp"
+#include "server/replay/replay_commands.hpp"
 #include "server/replay/subcommand.hpp"
-#include "server/replay/timelapse_command.hpp"
-#include "server/replay/verify_command.hpp"
 
 namespace runstone {
 namespace {

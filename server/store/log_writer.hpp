@@ -35,10 +35,16 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/disk_space.hpp"
 #include "server/store/world_sink.hpp"
 
 namespace runstone {
+
+/// The room for more edits on the disk of a world.
+enum class DiskSpace : std::uint8_t {
+  enough,
+  low,  // less is free than the reserve: queued edits are written, new ones are rejected
+  full  // a write found no room: it is repeated, and new edits are rejected
+};
 
 class LogWriter {
  public:

@@ -1,10 +1,8 @@
 // Store: a world on disk: base, one edit log, snapshots, keyframes, players, meta. docs/edit-log.md
 // gives the schema. It is the union of small interfaces, one for each use:
-//   - WorldReader reads. It is itself the union of LogReader, ChunkReader, KeyframeReader and
-//     PlayerReader;
+//   - WorldReader reads. A function that needs less takes a LogReader or a ChunkReader;
 //   - WorldSink is what the log writer of a running server calls;
-//   - ImportSink fills a new world;
-//   - Maintenance shortens the log of a world that no server runs.
+//   - ImportSink fills a new world.
 // SqlStore implements it on SQLite and on PostgreSQL. Every call blocks on the disk or the network, so
 // the world strand makes none: one writer thread owns a Store, and readers open their own. These
 // rules keep a world safe:
@@ -38,26 +36,7 @@ class ImportSink {
                                            std::span<const EditRecord> records) = 0;
 };
 
-class Maintenance {
- public:
-  virtual ~Maintenance() = default;
-
-  /// Moves all edits up to a keyframe into the base, in one transaction. Requires that no server
-  /// runs the world.
-  ///   - The base is completed from the keyframe.
-  ///   - The edits, their indexes, the keyframe and those before it are deleted. Changes of rights
-  ///     move to a table of their own, new materials to the material table of `meta`.
-  ///   - The head of the log moves, and so does the checkpoint if it lies before the head.
-  ///   - A chunk whose snapshot is older than the base gets a snapshot that is not. Tiles above it
-  ///     that are older are deleted.
-  ///   - The watermarks of players stay.
-  virtual StoreResult<void> compact(Sequence keyframe) = 0;
-  /// Returns the free space in the database to the file system. Requires disk space for a second
-  /// copy meanwhile.
-  virtual StoreResult<void> shrink() = 0;
-};
-
-class Store : public WorldReader, public WorldSink, public ImportSink, public Maintenance {
+class Store : public WorldReader, public WorldSink, public ImportSink {
  public:
   /// Raises the epoch by one and returns it. It is durable on return. A server calls it once per
   /// start.
@@ -78,6 +57,19 @@ class Store : public WorldReader, public WorldSink, public ImportSink, public Ma
   ///   - Lost players: the rest is counted anew. Their numbers are not given again.
   ///   - Lost watermarks: those of edits in the log are made again, and all are counted anew.
   virtual StoreResult<std::vector<std::string>> accept_losses() = 0;
+  /// Moves all edits up to a keyframe into the base, in one transaction. Requires that no server
+  /// runs the world.
+  ///   - The base is completed from the keyframe.
+  ///   - The edits, their indexes, the keyframe and those before it are deleted. Changes of rights
+  ///     move to a table of their own, new materials to the material table of `meta`.
+  ///   - The head of the log moves, and so does the checkpoint if it lies before the head.
+  ///   - A chunk whose snapshot is older than the base gets a snapshot that is not. Tiles above it
+  ///     that are older are deleted.
+  ///   - The watermarks of players stay.
+  virtual StoreResult<void> compact(Sequence keyframe) = 0;
+  /// Returns the free space in the database to the file system. Requires disk space for a second
+  /// copy meanwhile.
+  virtual StoreResult<void> shrink() = 0;
 };
 
 // A place is a folder, for a world in an SQLite file, or the address of a PostgreSQL database:

@@ -53,7 +53,7 @@ class WorldBackend {
   virtual void keep_on_close(bool keep) = 0;
   /// Runs the database's own check. Fails (corrupt) with what it found.
   virtual StoreResult<void> check() = 0;
-  /// See Maintenance::shrink().
+  /// See Store::shrink().
   virtual StoreResult<void> shrink() = 0;
 };
 

@@ -10,7 +10,7 @@
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
-#include "server/store/keyframe_reader.hpp"
+#include "server/store/keyframe.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/player_rows.hpp"
 

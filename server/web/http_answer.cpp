@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "server/map/map_request.hpp"
-#include "server/web/map_page.hpp"
 #include "server/web/metrics_text.hpp"
 #include "server/web/page_files.hpp"
 #include "server/web/web_pages.hpp"

@@ -1,5 +1,5 @@
-// The pages of world and state. They are plain HTML without scripts and load nothing but the style
-// sheet of the gateway.
+// The pages of world, state and map. All but that of the map are plain HTML without scripts, and load
+// nothing but the style sheet of the gateway.
 #pragma once
 #include <span>
 #include <string>
@@ -30,5 +30,9 @@ std::string gateway_status_page(const WebConfig& config, std::span<const WorldSt
 /// `is_one_of_several`: the gateway has a page of its own.
 std::string status_page(const WebConfig& config, const ServerStatus& server, const WebCounters& web,
                         std::string_view recent_edits = {}, bool is_one_of_several = false);
+/// Returns the page of the map, or a page that says that there is none.
+std::string map_page(const WebConfig& config);
+/// Returns where the players are on the map, as JSON: a list of [name, x, y, z].
+std::string map_players_json(const ServerStatus& server);
 
 }  // namespace runstone
