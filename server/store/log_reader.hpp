@@ -2,11 +2,12 @@
 // A compaction moves the beginning of the log: edits before it are in the base alone.
 #pragma once
 #include <functional>
+#include <limits>
 #include <optional>
 
+#include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
-#include "server/store/log_query.hpp"
 #include "server/store/store_error.hpp"
 #include "server/store/world_info.hpp"
 
@@ -24,6 +25,17 @@ struct LogRange {
   Sequence first = 1;
   LogEnd last;  // the last edit ever ordered, compacted or not
   friend bool operator==(const LogRange&, const LogRange&) = default;
+};
+
+/// Conditions on edits of the log: author, time, place and cause. A condition that is not set holds for
+/// every edit.
+struct LogQuery {
+  std::optional<AuthorId> author;
+  TimeUs from_us = std::numeric_limits<TimeUs>::min();   // UTC, included
+  TimeUs until_us = std::numeric_limits<TimeUs>::max();  // included
+  std::optional<VoxelBox> box;  // not empty; overlaps the bounding box of the edit
+  std::optional<Cause> cause;
+  Sequence first = 1, last = kSequenceMax;  // both included
 };
 
 class LogReader : public virtual WorldInfo {
