@@ -10,7 +10,6 @@
 
 #include "common/sql/database.hpp"
 #include "server/store/log_reader.hpp"
-#include "server/store/log_reader.hpp"
 #include "server/store/segment_table.hpp"
 
 namespace runstone {
