@@ -27,7 +27,7 @@ class Screen {
   /// Returns the name of the OpenGL context, a static string.
   virtual const char* name() const = 0;
   virtual void set_materials(const MaterialTable& materials) = 0;
-  /// Do the same as the functions of Renderer.
+  /// See Renderer::upload(), upload_tile() and remove().
   virtual void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
                       const RunChunk* voxels) = 0;
   virtual void upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh) = 0;

@@ -174,7 +174,7 @@ class Terrain {
   std::vector<Quad> staged_;  // on their way to the GPU; kept for its capacity
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
-  std::map<ChunkKey, Tile> tiles_;    // likewise
+  std::map<ChunkKey, Tile> tiles_;    // those with quads
   FarCover cover_;                    // of all chunks and tiles
   FarFades fades_;
   std::map<ChunkKey, Chunk> leaving_;  // quads of removed chunks and tiles whose octant appears

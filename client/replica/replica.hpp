@@ -150,7 +150,7 @@ class Replica {
   /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may
   /// have them.
   std::vector<ChunkKey> missing() const;
-  /// Does the same for tiles, see FarTiles::take_not_held().
+  /// Returns the tiles of the view that a cache may have, see FarTiles::take_not_held().
   std::vector<ChunkKey> take_missing_tiles();
   /// Collects the chunks that leave the view for the cache from now on. A tile that leaves before it
   /// was taken for the cache is not kept.

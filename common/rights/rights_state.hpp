@@ -38,9 +38,11 @@ struct Decided {
 /// The answer to "may this player do that?".
 struct RightsDecision {
   enum class Reason : std::uint8_t {
-    role,          // the player's role: `by` is the newer one of its grant and its definition
-    default_role,  // the same of a player without a grant, with the choice of the default role
-    box,           // a protected box, `box`, admits the player or does not
+    role,  // the player's role: `by` is the newer one of its grant and its definition
+    // The default role, of a player without a grant: `by` is the newer one of its choice and its
+    // definition.
+    default_role,
+    box,  // a protected box, `box`, admits the player or does not
     ban,
     mute,
     freeze

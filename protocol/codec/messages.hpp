@@ -157,8 +157,8 @@ inline const ChunkKey& key_of(const ChunkAnswer& answer) {
 /// the entries of a session to messages: see chunk_entries.hpp.
 struct Chunks {
   /// View::number of the newest view in force when the chunks were queued, so that a client can
-  /// ignore chunks that it has forgotten and requested again since. The same holds for the fields
-  /// of this name below.
+  /// ignore chunks that it has forgotten and requested again since. The fields `view` of other
+  /// messages have this meaning, too.
   std::uint32_t view = 1;
   /// 1 .. kChunksPerMessageMax, strictly ascending by key, all of one level of detail. Tiles come as
   /// snapshots only.

@@ -16,7 +16,7 @@ struct PreviewShare {
   friend bool operator==(const PreviewShare&, const PreviewShare&) = default;
 };
 
-/// The same of another player.
+/// The edits that the next click of another player would make.
 struct PlayerPreview {
   AuthorId author = 0;
   std::vector<EditDescriptor> edits;

@@ -32,7 +32,7 @@ class Server {
   /// Opens or makes the world, binds the port, recovers, and runs. The error is one line for the
   /// operator; after an error nothing was overwritten. `on_failure` is called once, from another
   /// thread, if the log cannot be written any more; the caller then stops the server. `actions` are
-  /// called in the same way when an operator gives their commands; their replies must end before the
+  /// called from another thread when an operator gives their commands; their replies must end before the
   /// server is destroyed. `accept_losses`: a world
   /// that has lost edits, players or watermarks is repaired, and each loss is logged.
   static Result<std::unique_ptr<Server>, std::string> start(

@@ -27,7 +27,7 @@ class TileGrid {
     const std::vector<Value>& level = levels_[key.lod - 1U];
     return level.empty() ? Value{} : level[place_of(key.at)];
   }
-  /// Sets the value of a tile. Requires the same.
+  /// Sets the value of a tile. Requires a tile of the view.
   void set(const ChunkKey& key, Value value) {
     std::vector<Value>& level = levels_[key.lod - 1U];
     if (level.empty())

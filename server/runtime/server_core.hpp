@@ -83,7 +83,8 @@ class ServerCore final : public NetEvents {
   /// WorldServer::hand_over(). Returns the server that is to take the world over, or why nothing has
   /// changed. Requires start(). Blocks. Thread: any but those of `threads`.
   Result<SessionId, std::string> begin_handover(std::optional<SessionId> successor);
-  /// Writes the log and ends the log writer. After an error the server must be stopped. Likewise.
+  /// Writes the log and ends the log writer. After an error the server must be stopped. Requires
+  /// begin_handover(). Blocks. Thread: any but those of `threads`.
   Result<void, std::string> end_handover();
   /// How a server that follows gets on.
   struct FollowState {
@@ -185,7 +186,7 @@ class ServerCore final : public NetEvents {
   std::shared_ptr<GatewayListener> gateway_;  // null: there is no gateway
   ConnectedSessions sessions_;
   MessageTurns messages_;                                     // used on the world strand
-  bool is_turn_posted_ = false, is_delivery_posted_ = false;  // likewise
+  bool is_turn_posted_ = false, is_delivery_posted_ = false;  // used on the world strand
   ChunkSource chunks_;
   ChunkSender sender_;
   WorldReaders readers_;

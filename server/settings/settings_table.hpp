@@ -65,7 +65,7 @@ class SettingsTable {
     });
     return read_values(config, *values, file);
   }
-  /// The same for values that were read.
+  /// Sets the values of a file that was read. Fails and changes nothing if one is wrong.
   Result<void, TextError> read_values(Config& config, const std::vector<TomlSetting>& values,
                                       std::string_view file) const {
     Config read = config;

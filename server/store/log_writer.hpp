@@ -50,7 +50,7 @@ class LogWriter {
  public:
   struct Limits {
     std::size_t queued_records_max = 65536;  // counted until they are durable
-    /// Records per transaction. A single larger batch is one transaction all the same.
+    /// Records per transaction. A single larger batch is one transaction, too.
     std::size_t commit_records_max = 4096;
     /// The least time between the begins of two commits of records, unless the writer stops.
     std::chrono::milliseconds commit_interval{0};
@@ -98,7 +98,8 @@ class LogWriter {
   /// players only takes room for one record. Requires has_room() for that. A writer that has failed
   /// or stopped drops the batch.
   void append(std::vector<PlayerRow> players, std::vector<EditRecord> records);
-  /// Queues changes of names likewise. They take room for one record, and are written before all
+  /// Queues changes of names. Requires has_room() for one record. A writer that has failed or stopped
+  /// drops them. They take room for one record, and are written before all
   /// records that are queued later.
   void change_names(std::vector<NameChange> names);
   /// Queues a job. Returns false, and takes nothing, if the queue of jobs is full or the writer has

@@ -15,8 +15,8 @@
 
 namespace runstone {
 
-/// Do the same as create_world() and open_world() for an address of a PostgreSQL database. The
-/// database and the schema must exist.
+/// Create and open a world at the address of a PostgreSQL database, see create_world() and open_world().
+/// The database and the schema must exist.
 StoreResult<std::unique_ptr<Store>> create_postgres_world(const std::string& url,
                                                           const WorldMeta& meta,
                                                           const LeaseTerms& lease);

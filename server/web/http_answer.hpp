@@ -31,7 +31,7 @@ enum class HttpCaching {
 enum class PageScripts {
   none,
   own,    // those of the gateway, which may connect to it: the map
-  client  // likewise, and WebAssembly: the client for browsers
+  client  // scripts of the gateway and WebAssembly: the client for browsers
 };
 
 struct HttpAnswer {

@@ -188,8 +188,8 @@ Bytes encode(const EditDescriptor& edit);
 /// Decodes exactly one descriptor. Fails if bytes are left over or are not canonical. The result is
 /// valid.
 Result<EditDescriptor> decode_descriptor(ByteView in);
-/// Does the same and fails for a kind without voxels, which players neither send nor receive as an
-/// edit.
+/// Decodes a descriptor as decode_descriptor(). Fails also for a kind without voxels, which players
+/// neither send nor receive as an edit.
 Result<EditDescriptor> decode_voxel_edit(ByteView in);
 
 }  // namespace runstone
