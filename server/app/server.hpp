@@ -1,4 +1,4 @@
-// Server: a whole Runstone server in this process: world folder, threads, sockets. The program runs
+// Server: a whole Runstone server in this process: world, threads, sockets. The program runs
 // one, tests run several. Requires start_logging().
 #pragma once
 #include <cstdint>

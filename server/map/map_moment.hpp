@@ -19,7 +19,7 @@ class MapMoment {
   /// Opens the world after edit `at`. The generator must outlive the object. Fails as
   /// WorldAt::open(), and (bad_request) if more than Moments::kEditsMax edits lie between the moment
   /// and the stored one before it.
-  static StoreResult<std::unique_ptr<MapMoment>> open(const std::string& folder,
+  static StoreResult<std::unique_ptr<MapMoment>> open(const std::string& place,
                                                       const Generator& generator, Sequence at,
                                                       const WorldAt::Progress& progress = {});
 

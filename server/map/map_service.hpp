@@ -42,12 +42,12 @@ class MapService final : MapThreads::Map {
   static constexpr TimeUs kAnswerUsMax = 8'000'000;
 
   using Reply = std::function<void(MapAnswer)>;
-  /// Reports a fault of the world's folder, for the host alone, at most once in ten seconds.
+  /// Reports a fault of the stored world, for the host alone, at most once in ten seconds.
   using Warn = std::function<void(const std::string&)>;
 
-  /// `threads` must outlive the service. `folder`: of the world, which need not exist yet.
+  /// `threads` must outlive the service. `place`: of the world, which need not exist yet.
   /// `cache_bytes` bounds all that is kept in memory apart from the moments.
-  MapService(MapThreads& threads, std::string folder, std::size_t cache_bytes, Warn warn);
+  MapService(MapThreads& threads, std::string place, std::size_t cache_bytes, Warn warn);
   /// Ends the turn under way and answers the requests that wait.
   ~MapService();
   MapService(const MapService&) = delete;

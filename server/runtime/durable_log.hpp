@@ -43,9 +43,9 @@ class DurableLog {
   };
 
   /// Starts the threads. `strand`, `store` and `generator` must outlive the object. Only the writer
-  /// writes `store` until stop() has returned. `folder`: of the world; the keyframe thread opens its
+  /// writes `store` until stop() has returned. `place`: of the world; the keyframe thread opens its
   /// own reader there.
-  DurableLog(WorldStrand& strand, WorldSink& store, const std::string& folder,
+  DurableLog(WorldStrand& strand, WorldSink& store, const std::string& place,
              const Generator& generator, const Options& options, Events events);
 
   ~DurableLog() { stop(); }

@@ -50,7 +50,7 @@ struct ServerThreads {
 class ServerCore final : public NetEvents {
  public:
   /// The core keeps references to the members of `threads`, and to `config`, `store` and
-  /// `generator`. All of them must outlive it. `store` is of the folder `config.world`. `on_failure`
+  /// `generator`. All of them must outlive it. `store` is open at world_place(config). `on_failure`
   /// is called at most once, from the log writer's thread, when the log cannot be written any more.
   /// `actions`: the commands that the program carries out.
   ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,

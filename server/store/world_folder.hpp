@@ -1,5 +1,5 @@
-// World folder: opens a world for a server, or creates it. Every error is one line that names the
-// file. All functions block on the disk: they are for the start of a program.
+// OpenedWorld: a world that is opened for a server, or created. Every error is one line that names
+// the file. All functions block on the disk: they are for the start of a program.
 #pragma once
 #include <cstdint>
 #include <memory>

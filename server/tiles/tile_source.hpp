@@ -3,7 +3,7 @@
 //   1. the tiles that were made lately, in memory;
 //   2. the generator's coarse form, from level kCoarseLevelMin on, if nothing below the tile is
 //      stored or edited. It is an approximation;
-//   3. the table of tiles in the world's folder;
+//   3. the table of tiles of the world;
 //   4. its eight children, which are chunks or tiles of the level below.
 // A tile of 1 or 3 is used only if no edit below it is newer. A damaged row of a tile is reported and
 // the tile is made again. A damaged chunk is reported, and the tiles above it show nothing there.
@@ -36,7 +36,7 @@ class TileSource {
  public:
   struct Options {
     std::size_t cache_bytes = std::size_t{16} << 20;  // of the tiles that were made lately
-    /// False: no tile is read from the folder, so that stored tiles can be compared with others.
+    /// False: no tile is read from the store, so that stored tiles can be compared with others.
     bool reads_stored_tiles = true;
     bool adds_veils = true;  // false: made tiles have no MadeTile::veiled
   };
@@ -59,7 +59,7 @@ class TileSource {
   /// call stops between two tiles, and the list lacks the requested one. The next call finds the
   /// tiles that this one made in memory. The first call reads the keys of all stored chunks.
   /// Requires a tile inside the world, and that every edit up to request.head was reported to the
-  /// ledger. Fails if the folder cannot be read. A request with `at` also requires `past_chunk` and
+  /// ledger. Fails if the world cannot be read. A request with `at` also requires `past_chunk` and
   /// request.past_made. A tile below which an edit is later than `at` is made of its children at
   /// that moment. It is a past tile (MadeTile::is_past), which is kept in request.past_made alone.
   /// Other tiles are the present ones.
@@ -75,7 +75,7 @@ class TileSource {
 
  private:
   class Making;  // one call of make()
-  /// Passes the chunks that the folder has to the ledger, unless it was done.
+  /// Passes the chunks that are stored to the ledger, unless it was done.
   StoreResult<void> find_ground();
   /// Adds MadeTile::veiled, unless the tile has it.
   void add_veiled(MadeTile& tile, const VisibilityTable& visibility);
