@@ -35,7 +35,8 @@ class Screen {
   /// Sets the user interface that the next frames have on top; null: none.
   virtual void set_overlay(std::shared_ptr<const OverlayFrame> overlay) = 0;
   /// Draws a frame of width x height pixels. Waits for the fence after the frame off screen, for
-  /// the swap in a window, and for nothing in a page. Throws std::runtime_error if the driver fails.
+  /// the swap in a window, and for nothing in a page. Throws std::runtime_error if the driver
+  /// fails.
   virtual RenderStats draw(const Camera& camera, int width, int height,
                            const FrameContents& contents) = 0;
   /// Returns the last frame. Requires a draw() before.

@@ -1,6 +1,6 @@
-// BlockMaterials: the materials that the blocks of a foreign world become. It is used in two passes,
-// because the materials of a world are known before its first chunk: note() sees each piece,
-// make_table() numbers the materials, and resolve() gives each piece its materials.
+// BlockMaterials: the materials that the blocks of a foreign world become. It is used in two
+// passes, because the materials of a world are known before its first chunk: note() sees each
+// piece, make_table() numbers the materials, and resolve() gives each piece its materials.
 // Memory: the names and states of the blocks, at most kForeignBlockBytesMax.
 #pragma once
 #include <cstddef>

@@ -1,10 +1,11 @@
 // The seam to the worlds and files of other programs: a reader takes bytes, and gives runs with the
-// names and states of their blocks. What lies behind the seam does not know which program wrote them.
+// names and states of their blocks. What lies behind the seam does not know which program wrote
+// them.
 //   const Format* format = format_of_file("valley/map.sqlite");
 //   format->read(record, [&](ForeignPiece&& piece) -> Result<void> { ... });
 // A reader does no I/O. It gets one record at a time: a row of a database, a part of a file, or a
-// whole file, which the caller may have mapped into memory. It gives one piece at a time, so neither
-// the world nor a large file is in memory as a whole.
+// whole file, which the caller may have mapped into memory. It gives one piece at a time, so
+// neither the world nor a large file is in memory as a whole.
 // Every byte is untrusted: a reader bounds each length, count and nesting that the bytes name, and
 // what it decompresses. To add a format, add its reader and a row of the table in format.cpp.
 #pragma once

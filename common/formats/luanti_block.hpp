@@ -24,10 +24,10 @@ std::int64_t luanti_block_pos(ChunkCoord block);
 /// Decodes one block's `data` to one piece of 16^3 voxels. The blocks of the piece are the names of
 /// the block's own table in its order, at most 4096, and then each name with a state "param2=N" of
 /// which N is not 0. Nodes `ignore`, which the other program has not generated, have material 0.
-/// Every byte is untrusted: lengths, counts, ids and the zstd stream are bounded. The part behind the
-/// nodes (metadata, objects, timers) must decompress and is ignored. The offset of an error is a byte
-/// of the decompressed stream, or of `data` if the stream itself is bad. Cost: O(nodes + decompressed
-/// bytes).
+/// Every byte is untrusted: lengths, counts, ids and the zstd stream are bounded. The part behind
+/// the nodes (metadata, objects, timers) must decompress and is ignored. The offset of an error is
+/// a byte of the decompressed stream, or of `data` if the stream itself is bad. Cost: O(nodes +
+/// decompressed bytes).
 Result<ForeignPiece> decode_luanti_block(ByteView data);
 /// Gives the piece of decode_luanti_block() to the sink: the reader of Format.
 Result<void> read_luanti_block(ByteView data, const PieceSink& sink);

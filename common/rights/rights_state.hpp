@@ -96,8 +96,8 @@ class RightsState {
   bool has_ever_granted() const { return has_ever_granted_; }
 
   // Invites.
-  /// Returns the invites that were neither cancelled nor removed: an invite that has ended is removed
-  /// when a later one is made.
+  /// Returns the invites that were neither cancelled nor removed: an invite that has ended is
+  /// removed when a later one is made.
   const std::map<InviteId, Decided<OpenInvite>>& invites() const { return invites_; }
   /// Returns the invite if a player may accept it at `now_us` (UTC), or null.
   const Decided<OpenInvite>* usable_invite(InviteId id, TimeUs now_us) const;

@@ -28,8 +28,8 @@ struct PlayerPreview {
 /// Requires a valid edit. Cost: O(1).
 bool is_light_preview(const EditDescriptor& edit, std::int32_t chunk_edge);
 
-/// Returns true if these edits may be shared: few, short, and each touches few chunks. Cost: that of
-/// encoding them.
+/// Returns true if these edits may be shared: few, short, and each touches few chunks. Cost: that
+/// of encoding them.
 bool may_be_shared(const std::vector<EditDescriptor>& edits, std::int32_t chunk_edge);
 
 }  // namespace runstone

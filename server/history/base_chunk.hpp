@@ -5,8 +5,8 @@
 
 namespace runstone {
 
-/// Returns the generator's chunk in its cheapest axis order, at version (0, 0). Requires lod 0 and a
-/// chunk inside the world.
+/// Returns the generator's chunk in its cheapest axis order, at version (0, 0). Requires lod 0 and
+/// a chunk inside the world.
 Chunk generated_chunk(const Generator& generator, const ChunkKey& key, std::uint16_t edge);
 
 /// Returns the chunk of the base, or the generator's chunk if the base has none, in its cheapest

@@ -30,8 +30,8 @@ class Moments {
   StoreResult<LogEnd> open(Sequence at);
   /// Opens the moment after the last edit at or before this time (UTC).
   StoreResult<LogEnd> open_at_time(TimeUs utc_us);
-  /// Makes the calls under way that open a moment, and all later calls, fail soon (cancelled). Thread:
-  /// any.
+  /// Makes the calls under way that open a moment, and all later calls, fail soon (cancelled).
+  /// Thread: any.
   void cancel() { is_cancelled_.store(true); }
   /// Returns the chunk as it was after edit `at`. Opens the moment again if it is no longer kept.
   StoreResult<Chunk> chunk(Sequence at, const ChunkKey& key);

@@ -1,7 +1,7 @@
-// TileGrid: a byte for each tile of a view. The tiles of a level lie in a box around the centre of the
-// view, so the remainders of their coordinates by the sides of the box are different, and are their
-// place in the grid. A view that moves needs no copy: the tiles that leave free the places of those
-// that come. One thread.
+// TileGrid: a byte for each tile of a view. The tiles of a level lie in a box around the centre of
+// the view, so the remainders of their coordinates by the sides of the box are different, and are
+// their place in the grid. A view that moves needs no copy: the tiles that leave free the places of
+// those that come. One thread.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
-// MapService: draws the map of a world on request, on threads that all maps share. Requests wait in a
-// queue with a bound. Drawing that takes long is done in turns, and other requests are served between
-// them: what a turn made is kept in the caches, and the next turn begins there. All caches together
-// have a bound, and nothing is written to the disk.
+// MapService: draws the map of a world on request, on threads that all maps share. Requests wait in
+// a queue with a bound. Drawing that takes long is done in turns, and other requests are served
+// between them: what a turn made is kept in the caches, and the next turn begins there. All caches
+// together have a bound, and nothing is written to the disk.
 // Threads: ask() by any. Replies are called on one of the shared threads, by ask(), or by the
 // destructor.
 #pragma once
@@ -78,8 +78,8 @@ class MapService final : MapThreads::Map {
   std::optional<MapAnswer> serve(const BuildersRequest& request);
   std::optional<MapAnswer> serve(const MapMomentRequest& request);
   std::optional<MapAnswer> serve_recent_edits();
-  /// Returns the moment after edit `at`, or the present. The error is nullopt if the job needs another
-  /// turn.
+  /// Returns the moment after edit `at`, or the present. The error is nullopt if the job needs
+  /// another turn.
   Result<MapMoment*, std::optional<MapAnswer>> moment_of(const std::optional<Sequence>& at);
   std::optional<MapAnswer> answer_to(const StoreError& error);
   bool should_continue() const;

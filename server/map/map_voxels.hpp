@@ -35,8 +35,8 @@ class MapVoxels {
         caches_(caches),
         should_continue_(std::move(should_continue)) {}
 
-  /// Returns the voxels of a chunk or tile. A damaged chunk is empty, as in the tiles of the server.
-  /// Fails (cancelled) if should_continue() returned false; what was made until then is
+  /// Returns the voxels of a chunk or tile. A damaged chunk is empty, as in the tiles of the
+  /// server. Fails (cancelled) if should_continue() returned false; what was made until then is
   /// kept in the caches. Fails if the world cannot be read.
   StoreResult<Voxels> at(const MapMoment& moment, const ChunkKey& key);
 

@@ -30,9 +30,9 @@ class MapWorld {
   MapWorld(std::string place, MapCaches& caches) : place_(std::move(place)), caches_(caches) {}
 
   /// Opens the place, or brings the present up to the log. A place that holds another world than
-  /// before is opened anew. Fails if the world cannot be read; then present() may not be called until a
-  /// later call succeeds, and the same failure is returned within kAgeUsMax. `steady_us` and `utc_us` are
-  /// the time. Fails (cancelled) if `progress` returned false.
+  /// before is opened anew. Fails if the world cannot be read; then present() may not be called
+  /// until a later call succeeds, and the same failure is returned within kAgeUsMax. `steady_us`
+  /// and `utc_us` are the time. Fails (cancelled) if `progress` returned false.
   StoreResult<void> refresh(TimeUs steady_us, TimeUs utc_us,
                             const WorldAt::Progress& progress = {});
 

@@ -21,8 +21,8 @@ struct CommandWorld {
 };
 
 /// Opens the world at `place` for reading; a server may be running it. Fails if there is no world,
-/// if this program lacks its generator, or if the world does not have the moment `end`. The error is
-/// one line.
+/// if this program lacks its generator, or if the world does not have the moment `end`. The error
+/// is one line.
 Result<CommandWorld, std::string> open_for_reading(const std::string& place,
                                                    const std::optional<NamedMoment>& end = {});
 

@@ -70,8 +70,8 @@ void declare_import(SubcommandOptions& command_line, ImportOptions& options);
 /// is damaged; the edits before it stay imported.
 Result<int, std::string> run_import(const ImportOptions& options, std::ostream& out);
 
-/// play: plays a world's log into a live server. Only clients join a server, so runstone-bot plays it,
-/// as a child process.
+/// play: plays a world's log into a live server. Only clients join a server, so runstone-bot plays
+/// it, as a child process.
 struct PlayOptions {
   CommonOptions common;           // json: the report of runstone-bot
   std::string connect;            // HOST:PORT of the live server

@@ -35,8 +35,8 @@ class DurableLog {
     std::function<void()> on_snapshots_saved;
     /// Reports that the disk has no more space for new edits, or has space again.
     std::function<void(DiskSpace)> on_space;
-    /// Reports, at most once, that the log cannot be written any more, or that another program owns the
-    /// world.
+    /// Reports, at most once, that the log cannot be written any more, or that another program owns
+    /// the world.
     std::function<void()> on_failed;
     /// Reports the same, at once and on any thread.
     std::function<void()> on_failed_in_writer;

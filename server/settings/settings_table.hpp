@@ -53,9 +53,9 @@ class SettingsTable {
       return failure(name + " = \"" + text + "\": " + *wrong);
     return {};
   }
-  /// Sets the values that a TOML file names; `file` is only for messages. Fails on unknown names and
-  /// wrong values, with their line; `config` is then unchanged. `sections`: a kind of sections that
-  /// the caller reads (read_toml_sections); empty: there are none.
+  /// Sets the values that a TOML file names; `file` is only for messages. Fails on unknown names
+  /// and wrong values, with their line; `config` is then unchanged. `sections`: a kind of sections
+  /// that the caller reads (read_toml_sections); empty: there are none.
   Result<void, TextError> read_toml(Config& config, std::string_view toml, std::string_view file,
                                     std::string_view sections = {}) const {
     auto values = read_toml_settings(toml, file);

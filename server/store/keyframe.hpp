@@ -1,5 +1,5 @@
-// Keyframe: all chunks of one moment, kept so that the world of that moment is known without an edit
-// before it.
+// Keyframe: all chunks of one moment, kept so that the world of that moment is known without an
+// edit before it.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,6 +1,6 @@
-// SqlStore: a world in the tables of an SQL database. It enforces the rules of Store; the tables know
-// only their rows, and the backend knows the database system. docs/edit-log.md, "The database",
-// describes the tables.
+// SqlStore: a world in the tables of an SQL database. It enforces the rules of Store; the tables
+// know only their rows, and the backend knows the database system. docs/edit-log.md, "The
+// database", describes the tables.
 #pragma once
 #include <functional>
 #include <map>
@@ -30,8 +30,8 @@ namespace runstone {
 
 class SqlStore final : public Store {
  public:
-  /// Opens a world. Converts an older format if it is open for writing. Checks meta rows and log ids,
-  /// and whether the log is as long as it was durable.
+  /// Opens a world. Converts an older format if it is open for writing. Checks meta rows and log
+  /// ids, and whether the log is as long as it was durable.
   static StoreResult<std::unique_ptr<SqlStore>> open(std::unique_ptr<WorldBackend> backend,
                                                      StoreAccess access);
 

@@ -3,8 +3,8 @@
 //   - WorldReader reads. A function that needs less takes a LogReader or a ChunkReader;
 //   - WorldSink is what the log writer of a running server calls;
 //   - ImportSink fills a new world.
-// SqlStore implements it on SQLite and on PostgreSQL. Every call blocks on the disk or the network, so
-// the world strand makes none: one writer thread owns a Store, and readers open their own. These
+// SqlStore implements it on SQLite and on PostgreSQL. Every call blocks on the disk or the network,
+// so the world strand makes none: one writer thread owns a Store, and readers open their own. These
 // rules keep a world safe:
 //   - append() returns after the data is on disk: what it has written is durable;
 //   - a snapshot may only be saved at a version that is durable;
@@ -51,9 +51,9 @@ class Store : public WorldReader, public WorldSink, public ImportSink {
   /// Makes a world usable that has lost edits, players or watermarks. Requires StoreAccess::repair.
   /// Returns a line for each loss; there are none if nothing is lost. Deletes all tiles, because a
   /// tile may contain lost edits.
-  ///   - Lost edits: the world stays as the rest of the log makes it. The epoch becomes that
-  ///     of a new branch, and the next raise_epoch() ends the loss. In PostgreSQL it does so in any case,
-  ///     because nobody notices that a database was put back from a backup.
+  ///   - Lost edits: the world stays as the rest of the log makes it. The epoch becomes that of a
+  ///     new branch, and the next raise_epoch() ends the loss. In PostgreSQL it does so in any
+  ///     case, because nobody notices that a database was put back from a backup.
   ///   - Lost players: the rest is counted anew. Their numbers are not given again.
   ///   - Lost watermarks: those of edits in the log are made again, and all are counted anew.
   virtual StoreResult<std::vector<std::string>> accept_losses() = 0;
@@ -78,8 +78,8 @@ bool is_database(const std::string& place);
 /// Returns the place for messages. It has no password.
 std::string place_name(const std::string& place);
 
-/// Creates a world and opens it for writing. A folder is made if it does not exist. Fails if the place
-/// holds a world already. `lease` matters for a database only.
+/// Creates a world and opens it for writing. A folder is made if it does not exist. Fails if the
+/// place holds a world already. `lease` matters for a database only.
 StoreResult<std::unique_ptr<Store>> create_world(const std::string& place, const WorldMeta& meta,
                                                  const std::string& vfs = "",
                                                  const LeaseTerms& lease = {});
@@ -90,9 +90,9 @@ enum class StoreAccess {
   repair       // writes, also if the world has a loss
 };
 /// Opens an existing world. Fails (locked) if another program has it open for writing, and `access`
-/// is not read_only; if that program has ended without giving the lease of a database back, waits until
-/// the lease has run out. `vfs` is the name of an SQLite VFS, for tests; an empty name means the default
-/// one.
+/// is not read_only; if that program has ended without giving the lease of a database back, waits
+/// until the lease has run out. `vfs` is the name of an SQLite VFS, for tests; an empty name means
+/// the default one.
 StoreResult<std::unique_ptr<Store>> open_world(const std::string& place, StoreAccess access,
                                                const std::string& vfs = "",
                                                const LeaseTerms& lease = {});

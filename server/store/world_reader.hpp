@@ -35,8 +35,8 @@ class WorldReader : public LogReader, public ChunkReader {
   /// Returns the names that keys own, ascending by their folded form. There are none in a world of
   /// format 2 that is open for reading only. Fails (corrupt) if a row is damaged or missing.
   virtual StoreResult<std::vector<NameClaim>> name_claims() = 0;
-  /// Returns the watermarks of all client instances. Compactions keep them. Fails (corrupt) if a row
-  /// is damaged or missing.
+  /// Returns the watermarks of all client instances. Compactions keep them. Fails (corrupt) if a
+  /// row is damaged or missing.
   virtual StoreResult<std::vector<HighWater>> high_waters() = 0;
   /// Returns the highest author number that was ever stored, or 0. It is not lower if rows of
   /// players are lost, so that no number is given to two players.
@@ -45,8 +45,8 @@ class WorldReader : public LogReader, public ChunkReader {
   /// Returns the error if the world, when it was opened, lacked edits that had been durable, or if
   /// that cannot be known. Returns nullopt if the log is whole.
   virtual const std::optional<StoreError>& loss() const = 0;
-  /// Returns false if the connection with the database was lost: every read fails from then on. A loss is
-  /// known after the first read that fails.
+  /// Returns false if the connection with the database was lost: every read fails from then on. A
+  /// loss is known after the first read that fails.
   virtual bool is_usable() const { return true; }
   /// Begins reads that see one moment of the world until end_reads(). Each of them costs less,
   /// because it takes and leaves no lock. Few at a time: meanwhile a server that runs the world

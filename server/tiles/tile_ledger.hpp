@@ -17,14 +17,15 @@ namespace runstone {
 
 class TileLedger {
  public:
-  /// Reports that edit `seq` touched these chunks, or that edits up to it did. A server reports each
-  /// commit, and at its start the edits that are in no snapshot. Cost: one look-up a chunk, and a
-  /// few instructions for each tile above that the same edit did not reach yet.
+  /// Reports that edit `seq` touched these chunks, or that edits up to it did. A server reports
+  /// each commit, and at its start the edits that are in no snapshot. Cost: one look-up a chunk,
+  /// and a few instructions for each tile above that the same edit did not reach yet.
   void edited(std::span<const ChunkCoord> chunks, Sequence seq);
   /// Reports touched chunks by their keys, of level of detail 0.
   void edited(std::span<const ChunkKey> chunks, Sequence seq);
-  /// Reports touched chunks as edited() unless another thread uses the ledger at the moment; then it
-  /// returns false and does nothing. A thread that must not wait calls it: threads of low priority use the ledger, too.
+  /// Reports touched chunks as edited() unless another thread uses the ledger at the moment; then
+  /// it returns false and does nothing. A thread that must not wait calls it: threads of low
+  /// priority use the ledger, too.
   bool try_edited(std::span<const ChunkKey> chunks, Sequence seq);
   /// Reports chunks that the store has rows for, with their versions. Keys of tiles are
   /// ignored.

@@ -1,12 +1,13 @@
-// TileSource: makes tiles of a world: levels of detail of its chunks. A tile is taken from the first
-// of these that has it:
+// TileSource: makes tiles of a world: levels of detail of its chunks. A tile is taken from the
+// first of these that has it:
 //   1. the tiles that were made lately, in memory;
 //   2. the generator's coarse form, from level kCoarseLevelMin on, if nothing below the tile is
 //      stored or edited. It is an approximation;
 //   3. the table of tiles of the world;
 //   4. its eight children, which are chunks or tiles of the level below.
-// A tile of 1 or 3 is used only if no edit below it is newer. A damaged row of a tile is reported and
-// the tile is made again. A damaged chunk is reported, and the tiles above it show nothing there.
+// A tile of 1 or 3 is used only if no edit below it is newer. A damaged row of a tile is reported
+// and the tile is made again. A damaged chunk is reported, and the tiles above it show nothing
+// there.
 // Threads: any. Calls block on the disk, so workers make them.
 #pragma once
 #include <atomic>
@@ -43,8 +44,8 @@ class TileSource {
   /// Reports a damaged row. The text names file, table and row.
   using Warn = std::function<void(const std::string&)>;
 
-  /// Chunk source, generator and ledger must outlive the object. `edge` is that of the world's chunks.
-  /// `warn` is called on the threads that call make().
+  /// Chunk source, generator and ledger must outlive the object. `edge` is that of the world's
+  /// chunks. `warn` is called on the threads that call make().
   TileSource(ChunkSource& chunks, const Generator& generator, std::int32_t edge, TileLedger& ledger,
              Warn warn, Options options);
   TileSource(ChunkSource& chunks, const Generator& generator, std::int32_t edge, TileLedger& ledger,
@@ -66,8 +67,8 @@ class TileSource {
   StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
                                           const VisibilityTable& visibility,
                                           const PastChunk& past_chunk = {});
-  /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now. It
-  /// makes no tile and reads none from the disk. If the tile with its veil is in memory, the
+  /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now.
+  /// It makes no tile and reads none from the disk. If the tile with its veil is in memory, the
   /// digests are compared. Otherwise the version must be that of the newest edit below the tile.
   /// Returns false before the first make(), because the edits before the start are not known then.
   /// Cost: two look-ups. It may wait for other threads for a moment.

@@ -1,6 +1,6 @@
-// The files of server/web/page, which the build embeds (cmake/embed.cmake). They are written by hand
-// and load nothing from elsewhere. docs/server-reference.md describes the requests of the map's
-// script.
+// The files of server/web/page, which the build embeds (cmake/embed.cmake). They are written by
+// hand and load nothing from elsewhere. docs/server-reference.md describes the requests of the
+// map's script.
 #pragma once
 #include <string_view>
 

@@ -55,8 +55,8 @@ struct OrderedShape {
 std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent,
                                  AxisOrder order);
 
-/// Returns nullopt if the voxel lies outside the chunk. Most edits are single voxels, so this form of
-/// clip() has no boxes and is inline.
+/// Returns nullopt if the voxel lies outside the chunk. Most edits are single voxels, so this form
+/// of clip() has no boxes and is inline.
 inline std::optional<OrderedShape> clip_voxel(VoxelPos at, VoxelPos origin, Extent extent,
                                               AxisOrder order) {
   const auto x = static_cast<std::uint32_t>(at.x - origin.x);
