@@ -25,12 +25,12 @@ MaterialInfo material_of_name(const ForeignBlock& block, bool keep_all) {
 constexpr Format kWithStates{"test", ".test", nullptr, material_with_states};
 constexpr Format kByName{"test", ".test", nullptr, material_of_name};
 
-/// Returns a piece of 16 voxels on one line: two of each block, and the rest of material 0. The last
-/// block does not occur.
+/// Returns a piece of which the first line begins with two voxels of each block but the last one. All
+/// other voxels have material 0.
 ForeignPiece piece_of(std::vector<ForeignBlock> blocks) {
-  RunBuilder runs({16, 1, 1}, AxisOrder::xyz);
+  RunBuilder runs(Extent::cube(16), AxisOrder::xyz);
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i) runs.append(2, static_cast<Material>(i + 1));
-  runs.append_to(16, kEmpty);
+  runs.append_to(4096, kEmpty);
   return {{}, runs.finish(), std::move(blocks)};
 }
 
