@@ -135,7 +135,7 @@ static_assert(kDescriptorBytesMax <= kRestorePreviewBytesMax, "every descriptor 
 
 // Between servers.
 inline constexpr std::size_t kLogPartRecordsMax = 4096;
-inline constexpr std::size_t kLogPartRowsMax = 4096;  // players; likewise names
+inline constexpr std::size_t kLogPartRowsMax = 4096;  // players, and also names
 inline constexpr std::size_t kFoldedNameBytesMax = 512;
 inline constexpr std::size_t kRelaySessionsMax = 4096;  // that one message is for
 /// Of the body of a relayed message; the rest is for the list of sessions.
@@ -146,7 +146,7 @@ inline constexpr std::size_t kLogPartBytesMax = 256 * 1024;
 
 // The list of servers.
 inline constexpr std::size_t kServersMax = 64;
-inline constexpr std::size_t kServerAddressBytesMax = 256;  // likewise of the address of a page
+inline constexpr std::size_t kServerAddressBytesMax = 256;  // also of the address of a page
 
 // Commands.
 inline constexpr std::size_t kCommandBytesMax = 1024;      // one line

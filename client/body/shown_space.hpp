@@ -23,7 +23,7 @@ class ShownSpace final : public VoxelSpace {
 
  private:
   const Replica& replica_;
-  // The chunk that was read last, because the next one is mostly the same.
+  // The chunk that was read last: most reads are of the chunk of the read before.
   mutable ShownPtr shown_;
   mutable ChunkCoord at_;
   mutable bool is_read_ = false;

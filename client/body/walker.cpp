@@ -12,7 +12,8 @@ constexpr double kWalkSpeed = 4.5, kRunSpeed = 7.5;
 constexpr double kSwimSpeed = 3, kWadeSpeed = 3.6, kSinkSpeed = 1.2, kRiseSpeed = 3.5;
 // The share of the difference between speed and wish that is left after a second.
 constexpr double kGroundGrip = 1e-8, kAirGrip = 0.05, kLiquidGrip = 1e-3;
-constexpr double kLagShare = 1e-5;     // of the eye's lag after a step up, likewise
+constexpr double kLagShare =
+    1e-5;  // the share of the eye's lag after a step up that is left after a second
 constexpr double kUnstickSpeed = 3;    // of a body that is inside a solid voxel
 constexpr double kUnstickWalkMax = 2;  // a body that is deeper inside is put above at once
 constexpr int kUnstickSearchMax = 512;

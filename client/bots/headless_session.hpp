@@ -58,8 +58,8 @@ class HeadlessSession {
   std::uint64_t servers_number() const { return connection_.servers_number(); }
   View view() const { return connection_.view(); }
   std::uint64_t connect_count() const { return connection_.connect_count(); }
-  /// Returns true if every chunk of the view arrived or is unavailable, none lacks edits, and all tiles
-  /// arrived.
+  /// Returns true if every chunk of the view arrived or is unavailable, none lacks edits, and all
+  /// tiles arrived.
   bool loaded() const;
 
   /// Reads a commit without decoding it into a message, see LinkCallbacks::on_bytes(). Returns true

@@ -11,9 +11,9 @@
 //     history are dropped (SharedHistory);
 //   - if the server of a world makes tiles by other rules, the tiles are dropped.
 // The size is bounded: beyond `bytes_max` the chunks and tiles that were unused for longest are
-// evicted. Tiles need no other rule: those of a view take a few per cent of the bytes of its chunks,
-// and a client that comes back needs both. One
-// process at a time uses the folder. Calls wait for the disk.
+// evicted. Tiles need no other rule: those of a view take a few per cent of the bytes of its
+// chunks, and a client that comes back needs both. One process at a time uses the folder. Calls
+// wait for the disk.
 // Thread: one at a time.
 #pragma once
 #include <cstdint>

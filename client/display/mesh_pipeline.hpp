@@ -50,7 +50,7 @@ class MeshPipeline {
     far_planner_.set_eye(eye);
   }
   /// Sets the memory that meshes may take, those on the GPU included. Beyond it one job is made at
-  /// a time, so that the nearest chunk is meshed all the same.
+  /// a time, so that the nearest chunk is meshed in any case.
   void set_mesh_bytes_max(std::size_t bytes) { mesh_bytes_max_ = bytes; }
   /// Returns the number of chunks that were meshed so far.
   std::uint64_t meshed_count() const { return planner_.chunks_meshed(); }

@@ -27,7 +27,7 @@ class Screen {
   /// Returns the name of the OpenGL context, a static string.
   virtual const char* name() const = 0;
   virtual void set_materials(const MaterialTable& materials) = 0;
-  /// Do the same as the functions of Renderer.
+  /// See Renderer::upload(), upload_tile() and remove().
   virtual void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
                       const RunChunk* voxels) = 0;
   virtual void upload_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh) = 0;
@@ -35,7 +35,8 @@ class Screen {
   /// Sets the user interface that the next frames have on top; null: none.
   virtual void set_overlay(std::shared_ptr<const OverlayFrame> overlay) = 0;
   /// Draws a frame of width x height pixels. Waits for the fence after the frame off screen, for
-  /// the swap in a window, and for nothing in a page. Throws std::runtime_error if the driver fails.
+  /// the swap in a window, and for nothing in a page. Throws std::runtime_error if the driver
+  /// fails.
   virtual RenderStats draw(const Camera& camera, int width, int height,
                            const FrameContents& contents) = 0;
   /// Returns the last frame. Requires a draw() before.

@@ -41,8 +41,8 @@ struct ChunkUpload {
 /// Returns the memory of a chunk in the renderer: its quads, and at most its runs once more, with a
 /// byte for each column. `voxels` may be null.
 std::size_t gpu_bytes(const ChunkMesh& mesh, const RunChunk* voxels);
-/// Returns the same of a tile, which has no light: its quads, and a number for each of their
-/// layers.
+/// Returns the memory of a tile in the renderer: its quads, and a number for each of their layers.
+/// A tile has no light.
 std::size_t gpu_bytes(const TileMesh& mesh);
 std::size_t gpu_bytes(const ChunkUpload& upload);
 

@@ -4,9 +4,10 @@
 //     between gets a stand-in (stand_in.hpp), so that FarCover finds no gap.
 //   - A tile whose mesh is new waits until the tiles that are held below it have their first
 //     meshes. So coarse ground never hides finer ground that was drawn before.
-//   - Servers may give enclosed voxels of a tile any opaque material (common/tiles/veil.hpp). Octants
-//     and stand-ins are parts of a tile, and their sides show enclosed voxels of it. So tiles are
-//     veiled here before they are meshed. Then a picture is the same whether the server veils or not.
+//   - Servers may give enclosed voxels of a tile any opaque material (common/tiles/veil.hpp).
+//     Octants and stand-ins are parts of a tile, and their sides show enclosed voxels of it. So
+//     tiles are veiled here before they are meshed. Then a picture is the same whether the server
+//     veils or not.
 //   - The order is: finer levels first, then the nearest to the eye. All levels look equally large
 //     on the screen, because their reach grows with their voxels.
 //
@@ -35,9 +36,9 @@ class FarPlanner {
   /// `tiles` must outlive the planner.
   explicit FarPlanner(const FarTiles& tiles) : tiles_(tiles) {}
 
-  /// Sets the visibility and look of materials. Makes all open jobs void and meshes every tile again.
-  /// Materials below `known` are as before. Before the first call, tiles are meshed as they came. Cost:
-  /// O(tiles + runs), and a veil for each tile with other materials.
+  /// Sets the visibility and look of materials. Makes all open jobs void and meshes every tile
+  /// again. Materials below `known` are as before. Before the first call, tiles are meshed as they
+  /// came. Cost: O(tiles + runs), and a veil for each tile with other materials.
   void set_visibility(const VisibilityTable& visibility, Material known = 0);
   /// Takes the keys of FarTiles::drain_changes().
   void take(std::span<const ChunkKey> changes);

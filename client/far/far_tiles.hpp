@@ -4,8 +4,8 @@
 //   - An empty tile says that everything below it is empty, so the tiles below it are dropped.
 //   - Tiles outside of the view are ignored, and dropped when the view moves. So their number is
 //     bounded by the view.
-//   - Tiles stay over a lost connection, and may come from a cache. They are shown at once, and can be
-//     claimed, unless they are uniform: those take fewer bytes than their claims.
+//   - Tiles stay over a lost connection, and may come from a cache. They are shown at once, and can
+//     be claimed, unless they are uniform: those take fewer bytes than their claims.
 // Tiles have no predictions or commits. Pure. One thread; the tiles that are returned are immutable
 // and may be read from any thread.
 #pragma once
@@ -34,8 +34,8 @@ class FarTiles {
   /// view, or all if the edge is another one. Cost: O(tiles).
   void set_view(const View& view, std::int32_t edge);
   void clear();
-  /// Begins a new connection. The tiles stay. Those whose version `trusts` accepts can be claimed, if
-  /// the server's `rules` of tiles are not 0 and the same as before. Cost: O(tiles).
+  /// Begins a new connection. The tiles stay. Those whose version `trusts` accepts can be claimed,
+  /// if the server's `rules` of tiles are not 0 and the same as before. Cost: O(tiles).
   void reopen(std::uint32_t rules, const std::function<bool(const Version&)>& trusts);
 
   /// Takes a tile. Returns false and ignores it if the view does not have it or its extent is
@@ -43,27 +43,27 @@ class FarTiles {
   bool receive(const ChunkKey& key, Chunk tile);
   /// Takes a tile of one material.
   bool receive_uniform(const ChunkKey& key, Material material);
-  /// Takes the answer that the claimed tile is current. Returns false if no tile of this sequence is
-  /// held.
+  /// Takes the answer that the claimed tile is current. Returns false if no tile of this sequence
+  /// is held.
   bool receive_not_modified(const ChunkKey& key, Sequence seq);
-  /// Takes a tile from a cache. Returns false and ignores it if the view does not have it, if a tile
-  /// is held, or if an empty tile above it is held.
+  /// Takes a tile from a cache. Returns false and ignores it if the view does not have it, if a
+  /// tile is held, or if an empty tile above it is held.
   bool adopt(const ChunkKey& key, ChunkPtr tile);
 
   /// Returns null if the tile is not held.
   TilePtr find(const ChunkKey& key) const;
-  /// Calls visit(key, tile) for the tiles that can be claimed, ascending, until it returns false: those
-  /// that the server has not answered for on this connection.
+  /// Calls visit(key, tile) for the tiles that can be claimed, ascending, until it returns false:
+  /// those that the server has not answered for on this connection.
   void for_each_claimable(const std::function<bool(const ChunkKey&, const Chunk&)>& visit) const;
   /// Returns at most `count_max` tiles that a cache does not have yet, ascending. The server has
   /// vouched for them on this connection. Cost: O(tiles).
   std::vector<std::pair<ChunkKey, ChunkPtr>> take_for_cache(std::size_t count_max);
   /// Returns true if take_for_cache() has tiles to return. Cost: O(tiles).
   bool has_for_cache() const;
-  /// Returns the keys of tiles of the view that a cache may have, ascending: those that are not held,
-  /// and not below a held tile that is empty. Levels whose tiles are the same as in the call before, on
-  /// the same connection, are left out. It is empty if the server takes no claims of tiles. Cost:
-  /// O(tiles of these levels * log tiles).
+  /// Returns the keys of tiles of the view that a cache may have, ascending: those that are not
+  /// held, and not below a held tile that is empty. Levels whose tiles are the same as in the call
+  /// before, on the same connection, are left out. It is empty if the server takes no claims of
+  /// tiles. Cost: O(tiles of these levels * log tiles).
   std::vector<ChunkKey> take_not_held();
 
   struct Missing {

@@ -10,7 +10,8 @@ namespace runstone {
 /// lines).
 RunChunk stand_in(const RunChunk& parent, unsigned octant);
 
-/// Returns one eighth of a tile: the voxels that child `octant` covers. Requires the same.
+/// Returns one eighth of a tile: the voxels that child `octant` covers. Requires a valid cube with
+/// an even edge of kSideMin * 2 or more.
 RunChunk cut_octant(const RunChunk& tile, unsigned octant);
 
 }  // namespace runstone

@@ -36,7 +36,7 @@ struct FleetReport {
   double seconds = 0;                                // from the first due edit to the last
   // Within these seconds.
   std::array<std::uint64_t, kFrameClassCount> class_bytes{};  // messages received, by class
-  std::uint64_t frame_bytes = 0;  // the same with frame headers, all classes
+  std::uint64_t frame_bytes = 0;  // messages received with frame headers, all classes
   ProcessTime process;            // spent by this process
   Histogram lag_us;               // how late the bots' steps were
   std::string failure;            // why the run ended early, or empty

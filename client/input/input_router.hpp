@@ -39,8 +39,8 @@ class InputRouter {
   /// Queues events. They are routed in order.
   void push(const std::vector<InputEvent>& events);
   /// Routes queued events up to the first one after which `focus` may be another one: a key that
-  /// triggers an action, frees the mouse or ends a text, or a movement before a click. Call it every
-  /// turn.
+  /// triggers an action, frees the mouse or ends a text, or a movement before a click. Call it
+  /// every turn.
   RoutedInput route(const UiFocus& focus);
   /// Returns the events that wait for the next route(), and forgets them.
   std::vector<InputEvent> take_waiting();

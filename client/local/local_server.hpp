@@ -42,7 +42,7 @@ class LocalServer {
   /// the folder of the world. Fails with a line of text if the folder holds no world and none may
   /// be made, or if the program cannot be started.
   static Result<std::unique_ptr<LocalServer>, std::string> start(const LocalServerConfig& config);
-  /// Does the same as stop().
+  /// Calls stop().
   ~LocalServer();
   LocalServer(const LocalServer&) = delete;
   LocalServer& operator=(const LocalServer&) = delete;

@@ -26,8 +26,8 @@ struct LinkConfig {
   std::vector<HostPort> more = {};  // further addresses of the world that the user gave
   /// nullopt: the connection is not encrypted.
   std::optional<TlsContext> tls = TlsContext::client();
-  /// Path of the WebSocket of a gateway, such as "/play". Empty: `port` is that of the server, which
-  /// takes frames without a WebSocket.
+  /// Path of the WebSocket of a gateway, such as "/play". Empty: `port` is that of the server,
+  /// which takes frames without a WebSocket.
   std::string web_path = {};
   // Of NetClient: events that were not taken yet, and the memory of their messages.
   std::size_t events_max = 4096;

@@ -1,5 +1,5 @@
-// OpenGL and OpenGL ES without a display server, through EGL: the surfaceless platform of Mesa, or a
-// device of a vendor's driver.
+// OpenGL and OpenGL ES without a display server, through EGL: the surfaceless platform of Mesa, or
+// a device of a vendor's driver.
 #pragma once
 #include <memory>
 #include <string>

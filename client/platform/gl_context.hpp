@@ -17,9 +17,8 @@ class GlContext {
   /// Returns the address of a GL function by its name.
   using Loader = void (*(*)(const char*))();
   virtual Loader loader() const = 0;
-  /// Returns "EGL surfaceless" (also for a device of a vendor's driver), "EGL surfaceless, OpenGL ES",
-  /// "OSMesa", "GLFW", "GLFW, OpenGL ES"
-  /// or "WebGL 2".
+  /// Returns "EGL surfaceless" (also for a device of a vendor's driver), "EGL surfaceless, OpenGL
+  /// ES", "OSMesa", "GLFW", "GLFW, OpenGL ES" or "WebGL 2".
   virtual const char* name() const = 0;
   /// Returns true if the default framebuffer is that of a window.
   virtual bool is_window() const { return false; }

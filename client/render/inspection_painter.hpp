@@ -1,6 +1,6 @@
 // InspectionPainter: draws the modes of an Inspection over the faces of the last passes. It draws
-// the quads of chunks and tiles once more, so its pattern lies exactly on the faces. Of tiles it shows
-// the edges of quads alone. Thread: the GL thread.
+// the quads of chunks and tiles once more, so its pattern lies exactly on the faces. Of tiles it
+// shows the edges of quads alone. Thread: the GL thread.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -25,8 +25,8 @@ class InspectionPainter {
   /// all with `exact`.
   void begin(const Inspection& inspection, const glm::mat4& clip, const DepthRange& depth,
              const QuadBuffer& quads, bool exact);
-  /// Sets the chunk, tile or octant whose quads are drawn next. `origin` is relative to the eye, `edge`
-  /// in voxels, and `scale` the width of a voxel. Returns false if nothing is shown of it.
+  /// Sets the chunk, tile or octant whose quads are drawn next. `origin` is relative to the eye,
+  /// `edge` in voxels, and `scale` the width of a voxel. Returns false if nothing is shown of it.
   bool place(const ChunkKey& key, const glm::vec3& origin, std::int32_t edge, float scale);
   /// Returns what QuadBuffer::draw() takes. Valid after begin().
   GLint first_vertex() const { return first_vertex_; }

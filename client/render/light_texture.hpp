@@ -1,6 +1,6 @@
 // LightTexture: the light field on the GPU, a texture of three dimensions that a shader reads with
-// linear interpolation. Opaque voxels have no light, so places beside them are darker: the same
-// read gives the ambient occlusion of corners. Thread: the GL thread.
+// linear interpolation. Opaque voxels have no light, so places beside them are darker: one read
+// gives light and the ambient occlusion of corners. Thread: the GL thread.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>

@@ -1,7 +1,7 @@
 // The packed quads of common/mesh/quad.hpp in GLSL: a vertex shader reads quad and corner by the
 // number of the vertex, four vertices a quad. So a draw needs no vertex attributes, and the quads
-// of all chunks lie in one texture. OpenGL adds the first vertex of a draw to that number; OpenGL ES
-// 3.0 cannot, so there it is a uniform.
+// of all chunks lie in one texture. OpenGL adds the first vertex of a draw to that number; OpenGL
+// ES 3.0 cannot, so there it is a uniform.
 #pragma once
 #include "client/render/texel_store.hpp"
 

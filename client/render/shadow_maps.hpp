@@ -46,8 +46,8 @@ class ShadowMaps {
   /// Call it for each chunk that changed: a box in world voxels.
   void changed(const glm::dvec3& min, const glm::dvec3& max);
   /// Draws the cascades that need it, and leaves another framebuffer bound. If `all` is false, it
-  /// draws about kQuadsAFrame quads into the next map of each cascade, and shows that map once it is
-  /// complete. A cascade without a map near the eye is drawn at once. The inner cascade has the
+  /// draws about kQuadsAFrame quads into the next map of each cascade, and shows that map once it
+  /// is complete. A cascade without a map near the eye is drawn at once. The inner cascade has the
   /// radius `near`, the outer one `far`, in voxels.
   void update(const glm::dvec3& eye, const DayLight& light, double near, double far,
               Quality quality, bool all, const DrawTerrain& draw_terrain);

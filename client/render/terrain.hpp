@@ -116,12 +116,14 @@ class Terrain {
     bool is_used = false;
   };
 
-  /// Copy a mesh to the GPU. The transparent quads of a chunk are ordered by a tree if they are not too
-  /// many, and those of a tile by their layers. Require at least one quad, in a tile that of the whole.
+  /// Copy a mesh to the GPU. The transparent quads of a chunk are ordered by a tree if they are not
+  /// too many, and those of a tile by their layers. Require at least one quad, in a tile that of
+  /// the whole.
   Chunk add_chunk(std::int32_t edge, const ChunkMesh& mesh);
   Tile add_tile(std::int32_t edge, const TileMesh& mesh);
   void remove_quads(const Tile& tile);
-  /// Records in the cover that a chunk or tile is there, and begins a fade if it replaces its octant.
+  /// Records in the cover that a chunk or tile is there, and begins a fade if it replaces its
+  /// octant.
   void cover(const ChunkKey& key, bool is_open);
   /// Returns true if its parent is drawn in the place of a chunk or tile.
   bool is_octant_drawn(const ChunkKey& key) const;
@@ -174,7 +176,7 @@ class Terrain {
   std::vector<Quad> staged_;  // on their way to the GPU; kept for its capacity
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
-  std::map<ChunkKey, Tile> tiles_;    // likewise
+  std::map<ChunkKey, Tile> tiles_;    // those with quads
   FarCover cover_;                    // of all chunks and tiles
   FarFades fades_;
   std::map<ChunkKey, Chunk> leaving_;  // quads of removed chunks and tiles whose octant appears

@@ -1,12 +1,12 @@
 // TexelStore: one large texture on the GPU, divided into ranges of texels, that shaders read by
 // number. It has two dimensions, rows of kTexelRow texels one after another, because OpenGL ES 3.0
-// and WebGL 2 have no buffer textures. Its size doubles when it becomes full. The contents then move
-// row by row, some with each add(), so that no call copies the whole texture:
+// and WebGL 2 have no buffer textures. Its size doubles when it becomes full. The contents then
+// move row by row, some with each add(), so that no call copies the whole texture:
 //   - The move begins when less than a quarter is free.
 //   - Shaders read the old texture until all texels were copied. Texels that are written meanwhile
 //     go to both textures.
-//   - A piece is large enough that the move ends before the old texture is full. If no free range of
-//     it is large enough all the same, the rest is copied at once.
+//   - A piece is large enough that the move ends before the old texture is full. If no free range
+//     of it is large enough all the same, the rest is copied at once.
 // Thread: the GL thread.
 #pragma once
 #include <cstddef>
@@ -55,8 +55,8 @@ class TexelStore {
   std::uint32_t texel_bytes() const { return format_ == TexelFormat::r32 ? 4 : 8; }
   /// Makes the larger texture. Requires that none is there.
   void begin_move(std::uint64_t texels);
-  /// Copies rows with at least so many texels to the larger texture, and takes it into use if it has
-  /// all of them.
+  /// Copies rows with at least so many texels to the larger texture, and takes it into use if it
+  /// has all of them.
   void move(std::uint64_t texels);
   void write_to(const GlTexture& texture, std::uint32_t first, const void* texels,
                 std::uint32_t count) const;

@@ -1,8 +1,8 @@
 // CacheOutbox: confirmed chunks on their way to a cache. Only chunks that the server has vouched
-// for on this connection, in the live world, are handed over. A round of calls of take() visits each
-// chunk in view once, so a chunk that changes all the time is handed over once a round.
-// Bound: kCacheOutboxMax chunks and kCacheOutboxBytesMax bytes that left the view; more are dropped.
-// One thread.
+// for on this connection, in the live world, are handed over. A round of calls of take() visits
+// each chunk in view once, so a chunk that changes all the time is handed over once a round.
+// Bound: kCacheOutboxMax chunks and kCacheOutboxBytesMax bytes that left the view; more are
+// dropped. One thread.
 #pragma once
 #include <cstddef>
 #include <optional>

@@ -28,7 +28,8 @@ class Claims {
   void answer(const ChunkKey& key) { waiting_.erase(key); }
   /// Call it when the chunk left the view. The chunk may then be claimed again.
   void forget(const ChunkKey& key);
-  /// Does the same for the tiles outside of the view. Cost: O(claims).
+  /// Call it when tiles left the view. The tiles outside of the view may then be claimed again.
+  /// Cost: O(claims).
   void forget_tiles_outside(const View& view);
   /// Forgets all claims. Call it when a new connection begins.
   void clear();

@@ -121,11 +121,11 @@ class Replica {
   Result<void> receive(const Commit& commit, const Arrival& arrival);
   void receive(const Reject& reject, TimeUs now_us);
   /// Another server orders the edits from now on. It has resolved those of this client up to
-  /// `resolved`. Returns the client sequences of the edits to send again, ascending: those that have
-  /// no answer.
+  /// `resolved`. Returns the client sequences of the edits to send again, ascending: those that
+  /// have no answer.
   std::vector<ClientSequence> resume(ClientSequence resolved);
-  /// Takes the durable watermark. A later epoch begins with it: another server has taken the world over,
-  /// with all edits that were ordered before. The watermark of an earlier epoch is ignored.
+  /// Takes the durable watermark. A later epoch begins with it: another server has taken the world
+  /// over, with all edits that were ordered before. The watermark of an earlier epoch is ignored.
   void receive(const Durable& durable);
   void receive(const DigestCheck& check, TimeUs now_us);
   /// Allows local edits to use the materials below `count` from now on.
@@ -141,19 +141,19 @@ class Replica {
   /// Repeats the requests for chunks that did not arrive within kRequestAgainUs.
   void tick(TimeUs now_us) { updater_.tick(now_us); }
 
-  /// Takes a chunk or tile from a cache: it is shown at once, and claimed. Ignored if one is held, in
-  /// the past, and outside of the view. Requires a version that SharedHistory trusts.
+  /// Takes a chunk or tile from a cache: it is shown at once, and claimed. Ignored if one is held,
+  /// in the past, and outside of the view. Requires a version that SharedHistory trusts.
   void adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us);
-  /// Returns the chunks and tiles to claim before the next view is sent, see Claims::take(). Empty in
-  /// the past.
+  /// Returns the chunks and tiles to claim before the next view is sent, see Claims::take(). Empty
+  /// in the past.
   std::vector<CachedChunk> take_claims();
   /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may
   /// have them.
   std::vector<ChunkKey> missing() const;
-  /// Does the same for tiles, see FarTiles::take_not_held().
+  /// Returns the tiles of the view that a cache may have, see FarTiles::take_not_held().
   std::vector<ChunkKey> take_missing_tiles();
-  /// Collects the chunks that leave the view for the cache from now on. A tile that leaves before it
-  /// was taken for the cache is not kept.
+  /// Collects the chunks that leave the view for the cache from now on. A tile that leaves before
+  /// it was taken for the cache is not kept.
   void collect_for_cache() { outbox_.enable(); }
   /// Returns at most `count_max` chunks to be cached, see CacheOutbox::take(). Tiles follow.
   std::vector<KeyedChunk> take_for_cache(std::size_t count_max);
@@ -194,8 +194,8 @@ class Replica {
   /// Returns true if the server sends this chunk sooner or later: the view and the world have it,
   /// and it is not unavailable.
   bool is_expected(const ChunkKey& key) const;
-  /// Returns the tiles of the view that arrived. While the past is shown, they show it too, once the
-  /// server has sent those that differ.
+  /// Returns the tiles of the view that arrived. While the past is shown, they show it too, once
+  /// the server has sent those that differ.
   const FarTiles& far_tiles() const { return far_tiles_; }
   const LocalEdits& local_edits() const { return local_edits_; }
   const KnownGround& ground() const { return ground_; }

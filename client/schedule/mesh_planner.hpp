@@ -95,8 +95,8 @@ class MeshPlanner {
   /// Drops all meshes and makes all open jobs void, because materials look different now. Every
   /// chunk is meshed again.
   void forget_meshes();
-  /// Does the same for the chunks that have a material from `first` on, and for those beside them.
-  /// Cost: O(runs of all chunks).
+  /// Drops the meshes and makes the jobs void of the chunks that have a material from `first` on,
+  /// and of those beside them. Cost: O(runs of all chunks).
   void mesh_again_from(Material first);
 
   /// Return the number of chunks to mesh, and the number of those that do not have to wait.

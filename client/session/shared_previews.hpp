@@ -16,7 +16,7 @@ class SharedPreviews {
  public:
   /// Players whose previews are kept. Beyond it, previews of further players are dropped.
   static constexpr std::size_t kAuthorsMax = 64;
-  /// A preview is sent at most this often, and again after kRepeatUs while it stays the same.
+  /// A preview is sent at most this often, and again after kRepeatUs while it does not change.
   static constexpr TimeUs kEveryUs = 200'000, kRepeatUs = 2'000'000;
   /// A preview is dropped if no newer one of its player has arrived for this time.
   static constexpr TimeUs kShownUs = 5'000'000;

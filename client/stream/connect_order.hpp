@@ -5,9 +5,9 @@
 //   - the addresses that the user gave, from a random one on;
 //   - the address of the last connection.
 // A list begins a new round. Its first attempt follows at once, after a short random pause.
-// Otherwise the pause before a round doubles from round to round, until a list comes or, if there are
-// no other servers, a connection is made. A connection without a list, such as one to a server that is
-// full, does not begin a new round: the next address follows.
+// Otherwise the pause before a round doubles from round to round, until a list comes or, if there
+// are no other servers, a connection is made. A connection without a list, such as one to a server
+// that is full, does not begin a new round: the next address follows.
 // Pure: randomness is an argument. Thread: one.
 #pragma once
 #include <algorithm>

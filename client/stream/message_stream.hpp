@@ -1,7 +1,7 @@
 // MessageStream: the client's end of one connection, as messages on top of a stream of bytes. It
-// splits the bytes of the server into messages, decodes and verifies them, acknowledges chunk bytes,
-// and makes frames of the messages to send. A socket, a WebSocket or a test carries the bytes. Pure:
-// times and the clock are arguments. Thread: one.
+// splits the bytes of the server into messages, decodes and verifies them, acknowledges chunk
+// bytes, and makes frames of the messages to send. A socket, a WebSocket or a test carries the
+// bytes. Pure: times and the clock are arguments. Thread: one.
 #pragma once
 #include <array>
 #include <atomic>
@@ -60,8 +60,8 @@ class MessageStream {
   MessageStream(ConnectionNumber connection, LinkStats& stats, MessageSink& sink, ClockNs clock)
       : connection_(connection), stats_(stats), sink_(sink), clock_(clock) {}
 
-  /// Takes bytes of the server, in pieces of any size. Fails if they break a rule; the connection is
-  /// then to be closed.
+  /// Takes bytes of the server, in pieces of any size. Fails if they break a rule; the connection
+  /// is then to be closed.
   Result<void> receive(ByteView bytes, TimeUs received_us);
   /// Queues an acknowledgement of the chunk bytes read if one is due. Returns when the next one is
   /// due if no more bytes come, or nullopt if none is.

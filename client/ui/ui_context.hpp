@@ -20,8 +20,8 @@ namespace runstone {
 class UiContext {
  public:
   /// `scale` multiplies the size of text and of everything else; 1 is made for 1280x720. `font` has
-  /// the bytes of a TrueType file, or none; nullopt reads the file of DejaVu Sans. Without a font the
-  /// text has only the letters of Western Europe.
+  /// the bytes of a TrueType file, or none; nullopt reads the file of DejaVu Sans. Without a font
+  /// the text has only the letters of Western Europe.
   explicit UiContext(double scale = 1, std::optional<ByteView> font = std::nullopt);
   ~UiContext();
   UiContext(const UiContext&) = delete;

@@ -1,4 +1,5 @@
-// Budget: how much of something a peer may use, with a burst. A TokenBucket holds what is left of it.
+// Budget: how much of something a peer may use, with a burst. A TokenBucket holds what is left of
+// it.
 #pragma once
 #include <cstdint>
 

@@ -5,8 +5,8 @@
 
 namespace runstone {
 
-/// Returns the share of the day that has passed at that time, 0 (midnight) .. below 1, or nullopt if
-/// the text is no time from 0:00 to 23:59.
+/// Returns the share of the day that has passed at that time, 0 (midnight) .. below 1, or nullopt
+/// if the text is no time from 0:00 to 23:59.
 constexpr std::optional<double> parse_day_time(std::string_view text) {
   const std::size_t colon = text.find(':');
   const auto number = [](std::string_view digits, int below) -> std::optional<int> {

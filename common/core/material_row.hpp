@@ -17,8 +17,8 @@ namespace runstone {
 /// sRGB and alpha. Alpha is below 255 only for materials that are not opaque.
 using MaterialColour = std::array<std::uint8_t, 4>;
 
-/// The effect of a material on the body of a player. Values are frozen: tables, records and messages
-/// hold them. A material that is empty lets every body pass, and its value is `solid`.
+/// The effect of a material on the body of a player. Values are frozen: tables, records and
+/// messages hold them. A material that is empty lets every body pass, and its value is `solid`.
 enum class MaterialBody : std::uint8_t {
   solid = 0,     // stops it
   liquid = 1,    // it swims
@@ -36,8 +36,8 @@ struct MaterialRow {
 
 inline constexpr std::size_t kMaterialNameBytesMax = 64;
 
-/// Fails (bad_value) for a bad name, for an opaque material with alpha below 255, for a body that is
-/// unknown or that an empty material has, and for a bad look (validate_look()).
+/// Fails (bad_value) for a bad name, for an opaque material with alpha below 255, for a body that
+/// is unknown or that an empty material has, and for a bad look (validate_look()).
 Result<void> validate_material(std::string_view name, const MaterialColour& colour,
                                Visibility visibility, MaterialBody body,
                                const std::optional<MaterialLook>& look);

@@ -12,19 +12,21 @@ namespace runstone {
 /// O(bytes).
 bool is_printable_utf8(std::string_view text);
 
-/// Returns true if the text may be a name that people read and type: is_printable_utf8(), not empty,
-/// without blanks at its ends, and without
+/// Returns true if the text may be a name that people read and type: is_printable_utf8(), not
+/// empty, without blanks at its ends, and without
 ///   - quotes (") and backslashes, because names stand in quotes in commands and log lines;
 ///   - characters that are invisible or change the direction of the text around them (Unicode's
 ///     default ignorable and bidirectional controls), because two names must not look the same.
 /// Cost: O(bytes).
 bool is_plain_name(std::string_view text);
 
-/// Returns true if the text has a character that is invisible, that changes the direction of the text
-/// around it, or that is a blank other than U+0020. Requires well-formed UTF-8. Cost: O(bytes).
+/// Returns true if the text has a character that is invisible, that changes the direction of the
+/// text around it, or that is a blank other than U+0020. Requires well-formed UTF-8. Cost:
+/// O(bytes).
 bool has_unseen_character(std::string_view text);
 
-/// Returns the text with a question mark in place of each such character. Requires well-formed UTF-8.
+/// Returns the text with a question mark in place of each such character. Requires well-formed
+/// UTF-8.
 /// Cost: O(bytes).
 std::string with_unseen_replaced(std::string_view text);
 

@@ -1,5 +1,5 @@
-// Tile keys: how the keys of tiles and chunks contain each other. A tile of level L covers 2 x 2 x 2
-// tiles of level L - 1; those of level 0 are the chunks. So it covers 2^L chunks along each axis.
+// Tile keys: how the keys of tiles and chunks contain each other. A tile of level L covers 2 x 2 x
+// 2 tiles of level L - 1; those of level 0 are the chunks. So it covers 2^L chunks along each axis.
 #pragma once
 #include <cstdint>
 
@@ -7,9 +7,9 @@
 
 namespace runstone {
 
-/// The highest level of detail. Levels 1 .. kTileLevelMax are tiles. A tile of it is 256 chunks wide.
-/// kWorldLimit is a multiple of that width for every chunk edge, so no tile crosses the border of the
-/// world.
+/// The highest level of detail. Levels 1 .. kTileLevelMax are tiles. A tile of it is 256 chunks
+/// wide. kWorldLimit is a multiple of that width for every chunk edge, so no tile crosses the
+/// border of the world.
 inline constexpr std::uint8_t kTileLevelMax = 8;
 /// The children of a tile.
 inline constexpr unsigned kTileChildren = 8;
@@ -29,8 +29,8 @@ constexpr ChunkKey tile_parent(const ChunkKey& key) {
   return {static_cast<std::uint8_t>(key.lod + 1), tile_at(key.at, 1)};
 }
 
-/// Returns a child of a tile. Child i lies at x = i & 1, y = i >> 1 & 1, z = i >> 2. Requires level 1
-/// or more.
+/// Returns a child of a tile. Child i lies at x = i & 1, y = i >> 1 & 1, z = i >> 2. Requires level
+/// 1 or more.
 constexpr ChunkKey tile_child(const ChunkKey& key, unsigned i) {
   const auto bit = [i](unsigned n) { return static_cast<std::int32_t>(i >> n & 1U); };
   return {static_cast<std::uint8_t>(key.lod - 1),

@@ -3,8 +3,12 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "common/runs/run_builder.hpp"
 
@@ -73,14 +77,25 @@ class BigEndian {
 /// The block's name table, which maps its node ids to materials. Ids are few and small in practice,
 /// but any u16 may occur.
 struct NameTable {
-  std::vector<std::string> names;
+  std::vector<ForeignBlock> blocks;
   // Node id and material, sorted by id.
   std::vector<std::pair<std::uint16_t, Material>> of_id;
+  // The materials of names with a param2 that is not 0.
+  std::map<std::pair<Material, std::uint8_t>, Material> of_state;
+  std::size_t state_bytes = 0;  // of the names that were repeated for their states
 
-  std::optional<Material> find(std::uint16_t id) const {
+  std::optional<Material> find(std::uint16_t id, std::uint8_t param2) {
     const auto at = std::lower_bound(of_id.begin(), of_id.end(), std::pair{id, Material{0}});
     if (at == of_id.end() || at->first != id) return std::nullopt;
-    return at->second;
+    if (param2 == 0 || at->second == kEmpty) return at->second;
+    const auto next = static_cast<Material>(blocks.size() + 1);
+    const auto [state, is_new] = of_state.try_emplace({at->second, param2}, next);
+    if (is_new) {
+      const std::string& name = blocks[at->second - 1u].name;
+      state_bytes += name.size();
+      blocks.push_back({name, "param2=" + std::to_string(param2)});
+    }
+    return state->second;
   }
 };
 
@@ -95,9 +110,9 @@ NameTable read_names(ByteReader& in) {
   for (std::uint16_t i = 0; i < count && in.ok(); ++i) {
     const std::uint16_t id = big.u16();
     const ByteView name = in.bytes(big.u16());
-    table.names.emplace_back(name.begin(), name.end());
+    table.blocks.push_back({std::string(name.begin(), name.end()), ""});
     table.of_id.emplace_back(
-        id, table.names.back() == "ignore" ? kEmpty : static_cast<Material>(i + 1));
+        id, table.blocks.back().name == "ignore" ? kEmpty : static_cast<Material>(i + 1));
   }
   std::sort(table.of_id.begin(), table.of_id.end());
   for (std::size_t i = 1; i < table.of_id.size(); ++i) {
@@ -134,7 +149,7 @@ std::int64_t luanti_block_pos(ChunkCoord block) {
   return (std::int64_t{block.z} * 4096 + block.y) * 4096 + block.x;
 }
 
-Result<LuantiBlock> decode_luanti_block(ByteView data) {
+Result<ForeignPiece> decode_luanti_block(ByteView data) {
   if (data.empty()) return fail(ErrorCode::truncated, "luanti block: no bytes");
   if (data[0] != kVersion)
     return fail(ErrorCode::bad_version, "luanti block: serialisation version is not 29");
@@ -152,24 +167,34 @@ Result<LuantiBlock> decode_luanti_block(ByteView data) {
   // where it was decompressed, so no dense buffer of this project is made.
   const std::uint64_t plane_at = in.offset();
   const ByteView plane = in.bytes(kNodeCount * kNodeIdBytes);
-  in.bytes(kNodeCount * kNodeParamBytes);
+  in.bytes(kNodeCount);  // param1: the light
+  const ByteView param2 = in.bytes(kNodeCount);
   if (!in.ok()) return Unexpected<Error>{in.error()};
 
   RunBuilder runs(Extent::cube(kLuantiBlockEdge), AxisOrder::xyz);
-  std::uint32_t first = 0;  // node at which the current stretch of one id began
+  std::uint32_t first = 0;  // node at which the current stretch of one id and param2 began
   const auto id_at = [&](std::uint32_t node) {
     return static_cast<std::uint16_t>(plane[2 * node] << 8 | plane[2 * node + 1]);
   };
   for (std::uint32_t node = 1; node <= kNodeCount; ++node) {
-    if (node < kNodeCount && id_at(node) == id_at(first)) continue;
-    const auto material = table.find(id_at(first));
+    if (node < kNodeCount && id_at(node) == id_at(first) && param2[node] == param2[first]) continue;
+    const auto material = table.find(id_at(first), param2[first]);
     if (!material)
       return fail(ErrorCode::bad_value, "luanti block: a node id has no name",
+                  plane_at + 2 * first);
+    if (table.state_bytes > kLuantiBlockBytesMax)
+      return fail(ErrorCode::limit_exceeded, "luanti block: names and states take more than 1 MiB",
                   plane_at + 2 * first);
     runs.append(node - first, *material);
     first = node;
   }
-  return LuantiBlock{runs.finish(), std::move(table.names)};
+  return ForeignPiece{{}, runs.finish(), std::move(table.blocks)};
+}
+
+Result<void> read_luanti_block(ByteView data, const PieceSink& sink) {
+  auto piece = decode_luanti_block(data);
+  if (!piece) return Unexpected<Error>{piece.error()};
+  return sink(std::move(*piece));
 }
 
 }  // namespace runstone

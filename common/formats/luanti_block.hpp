@@ -2,16 +2,14 @@
 // side of such a world is in server/import. Format: Luanti's doc/world_format.md, serialisation
 // version 29. Versions 28 and older are zlib streams; the error names them.
 #pragma once
+#include <cstddef>
 #include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "common/core/bytes.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
+#include "common/formats/format.hpp"
 #include "common/materials/material_table.hpp"
-#include "common/runs/run_chunk.hpp"
 
 namespace runstone {
 
@@ -19,28 +17,25 @@ inline constexpr std::int32_t kLuantiBlockEdge = 16;
 /// The maximum size of a decompressed block: 16 KiB of nodes, and the contents of chests and signs.
 inline constexpr std::size_t kLuantiBlockBytesMax = std::size_t{1} << 20;
 
-struct LuantiBlock {
-  // 16^3 in AxisOrder::xyz, the node order of the format. Material i + 1 is names[i]. Material 0 is
-  // an `ignore` node, which the other program has not generated.
-  RunChunk voxels;
-  // Node names in the block's own order, such as "default:stone"; at most 4096.
-  std::vector<std::string> names;
-};
-
 /// Converts a row's `pos` to a block coordinate, and back. Block coordinates are -2048 .. 2047.
 ChunkCoord luanti_block_coord(std::int64_t pos);
 std::int64_t luanti_block_pos(ChunkCoord block);
 
-/// Decodes one block's `data`. Every byte is untrusted: lengths, counts, ids and the zstd stream
-/// are bounded. The part behind the nodes (metadata, objects, timers) must decompress and is
-/// ignored. The offset of an error is a byte of the decompressed stream, or of `data` if the stream
-/// itself is bad. Cost: O(nodes + decompressed bytes).
-Result<LuantiBlock> decode_luanti_block(ByteView data);
+/// Decodes one block's `data` to one piece of 16^3 voxels. The blocks of the piece are the names of
+/// the block's own table in its order, at most 4096, and then each name with a state "param2=N" of
+/// which N is not 0. Nodes `ignore`, which the other program has not generated, have material 0.
+/// Every byte is untrusted: lengths, counts, ids and the zstd stream are bounded. The part behind
+/// the nodes (metadata, objects, timers) must decompress and is ignored. The offset of an error is
+/// a byte of the decompressed stream, or of `data` if the stream itself is bad. Cost: O(nodes +
+/// decompressed bytes).
+Result<ForeignPiece> decode_luanti_block(ByteView data);
+/// Gives the piece of decode_luanti_block() to the sink: the reader of Format.
+Result<void> read_luanti_block(ByteView data, const PieceSink& sink);
 
-/// Returns a material for a node name: colour and visibility by name and kind. Water and glass are
-/// transparent. Plants, torches and the like are empty unless keep_all. "air" and "ignore" are
-/// empty. The result is deterministic, and MaterialTable::add() accepts it for every name. Only
-/// "air" and "ignore" share a row: that of air.
-MaterialInfo material_of_luanti_node(std::string_view name, bool keep_all);
+/// Returns a material for a node: colour and visibility by name and kind, whatever its state. Water
+/// and glass are transparent. Plants, torches and the like are empty unless keep_all. "air" and
+/// "ignore" are empty. The result is deterministic, and MaterialTable::add() accepts it for every
+/// name. Only "air" and "ignore" share a row: that of air.
+MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all);
 
 }  // namespace runstone

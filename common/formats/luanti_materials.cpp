@@ -276,7 +276,8 @@ std::string material_name(std::string_view name) {
 
 }  // namespace
 
-MaterialInfo material_of_luanti_node(std::string_view name, bool keep_all) {
+MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
+  const std::string& name = node.name;
   if (name == "air" || name == "ignore")
     return {"air", {0, 0, 0, 0}, Visibility::empty, std::nullopt};
   const Look look = look_of(name);

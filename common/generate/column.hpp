@@ -128,7 +128,7 @@ class Column {
   }
 
  private:
-  /// Does the same as paint() for an interval that begins at the lowest voxel, as nearly every
+  /// Paints as paint() an interval that begins at the lowest voxel, as nearly every
   /// layer of terrain does. It removes the covered spans in place.
   void paint_bottom(std::int32_t to, Material material) {
     std::size_t covered = 0;  // spans that end at or below `to`

@@ -31,13 +31,13 @@ class Generator {
   /// Returns the chunk whose first voxel is `origin`. It is canonical and in the order that suits
   /// the generator; callers that keep the chunk rotate it with in_cheapest_order(). Thread: any.
   virtual RunChunk generate(VoxelPos origin, Extent extent) const = 0;
-  /// Returns a tile without making the chunks below it: a cube of `edge` voxels a side, each of them
-  /// 2^level chunk voxels wide, whose first chunk voxel is `origin`. It is canonical. It
+  /// Returns a tile without making the chunks below it: a cube of `edge` voxels a side, each of
+  /// them 2^level chunk voxels wide, whose first chunk voxel is `origin`. It is canonical. It
   /// approximates the tile that follows from the chunks: heights and materials of the surface are
   /// close, and enclosed voxels may have any opaque material. It is exact where the tile is empty.
-  /// Returns nullopt if the generator has no such form for this place: then only the chunks give the
-  /// tile. Requires `edge` 16, 32, 64 or 128, level at most 8, and an origin that is a
-  /// multiple of edge * 2^level. Cost: up to three times that of generate() for the same edge.
+  /// Returns nullopt if the generator has no such form for this place: then only the chunks give
+  /// the tile. Requires `edge` 16, 32, 64 or 128, level at most 8, and an origin that is a multiple
+  /// of edge * 2^level. Cost: up to three times that of generate() for the same edge.
   /// Thread: any.
   virtual std::optional<RunChunk> coarse(VoxelPos origin, std::int32_t edge,
                                          std::uint8_t level) const;

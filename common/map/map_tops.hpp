@@ -25,8 +25,8 @@ struct MapTops {
 
   std::int32_t edge = 0;           // columns along a side
   std::vector<ColumnTop> surface;  // what shows; column (x, z) is x + edge * z
-  /// The highest opaque voxel, at or below the surface. Empty: the surface is the ground everywhere,
-  /// because nothing transparent is above it.
+  /// The highest opaque voxel, at or below the surface. Empty: the surface is the ground
+  /// everywhere, because nothing transparent is above it.
   std::vector<ColumnTop> ground;
 
   const ColumnTop& at(std::int32_t x, std::int32_t z) const {
@@ -60,7 +60,8 @@ class MapTopsFinder {
  private:
   const MapMaterials& materials_;
   MapTops tops_;
-  // While no chunk had a transparent material, the surface is the ground, and tops_.ground is empty.
+  // While no chunk had a transparent material, the surface is the ground, and tops_.ground is
+  // empty.
   std::size_t surface_open_, ground_open_;
 };
 

@@ -1,4 +1,4 @@
-// The four corners of a quad in drawing order. The renderer's vertex shader computes the same from
+// The four corners of a quad in drawing order. The renderer's vertex shader computes them from
 // the packed bits. This copy on the CPU lets tests compare the winding of both.
 #pragma once
 #include <array>

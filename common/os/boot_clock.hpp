@@ -1,5 +1,5 @@
-// The clock since the machine was started. In contrast to that of steady_clock.hpp it goes on while the
-// machine is suspended. So it measures what runs out elsewhere meanwhile, such as a lease.
+// The clock since the machine was started. In contrast to that of steady_clock.hpp it goes on while
+// the machine is suspended. So it measures what runs out elsewhere meanwhile, such as a lease.
 // Thread: any.
 #pragma once
 #include <time.h>

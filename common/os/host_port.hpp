@@ -29,8 +29,8 @@ Result<HostPort, std::string> parse_host_port(std::string_view text, std::uint16
 Result<std::vector<HostPort>, std::string> parse_host_ports(std::string_view text,
                                                             std::uint16_t default_port);
 
-/// Reads the address that a server listens on: the same forms, and ":PORT" for every IPv4 address
-/// of the machine. Port 0 is allowed: it takes a free port.
+/// Reads the address that a server listens on: a form of parse_host_port(), or ":PORT" for every
+/// IPv4 address of the machine. Port 0 is allowed: it takes a free port.
 Result<HostPort, std::string> parse_listen_address(std::string_view text,
                                                    std::uint16_t default_port);
 

@@ -11,8 +11,8 @@ void lower_priority();
 
 /// Lowers the priority of the disk accesses of the calling thread, and of threads that it starts
 /// afterwards, to the lowest one of the class best-effort. It has an effect only where the disk's
-/// scheduler knows priorities. The class idle would be too low: on a busy disk it starves. A failure
-/// is ignored.
+/// scheduler knows priorities. The class idle would be too low: on a busy disk it starves. A
+/// failure is ignored.
 void lower_disk_priority();
 
 }  // namespace runstone

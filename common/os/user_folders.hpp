@@ -12,8 +12,8 @@ enum class UserFolder {
 };
 
 /// Returns the folder `runstone` in the user's folder of this kind, without making it. Returns an
-/// empty text if neither the variable nor HOME has an absolute path. A relative path in the variable
-/// is ignored, as the specification requires.
+/// empty text if neither the variable nor HOME has an absolute path. A relative path in the
+/// variable is ignored, as the specification requires.
 std::string user_folder(UserFolder kind);
 
 }  // namespace runstone

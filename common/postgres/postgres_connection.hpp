@@ -59,14 +59,15 @@ class PostgresConnection final : public Connection {
   /// Carries out a prepared statement and returns its result, after all statements that were sent
   /// before.
   Result<PostgresResult> execute(const PreparedText& statement, const PostgresValues& values);
-  /// Sends a prepared statement without rows. In a write transaction it does not wait for the answer.
+  /// Sends a prepared statement without rows. In a write transaction it does not wait for the
+  /// answer.
   Result<void> send(const PreparedText& statement, const PostgresValues& values);
 
  private:
   /// Sends a statement in pipeline mode.
   Result<void> enqueue(const PreparedText& statement, const PostgresValues& values);
-  /// Waits for the answers of all statements that were sent. Returns the first error. Sets `last` to
-  /// the result of the last one.
+  /// Waits for the answers of all statements that were sent. Returns the first error. Sets `last`
+  /// to the result of the last one.
   Result<void> drain(PostgresResult* last = nullptr);
   /// Returns the error of a result, or of the connection if the result is null.
   Unexpected<Error> failure(const pg_result* result) const;

@@ -21,8 +21,8 @@ bool is_postgres_url(const std::string& text);
 std::string without_password(const std::string& url);
 
 /// Connects. `url` is a connection URI of libpq. Fails (io) if nothing answers within 10 s, unless
-/// the address has a `connect_timeout` of its own, and if the texts of the database are not in UTF-8.
-/// A commit is on disk when it returns, also if the database's `synchronous_commit` is off.
+/// the address has a `connect_timeout` of its own, and if the texts of the database are not in
+/// UTF-8. A commit is on disk when it returns, also if the database's `synchronous_commit` is off.
 Result<Database> open_postgres(const std::string& url, PostgresMode mode);
 
 }  // namespace runstone::sql

@@ -1,6 +1,6 @@
-// JoinPassword: what a world keeps of its password. Clients make a key of 32 bytes from the password
-// and the salt (protocol/codec/password_key.hpp). The world keeps only the hash of this key, so
-// nobody can join with what its log, its database or a copy of them holds.
+// JoinPassword: what a world keeps of its password. Clients make a key of 32 bytes from the
+// password and the salt (protocol/codec/password_key.hpp). The world keeps only the hash of this
+// key, so nobody can join with what its log, its database or a copy of them holds.
 #pragma once
 #include <array>
 #include <cstddef>

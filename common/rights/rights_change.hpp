@@ -103,7 +103,8 @@ struct AcceptPassword {
   friend bool operator==(const AcceptPassword&, const AcceptPassword&) = default;
 };
 
-// The order is that of the stored tags, from 1. A DefineRole with quotas is stored with a tag of its own.
+// The order is that of the stored tags, from 1. A DefineRole with quotas is stored with a tag of
+// its own.
 using RightsChange =
     std::variant<DefineRole, RemoveRole, GrantRole, SetDefaultRole, Restrict, Lift, Protect,
                  Unprotect, CreateInvite, AcceptInvite, CancelInvite, SetPassword, AcceptPassword>;

@@ -38,9 +38,11 @@ struct Decided {
 /// The answer to "may this player do that?".
 struct RightsDecision {
   enum class Reason : std::uint8_t {
-    role,          // the player's role: `by` is the newer one of its grant and its definition
-    default_role,  // the same of a player without a grant, with the choice of the default role
-    box,           // a protected box, `box`, admits the player or does not
+    role,  // the player's role: `by` is the newer one of its grant and its definition
+    // The default role, of a player without a grant: `by` is the newer one of its choice and its
+    // definition.
+    default_role,
+    box,  // a protected box, `box`, admits the player or does not
     ban,
     mute,
     freeze
@@ -94,8 +96,8 @@ class RightsState {
   bool has_ever_granted() const { return has_ever_granted_; }
 
   // Invites.
-  /// Returns the invites that were neither cancelled nor removed: an invite that has ended is removed
-  /// when a later one is made.
+  /// Returns the invites that were neither cancelled nor removed: an invite that has ended is
+  /// removed when a later one is made.
   const std::map<InviteId, Decided<OpenInvite>>& invites() const { return invites_; }
   /// Returns the invite if a player may accept it at `now_us` (UTC), or null.
   const Decided<OpenInvite>* usable_invite(InviteId id, TimeUs now_us) const;

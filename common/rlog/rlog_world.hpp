@@ -1,6 +1,6 @@
 // RlogWorld and RlogPlayer: the contents of an .rlog besides its edits: the world that the edits
 // belong to, its state before them, and their authors. An .rlog has no secrets: the server's key
-// stays in the world's folder.
+// stays in the store of the world.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Layer: the materials of one layer of a chunk, read from its runs. A layer is the largest buffer
-// that may hold a material per voxel without counting as a dense expansion (dense.hpp). A mesher needs it for a neighbour
-// whose axis order differs from the chunk's.
+// that may hold a material per voxel without counting as a dense expansion (dense.hpp). A mesher
+// needs it for a neighbour whose axis order differs from the chunk's.
 #pragma once
 #include <cstdint>
 #include <span>

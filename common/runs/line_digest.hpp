@@ -1,5 +1,5 @@
-// LineDigest: the digest's sum over voxels of one line of a chunk. The voxels of a line share two of
-// the three factors of their places, so these are multiplied in once, by the caller.
+// LineDigest: the digest's sum over voxels of one line of a chunk. The voxels of a line share two
+// of the three factors of their places, so these are multiplied in once, by the caller.
 #pragma once
 #include <array>
 #include <cstddef>

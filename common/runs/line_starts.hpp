@@ -1,7 +1,7 @@
-// LineStarts: the segments of each line of a chunk along any axis order, read from its runs. It uses
-// no dense grid. A line along another axis gets a start where a voxel differs from its predecessor
-// along that axis. Two cursors over the runs, one a line or a layer behind the other, find each such
-// place and skip equal stretches.
+// LineStarts: the segments of each line of a chunk along any axis order, read from its runs. It
+// uses no dense grid. A line along another axis gets a start where a voxel differs from its
+// predecessor along that axis. Two cursors over the runs, one a line or a layer behind the other,
+// find each such place and skip equal stretches.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -20,8 +20,8 @@ struct LineStart {
 class LineStarts {
  public:
   /// Reads a chunk in the axis order `order`, and replaces what was read before. Requires a valid
-  /// chunk. Cost: O(runs + lines + starts). Memory: 12 bytes a start and 4 bytes a line, which later
-  /// calls reuse.
+  /// chunk. Cost: O(runs + lines + starts). Memory: 12 bytes a start and 4 bytes a line, which
+  /// later calls reuse.
   void read(const RunChunk& chunk, AxisOrder order);
 
   /// Returns the starts of one line, in ascending order. The first one is 0, and neighbours differ

@@ -4,7 +4,8 @@
 
 namespace runstone {
 
-/// Returns true if a voxel of the chunk has a material with this number or a greater one. Thread: any.
+/// Returns true if a voxel of the chunk has a material with this number or a greater one. Thread:
+/// any.
 /// Cost: O(runs).
 bool has_material_from(const RunChunk& chunk, Material first);
 

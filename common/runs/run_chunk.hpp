@@ -63,8 +63,8 @@ bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material mater
 /// Fails with the first broken invariant; the offset of the error is the run index. Bytes from
 /// outside pass this check before use.
 Result<void> validate(const RunChunk& chunk);
-/// Checks the same, but allows the extent of a part. It is for runs that are no chunk, such as the
-/// cells of a clipboard.
+/// Checks the invariants of validate(), but allows the extent of a part. It is for runs that are no
+/// chunk, such as the cells of a clipboard.
 Result<void> validate_runs(const RunChunk& chunk);
 
 /// Returns the digest, computed from all runs. The term of a run is the difference of two prefix

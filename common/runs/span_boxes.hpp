@@ -16,8 +16,8 @@ struct OrderedBox {
   std::array<std::uint32_t, 3> first{}, last{};
 };
 
-/// Calls f(box) for the boxes of voxels [first, last), in index order. Requires an extent that is not
-/// empty. Cost: O(1).
+/// Calls f(box) for the boxes of voxels [first, last), in index order. Requires an extent that is
+/// not empty. Cost: O(1).
 template <class F>
 void for_each_box(OrderedExtent e, VoxelIndex first, VoxelIndex last, F&& f) {
   RUNSTONE_ASSERT(e.f != 0 && e.m != 0);

@@ -60,8 +60,8 @@ class Database {
   Result<void> begin_reads() { return connection_->begin_reads(); }
   Result<void> end_reads() { return connection_->end_reads(); }
 
-  /// Returns false if the connection was lost: every call fails from then on. A loss is known after the
-  /// first call that fails.
+  /// Returns false if the connection was lost: every call fails from then on. A loss is known after
+  /// the first call that fails.
   bool is_connected() const { return connection_->is_connected(); }
 
   /// The calls of the database system itself.

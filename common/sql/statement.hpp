@@ -13,7 +13,8 @@ namespace runstone::sql {
 
 enum class Type { integer, text, blob, other };
 
-/// The interface that a database system implements. Statement has the same calls and documents them.
+/// The interface that a database system implements. Statement has the same calls and documents
+/// them.
 class StatementHandle {
  public:
   virtual ~StatementHandle() = default;
@@ -48,8 +49,8 @@ class Statement {
   /// Moves to the next row. Returns false if there is none.
   Result<bool> step();
   /// Carries the statement out and resets it. It is for statements without rows. A database may
-  /// postpone it to the next call that needs an answer, at the latest to the end of the transaction.
-  /// That call returns the error.
+  /// postpone it to the next call that needs an answer, at the latest to the end of the
+  /// transaction. That call returns the error.
   Result<void> run();
   /// Makes the statement ready to be stepped again. Bound values stay; views of columns become
   /// invalid.

@@ -1,7 +1,7 @@
 // sql::OnlineCopy: copies a database into another one, page by page, while other connections write
 // it. The copy is of one moment: that of the source's read transaction. SQLite begins a copy anew
-// when the source changes under it, so a copy without that transaction need never end under constant
-// writing.
+// when the source changes under it, so a copy without that transaction need never end under
+// constant writing.
 // Threads: the one that owns both databases.
 #pragma once
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace runstone::sql {
 
 class OnlineCopy {
  public:
-  /// Requires two databases of open_sqlite(), that `from` has an open read transaction, that `to` is
-  /// new, and that both outlive the object. Fails (bad_statement) without the transaction.
+  /// Requires two databases of open_sqlite(), that `from` has an open read transaction, that `to`
+  /// is new, and that both outlive the object. Fails (bad_statement) without the transaction.
   static Result<OnlineCopy> begin(Database& from, Database& to);
 
   /// Copies at most `pages` further pages. Returns false if the copy is complete. A copy that is

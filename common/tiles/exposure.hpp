@@ -38,8 +38,8 @@ class ExposureSweep {
 
  private:
   std::size_t edge_ = 0, words_ = 0;
-  // Number of drawn faces of the lines of two layers: bits of weight 1, 2 and 4. The lines of a cell
-  // are numbered by m + 2 * s.
+  // Number of drawn faces of the lines of two layers: bits of weight 1, 2 and 4. The lines of a
+  // cell are numbered by m + 2 * s.
   std::array<std::array<std::vector<Row64>, 3>, 4> counts_;
 };
 

@@ -1,5 +1,6 @@
-// LayerBits: one bit for each voxel of a layer of lines, 64 voxels of a line in a word. Even and odd
-// lines lie apart, so that a loop over pairs of lines reads consecutive words. Internal to tiles.
+// LayerBits: one bit for each voxel of a layer of lines, 64 voxels of a line in a word. Even and
+// odd lines lie apart, so that a loop over pairs of lines reads consecutive words. Internal to
+// tiles.
 #pragma once
 #include <algorithm>
 #include <cstddef>

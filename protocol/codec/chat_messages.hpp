@@ -1,5 +1,5 @@
-// Chat messages: what players write to each other, and what the server writes to them. The chat is no
-// part of the world: it is in no edit log, and nothing depends on it.
+// Chat messages: what players write to each other, and what the server writes to them. The chat is
+// no part of the world: it is in no edit log, and nothing depends on it.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -9,8 +9,9 @@
 //           The body is a plane of palette indices (u8 each, u16 if the palette exceeds 256), a
 //           plane of one byte for each length but the last, ordered by material, and the long
 //           lengths as varints
-//   coded:  u8 3 | u8 version 1 | u8 axis order | u8 x, y, z sides | palette as above | body to the
-//           end: range-coded bits (coded_body.hpp); empty if the palette has one material
+//   coded:  u8 3 | u8 version 1 | u8 axis order | u8 x, y, z sides | palette size and palette as in
+//           `packed` | body to the end: range-coded bits (coded_body.hpp); empty if the palette
+//           has one material
 // Decoding `packed` and `coded` is one linear pass over runs, never over voxels.
 // Each encoding is canonical but for the choices of zstd: the decoder rejects every other spelling
 // of a chunk.

@@ -29,9 +29,9 @@ ChunkEntry encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncodin
 /// Requires 1 .. kChunkEditsMax edits as ChunkEdits describes. Thread: any.
 ChunkEntry encode_chunk_edits(const ChunkEdits& edits);
 
-/// Makes a Chunks message. Requires 1 .. kChunksPerMessageMax entries, strictly ascending by key and
-/// of one level of detail. Several entries may have at most kRunsPerMessageMax runs together. Cost:
-/// it copies the bytes. Thread: any.
+/// Makes a Chunks message. Requires 1 .. kChunksPerMessageMax entries, strictly ascending by key
+/// and of one level of detail. Several entries may have at most kRunsPerMessageMax runs together.
+/// Cost: it copies the bytes. Thread: any.
 EncodedMessage join_entries(std::uint32_t view, std::span<const ChunkEntry> entries);
 
 /// Gathers the entries of one message, as many as a sender should join. Thread: one.
@@ -42,8 +42,8 @@ class ChunksBuilder {
   static constexpr std::size_t kBytesMax = 4 * 1024;
 
   /// Returns true if the entry may join those that were added. The first entry always may. A chunk
-  /// that is added already may not: its entries keep their order in two messages. Neither may a chunk
-  /// of another level of detail.
+  /// that is added already may not: its entries keep their order in two messages. Neither may a
+  /// chunk of another level of detail.
   bool fits(const ChunkEntry& entry) const;
   /// Adds an entry that fits. Entries may come in any order.
   void add(ChunkEntry entry);
@@ -63,8 +63,8 @@ ChunkEntry encode_answer(const ChunkAnswer& answer);
 /// Returns the byte list of a Chunks message.
 Bytes list_of(std::span<const ChunkEntry> entries);
 /// `level` is that of all entries. `key_edge` bounds the keys. `chunk_edge` is the edge of the
-/// world's chunks, or 0 if it is not known: then chunks of any size are accepted. Rejects tiles that
-/// are not snapshots.
+/// world's chunks, or 0 if it is not known: then chunks of any size are accepted. Rejects tiles
+/// that are not snapshots.
 Result<std::vector<ChunkAnswer>> decode_answers(ByteView bytes, std::uint8_t level,
                                                 std::int32_t key_edge, std::int32_t chunk_edge);
 

@@ -13,8 +13,8 @@
 
 namespace runstone {
 
-// The encoders require at least one entry, strictly ascending keys of one level of detail, and counts
-// within the limits. Digest checks have level 0.
+// The encoders require at least one entry, strictly ascending keys of one level of detail, and
+// counts within the limits. Digest checks have level 0.
 
 Bytes encode_cached_chunks(std::span<const CachedChunk> chunks);
 Bytes encode_unmodified(std::span<const UnmodifiedChunk> chunks);
@@ -29,8 +29,8 @@ Result<std::vector<UnmodifiedChunk>> decode_unmodified(ByteView bytes, std::uint
                                                        std::int32_t edge);
 Result<std::vector<DigestCheckEntry>> decode_digest_checks(ByteView bytes, std::int32_t edge);
 
-/// Returns how many of the first chunks fit one CachedChunks message: those of the first one's level
-/// of detail, within the limits. Requires at least one chunk.
+/// Returns how many of the first chunks fit one CachedChunks message: those of the first one's
+/// level of detail, within the limits. Requires at least one chunk.
 std::size_t cached_chunks_that_fit(std::span<const CachedChunk> chunks);
 
 }  // namespace runstone

@@ -26,9 +26,9 @@ class CommitWalk {
  public:
   using OnEdit = std::function<Result<void>(const WalkedEdit&)>;
 
-  /// Reads the bytes of a Commit message, 8-aligned as FrameReader's are. An error of the message or
-  /// of `on_edit` ends the walk; the edits before the bad one have been delivered by then. Requires
-  /// a chunk_edge of 16, 32, 64 or 128.
+  /// Reads the bytes of a Commit message, 8-aligned as FrameReader's are. An error of the message
+  /// or of `on_edit` ends the walk; the edits before the bad one have been delivered by then.
+  /// Requires a chunk_edge of 16, 32, 64 or 128.
   Result<void> read(ByteView bytes, std::uint16_t chunk_edge, const OnEdit& on_edit);
 
  private:

@@ -1,5 +1,6 @@
-// Device code: the one-time code with which a player's key moves to another device. It names the slot
-// at the server that holds the key, and opens the seal of the key. docs/protocol.md has the bytes.
+// Device code: the one-time code with which a player's key moves to another device. It names the
+// slot at the server that holds the key, and opens the seal of the key. docs/protocol.md has the
+// bytes.
 // Pure: randomness is an argument.
 #pragma once
 #include <array>
@@ -23,8 +24,8 @@ class DeviceCode {
  public:
   /// Makes the code of these random bytes.
   explicit DeviceCode(const std::array<std::uint8_t, kDeviceCodeBytes>& random);
-  /// Takes a code as people type it: in small letters too, with blanks and hyphens anywhere, and with
-  /// O for 0, and I or L for 1. Returns nullopt if it is no code.
+  /// Takes a code as people type it: in small letters too, with blanks and hyphens anywhere, and
+  /// with O for 0, and I or L for 1. Returns nullopt if it is no code.
   static std::optional<DeviceCode> parse(std::string_view text);
 
   /// Returns four groups of four digits, such as "7K2M-Q0CR-04KD-Z9XW".

@@ -1,5 +1,5 @@
-// frame_bytes(): the size of a frame, by its header (frame.hpp has the layout). Programs that pass on
-// whole frames use it. Pure.
+// frame_bytes(): the size of a frame, by its header (frame.hpp has the layout). Programs that pass
+// on whole frames use it. Pure.
 #pragma once
 #include <cstddef>
 

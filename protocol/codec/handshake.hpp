@@ -34,7 +34,7 @@ KeyPair key_pair_of(const KeySeed& seed);
 /// signature. `binding` is nullopt if the connection is not encrypted.
 Bytes server_transcript(const Hello& hello, const Welcome& welcome,
                         const std::optional<ChannelBinding>& binding);
-/// Returns "runstone client v2" and the same fields.
+/// Returns "runstone client v2" and the fields of server_transcript().
 Bytes client_transcript(const Hello& hello, const Welcome& welcome,
                         const std::optional<ChannelBinding>& binding);
 

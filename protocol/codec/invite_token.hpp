@@ -1,6 +1,6 @@
 // Invite token: the text that a player needs to accept an invite. It is the URL-safe base64 form of
-// the invite's number and the server's signature over world and number, so nobody else can make one,
-// and the server keeps nothing for it but the record of the invite.
+// the invite's number and the server's signature over world and number, so nobody else can make
+// one, and the server keeps nothing for it but the record of the invite.
 #pragma once
 #include <optional>
 #include <string>

@@ -29,8 +29,8 @@ class KeyWriter {
   bool is_first_ = true;
 };
 
-/// Reads the keys of one list, all of level of detail `level`. Rejects keys that do not ascend or lie
-/// outside the world. `edge` is that of the world's chunks, or the largest one.
+/// Reads the keys of one list, all of level of detail `level`. Rejects keys that do not ascend or
+/// lie outside the world. `edge` is that of the world's chunks, or the largest one.
 class KeyReader {
  public:
   explicit KeyReader(std::int32_t edge, std::uint8_t level = 0);

@@ -1,6 +1,6 @@
-// Key transfer messages: a player's secret key on its way to another device of the player. One device
-// leaves it at the server, sealed with a one-time code that the player carries; the other device
-// fetches it once. The server never has the code, so it cannot open what it keeps.
+// Key transfer messages: a player's secret key on its way to another device of the player. One
+// device leaves it at the server, sealed with a one-time code that the player carries; the other
+// device fetches it once. The server never has the code, so it cannot open what it keeps.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -10,9 +10,9 @@
 
 namespace runstone {
 
-/// Asks for `count` records of the log, evenly spaced from `first` to `last`, both included. Records
-/// that the log does not have are left out. A later request replaces an earlier one that was not
-/// answered.
+/// Asks for `count` records of the log, evenly spaced from `first` to `last`, both included.
+/// Records that the log does not have are left out. A later request replaces an earlier one that
+/// was not answered.
 struct LogMarksRequest {
   std::uint32_t request = 1;     // from 1, ascending
   Sequence first = 1, last = 1;  // 1 <= first <= last

@@ -91,8 +91,8 @@ struct ClientAuth {
 struct SessionAccepted {
   AuthorId author = 0;
   ClientSequence resolved = 0;
-  /// The rules by which the server makes tiles. Tiles that were made by other rules are not claimed.
-  /// 0: the server takes no claims of tiles.
+  /// The rules by which the server makes tiles. Tiles that were made by other rules are not
+  /// claimed. 0: the server takes no claims of tiles.
   std::uint32_t tile_rules = 0;
   friend bool operator==(const SessionAccepted&, const SessionAccepted&) = default;
 };
@@ -157,11 +157,11 @@ inline const ChunkKey& key_of(const ChunkAnswer& answer) {
 /// the entries of a session to messages: see chunk_entries.hpp.
 struct Chunks {
   /// View::number of the newest view in force when the chunks were queued, so that a client can
-  /// ignore chunks that it has forgotten and requested again since. The same holds for the fields
-  /// of this name below.
+  /// ignore chunks that it has forgotten and requested again since. The fields `view` of other
+  /// messages have this meaning, too.
   std::uint32_t view = 1;
-  /// 1 .. kChunksPerMessageMax, strictly ascending by key, all of one level of detail. Tiles come as
-  /// snapshots only.
+  /// 1 .. kChunksPerMessageMax, strictly ascending by key, all of one level of detail. Tiles come
+  /// as snapshots only.
   std::vector<ChunkAnswer> chunks;
   friend bool operator==(const Chunks&, const Chunks&) = default;
 };
@@ -251,8 +251,8 @@ inline constexpr std::uint8_t kViewPhaseMax = 3;
 /// Says which state of the world the client sees from this message on: the fields past, seq and
 /// utc_us describe it in every phase.
 struct ViewState {
-  /// The newest HistoryRequest that was answered. 0: none yet; then the state is the live world, and
-  /// the phase is not `refused`.
+  /// The newest HistoryRequest that was answered. 0: none yet; then the state is the live world,
+  /// and the phase is not `refused`.
   std::uint32_t request = 0;
   std::uint32_t view = 0;  // number of the newest view in force; 0: none yet, then not `complete`
   ViewPhase phase = ViewPhase::begins;
@@ -288,8 +288,8 @@ struct OrderedEdit {
   EditDescriptor edit;
   /// Of each touched chunk, the sequence before this edit. In touched_chunks() order.
   std::vector<Sequence> previous;
-  /// The earlier edit that a rollback, undo or redo answers, or the first edit of the player's action;
-  /// 0: none.
+  /// The earlier edit that a rollback, undo or redo answers, or the first edit of the player's
+  /// action; 0: none.
   Sequence subject = 0;
   friend bool operator==(const OrderedEdit&, const OrderedEdit&) = default;
 };
@@ -436,8 +436,8 @@ struct MaterialsAdded {
   friend bool operator==(const MaterialsAdded&, const MaterialsAdded&) = default;
 };
 
-/// Another server orders the edits of the session from now on. What the client sent before may be lost.
-/// The client answers with Resumed, and offers the edits again that have no answer.
+/// Another server orders the edits of the session from now on. What the client sent before may be
+/// lost. The client answers with Resumed, and offers the edits again that have no answer.
 struct Resume {
   ClientSequence resolved = 0;  // as SessionAccepted::resolved
   friend bool operator==(const Resume&, const Resume&) = default;

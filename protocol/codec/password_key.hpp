@@ -15,15 +15,15 @@ inline constexpr std::size_t kPasswordCharactersMin = 8;
 inline constexpr std::size_t kPasswordBytesMax = 512;
 
 /// Returns the key: Argon2id (3 passes, 64 MiB, one lane) of the NFC of the password. Fails if the
-/// password is not 1 .. kPasswordBytesMax bytes of printable UTF-8, or if there is too little memory;
-/// the error does not contain the password. Cost: about a quarter of a second.
+/// password is not 1 .. kPasswordBytesMax bytes of printable UTF-8, or if there is too little
+/// memory; the error does not contain the password. Cost: about a quarter of a second.
 Result<PasswordKey, std::string> password_key(std::string_view password, const PasswordSalt& salt);
 
 /// Returns the hash of a key, as a world keeps it.
 PasswordHash hash_of(const PasswordKey& key);
 
-/// Returns what a world keeps: the password as a hash of its key. Fails as password_key(), and if the
-/// password has fewer than kPasswordCharactersMin characters.
+/// Returns what a world keeps: the password as a hash of its key. Fails as password_key(), and if
+/// the password has fewer than kPasswordCharactersMin characters.
 Result<JoinPassword, std::string> join_password(std::string_view password, const PasswordSalt& salt,
                                                 const std::string& role);
 

@@ -16,7 +16,7 @@ struct PreviewShare {
   friend bool operator==(const PreviewShare&, const PreviewShare&) = default;
 };
 
-/// The same of another player.
+/// The edits that the next click of another player would make.
 struct PlayerPreview {
   AuthorId author = 0;
   std::vector<EditDescriptor> edits;
@@ -28,8 +28,8 @@ struct PlayerPreview {
 /// Requires a valid edit. Cost: O(1).
 bool is_light_preview(const EditDescriptor& edit, std::int32_t chunk_edge);
 
-/// Returns true if these edits may be shared: few, short, and each touches few chunks. Cost: that of
-/// encoding them.
+/// Returns true if these edits may be shared: few, short, and each touches few chunks. Cost: that
+/// of encoding them.
 bool may_be_shared(const std::vector<EditDescriptor>& edits, std::int32_t chunk_edge);
 
 }  // namespace runstone

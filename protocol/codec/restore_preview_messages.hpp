@@ -14,7 +14,8 @@ struct RestorePreview {
   std::uint32_t command = 0;  // id of the CommandRequest
   std::string preview;        // for `rollback apply`; 0 .. 32 bytes, empty if nothing would change
   std::uint64_t voxels = 0, chunks = 0;  // that would change, in view or not
-  /// Edits in the view of the session, those near its centre first. kRestorePreviewEditsMax at most.
+  /// Edits in the view of the session, those near its centre first. kRestorePreviewEditsMax at
+  /// most.
   std::vector<EditDescriptor> edits;
   bool is_cut = false;  // edits in the view are missing, because there is no room for them
   friend bool operator==(const RestorePreview&, const RestorePreview&) = default;

@@ -1,5 +1,5 @@
-// Rights messages: what a player may do, and the protected ground near its view. Clients use them to
-// refuse edits that the server would reject.
+// Rights messages: what a player may do, and the protected ground near its view. Clients use them
+// to refuse edits that the server would reject.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 // Server link: an address that players pass on, with an invite if there is one:
-// runstone://HOST:PORT or runstone://HOST:PORT/#INVITE. What stands behind # is a secret of those who
-// have the link.
+// runstone://HOST:PORT or runstone://HOST:PORT/#INVITE. What stands behind # is a secret of those
+// who have the link.
 #pragma once
 #include <string>
 #include <string_view>

@@ -1,6 +1,6 @@
 // Server messages: what two servers of one world say to each other. The server that owns the world
-// orders its edits. A server that follows is its client: it gets every record of the log, and passes
-// on what its own players do. It has proved that it holds the world's secret key.
+// orders its edits. A server that follows is its client: it gets every record of the log, and
+// passes on what its own players do. It has proved that it holds the world's secret key.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -25,8 +25,8 @@ struct FollowRequest {
   std::string player_address = {}, page_address = {};
   friend bool operator==(const FollowRequest&, const FollowRequest&) = default;
 };
-/// The owner sends every record after `head`, in LogPart messages. Those up to it are in the database,
-/// or will be as soon as they are durable.
+/// The owner sends every record after `head`, in LogPart messages. Those up to it are in the
+/// database, or will be as soon as they are durable.
 struct FollowAnswer {
   Sequence head = 0;
   friend bool operator==(const FollowAnswer&, const FollowAnswer&) = default;
@@ -50,7 +50,8 @@ struct LogPartRecord {
   TimeUs submitted_us = 0;  // EditRequest::submitted_us; 0: not known
   friend bool operator==(const LogPartRecord&, const LogPartRecord&) = default;
 };
-/// What the owner appends to its log at a time: rows of players, then changes of names, then records.
+/// What the owner appends to its log at a time: rows of players, then changes of names, then
+/// records.
 struct LogPart {
   Epoch epoch = 1;  // of the owner's start
   std::vector<LogPlayer> players;
@@ -69,8 +70,8 @@ struct RelayOpen {
   ClientInstance instance = 0;
   std::string name;
   std::uint64_t features = 0;  // in force
-  /// 0: the player joins. Otherwise the number that an earlier owner gave to the player, whose session
-  /// goes on.
+  /// 0: the player joins. Otherwise the number that an earlier owner gave to the player, whose
+  /// session goes on.
   AuthorId author = 0;
   Pose pose;
   std::string ticket;  // ClientAuth::ticket

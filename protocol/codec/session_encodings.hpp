@@ -1,5 +1,5 @@
-// SessionEncodings: the encodings in which a session gets chunks and requested tiles (docs/protocol.md,
-// *Chunk bytes*).
+// SessionEncodings: the encodings in which a session gets chunks and requested tiles
+// (docs/protocol.md, *Chunk bytes*).
 #pragma once
 #include "common/core/coords.hpp"
 #include "protocol/codec/chunk_codec.hpp"

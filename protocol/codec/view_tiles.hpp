@@ -1,11 +1,11 @@
-// View tiles: the tiles that a view contains. At each level 1 .. View::levels, it contains a disc of
-// tiles around its centre whose radius in tiles is that of the view in chunks. So each level reaches
-// twice as far as the one before. docs/protocol.md specifies it.
+// View tiles: the tiles that a view contains. At each level 1 .. View::levels, it contains a disc
+// of tiles around its centre whose radius in tiles is that of the view in chunks. So each level
+// reaches twice as far as the one before. docs/protocol.md specifies it.
 //
-// A tile or chunk of a view has its parent in the view, too, up to the highest level. For chunks this
-// holds up to 3 chunks above and below the centre. Proof for one axis: halving rounds each of two
-// coordinates down, so a distance d becomes at most (d + 1) / 2. In the plane, a distance r becomes
-// at most r / 2 + sqrt(2) / 2, which is at most r from r = 2 on.
+// A tile or chunk of a view has its parent in the view, too, up to the highest level. For chunks
+// this holds up to 3 chunks above and below the centre. Proof for one axis: halving rounds each of
+// two coordinates down, so a distance d becomes at most (d + 1) / 2. In the plane, a distance r
+// becomes at most r / 2 + sqrt(2) / 2, which is at most r from r = 2 on.
 #pragma once
 #include <cstdint>
 
@@ -46,8 +46,8 @@ inline bool has_key(const View& view, CoordLimit world, const ChunkKey& key) {
   return contains_key(view, key) && has_place(world, key);
 }
 
-/// Calls visit(key) for each tile of a level in the view, ascending, without those outside of the world.
-/// Requires that the view has tiles of this level.
+/// Calls visit(key) for each tile of a level in the view, ascending, without those outside of the
+/// world. Requires that the view has tiles of this level.
 template <class Visit>
 void for_each_tile(const View& view, CoordLimit world, std::uint8_t level, const Visit& visit) {
   const ChunkCoord centre = tile_at(view.centre, level);

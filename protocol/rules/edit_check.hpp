@@ -24,9 +24,9 @@ struct EditLimits {
 /// outside_world, too_large.
 std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits);
 
-/// Checks an edit that the server makes: to restore voxels, to change rights or to add materials. The
-/// limits of height and volume do not apply, because they may have been wider when the voxels were
-/// edited. The limit of touched chunks applies.
+/// Checks an edit that the server makes: to restore voxels, to change rights or to add materials.
+/// The limits of height and volume do not apply, because they may have been wider when the voxels
+/// were edited. The limit of touched chunks applies.
 std::optional<RejectReason> check_server_edit(const EditDescriptor& edit, const EditLimits& limits);
 
 /// Returns true if every voxel of the geometry's bounding box is at most `reach` voxels away:

@@ -1,5 +1,5 @@
-// Refusal text: why a player may not make an edit. The server sends these texts with its rejects, and
-// a client shows them when it refuses an edit itself.
+// Refusal text: why a player may not make an edit. The server sends these texts with its rejects,
+// and a client shows them when it refuses an edit itself.
 #pragma once
 #include <cstdint>
 #include <string>

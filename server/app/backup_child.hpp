@@ -1,6 +1,6 @@
 // BackupChild: carries out the command `backup` of a running server as a program of its own. Its
-// priority, its memory and the locks that SQLite takes on the world's files are then not those of the
-// server.
+// priority, its memory and the locks that SQLite takes on the world's files are then not those of
+// the server.
 // Threads: start() from any thread, the rest from the one that owns the object.
 #pragma once
 #include <sys/types.h>
@@ -24,8 +24,8 @@ class BackupChild {
   /// Starts `runstone-server backup` to a new folder. The reply gets what the program prints, from
   /// another thread. Refuses if a backup is under way.
   void start(const std::string& folder, CommandReply reply);
-  /// Ends a backup that is under way, which leaves its partial folder. No reply is called any more on
-  /// return, and start() refuses from now on.
+  /// Ends a backup that is under way, which leaves its partial folder. No reply is called any more
+  /// on return, and start() refuses from now on.
   void stop();
 
  private:

@@ -1,4 +1,4 @@
-// Server: a whole Runstone server in this process: world folder, threads, sockets. The program runs
+// Server: a whole Runstone server in this process: world, threads, sockets. The program runs
 // one, tests run several. Requires start_logging().
 #pragma once
 #include <cstdint>
@@ -26,22 +26,22 @@ struct HandoverError {
 
 class Server {
  public:
-  /// Returns why a server with these settings cannot start, as far as that shows before the world is
-  /// opened.
+  /// Returns why a server with these settings cannot start, as far as that shows before the world
+  /// is opened.
   static Result<void, std::string> can_start(const ServerConfig& config);
   /// Opens or makes the world, binds the port, recovers, and runs. The error is one line for the
   /// operator; after an error nothing was overwritten. `on_failure` is called once, from another
   /// thread, if the log cannot be written any more; the caller then stops the server. `actions` are
-  /// called in the same way when an operator gives their commands; their replies must end before the
-  /// server is destroyed. `accept_losses`: a world
-  /// that has lost edits, players or watermarks is repaired, and each loss is logged.
+  /// called from another thread when an operator gives their commands; their replies must end
+  /// before the server is destroyed. `accept_losses`: a world that has lost edits, players or
+  /// watermarks is repaired, and each loss is logged.
   static Result<std::unique_ptr<Server>, std::string> start(
       const ServerConfig& config, const WorldCreation& creation,
       std::function<void()> on_failure = [] {}, OperatorActions actions = {},
       bool accept_losses = false);
-  /// Opens the world for reading, binds the port, and follows the server that owns the world: it serves
-  /// players as well, as docs/cluster.md says. Requires a world in a database. The arguments are as for
-  /// start(). Call connect_to() as long as it follows, until take_over().
+  /// Opens the world for reading, binds the port, and follows the server that owns the world: it
+  /// serves players as well, as docs/cluster.md says. Requires a world in a database. The arguments
+  /// are as for start(). Call connect_to() as long as it follows, until take_over().
   static Result<std::unique_ptr<Server>, std::string> follow(const ServerConfig& config,
                                                              std::function<void()> on_failure,
                                                              OperatorActions actions);
@@ -49,20 +49,20 @@ class Server {
   ~Server();
 
   std::uint16_t port() const;
-  /// Returns true if before this start no role was ever granted and no invite ever made, as in a new
-  /// or an imported world.
+  /// Returns true if before this start no role was ever granted and no invite ever made, as in a
+  /// new or an imported world.
   bool is_unclaimed() const;
   /// Connects a server that follows to the owner at HOST:PORT, unless it is connected.
   void connect_to(const std::string& owner);
   /// How a server that follows gets on.
   ServerCore::FollowState follow_state() const;
-  /// Takes the lease of the world, and makes a server that follows its owner. Players stay. Blocks on
-  /// the database. After an error the server must be stopped, unless is_following(): somebody else has
-  /// the lease then.
+  /// Takes the lease of the world, and makes a server that follows its owner. Players stay. Blocks
+  /// on the database. After an error the server must be stopped, unless is_following(): somebody
+  /// else has the lease then.
   Result<void, std::string> take_over();
-  /// Lets another server take the world over, and makes the owner a server that follows. Players stay.
-  /// `successor` is as for WorldServer::hand_over(). Blocks on the database. Call connect_to()
-  /// afterwards as long as it follows.
+  /// Lets another server take the world over, and makes the owner a server that follows. Players
+  /// stay. `successor` is as for WorldServer::hand_over(). Blocks on the database. Call
+  /// connect_to() afterwards as long as it follows.
   Result<void, HandoverError> hand_over(std::optional<SessionId> successor);
   bool is_following() const;
   void log_counters();

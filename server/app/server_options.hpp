@@ -17,7 +17,7 @@ struct ServerOptions {
   std::map<std::string, std::string> settings;       // text by field of ServerConfig
   std::string config_file, port_file, digests_file;  // empty: none
   bool print_config = false;
-  bool create = false;         // make the world if the folder holds none, whatever the folder is
+  bool create = false;         // make the world if its place holds none, whatever the place is
   bool accept_losses = false;  // start a world that has lost edits, players or watermarks
   WorldCreation creation;
   std::optional<ImportRequest> import;    // the import subcommand

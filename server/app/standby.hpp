@@ -1,5 +1,5 @@
-// Standby: a server of a world that another server owns. It follows the owner and serves players, and
-// takes the world over when the owner has ended or does not answer.
+// Standby: a server of a world that another server owns. It follows the owner and serves players,
+// and takes the world over when the owner has ended or does not answer.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -19,26 +19,28 @@ namespace runstone {
 
 using StartServer = std::function<Result<std::unique_ptr<Server>, std::string>()>;
 
-/// Starts the server by `start` if nobody has owned the world for a second, and by `follow` if another
-/// server owns it. Waits while the owner cannot be followed yet, and while the database does not
-/// answer. `stops_within` waits, and returns true if the program has to stop meanwhile. Returns null
-/// then. Fails if `start` fails again and again for some seconds although nobody owns the world.
-/// Requires start_logging(), and that `place` is a database.
+/// Starts the server by `start` if nobody has owned the world for a second, and by `follow` if
+/// another server owns it. Waits while the owner cannot be followed yet, and while the database
+/// does not answer. `stops_within` waits, and returns true if the program has to stop meanwhile.
+/// Returns null then. Fails if `start` fails again and again for some seconds although nobody owns
+/// the world. Requires start_logging(), and that `place` is a database.
 Result<std::unique_ptr<Server>, std::string> start_as_standby(
     const std::string& place, const std::function<bool(std::chrono::milliseconds)>& stops_within,
     const StartServer& start, const StartServer& follow);
 
-/// Watches the lease of the world for a server that follows: tells it where the owner is, and lets it
-/// take the world over when nobody has the lease. Has a thread of its own, which ends when the server
-/// owns the world.
-/// An owner that hands the world over releases the lease for one server, which it has chosen. So the others
-/// leave a free lease alone for a second at most: those that still hear the owner, and the owner itself.
-/// So does a server that has not followed the last owner, because others may have edits that it lacks.
+/// Watches the lease of the world for a server that follows: tells it where the owner is, and lets
+/// it take the world over when nobody has the lease. Has a thread of its own, which ends when the
+/// server owns the world.
+/// An owner that hands the world over releases the lease for one server, which it has chosen. So
+/// the others leave a free lease alone for a second at most: those that still hear the owner, and
+/// the owner itself. So does a server that has not followed the last owner, because others may have
+/// edits that it lacks.
 class TakeoverWatch {
  public:
   /// `server` must outlive the object. `on_failure` is called at most once, from the thread, if the
-  /// server can neither follow nor own the world any more. `handed_over` is empty unless the server has
-  /// just handed the world over: it gets one answer, from any thread, when the world has an owner again.
+  /// server can neither follow nor own the world any more. `handed_over` is empty unless the server
+  /// has just handed the world over: it gets one answer, from any thread, when the world has an
+  /// owner again.
   TakeoverWatch(const std::string& place, Server& server, std::function<void()> on_failure,
                 CommandReply handed_over = {});
   /// Ends the thread. Waits for a takeover that is under way.
@@ -75,10 +77,10 @@ class TakeoverWatch {
   std::thread thread_;
 };
 
-/// Lets another server take the world over (Server::hand_over()), and makes the watch of the server, which
-/// follows from now on. `watch` is the earlier one, if any. `place` and `on_failure` are as for the
-/// watch. `reply` gets the outcome. Returns false if the server must be stopped because its log could not
-/// be written. Blocks on the database. Requires start_logging().
+/// Lets another server take the world over (Server::hand_over()), and makes the watch of the
+/// server, which follows from now on. `watch` is the earlier one, if any. `place` and `on_failure`
+/// are as for the watch. `reply` gets the outcome. Returns false if the server must be stopped
+/// because its log could not be written. Blocks on the database. Requires start_logging().
 bool hand_over_and_watch(const std::string& place, Server& server,
                          std::optional<TakeoverWatch>& watch,
                          const std::function<void()>& on_failure,

@@ -26,9 +26,9 @@ struct RestoreRequest {
 Result<void, std::string> back_up(const BackupRequest& request, TimeUs now_us, std::ostream& out,
                                   const BackupPace& pace = gentle_pace());
 
-/// Makes a world of a backup, verifies it, and prints what the operator must know about it. Fails if
-/// the folder `world` exists and is not empty. The backup stays as it is. `now_us` and the error as
-/// for back_up().
+/// Makes a world of a backup, verifies it, and prints what the operator must know about it. Fails
+/// if the folder `world` exists and is not empty. The backup stays as it is. `now_us` and the error
+/// as for back_up().
 Result<void, std::string> restore(const RestoreRequest& request, TimeUs now_us, std::ostream& out);
 
 }  // namespace runstone

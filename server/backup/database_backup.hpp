@@ -1,8 +1,8 @@
 // The copy of a world's database, of one moment, while a server may write the world.
 //   - One read transaction is open from the first page to the last, so the copy never begins anew.
 //     Meanwhile the server cannot reuse its WAL, which grows by what is written.
-//   - After each part of the copy the thread rests as long as the part took. So the copy has half of
-//     the disk at most.
+//   - After each part of the copy the thread rests as long as the part took. So the copy has half
+//     of the disk at most.
 // docs/server-reference.md, "Backup", says what this costs the players.
 #pragma once
 #include <chrono>

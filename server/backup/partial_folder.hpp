@@ -1,6 +1,6 @@
 // PartialFolder: a new folder that has its name only when it is complete. Until then it is called
-// NAME.partial and holds the file `partial.lock`, which its writer locks. So whatever interrupts the
-// writer, a kill and a power failure included, no incomplete folder looks like a finished one.
+// NAME.partial and holds the file `partial.lock`, which its writer locks. So whatever interrupts
+// the writer, a kill and a power failure included, no incomplete folder looks like a finished one.
 // Threads: one thread at a time.
 #pragma once
 #include <iosfwd>
@@ -19,7 +19,8 @@ class PartialFolder {
   ///   - `target` or `target`.partial is a symbolic link;
   ///   - `target` exists and is no empty folder;
   ///   - the parent folder does not exist or cannot be written;
-  ///   - another program writes `target`.partial, or it is something else than an interrupted folder.
+  ///   - another program writes `target`.partial, or it is something else than an interrupted
+  ///     folder.
   /// The error is one line.
   static Result<PartialFolder, std::string> make(const std::string& target, std::ostream& out);
   PartialFolder(PartialFolder&& other) noexcept

@@ -20,8 +20,8 @@ class UncachedFile {
   UncachedFile(UncachedFile&& other) noexcept
       : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
   UncachedFile& operator=(UncachedFile&&) = delete;
-  /// Closes the file. This ends the locks of this process on it, so SQLite's connections to the file
-  /// must be closed before.
+  /// Closes the file. This ends the locks of this process on it, so SQLite's connections to the
+  /// file must be closed before.
   ~UncachedFile();
 
   /// Reserves disk space for `bytes` bytes. The size of the file stays. Fails if the disk has no

@@ -3,8 +3,8 @@
 //   - the database, which has the world, the players and the server's secret key;
 //   - the durable mark;
 //   - configuration: the files *.toml that lie in the folder.
-// Locks, sockets, pictures of previews and files that Runstone does not know are not copied, and neither
-// is the log of the chat: a copy would keep what players wrote beyond its retention.
+// Locks, sockets, pictures of previews and files that Runstone does not know are not copied, and
+// neither is the log of the chat: a copy would keep what players wrote beyond its retention.
 #pragma once
 #include <string>
 #include <vector>
@@ -25,9 +25,9 @@ struct WorldBackup {
 };
 
 /// Copies the world in the folder `from` to the empty folder `to`, begins a new branch in the copy,
-/// and verifies all of the copy: the database's own check, every row, and the log without gaps up to
-/// the moment. All bytes are on disk on return. `now_us` is the time in UTC. The error is one line;
-/// `to` is then to be thrown away.
+/// and verifies all of the copy: the database's own check, every row, and the log without gaps up
+/// to the moment. All bytes are on disk on return. `now_us` is the time in UTC. The error is one
+/// line; `to` is then to be thrown away.
 Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUse use,
                                                const std::string& to, TimeUs now_us,
                                                const BackupPace& pace,

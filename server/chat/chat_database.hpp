@@ -1,6 +1,7 @@
 // ChatDatabase: the file with the log of the chat. It holds a bounded number of lines: each append
 // removes the oldest ones beyond. What is removed is overwritten with zeros, because a line that is
-// older than its retention must be gone. A line may be lost in a power failure; the file stays sound.
+// older than its retention must be gone. A line may be lost in a power failure; the file stays
+// sound.
 // Threads: one.
 #pragma once
 #include <cstdint>
@@ -17,8 +18,8 @@ namespace runstone {
 
 class ChatDatabase {
  public:
-  /// Opens the file, or makes it for its owner only (mode 0600). Fails if it is damaged or is no log
-  /// of the chat in this layout.
+  /// Opens the file, or makes it for its owner only (mode 0600). Fails if it is damaged or is no
+  /// log of the chat in this layout.
   static sql::Result<ChatDatabase> open(const std::string& file, std::uint64_t lines_max);
 
   /// Writes the lines, all or none.

@@ -1,11 +1,12 @@
-// ChatLog: the log of the chat, `chat.sqlite` in the world's folder, and the thread that writes it. It
-// is apart from the edit log: another file, another thread of low priority, no fsync in a commit.
+// ChatLog: the log of the chat, `chat.sqlite` in the world's folder, and the thread that writes it.
+// It is apart from the edit log: another file, another thread of low priority, no fsync in a
+// commit.
 //   - Group commit: the lines of a second become one transaction.
 //   - Full: a line that finds queued_lines_max lines waiting is not logged.
-//   - Failure: lines that cannot be written, on a full disk for example, are not logged. A file that is
-//     damaged is renamed to chat.sqlite.damaged, which is removed when its lines would have been, and a
-//     new one is begun. Nobody waits for the log, and the server never stops for it. A warning, at
-//     most once a minute, counts the missing lines.
+//   - Failure: lines that cannot be written, on a full disk for example, are not logged. A file
+//     that is damaged is renamed to chat.sqlite.damaged, which is removed when its lines would have
+//     been, and a new one is begun. Nobody waits for the log, and the server never stops for it. A
+//     warning, at most once a minute, counts the missing lines.
 // Threads: append(), forget_before(), search() from any thread; they never wait for the disk. The
 // thread of the log calls `on_warning` and the answers of searches.
 #pragma once
@@ -53,8 +54,8 @@ class ChatLog {
   /// Removes the lines that are older, and a damaged file that was last written before, soon.
   void forget_before(TimeUs utc_us);
   using Found = Result<std::vector<ChatEntry>, std::string>;
-  /// Looks for lines (ChatDatabase::search), those included that were appended before. Returns false,
-  /// and never calls `done`, if too many searches wait or the log has stopped.
+  /// Looks for lines (ChatDatabase::search), those included that were appended before. Returns
+  /// false, and never calls `done`, if too many searches wait or the log has stopped.
   bool search(const ChatQuery& query, std::function<void(const Found&)> done);
   /// Writes what is queued, and ends the thread. It may be called again.
   void stop();

@@ -13,8 +13,8 @@ namespace runstone {
 inline constexpr std::uint64_t kChatLinesListedMax = 1'000;
 
 struct ChatQuery {
-  /// The name that a player had, the player's fingerprint, or the key in hexadecimal digits; `server`
-  /// for the host. Names are compared by their folded forms. Empty: everybody.
+  /// The name that a player had, the player's fingerprint, or the key in hexadecimal digits;
+  /// `server` for the host. Names are compared by their folded forms. Empty: everybody.
   std::string by;
   std::optional<TimeUs> since_us;  // UTC
   std::uint64_t limit = 20;        // newest lines, 1 .. kChatLinesListedMax

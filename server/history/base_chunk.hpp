@@ -5,8 +5,8 @@
 
 namespace runstone {
 
-/// Returns the generator's chunk in its cheapest axis order, at version (0, 0). Requires lod 0 and a
-/// chunk inside the world.
+/// Returns the generator's chunk in its cheapest axis order, at version (0, 0). Requires lod 0 and
+/// a chunk inside the world.
 Chunk generated_chunk(const Generator& generator, const ChunkKey& key, std::uint16_t edge);
 
 /// Returns the chunk of the base, or the generator's chunk if the base has none, in its cheapest
@@ -14,7 +14,7 @@ Chunk generated_chunk(const Generator& generator, const ChunkKey& key, std::uint
 /// Requires lod 0 and a chunk inside the world. Fails if the row is damaged; the error names file,
 /// table and row. Blocks on the disk.
 StoreResult<Chunk> base_chunk(ChunkReader& reader, const Generator& generator, const ChunkKey& key);
-/// Does the same in any axis order.
+/// Returns the chunk of base_chunk() in any axis order.
 StoreResult<Chunk> base_chunk_in_any_order(ChunkReader& reader, const Generator& generator,
                                            const ChunkKey& key);
 

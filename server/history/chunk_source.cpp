@@ -17,7 +17,7 @@ StoreResult<std::unique_ptr<WorldReader>> ChunkSource::borrow() {
       return reader;
     }
   }
-  auto opened = open_world(folder_, StoreAccess::read_only);
+  auto opened = open_world(place_, StoreAccess::read_only);
   if (!opened) return Unexpected<StoreError>{opened.error()};
   return *std::move(opened);
 }

@@ -1,6 +1,6 @@
 // ChunkSource: loads chunks that are not in memory. It reads the newest snapshot. If there is none,
 // it reads the base chunk. If there is none either, it generates the chunk. It keeps a pool of
-// readers of the world folder. Threads: any. Calls block on the disk, so workers make them. Each
+// readers of the world. Threads: any. Calls block on the disk, so workers make them. Each
 // call uses a reader of its own.
 #pragma once
 #include <functional>
@@ -17,8 +17,8 @@ namespace runstone {
 class ChunkSource {
  public:
   /// `generator` must outlive the source.
-  ChunkSource(std::string folder, const Generator& generator)
-      : folder_(std::move(folder)), generator_(generator) {}
+  ChunkSource(std::string place, const Generator& generator)
+      : place_(std::move(place)), generator_(generator) {}
 
   /// Returns the chunk on disk, in its cheapest axis order, with its digest. The error names file,
   /// table and row.
@@ -32,7 +32,7 @@ class ChunkSource {
   void give_back(std::unique_ptr<WorldReader> reader);
   StoreResult<Chunk> load(ChunkReader& reader, const ChunkKey& key) const;
 
-  const std::string folder_;
+  const std::string place_;
   const Generator& generator_;
   std::mutex mutex_;  // a leaf: guards the pool
   std::vector<std::unique_ptr<WorldReader>> idle_;

@@ -27,7 +27,7 @@ StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
     forget(at);
     return Unexpected<StoreError>{error};
   };
-  auto reader = open_world(folder_, StoreAccess::read_only);
+  auto reader = open_world(place_, StoreAccess::read_only);
   if (!reader) return failed(reader.error());
   const auto stored = (*reader)->stored_moment(at);
   if (!stored) return failed(stored.error());
@@ -56,7 +56,7 @@ StoreResult<LogEnd> Moments::open(Sequence at) {
 }
 
 StoreResult<LogEnd> Moments::open_at_time(TimeUs utc_us) {
-  const auto reader = open_world(folder_, StoreAccess::read_only);
+  const auto reader = open_world(place_, StoreAccess::read_only);
   if (!reader) return Unexpected<StoreError>{reader.error()};
   const auto seq = (*reader)->sequence_at(utc_us);
   if (!seq) return Unexpected<StoreError>{seq.error()};

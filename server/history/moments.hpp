@@ -21,8 +21,8 @@ class Moments {
   static constexpr Sequence kEditsMax = 1'000'000;
 
   /// `generator` must outlive the object. Keeps up to `kept_max` moments. Requires kept_max >= 1.
-  Moments(std::string folder, const Generator& generator, std::size_t kept_max = 4)
-      : folder_(std::move(folder)), generator_(generator), kept_max_(kept_max) {}
+  Moments(std::string place, const Generator& generator, std::size_t kept_max = 4)
+      : place_(std::move(place)), generator_(generator), kept_max_(kept_max) {}
 
   /// Opens the moment after the edit with this sequence, and returns its end. Fails as
   /// WorldAt::open(), and (bad_request) if more than kEditsMax edits lie between the moment and the
@@ -30,8 +30,8 @@ class Moments {
   StoreResult<LogEnd> open(Sequence at);
   /// Opens the moment after the last edit at or before this time (UTC).
   StoreResult<LogEnd> open_at_time(TimeUs utc_us);
-  /// Makes the calls under way that open a moment, and all later calls, fail soon (cancelled). Thread:
-  /// any.
+  /// Makes the calls under way that open a moment, and all later calls, fail soon (cancelled).
+  /// Thread: any.
   void cancel() { is_cancelled_.store(true); }
   /// Returns the chunk as it was after edit `at`. Opens the moment again if it is no longer kept.
   StoreResult<Chunk> chunk(Sequence at, const ChunkKey& key);
@@ -46,7 +46,7 @@ class Moments {
   StoreResult<std::shared_ptr<Kept>> find(Sequence at);
   void forget(Sequence at);
 
-  const std::string folder_;
+  const std::string place_;
   const Generator& generator_;
   const std::size_t kept_max_;
   std::atomic<bool> is_cancelled_{false};

@@ -42,8 +42,8 @@ class WorldAt {
   /// a chunk inside the world. Cost: O(edits of the chunk * its runs / 64).
   StoreResult<Chunk> chunk(const ChunkKey& key);
   /// Returns the same voxels in any axis order, which is cheaper, without digest and version. Reads
-  /// with another reader of the same world. Thread: any, each with a reader and a scratch of its own,
-  /// while no function that is not const runs.
+  /// with another reader of the same world. Thread: any, each with a reader and a scratch of its
+  /// own, while no function that is not const runs.
   StoreResult<RunChunk> voxels(const ChunkKey& key, WorldReader& reader,
                                ReplayScratch& scratch) const;
   /// Returns the version that chunk() would have, without making the chunk.

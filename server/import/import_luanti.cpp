@@ -1,13 +1,14 @@
 #include "server/import/import_luanti.hpp"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include "common/core/assert.hpp"
 #include "common/formats/block_assembler.hpp"
+#include "common/formats/block_materials.hpp"
+#include "common/formats/format.hpp"
 #include "common/formats/luanti_block.hpp"
 #include "common/runs/reorder.hpp"
 #include "server/import/luanti_map.hpp"
@@ -19,13 +20,21 @@ constexpr std::uint64_t kProgressEvery = 64;  // blocks
 
 class Importer {
  public:
-  Importer(std::string file, LuantiMap map, const LuantiImportOptions& options,
-           const LuantiImportSink& sink)
-      : file_(std::move(file)), map_(std::move(map)), options_(options), sink_(sink) {}
+  Importer(std::string file, LuantiMap map, const Format& format,
+           const LuantiImportOptions& options, const LuantiImportSink& sink)
+      : file_(std::move(file)),
+        map_(std::move(map)),
+        format_(format),
+        options_(options),
+        sink_(sink),
+        block_materials_(format, options.keep_all) {}
 
   Result<LuantiImportReport, ImportError> run() {
     if (const auto failure = scan()) return error(*failure);
-    if (const auto failure = make_table()) return error(*failure);
+    auto table = block_materials_.make_table();
+    if (!table) return error(table.error().what);
+    std::sort(positions_.begin(), positions_.end());  // a damaged map may have another order
+    report_.materials = *std::move(table);
     sink_.materials(report_.materials);
     report_.voxels.assign(report_.materials.size(), 0);
     report_.spawn = {(report_.bounds.min.x + report_.bounds.max.x) / 2, report_.bounds.max.y,
@@ -46,13 +55,16 @@ class Importer {
   std::optional<std::string> scan() {
     return map_.each_row([&](std::int64_t pos, ByteView data) {
       const ChunkCoord at = luanti_block_coord(pos);
-      const auto block = luanti_block_pos(at) == pos
-                             ? decode_luanti_block(data)
-                             : Result<LuantiBlock>(fail(ErrorCode::bad_value,
-                                                        "luanti block: not a block position"));
+      const auto read = luanti_block_pos(at) == pos
+                            ? format_.read(data,
+                                           [&](ForeignPiece&& piece) {
+                                             block_materials_.note(piece);
+                                             return Result<void>();
+                                           })
+                            : fail(ErrorCode::bad_value, "luanti block: not a block position");
       advance(1);
-      if (!block) {
-        report_.damaged.push_back({pos, at, block.error()});
+      if (!read) {
+        report_.damaged.push_back({pos, at, read.error()});
         return;
       }
       const VoxelBox box = box_of(at, kLuantiBlockEdge);
@@ -64,29 +76,7 @@ class Importer {
                  std::max(all.max.z, box.max.z)};
       positions_.push_back(pos);
       ++report_.blocks;
-      for (std::size_t i = 0; i < block->voxels.runs.size(); ++i) {
-        const Material local = block->voxels.runs.material(i);
-        if (local != kEmpty) ids_.emplace(block->names[local - 1u], kEmpty);
-      }
     });
-  }
-
-  std::optional<std::string> make_table() {
-    std::sort(positions_.begin(), positions_.end());  // a damaged map may have another one
-    for (auto& [name, id] : ids_) {
-      MaterialInfo info = material_of_luanti_node(name, options_.keep_all);
-      if (info.visibility == Visibility::empty) continue;
-      // Two foreign names become the same name only if both are unprintable and their hashes are
-      // equal.
-      if (const auto known = report_.materials.find(info.name)) {
-        id = *known;
-        continue;
-      }
-      const auto added = report_.materials.add(std::move(info));
-      if (!added) return std::string(added.error().what);
-      id = *added;
-    }
-    return std::nullopt;
   }
 
   std::vector<ChunkCoord> chunk_coords() const {
@@ -111,20 +101,18 @@ class Importer {
     if (!std::binary_search(positions_.begin(), positions_.end(), pos)) return std::nullopt;
     advance(1);
     const auto data = map_.find(pos);
-    auto block = data ? decode_luanti_block(*data)
-                      : Result<LuantiBlock>(
-                            fail(ErrorCode::io_failed, "luanti block: could not be read again"));
-    if (!block) {
-      report_.damaged.push_back({pos, at, block.error()});
+    std::optional<RunChunk> voxels;
+    const auto read = data ? format_.read(*data,
+                                          [&](ForeignPiece&& piece) {
+                                            voxels = block_materials_.resolve(piece);
+                                            return Result<void>();
+                                          })
+                           : fail(ErrorCode::io_failed, "luanti block: could not be read again");
+    if (!read) {
+      report_.damaged.push_back({pos, at, read.error()});
       --report_.blocks;
-      return std::nullopt;
     }
-    to_.assign(block->names.size() + 1, kEmpty);
-    for (std::size_t i = 0; i < block->names.size(); ++i) {
-      const auto known = ids_.find(block->names[i]);
-      if (known != ids_.end()) to_[i + 1] = known->second;
-    }
-    return with_materials(block->voxels, to_);
+    return voxels;
   }
 
   bool make_chunk(ChunkCoord at) {
@@ -172,13 +160,13 @@ class Importer {
 
   std::string file_;
   LuantiMap map_;
+  const Format& format_;
   const LuantiImportOptions& options_;
   const LuantiImportSink& sink_;
   LuantiImportReport report_;
   std::vector<std::int64_t> positions_;  // of sound blocks, ascending
-  std::map<std::string, Material> ids_;  // world material of every foreign name in use
-  std::vector<Material> to_;             // of the current block; by its local material
-  std::uint64_t done_ = 0;               // block reads
+  BlockMaterials block_materials_;
+  std::uint64_t done_ = 0;  // block reads
 };
 
 }  // namespace
@@ -189,9 +177,11 @@ Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,
   RUNSTONE_ASSERT(options.edge == 16 || options.edge == 32 || options.edge == 64 ||
                   options.edge == 128);
   const std::string file = folder + "/map.sqlite";
+  const Format* format = format_of_file(file);
+  RUNSTONE_ASSERT(format != nullptr);
   auto map = LuantiMap::open(file);
   if (!map) return Unexpected<ImportError>{{file, map.error()}};
-  return Importer(file, std::move(map).value(), options, sink).run();
+  return Importer(file, std::move(map).value(), *format, options, sink).run();
 }
 
 }  // namespace runstone

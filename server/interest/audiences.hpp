@@ -16,8 +16,8 @@ struct Audience {
 
 /// Groups the receivers of a commit. `receivers[i]` are the sessions that edit i concerns,
 /// ascending. Returns the groups ordered by their first session; an edit without receivers is in
-/// none. Cost: O(edits + receivers) if every edit has the same receivers; otherwise O(distinct lists
-/// of receivers * sessions) and the sum of the groups' edits.
+/// none. Cost: O(edits + receivers) if every edit has the same receivers; otherwise O(distinct
+/// lists of receivers * sessions) and the sum of the groups' edits.
 std::vector<Audience> audiences_of(const std::vector<std::vector<SessionId>>& receivers);
 
 }  // namespace runstone

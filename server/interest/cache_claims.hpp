@@ -1,5 +1,5 @@
-// CacheClaims: the copies of chunks and tiles that a client claims to have, until the server answers
-// the claim. Bound: kClaimsPerSessionMax. One thread.
+// CacheClaims: the copies of chunks and tiles that a client claims to have, until the server
+// answers the claim. Bound: kClaimsPerSessionMax. One thread.
 #pragma once
 #include <cstddef>
 #include <span>

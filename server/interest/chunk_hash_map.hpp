@@ -1,6 +1,6 @@
-// ChunkHashMap: a hash table by chunk key that grows in small steps. A single table of 200,000 chunks
-// takes 20 to 60 ms to grow, in which the world strand would do nothing else. So the keys are spread
-// over 256 tables, each of which grows by itself in a fraction of a millisecond.
+// ChunkHashMap: a hash table by chunk key that grows in small steps. A single table of 200,000
+// chunks takes 20 to 60 ms to grow, in which the world strand would do nothing else. So the keys
+// are spread over 256 tables, each of which grows by itself in a fraction of a millisecond.
 // Values keep their address until they are erased. One thread.
 #pragma once
 #include <array>

@@ -36,7 +36,8 @@ class Interest {
   /// Makes all chunks wanted again. Returns their number.
   std::size_t want_all_again(SessionId session);
   /// Makes the chunks wanted again that lie outside of at least one of these views. It is for a
-  /// client that had these views in between and may have dropped those chunks. Returns their number.
+  /// client that had these views in between and may have dropped those chunks. Returns their
+  /// number.
   std::size_t want_again_outside(SessionId session, std::span<const View> views);
   std::optional<ChunkKey> nearest_wanted(SessionId session);
   std::optional<ChunkKey> next_for_digest_check(SessionId session);
@@ -51,8 +52,8 @@ class Interest {
   /// Returns true if a session is subscribed to the chunk or waits for it.
   bool is_used(const ChunkKey& key) const { return users_.contains(key); }
   std::size_t used_count() const { return users_.size(); }
-  /// Removes and returns chunks that lost their last user, at most `count`, the earliest first. Some
-  /// may have a new one.
+  /// Removes and returns chunks that lost their last user, at most `count`, the earliest first.
+  /// Some may have a new one.
   std::vector<ChunkKey> take_released(std::size_t count);
 
  private:

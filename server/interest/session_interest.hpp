@@ -71,7 +71,8 @@ class SessionInterest {
 
  private:
   std::size_t& counter(ChunkInterest state) { return counts_[static_cast<std::size_t>(state)]; }
-  /// Returns the chunks of the queue that are wanted. A chunk that is twice in the queue is there twice.
+  /// Returns the chunks of the queue that are wanted. A chunk that is twice in the queue is there
+  /// twice.
   std::vector<ChunkCoord> wanted() const;
   /// Requires a chunk of the view.
   bool is_wanted(ChunkCoord at) const { return !chunks_.contains({0, at}); }

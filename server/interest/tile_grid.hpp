@@ -1,7 +1,7 @@
-// TileGrid: a byte for each tile of a view. The tiles of a level lie in a box around the centre of the
-// view, so the remainders of their coordinates by the sides of the box are different, and are their
-// place in the grid. A view that moves needs no copy: the tiles that leave free the places of those
-// that come. One thread.
+// TileGrid: a byte for each tile of a view. The tiles of a level lie in a box around the centre of
+// the view, so the remainders of their coordinates by the sides of the box are different, and are
+// their place in the grid. A view that moves needs no copy: the tiles that leave free the places of
+// those that come. One thread.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -27,7 +27,7 @@ class TileGrid {
     const std::vector<Value>& level = levels_[key.lod - 1U];
     return level.empty() ? Value{} : level[place_of(key.at)];
   }
-  /// Sets the value of a tile. Requires the same.
+  /// Sets the value of a tile. Requires a tile of the view.
   void set(const ChunkKey& key, Value value) {
     std::vector<Value>& level = levels_[key.lod - 1U];
     if (level.empty())

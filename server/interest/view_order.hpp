@@ -13,8 +13,9 @@ class ViewOrder {
  public:
   explicit ViewOrder(const View& view);
 
-  /// The place of a chunk in the order: lower places come first. A place also identifies its
-  /// chunk, so a queue of chunks needs nothing else, and comparing two chunks costs one comparison of integers.
+  /// The place of a chunk in the order: lower places come first. A place also identifies its chunk,
+  /// so a queue of chunks needs nothing else, and comparing two chunks costs one comparison of
+  /// integers.
   using Place = std::uint64_t;
   /// Requires a chunk of the view.
   Place place_of(ChunkCoord at) const;

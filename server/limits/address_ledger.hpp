@@ -27,12 +27,13 @@ class AddressLedger {
   bool take(AddressBlock from, std::uint64_t price, TimeUs now_us);
 
   /// Takes the price of something that was already done from the budget of the address. The missing
-  /// part is owed, at most as much as the budget holds. The range does not pay: one address must not
-  /// keep its neighbours out. Cost: O(log addresses), amortised.
+  /// part is owed, at most as much as the budget holds. The range does not pay: one address must
+  /// not keep its neighbours out. Cost: O(log addresses), amortised.
   void charge(AddressBlock from, std::uint64_t price, TimeUs now_us);
 
-  /// Does the same with the budgets of the address and of its range. It is for work that is so costly
-  /// that the addresses of one range must not each have a full budget of it.
+  /// Takes the price of something that was already done from the budgets of the address and of its
+  /// range. It is for work that is so costly that the addresses of one range must not each have a
+  /// full budget of it.
   void charge_range(AddressBlock from, std::uint64_t price, TimeUs now_us);
 
   /// Returns true if take() would take the price. Cost: O(log addresses).

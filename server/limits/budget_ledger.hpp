@@ -25,8 +25,8 @@ struct Payer {
 
 class BudgetLedger {
  public:
-  /// `usual`: the budget of a key whose role says nothing else. An address has `budgets_per_address`
-  /// times as much; 0: addresses have no limit.
+  /// `usual`: the budget of a key whose role says nothing else. An address has
+  /// `budgets_per_address` times as much; 0: addresses have no limit.
   BudgetLedger(const Budget& usual, std::uint64_t budgets_per_address);
 
   struct Refusal {
@@ -36,8 +36,8 @@ class BudgetLedger {
   /// Takes the price from both budgets. Returns nullopt, or the refusal, and takes nothing then. An
   /// address pays in shares of the key's budget: a key of a role with ten times the usual budget
   /// uses up a tenth as much of its address. A key whose budget differs from that of its last
-  /// payment begins with a full one. Requires a price of at most payer.budget.burst if the budget is
-  /// limited. Cost: O(log payers).
+  /// payment begins with a full one. Requires a price of at most payer.budget.burst if the budget
+  /// is limited. Cost: O(log payers).
   std::optional<Refusal> charge(const Payer& payer, std::uint64_t price, TimeUs now_us);
 
   /// Takes the price of work that was done already from both budgets. What they lack is owed: later

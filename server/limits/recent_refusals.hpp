@@ -1,6 +1,6 @@
 // RecentRefusals: what players were refused lately, for moderators. Equal refusals of a player are
-// one row with a count. A player has few rows, and refused joins are given up first, so that nobody hides
-// what others did.
+// one row with a count. A player has few rows, and refused joins are given up first, so that nobody
+// hides what others did.
 // Memory: at most kRefusalRowsMax rows. Thread: one. Times are arguments.
 #pragma once
 #include <cstddef>
@@ -30,8 +30,8 @@ struct RefusalRow {
 
 class RecentRefusals {
  public:
-  /// Counts a refusal. If there is no room for another row, one row of the player or of all goes: of
-  /// the refused joins, or else of the others, the one that was refused longest ago. Cost: O(log
+  /// Counts a refusal. If there is no room for another row, one row of the player or of all goes:
+  /// of the refused joins, or else of the others, the one that was refused longest ago. Cost: O(log
   /// rows); for a row too many, O(rows).
   void add(const PublicKey& key, const std::string& what, TimeUs now_us);
   /// Returns all rows, the newest last.

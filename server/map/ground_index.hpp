@@ -1,6 +1,6 @@
-// GroundIndex: which chunks of a moment are stored or were edited, with their versions, and the same
-// of all tiles above them. The version of a tile or of a column is the greatest one of the chunks
-// below it, so equal versions of one place mean equal voxels.
+// GroundIndex: which chunks of a moment are stored or were edited, with their versions, and the
+// same of all tiles above them. The version of a tile or of a column is the greatest one of the
+// chunks below it, so equal versions of one place mean equal voxels.
 // Memory: an entry for each chunk, and for each tile and each column above one.
 // Threads: one writer or several readers.
 #pragma once
@@ -22,8 +22,8 @@ class GroundIndex {
   /// each level.
   void add(ChunkCoord chunk, const Version& version);
 
-  /// Returns the version of a chunk or tile, or nullopt if nothing below it is stored or was edited,
-  /// so that the generator alone determines it.
+  /// Returns the version of a chunk or tile, or nullopt if nothing below it is stored or was
+  /// edited, so that the generator alone determines it.
   std::optional<Version> version(const ChunkKey& key) const;
   /// Returns the version of a column, or (0, 0) if there is none.
   Version column_version(const ColumnKey& key) const;

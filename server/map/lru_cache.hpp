@@ -1,5 +1,5 @@
-// LruCache: values by key, up to a number of bytes. If the cache is full, the values that were used least
-// recently are removed.
+// LruCache: values by key, up to a number of bytes. If the cache is full, the values that were used
+// least recently are removed.
 #pragma once
 #include <cstddef>
 #include <list>

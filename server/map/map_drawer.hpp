@@ -1,5 +1,5 @@
-// MapDrawer: draws tiles of the map of a moment, from runs. Slopes at the borders of a tile come from
-// the columns beside it, so tiles fit together.
+// MapDrawer: draws tiles of the map of a moment, from runs. Slopes at the borders of a tile come
+// from the columns beside it, so tiles fit together.
 // Thread: one, as its reader.
 #pragma once
 #include <cstdint>
@@ -26,8 +26,8 @@ class MapDrawer {
   /// Returns the picture as a PNG file. Fails as MapVoxels::at().
   StoreResult<std::shared_ptr<const std::string>> draw(const MapMoment& moment,
                                                        const MapPlace& place);
-  /// Returns the tops of a column of chunks or tiles. Heights count in voxels of its level. Fails as
-  /// MapVoxels::at().
+  /// Returns the tops of a column of chunks or tiles. Heights count in voxels of its level. Fails
+  /// as MapVoxels::at().
   StoreResult<std::shared_ptr<const MapTops>> tops(const MapMoment& moment, const ColumnKey& key);
 
  private:

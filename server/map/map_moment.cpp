@@ -8,10 +8,10 @@
 
 namespace runstone {
 
-StoreResult<std::unique_ptr<MapMoment>> MapMoment::open(const std::string& folder,
+StoreResult<std::unique_ptr<MapMoment>> MapMoment::open(const std::string& place,
                                                         const Generator& generator, Sequence at,
                                                         const WorldAt::Progress& progress) {
-  auto reader = open_world(folder, StoreAccess::read_only);
+  auto reader = open_world(place, StoreAccess::read_only);
   if (!reader) return Unexpected<StoreError>{reader.error()};
   std::unique_ptr<MapMoment> out(new MapMoment(*std::move(reader)));
   bool is_too_far = false;

@@ -1,7 +1,7 @@
-// MapMoment: the world of one moment as the map needs it: its chunks, and the versions of all chunks
-// and tiles. The present is a moment that advances with the log.
-// Threads: open() and advance() by one thread while no other one uses the object; reader() belongs to
-// that thread. The other functions by any thread, each with a reader and a scratch of its own.
+// MapMoment: the world of one moment as the map needs it: its chunks, and the versions of all
+// chunks and tiles. The present is a moment that advances with the log.
+// Threads: open() and advance() by one thread while no other one uses the object; reader() belongs
+// to that thread. The other functions by any thread, each with a reader and a scratch of its own.
 #pragma once
 #include <functional>
 #include <memory>
@@ -17,15 +17,15 @@ class MapMoment {
   using EachRecord = std::function<void(const EditRecord&)>;
 
   /// Opens the world after edit `at`. The generator must outlive the object. Fails as
-  /// WorldAt::open(), and (bad_request) if more than Moments::kEditsMax edits lie between the moment
-  /// and the stored one before it.
-  static StoreResult<std::unique_ptr<MapMoment>> open(const std::string& folder,
+  /// WorldAt::open(), and (bad_request) if more than Moments::kEditsMax edits lie between the
+  /// moment and the stored one before it.
+  static StoreResult<std::unique_ptr<MapMoment>> open(const std::string& place,
                                                       const Generator& generator, Sequence at,
                                                       const WorldAt::Progress& progress = {});
 
   /// Moves to a later edit. `each` is called for every record between. After a failure the object
-  /// may not be used any more. Fails as WorldAt::advance(), and (bad_request) if the log no longer has
-  /// the edit at which the object stands, because another log has replaced it.
+  /// may not be used any more. Fails as WorldAt::advance(), and (bad_request) if the log no longer
+  /// has the edit at which the object stands, because another log has replaced it.
   StoreResult<void> advance(Sequence at, const EachRecord& each,
                             const WorldAt::Progress& progress = {});
 

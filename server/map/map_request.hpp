@@ -37,8 +37,8 @@ struct MapMomentRequest {
 /// The newest edits of the whole world.
 struct RecentEditsRequest {};
 
-/// Asks if a visitor without a key may see the world now. The answer has status 200 if so, and 403 if
-/// not.
+/// Asks if a visitor without a key may see the world now. The answer has status 200 if so, and 403
+/// if not.
 struct RightsRequest {};
 
 using MapRequest = std::variant<TilePictureRequest, MapStateRequest, BuildersRequest,

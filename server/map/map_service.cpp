@@ -50,11 +50,11 @@ MapAnswer map_words(unsigned status, const std::string& sentence) {
   return out;
 }
 
-MapService::MapService(MapThreads& threads, std::string folder, std::size_t cache_bytes, Warn warn)
+MapService::MapService(MapThreads& threads, std::string place, std::size_t cache_bytes, Warn warn)
     : threads_(threads),
       warn_(std::move(warn)),
       caches_(cache_bytes),
-      world_(std::move(folder), caches_) {}
+      world_(std::move(place), caches_) {}
 
 MapService::~MapService() {
   is_stopping_.store(true);

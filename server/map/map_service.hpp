@@ -1,7 +1,7 @@
-// MapService: draws the map of a world on request, on threads that all maps share. Requests wait in a
-// queue with a bound. Drawing that takes long is done in turns, and other requests are served between
-// them: what a turn made is kept in the caches, and the next turn begins there. All caches together
-// have a bound, and nothing is written to the disk.
+// MapService: draws the map of a world on request, on threads that all maps share. Requests wait in
+// a queue with a bound. Drawing that takes long is done in turns, and other requests are served
+// between them: what a turn made is kept in the caches, and the next turn begins there. All caches
+// together have a bound, and nothing is written to the disk.
 // Threads: ask() by any. Replies are called on one of the shared threads, by ask(), or by the
 // destructor.
 #pragma once
@@ -9,17 +9,29 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
-#include "server/map/map_answer.hpp"
 #include "server/map/map_caches.hpp"
 #include "server/map/map_request.hpp"
 #include "server/map/map_threads.hpp"
 #include "server/map/map_world.hpp"
 
 namespace runstone {
+
+/// The answer to a request of the map, in the terms of HTTP.
+struct MapAnswer {
+  unsigned status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  std::shared_ptr<const std::string> body;  // null: empty
+  std::string etag;                         // of a picture; empty: none
+  std::uint64_t work_us = 0;                // time of the worker
+};
+
+/// Returns an answer that is one sentence.
+MapAnswer map_words(unsigned status, const std::string& sentence);
 
 class MapService final : MapThreads::Map {
  public:
@@ -30,12 +42,12 @@ class MapService final : MapThreads::Map {
   static constexpr TimeUs kAnswerUsMax = 8'000'000;
 
   using Reply = std::function<void(MapAnswer)>;
-  /// Reports a fault of the world's folder, for the host alone, at most once in ten seconds.
+  /// Reports a fault of the stored world, for the host alone, at most once in ten seconds.
   using Warn = std::function<void(const std::string&)>;
 
-  /// `threads` must outlive the service. `folder`: of the world, which need not exist yet.
+  /// `threads` must outlive the service. `place`: of the world, which need not exist yet.
   /// `cache_bytes` bounds all that is kept in memory apart from the moments.
-  MapService(MapThreads& threads, std::string folder, std::size_t cache_bytes, Warn warn);
+  MapService(MapThreads& threads, std::string place, std::size_t cache_bytes, Warn warn);
   /// Ends the turn under way and answers the requests that wait.
   ~MapService();
   MapService(const MapService&) = delete;
@@ -66,8 +78,8 @@ class MapService final : MapThreads::Map {
   std::optional<MapAnswer> serve(const BuildersRequest& request);
   std::optional<MapAnswer> serve(const MapMomentRequest& request);
   std::optional<MapAnswer> serve_recent_edits();
-  /// Returns the moment after edit `at`, or the present. The error is nullopt if the job needs another
-  /// turn.
+  /// Returns the moment after edit `at`, or the present. The error is nullopt if the job needs
+  /// another turn.
   Result<MapMoment*, std::optional<MapAnswer>> moment_of(const std::optional<Sequence>& at);
   std::optional<MapAnswer> answer_to(const StoreError& error);
   bool should_continue() const;

@@ -1,6 +1,6 @@
-// MapThreads: the threads that draw the maps of all worlds, at low priority. A map that has work gets
-// turns on them, one at a time, and the maps take turns in order. So many worlds need no more threads
-// than one, and a map with much to do delays the others by one turn.
+// MapThreads: the threads that draw the maps of all worlds, at low priority. A map that has work
+// gets turns on them, one at a time, and the maps take turns in order. So many worlds need no more
+// threads than one, and a map with much to do delays the others by one turn.
 // Threads: any.
 #pragma once
 #include <condition_variable>
@@ -18,8 +18,8 @@ class MapThreads {
   /// A map that has turns.
   class Map {
    public:
-    /// Works for a short time. Returns true if there is more to do. The calls are one after another,
-    /// but not all on the same thread.
+    /// Works for a short time. Returns true if there is more to do. The calls are one after
+    /// another, but not all on the same thread.
     virtual bool turn() = 0;
 
    protected:
@@ -33,11 +33,11 @@ class MapThreads {
   MapThreads(const MapThreads&) = delete;
   MapThreads& operator=(const MapThreads&) = delete;
 
-  /// Gives the map turns until one of them returns false. A call while a turn is under way gives it at
-  /// least one more.
+  /// Gives the map turns until one of them returns false. A call while a turn is under way gives it
+  /// at least one more.
   void wake(Map& map);
-  /// Ends the turns of the map. Waits until the one that is under way has ended. Requires that nobody
-  /// calls wake() with this map any more.
+  /// Ends the turns of the map. Waits until the one that is under way has ended. Requires that
+  /// nobody calls wake() with this map any more.
   void leave(Map& map);
 
  private:

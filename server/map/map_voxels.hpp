@@ -1,7 +1,7 @@
 // MapVoxels: the chunks and tiles of a moment. A tile is taken from the first of these that has it:
 //   1. the tiles in memory;
 //   2. the generator's coarse form, if nothing below the tile is stored or was edited;
-//   3. the table of tiles in the world's folder, if it has the version of the moment;
+//   3. the table of tiles of the world, if it has the version of the moment;
 //   4. its eight children.
 // It writes nothing. The reads of an object are joined to spans, which end with it.
 // Thread: one, as its reader.
@@ -35,9 +35,9 @@ class MapVoxels {
         caches_(caches),
         should_continue_(std::move(should_continue)) {}
 
-  /// Returns the voxels of a chunk or tile. A damaged chunk is empty, as in the tiles of the server.
-  /// Fails (cancelled) if should_continue() returned false; what was made until then is
-  /// kept in the caches. Fails if the folder cannot be read.
+  /// Returns the voxels of a chunk or tile. A damaged chunk is empty, as in the tiles of the
+  /// server. Fails (cancelled) if should_continue() returned false; what was made until then is
+  /// kept in the caches. Fails if the world cannot be read.
   StoreResult<Voxels> at(const MapMoment& moment, const ChunkKey& key);
 
  private:

@@ -22,8 +22,8 @@ constexpr Sequence kForwardEditsMax = 8'192;
 }  // namespace
 
 StoreResult<MapWorld::FileId> MapWorld::file_id() const {
-  if (is_database(folder_)) return FileId{};  // the same one for as long as it answers
-  const std::string file = folder_ + "/world.sqlite";
+  if (is_database(place_)) return FileId{};  // the same one for as long as it answers
+  const std::string file = place_ + "/world.sqlite";
   struct stat about{};
   if (::stat(file.c_str(), &about) != 0) {
     return Unexpected<StoreError>{{StoreError::Kind::io, file, "",
@@ -65,7 +65,7 @@ StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us,
   caches_.clear();
   world_ = std::make_unique<Opened>();
   world_->file = file;
-  auto reader = open_world(folder_, StoreAccess::read_only);
+  auto reader = open_world(place_, StoreAccess::read_only);
   if (!reader) return Unexpected<StoreError>{reader.error()};
   world_->reader = *std::move(reader);
   world_->reader->set_row_check(RowCheck::bytes);
@@ -89,7 +89,7 @@ StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us,
 }
 
 StoreResult<void> MapWorld::open_present(Sequence at, const WorldAt::Progress& progress) {
-  auto present = MapMoment::open(folder_, *world_->generator, at, progress);
+  auto present = MapMoment::open(place_, *world_->generator, at, progress);
   if (!present) return Unexpected<StoreError>{present.error()};
   world_->present = *std::move(present);
   world_->reopen_at = world_->present->edits_kept() + kReopenEdits;
@@ -171,7 +171,7 @@ StoreResult<MapMoment*> MapWorld::past(Sequence at, const WorldAt::Progress& pro
     if (!is_near || !moment->advance(at, [](const EditRecord&) {})) moment = nullptr;
   }
   if (moment == nullptr) {
-    auto opened = MapMoment::open(folder_, *world_->generator, at, progress);
+    auto opened = MapMoment::open(place_, *world_->generator, at, progress);
     if (!opened) return Unexpected<StoreError>{opened.error()};
     moment = *std::move(opened);
   }

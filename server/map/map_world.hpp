@@ -1,4 +1,4 @@
-// MapWorld: a world's folder as the map reads it: the present, which follows the log, and the moments
+// MapWorld: a stored world as the map reads it: the present, which follows the log, and the moments
 // of the past that were used last. It only reads, in short transactions, so that a server that runs
 // the world can always move its write-ahead log into the database.
 // Thread: one. Times are arguments. All functions but the const ones block on the disk.
@@ -27,12 +27,12 @@ class MapWorld {
   static constexpr std::size_t kMomentsMax = 4;
 
   /// `caches` must outlive the object.
-  MapWorld(std::string folder, MapCaches& caches) : folder_(std::move(folder)), caches_(caches) {}
+  MapWorld(std::string place, MapCaches& caches) : place_(std::move(place)), caches_(caches) {}
 
-  /// Opens the folder, or brings the present up to the log. A folder that holds another world than
-  /// before is opened anew. Fails if the world cannot be read; then present() may not be called until a
-  /// later call succeeds, and the same failure is returned within kAgeUsMax. `steady_us` and `utc_us` are
-  /// the time. Fails (cancelled) if `progress` returned false.
+  /// Opens the place, or brings the present up to the log. A place that holds another world than
+  /// before is opened anew. Fails if the world cannot be read; then present() may not be called
+  /// until a later call succeeds, and the same failure is returned within kAgeUsMax. `steady_us`
+  /// and `utc_us` are the time. Fails (cancelled) if `progress` returned false.
   StoreResult<void> refresh(TimeUs steady_us, TimeUs utc_us,
                             const WorldAt::Progress& progress = {});
 
@@ -79,7 +79,7 @@ class MapWorld {
   StoreResult<void> read_materials();
   StoreResult<void> read_names();
 
-  const std::string folder_;
+  const std::string place_;
   MapCaches& caches_;
   TimeUs refreshed_us_ = 0;
   std::optional<StoreError> failed_;  // why the last refresh() failed

@@ -1,5 +1,5 @@
-// RecentChanges: the columns of chunks that the newest edits touched, so that a browser learns in one
-// small answer which tiles changed.
+// RecentChanges: the columns of chunks that the newest edits touched, so that a browser learns in
+// one small answer which tiles changed.
 // Thread: one.
 #pragma once
 #include <cstddef>
@@ -31,8 +31,8 @@ class RecentChanges {
   /// Adds the next edit of the log. Cost: O(chunks log chunks).
   void add(Sequence seq, std::span<const ChunkCoord> chunks);
 
-  /// Returns the columns that edits after `since` touched, each with its newest edit. If there are too
-  /// many, or if they are no longer known, is_complete is false and the list is empty.
+  /// Returns the columns that edits after `since` touched, each with its newest edit. If there are
+  /// too many, or if they are no longer known, is_complete is false and the list is empty.
   struct Answer {
     bool is_complete = false;
     std::vector<ChangedColumn> columns;  // ascending by x, then by z

@@ -80,7 +80,8 @@ class ByteStream {
 std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes,
                                             AddressForm log_form);
 
-/// Makes a stream over a Unix socket, through which a gateway speaks for the client at this endpoint.
+/// Makes a stream over a Unix socket, through which a gateway speaks for the client at this
+/// endpoint.
 std::unique_ptr<ByteStream> make_local_stream(asio::local::stream_protocol::socket socket,
                                               const asio::ip::tcp::endpoint& client,
                                               AddressForm log_form);

@@ -1,8 +1,8 @@
-// ConnectingStream: the byte stream of an outgoing connection. open() resolves the name of the server,
-// connects to the first of its addresses that answers, and performs the TLS handshake. After it, the
-// stream is one over TCP or TLS.
-// Bounds: close() ends open() at once, so the session's handshake time bounds it. An address that does
-// not answer uses only its share of that time.
+// ConnectingStream: the byte stream of an outgoing connection. open() resolves the name of the
+// server, connects to the first of its addresses that answers, and performs the TLS handshake.
+// After it, the stream is one over TCP or TLS.
+// Bounds: close() ends open() at once, so the session's handshake time bounds it. An address that
+// does not answer uses only its share of that time.
 // Threads: the session's strand, as in ByteStream.
 #pragma once
 #include <asio/any_io_executor.hpp>

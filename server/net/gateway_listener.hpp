@@ -1,7 +1,7 @@
-// GatewayListener: accepts connections of a gateway on this machine, such as runstone-web, at a Unix
-// socket. Each of them speaks for one client and begins with a PROXY header, which names the
-// client's address. Nobody else can reach the socket, because the file's mode keeps other users out;
-// a header over TCP would let every client choose its address.
+// GatewayListener: accepts connections of a gateway on this machine, such as runstone-web, at a
+// Unix socket. Each of them speaks for one client and begins with a PROXY header, which names the
+// client's address. Nobody else can reach the socket, because the file's mode keeps other users
+// out; a header over TCP would let every client choose its address.
 // Threads: everything runs on a strand of the I/O context; the functions may be called from any
 // thread. listen() is called before start().
 #pragma once
@@ -21,8 +21,8 @@
 
 namespace runstone {
 
-/// Returns an error if no socket can be made at this path: it is too long for a socket, it is a file
-/// of another kind, or a running program listens there.
+/// Returns an error if no socket can be made at this path: it is too long for a socket, it is a
+/// file of another kind, or a running program listens there.
 Result<void, std::string> can_listen_at_path(const std::string& path);
 
 class GatewayListener : public std::enable_shared_from_this<GatewayListener> {

@@ -95,7 +95,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
   asio::strand<asio::any_io_executor> strand_;
   asio::ip::tcp::acceptor acceptor_;
   asio::steady_timer pause_;
-  // The next two are used on the strand. A budget of reading lives as long as a session that uses it.
+  // The next two are used on the strand. A budget of reading lives as long as a session that uses
+  // it.
   AddressLedger connections_;
   std::map<AddressBlock, std::weak_ptr<ByteBudget>> reads_;
   std::uint16_t port_ = 0;

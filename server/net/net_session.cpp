@@ -28,7 +28,7 @@ constexpr std::size_t kMessageBytes = 64;
 // Counted as read for each message of the world strand, in addition to its bytes: decoding a byte of
 // a large paste takes 13 ns, and a message takes at least 7 us.
 constexpr std::size_t kMessageReadBytes = 512;
-// The same for a ReceiveAck, which the world strand never sees. On a fast link a regular client
+// Counted as read for a ReceiveAck, which the world strand never sees, in addition to its bytes. On a fast link a regular client
 // sends a thousand of them a second (kReceiveAckUsMin).
 constexpr std::size_t kAckReadBytes = 256;
 // A client that has broken a rule, has said goodbye or was refused before it authenticated is being
@@ -424,7 +424,7 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
       const TimeUs now_us = steady_now_us();
       const bool has_chunk = self->queue_.has_chunk();
       if (has_chunk && !asks) continue;  // a chunk was queued since has_chunk()
-      // Edits alone may fill the window for long. A starved class sends all the same.
+      // Edits alone may fill the window for long. A starved class sends in any case.
       const std::size_t room_bytes =
           !has_room && self->queue_.are_chunks_starved() ? kStarvedRoomBytes : room.bytes;
       const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us, room_bytes) : 0;

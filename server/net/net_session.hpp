@@ -1,8 +1,8 @@
-// NetSession: one connection, with a client or with a server. It reads frames, verifies messages and
-// reports them to NetEvents; it sends queued messages by priority; it ends with a numbered goodbye. A
-// client that breaks a rule ends its own session only.
-// Bounds: NetLimits. Another server of the same world is trusted: TrustedLimits hold instead, and it
-// may send messages and bytes at any rate.
+// NetSession: one connection, with a client or with a server. It reads frames, verifies messages
+// and reports them to NetEvents; it sends queued messages by priority; it ends with a numbered
+// goodbye. A client that breaks a rule ends its own session only.
+// Bounds: NetLimits. Another server of the same world is trusted: TrustedLimits hold instead, and
+// it may send messages and bytes at any rate.
 // Threads: the two loops run on the session's strand. A read that may complete a large message is
 // decoded on a thread of `decoders`, so that the I/O threads are free for the small messages of
 // others; the read loop waits for it. send(), reserve_chunk(), fill_chunk(),
@@ -17,9 +17,12 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/core/channel_binding.hpp"
+#include "common/core/ids.hpp"
 #include "common/core/token_bucket.hpp"
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/frame.hpp"
@@ -27,10 +30,28 @@
 #include "protocol/codec/session_encodings.hpp"
 #include "server/net/byte_stream.hpp"
 #include "server/net/chunk_gate.hpp"
-#include "server/net/net_events.hpp"
 #include "server/net/send_queue.hpp"
 
 namespace runstone {
+
+/// The events of network sessions. For each session: either on_refused() alone, or on_connected(),
+/// then messages and drains, then on_disconnected() exactly once.
+/// Threads: the session's strand, one call at a time for each session. A call must return soon.
+class NetEvents {
+ public:
+  virtual ~NetEvents() = default;
+  /// Reports that the connection ended before it was ready: the TLS handshake failed.
+  virtual void on_refused(SessionId session) = 0;
+  /// Reports that messages can be exchanged. `binding` identifies an encrypted connection.
+  virtual void on_connected(SessionId session, const std::optional<ChannelBinding>& binding) = 0;
+  /// Brings a verified message of `bytes` bytes. The receiver must call NetSession::handled(bytes)
+  /// when it has handled the message, from any thread. A session with too many unhandled bytes
+  /// stops reading, and TCP makes the client wait.
+  virtual void on_message(SessionId session, Message&& message, std::size_t bytes) = 0;
+  /// Reports that the queues have room again after a send that did not fit.
+  virtual void on_drained(SessionId session) = 0;
+  virtual void on_disconnected(SessionId session) = 0;
+};
 
 struct NetLimits {
   SendLimits send;
@@ -93,9 +114,9 @@ constexpr bool is_broken_rule(GoodbyeReason reason) {
 class NetSession : public std::enable_shared_from_this<NetSession> {
  public:
   /// `budget` (of the server), `limits`, `events` and `counters` must outlive the session, and the
-  /// threads of `decoders` those of `io`. `chunk_edge`: of the world. `address_reads`: the budget of
-  /// reading that the sessions of an address share. `peer`: what is at the other end. A server is
-  /// trusted from the start.
+  /// threads of `decoders` those of `io`. `chunk_edge`: of the world. `address_reads`: the budget
+  /// of reading that the sessions of an address share. `peer`: what is at the other end. A server
+  /// is trusted from the start.
   NetSession(SessionId id, asio::io_context& io, asio::any_io_executor decoders,
              std::unique_ptr<ByteStream> stream, const NetLimits& limits, std::uint16_t chunk_edge,
              ByteBudget& budget, std::shared_ptr<ByteBudget> address_reads, NetEvents& events,
@@ -140,8 +161,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// until the linger time ends, so that the goodbye is not lost. Thread: any.
   void authenticated() { is_authenticated_ = true; }
   /// Reports that the client has proved to be another server of the same world. From now on
-  /// TrustedLimits hold, it may send messages and bytes at any rate, and what follows its goodbye is
-  /// read too. Thread: any.
+  /// TrustedLimits hold, it may send messages and bytes at any rate, and what follows its goodbye
+  /// is read too. Thread: any.
   void trust();
   /// Reports that a message of NetEvents::on_message() was handled.
   void handled(std::size_t message_bytes);
@@ -166,12 +187,13 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// Decodes a message and appends it to decoded_. Thread: the strand or, while the read loop waits
   /// for it, a decoder.
   Result<void> decode(MessageKind kind, ByteView body);
-  /// Handles the messages of decoded_. Fails with the error of one, or otherwise with that of `fed`.
+  /// Handles the messages of decoded_. Fails with the error of one, or otherwise with that of
+  /// `fed`.
   Result<void> handle_decoded(const Result<void>& fed);
   Result<void> on_receive_ack(const ReceiveAck& ack);
   void refuse(const Error& error);
-  /// Returns true if input is to be dropped and only a little of it read: the session is being closed
-  /// because the peer broke a rule or did not authenticate, or a client has said goodbye.
+  /// Returns true if input is to be dropped and only a little of it read: the session is being
+  /// closed because the peer broke a rule or did not authenticate, or a client has said goodbye.
   bool drops_input();
   asio::awaitable<void> wait_for_read_budget(std::size_t bytes_read);
   /// Waits until close_stream() was called.

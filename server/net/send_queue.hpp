@@ -45,8 +45,8 @@ class SendQueue {
   /// Queues a message. Returns false if its class is full. An empty class accepts a message of any
   /// size.
   bool push(const EncodedMessage& message);
-  /// Reserves a place at the end of the chunk class for this chunk, as an answer to the view of this
-  /// number. Returns nullopt if the class is full.
+  /// Reserves a place at the end of the chunk class for this chunk, as an answer to the view of
+  /// this number. Returns nullopt if the class is full.
   std::optional<ChunkPlace> reserve_chunk(const ChunkKey& key, std::uint32_t view);
   /// Fills a place with its chunk. Does nothing if the place was dropped.
   void fill(ChunkPlace place, const ChunkEntry& chunk);

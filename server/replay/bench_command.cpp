@@ -1,4 +1,4 @@
-#include "server/replay/bench_command.hpp"
+#include "server/replay/replay_commands.hpp"
 
 #include <algorithm>
 #include <chrono>

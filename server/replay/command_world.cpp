@@ -11,9 +11,9 @@
 
 namespace runstone {
 
-Result<CommandWorld, std::string> open_for_reading(const std::string& folder,
+Result<CommandWorld, std::string> open_for_reading(const std::string& place,
                                                    const std::optional<NamedMoment>& end) {
-  auto store = open_world(folder, StoreAccess::read_only);
+  auto store = open_world(place, StoreAccess::read_only);
   if (!store) return Unexpected<std::string>{store.error().message()};
   auto generator = generator_of(**store);
   if (!generator) return Unexpected<std::string>{generator.error()};

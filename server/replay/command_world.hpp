@@ -20,10 +20,10 @@ struct CommandWorld {
   Sequence end = 0;  // end_of_replay() of the requested moment
 };
 
-/// Opens the world in `folder` for reading; a server may be running it. Fails if there is no world,
-/// if this program lacks its generator, or if the world does not have the moment `end`. The error is
-/// one line.
-Result<CommandWorld, std::string> open_for_reading(const std::string& folder,
+/// Opens the world at `place` for reading; a server may be running it. Fails if there is no world,
+/// if this program lacks its generator, or if the world does not have the moment `end`. The error
+/// is one line.
+Result<CommandWorld, std::string> open_for_reading(const std::string& place,
                                                    const std::optional<NamedMoment>& end = {});
 
 /// Returns the sequence number of the moment in this world, or the greatest sequence number if

@@ -1,4 +1,4 @@
-#include "server/replay/copy_command.hpp"
+#include "server/replay/replay_commands.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

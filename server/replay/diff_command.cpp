@@ -1,4 +1,4 @@
-#include "server/replay/diff_command.hpp"
+#include "server/replay/replay_commands.hpp"
 
 #include <map>
 #include <nlohmann/json.hpp>

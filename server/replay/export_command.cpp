@@ -1,4 +1,4 @@
-#include "server/replay/export_command.hpp"
+#include "server/replay/replay_commands.hpp"
 
 #include <nlohmann/json.hpp>
 #include <ostream>

@@ -1,4 +1,4 @@
-#include "server/replay/play_command.hpp"
+#include "server/replay/replay_commands.hpp"
 
 #include <signal.h>
 #include <stdlib.h>

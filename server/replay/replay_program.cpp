@@ -12,16 +12,8 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/version.hpp"
-#include "server/replay/bench_command.hpp"
-#include "server/replay/copy_command.hpp"
-#include "server/replay/diff_command.hpp"
-#include "server/replay/export_command.hpp"
-#include "server/replay/import_command.hpp"
-#include "server/replay/keyframes_command.hpp"
-#include "server/replay/play_command.hpp"
+#include "server/replay/replay_commands.hpp"
 #include "server/replay/subcommand.hpp"
-#include "server/replay/timelapse_command.hpp"
-#include "server/replay/verify_command.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {

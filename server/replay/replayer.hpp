@@ -56,7 +56,7 @@ class Replayer {
   /// gives to the chunk is a difference.
   void expect(const std::string& source, const DigestList& list);
 
-  /// Adds the chunks of keyframes in the same way.
+  /// Adds the chunks of keyframes, as expect() those of a list.
   void expect_keyframes(const std::vector<StoredChunk>& chunks);
 
   /// A function that run() calls every 1024 edits with the sequence number reached and the last

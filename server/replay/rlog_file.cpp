@@ -218,12 +218,12 @@ class Importer {
   RlogImport report_;
 };
 
-Result<std::unique_ptr<Store>, std::string> world_for(const std::string& folder,
+Result<std::unique_ptr<Store>, std::string> world_for(const std::string& place,
                                                       const std::string& file,
                                                       const RlogWorld& wanted) {
-  if (has_world(folder)) {
+  if (has_world(place)) {
     // The file may hold the very edits that the world has lost.
-    auto store = open_world(folder, StoreAccess::repair);
+    auto store = open_world(place, StoreAccess::repair);
     if (!store) return failure(store.error().message());
     if ((*store)->meta().world_id != wanted.world_id)
       return failure(file + ": is of another world");
@@ -247,7 +247,7 @@ Result<std::unique_ptr<Store>, std::string> world_for(const std::string& folder,
   const auto generator = make_generator(meta.generator, meta.materials);
   if (!generator)
     return failure(file + ": generator " + meta.generator.name + ": " + generator.error().what);
-  auto store = create_world(folder, meta);
+  auto store = create_world(place, meta);
   if (!store) return failure(store.error().message());
   return *std::move(store);
 }
@@ -274,7 +274,7 @@ Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::strin
   return written;
 }
 
-Result<RlogImport, std::string> import_rlog(const std::string& folder, const std::string& file) {
+Result<RlogImport, std::string> import_rlog(const std::string& place, const std::string& file) {
   if (sodium_init() < 0) return failure("libsodium cannot start");
   const File in(file, O_RDONLY);
   if (!in.is_open()) return failure(file + ": cannot be read: " + system_error_text());
@@ -282,8 +282,8 @@ Result<RlogImport, std::string> import_rlog(const std::string& folder, const std
     return in.read(position, out);
   });
   if (!reader) return failure(file + ": " + reader.error().message());
-  const bool is_new = !has_world(folder);
-  auto store = world_for(folder, file, reader->world());
+  const bool is_new = !has_world(place);
+  auto store = world_for(place, file, reader->world());
   if (!store) return failure(store.error());
   Importer importer(**store, file);
   if (const auto begun = importer.begin(*reader); !begun) return failure(begun.error());

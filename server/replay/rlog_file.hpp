@@ -24,7 +24,7 @@ Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::strin
                                             Sequence at, RlogOptions options = {});
 
 struct RlogImport {
-  bool made_world = false;  // the folder held no world
+  bool made_world = false;  // the place held no world
   std::uint64_t added = 0;  // edits
   std::uint64_t known = 0;  // edits that the log had already, and equal
   /// Edits before the beginning of the world's log: they are part of its base and are not compared.
@@ -35,11 +35,11 @@ struct RlogImport {
   std::string stopped;
 };
 
-/// Appends the edits of `file` to the world in `folder`. It must be the same world and must end no
-/// earlier than the file begins; edits that both have must be equal. If the folder holds no world
+/// Appends the edits of `file` to the world at `place`. It must be the same world and must end no
+/// earlier than the file begins; edits that both have must be equal. If the place holds no world
 /// and the file begins at edit 1, the world is made: same id, base of its generator, a new server
 /// key. Edits keep epoch and sequence number. An interrupted import can be repeated. The error is
 /// one line; what was imported before it stays.
-Result<RlogImport, std::string> import_rlog(const std::string& folder, const std::string& file);
+Result<RlogImport, std::string> import_rlog(const std::string& place, const std::string& file);
 
 }  // namespace runstone

@@ -17,7 +17,7 @@ namespace runstone {
 
 /// Options that every subcommand has.
 struct CommonOptions {
-  std::string world;      // folder
+  std::string world;      // place
   std::string json;       // file of the JSON report; empty: none
   bool progress = false;  // print progress on standard error even if it is no terminal
 };
@@ -33,7 +33,7 @@ class SubcommandOptions {
 
   explicit SubcommandOptions(CLI::App& app) : app_(app) {}
 
-  /// Declares --world (required), --json and --progress. `world_help` describes the folder.
+  /// Declares --world (required), --json and --progress. `world_help` describes the place.
   void common(CommonOptions& out, const std::string& world_help);
   void flag(const std::string& name, bool& out, const std::string& help);
   void text(const std::string& name, std::string& out, const std::string& help,

@@ -47,7 +47,7 @@ std::string text_of(const ChunkKey& key, const Chunk& stored, const Chunk& made)
 
 }  // namespace
 
-StoreResult<TileReport> check_tiles(const std::string& folder, WorldReader& store,
+StoreResult<TileReport> check_tiles(const std::string& place, WorldReader& store,
                                     const Generator& generator, const TileProgress& progress) {
   using Row = StoreResult<std::optional<Chunk>>;
   const auto fail_with = [](const StoreError& error) { return Unexpected<StoreError>{error}; };
@@ -71,7 +71,7 @@ StoreResult<TileReport> check_tiles(const std::string& folder, WorldReader& stor
   TileLedger unsaved;
   if (const auto found = find_unsaved(store, unsaved); !found) return fail_with(found.error());
 
-  ChunkSource chunks(folder, generator);
+  ChunkSource chunks(place, generator);
   TileLedger ground;
   TileSource source(chunks, generator, store.meta().chunk_edge, ground, differs,
                     {kCacheBytes, false, false});

@@ -21,11 +21,11 @@ struct TileReport {
 /// Gets the number of tiles that are done, and that of all.
 using TileProgress = std::function<void(std::uint64_t, std::uint64_t)>;
 
-/// Makes each stored tile of the chunks in `folder` again, without reading a stored tile, and
+/// Makes each stored tile of the chunks of a world again, without reading a stored tile, and
 /// compares version and digest. Tiles are a cache of snapshots and base, so the edits that only the
-/// log has do not count. `store` is the world in `folder`; a server may be running it. Fails if
-/// the folder cannot be read.
-StoreResult<TileReport> check_tiles(const std::string& folder, WorldReader& store,
+/// log has do not count. `store` is the world at `place`; a server may be running it. Fails if
+/// the place cannot be read.
+StoreResult<TileReport> check_tiles(const std::string& place, WorldReader& store,
                                     const Generator& generator, const TileProgress& progress);
 
 }  // namespace runstone

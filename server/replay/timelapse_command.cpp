@@ -1,4 +1,4 @@
-#include "server/replay/timelapse_command.hpp"
+#include "server/replay/replay_commands.hpp"
 
 #include <charconv>
 #include <iomanip>

@@ -1,4 +1,4 @@
-#include "server/replay/verify_command.hpp"
+#include "server/replay/replay_commands.hpp"
 
 #include <chrono>
 #include <iomanip>

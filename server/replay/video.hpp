@@ -12,7 +12,7 @@ namespace runstone {
 /// one line.
 Result<void, std::string> make_video(const std::string& folder, std::uint32_t fps);
 
-/// Returns the shell command that does the same in that folder.
+/// Returns the shell command that joins the pictures in their folder, for a person to type.
 std::string video_command(std::uint32_t fps);
 
 }  // namespace runstone

@@ -17,7 +17,7 @@ namespace runstone {
 /// edits before it.
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
                               Sequence at, ReplayScratch& scratch);
-/// Does the same, and reads the log through `logs`, which must use the same reader.
+/// Returns the chunk of chunk_past(), and reads the log through `logs`, which must use `reader`.
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, ChunkLogs& logs,
                               const ChunkKey& key, Sequence at, ReplayScratch& scratch);
 

@@ -1,8 +1,8 @@
-// PlayerActions: what one player did, undid and redid. The log is the only state. An *action* is one
-// or more edits with cause player: those after the first one have it as their subject. It is undone
-// and redone as a whole. A *toggle* is an undo or redo: records of the player with that cause
-// whose subject is the action, one for each chunk. An action is undone if its last toggle is an
-// undo. Undo takes the newest action that is not undone. Redo takes the action that was undone
+// PlayerActions: what one player did, undid and redid. The log is the only state. An *action* is
+// one or more edits with cause player: those after the first one have it as their subject. It is
+// undone and redone as a whole. A *toggle* is an undo or redo: records of the player with that
+// cause whose subject is the action, one for each chunk. An action is undone if its last toggle is
+// an undo. Undo takes the newest action that is not undone. Redo takes the action that was undone
 // last, unless the player has done a new action since. Both select edits of the player, and
 // common/edits/restore/restore.hpp defines the effect:
 //   - all records of the action itself;
@@ -53,8 +53,8 @@ class PlayerActions {
   std::vector<Sequence> to_undo(Sequence action) const;
   /// Returns the edits that redo of an action selects, ascending. Requires an action of redoable().
   std::vector<Sequence> to_redo(Sequence action) const;
-  /// Return the records of the action itself, ascending, in to_undo() and to_redo(). All changes lie
-  /// in the chunks that they touch.
+  /// Return the records of the action itself, ascending, in to_undo() and to_redo(). All changes
+  /// lie in the chunks that they touch.
   std::vector<Sequence> undo_core(Sequence action) const;
   std::vector<Sequence> redo_core(Sequence action) const;
 

@@ -66,7 +66,7 @@ std::vector<RestoredChunk> restore_chunks(WorldReader& reader, const Generator& 
 
 struct RestoreLimits {
   std::size_t slice_chunks = 16;         // written per step
-  std::uint64_t slice_voxels = 200'000;  // likewise; a single chunk may have more
+  std::uint64_t slice_voxels = 200'000;  // written per step; a single chunk may have more
   std::size_t work_chunks = 32;          // in one order to a worker
 };
 

@@ -17,10 +17,10 @@ std::vector<EditDescriptor> restore_pastes(const RunChunk& now,
                                            std::span<const Difference> differences,
                                            VoxelPos origin);
 
-/// Does the same with one group of pastes for each material that the differing voxels hold in
-/// `now`. The mask of a group lets it write only where the voxel still holds that material. The
-/// edit itself therefore leaves alone a voxel that was changed since `now`, whatever the chunk's
-/// version is. There are more edits than from restore_pastes().
+/// Returns pastes as restore_pastes(), in one group for each material that the differing voxels
+/// hold in `now`. The mask of a group lets it write only where the voxel still holds that material.
+/// The edit itself therefore leaves alone a voxel that was changed since `now`, whatever the
+/// chunk's version is. There are more edits than from restore_pastes().
 std::vector<EditDescriptor> careful_restore_pastes(const RunChunk& now,
                                                    std::span<const Difference> differences,
                                                    VoxelPos origin);

@@ -47,7 +47,8 @@ StoreResult<Selection> select_edits(LogReader& reader, const SelectionFilter& fi
                                     const ShouldContinue& should_continue = {});
 
 /// Selects exactly these edits. Edits that the log does not hold are left out. Requires that
-/// `edits` ascend. Fails in the same cases.
+/// `edits` ascend. Fails as the reader, with bad_request if the selection is too large, and with
+/// cancelled once `should_continue` returns false.
 StoreResult<Selection> select_edits(LogReader& reader, const std::vector<Sequence>& edits,
                                     const ShouldContinue& should_continue = {});
 

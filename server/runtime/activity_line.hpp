@@ -1,6 +1,6 @@
-// The log line that tells an operator what happened since the line before: "in 60 s: 2 players came,
-// 1204 edits, 3 edits refused, 12.3 MB sent; now 4 players, 212.0 MB of world in memory". It names
-// only what moved. The line of all counters is counters_line().
+// The log line that tells an operator what happened since the line before: "in 60 s: 2 players
+// came, 1204 edits, 3 edits refused, 12.3 MB sent; now 4 players, 212.0 MB of world in memory". It
+// names only what moved. The line of all counters is counters_line().
 #pragma once
 #include <cstdint>
 #include <string>

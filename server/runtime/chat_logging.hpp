@@ -9,8 +9,9 @@
 
 namespace runstone {
 
-/// Opens the log of the chat in the world's folder and removes lines that are older than `chat_days`.
-/// With chat_days = 0 it removes the whole log and returns null. `now_us`: UTC. Blocks on the disk.
+/// Opens the log of the chat in the world's folder and removes lines that are older than
+/// `chat_days`. With chat_days = 0 it removes the whole log and returns null. `now_us`: UTC. Blocks
+/// on the disk.
 std::unique_ptr<ChatLog> open_chat_log(const ServerConfig& config, TimeUs now_us);
 
 /// Returns the time before which lines are removed.

@@ -1,6 +1,6 @@
 // CommandRunner: carries out the commands of the console, the control socket and clients, and owns
-// the services behind them: rollback, undo and redo. A server that has handed the world over keeps it,
-// because workers may still answer. Commands are refused then.
+// the services behind them: rollback, undo and redo. A server that has handed the world over keeps
+// it, because workers may still answer. Commands are refused then.
 // Threads: run(line, reply) may be called from any thread, everything else from the world strand.
 #pragma once
 #include <functional>

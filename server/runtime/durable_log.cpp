@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds kCommitInterval{50};
 
 }  // namespace
 
-DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string& folder,
+DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string& place,
                        const Generator& generator, const Options& options, Events events)
     : strand_(strand), store_(store), events_(std::move(events)), durable_(options.durable) {
   LogWriter::Callbacks callbacks;
@@ -29,7 +29,7 @@ DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string&
   };
   callbacks.on_failed = [this](const StoreError& error) { on_failed(error); };
   callbacks.on_space = [this](DiskSpace space, const std::string& why) { on_space(space, why); };
-  callbacks.free_bytes = [folder] { return free_bytes(folder); };
+  callbacks.free_bytes = [place] { return free_bytes(place); };
   LogWriter::Limits limits;
   limits.queued_records_max = options.queued_records_max;
   limits.reserve_bytes = options.reserve_bytes;
@@ -38,7 +38,7 @@ DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string&
   // on_durable() reads keyframes_. Nobody can append before this constructor returns, so it does
   // not run before.
   if (options.keyframes) {
-    keyframes_ = std::make_unique<KeyframeThread>(folder, generator, *options.keyframes, *writer_);
+    keyframes_ = std::make_unique<KeyframeThread>(place, generator, *options.keyframes, *writer_);
   }
   store_.watch_ownership([this](const StoreError& error) { on_failed(error); });
 }

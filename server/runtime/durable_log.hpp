@@ -35,17 +35,17 @@ class DurableLog {
     std::function<void()> on_snapshots_saved;
     /// Reports that the disk has no more space for new edits, or has space again.
     std::function<void(DiskSpace)> on_space;
-    /// Reports, at most once, that the log cannot be written any more, or that another program owns the
-    /// world.
+    /// Reports, at most once, that the log cannot be written any more, or that another program owns
+    /// the world.
     std::function<void()> on_failed;
     /// Reports the same, at once and on any thread.
     std::function<void()> on_failed_in_writer;
   };
 
   /// Starts the threads. `strand`, `store` and `generator` must outlive the object. Only the writer
-  /// writes `store` until stop() has returned. `folder`: of the world; the keyframe thread opens its
+  /// writes `store` until stop() has returned. `place`: of the world; the keyframe thread opens its
   /// own reader there.
-  DurableLog(WorldStrand& strand, WorldSink& store, const std::string& folder,
+  DurableLog(WorldStrand& strand, WorldSink& store, const std::string& place,
              const Generator& generator, const Options& options, Events events);
 
   ~DurableLog() { stop(); }

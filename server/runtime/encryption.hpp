@@ -15,8 +15,8 @@ namespace runstone {
 Result<void, std::string> may_listen_at(const asio::ip::address& address,
                                         const ServerConfig& config);
 
-/// Reads the certificate and the secret key that the configuration names, if it names any. The error
-/// names the setting and the file.
+/// Reads the certificate and the secret key that the configuration names, if it names any. The
+/// error names the setting and the file.
 Result<std::optional<TlsContext>, std::string> configured_certificate(const ServerConfig& config);
 
 }  // namespace runstone

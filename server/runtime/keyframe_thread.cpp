@@ -26,9 +26,9 @@ struct Answer {
 
 }  // namespace
 
-KeyframeThread::KeyframeThread(std::string folder, const Generator& generator,
+KeyframeThread::KeyframeThread(std::string place, const Generator& generator,
                                const KeyframePolicy& policy, LogWriter& writer)
-    : folder_(std::move(folder)),
+    : place_(std::move(place)),
       generator_(generator),
       policy_(policy),
       writer_(writer),
@@ -75,7 +75,7 @@ StoreResult<void> KeyframeThread::save(KeyframeMaker::Chunks chunks,
       });
   if (!taken)
     return Unexpected<StoreError>{
-        {StoreError::Kind::cancelled, folder_, "keyframe", "the log writer has ended"}};
+        {StoreError::Kind::cancelled, place_, "keyframe", "the log writer has ended"}};
   std::unique_lock lock(answer->mutex);
   answer->arrived.wait(lock, [&] { return answer->result.has_value(); });
   return *answer->result;
@@ -86,7 +86,7 @@ void KeyframeThread::run() {
     if (error.kind == StoreError::Kind::cancelled) return;
     logger("store").error("no more keyframes until the next start: {}", error.message());
   };
-  auto reader = open_world(folder_, StoreAccess::read_only);
+  auto reader = open_world(place_, StoreAccess::read_only);
   if (!reader) return failed(reader.error());
   KeyframeMaker maker(**reader, generator_, policy_);
   for (;;) {

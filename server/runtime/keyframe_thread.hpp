@@ -18,7 +18,7 @@ class KeyframeThread {
  public:
   /// Starts the thread, which first makes the keyframes that are due in the log already.
   /// `generator` and `writer` must outlive the object.
-  KeyframeThread(std::string folder, const Generator& generator, const KeyframePolicy& policy,
+  KeyframeThread(std::string place, const Generator& generator, const KeyframePolicy& policy,
                  LogWriter& writer);
   /// Calls stop().
   ~KeyframeThread();
@@ -39,7 +39,7 @@ class KeyframeThread {
   bool is_stopping() const;
   StoreResult<void> save(KeyframeMaker::Chunks chunks, const std::optional<Keyframe>& keyframe);
 
-  const std::string folder_;
+  const std::string place_;
   const Generator& generator_;
   const KeyframePolicy policy_;
   LogWriter& writer_;

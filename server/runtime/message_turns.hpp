@@ -1,8 +1,8 @@
 // MessageTurns: the messages of sessions that wait for the world strand. Sessions take turns with
 // one message each. So a message waits for at most one message of each other session and for those
-// of its own session, however many and however costly messages the others have sent. A player's session
-// at another server of the world takes turns like one here, although its messages come through the one
-// session of that server. So only messages of one player are in order.
+// of its own session, however many and however costly messages the others have sent. A player's
+// session at another server of the world takes turns like one here, although its messages come
+// through the one session of that server. So only messages of one player are in order.
 // Bound: NetLimits::unhandled_bytes_max for each session.
 // Thread: the world strand.
 #pragma once
@@ -34,8 +34,8 @@ class MessageTurns {
   bool is_empty() const { return waiting_.empty(); }
 
  private:
-  /// Who takes turns: a session, and the number that another server gave to the session of its player. 0:
-  /// the session itself.
+  /// Who takes turns: a session, and the number that another server gave to the session of its
+  /// player. 0: the session itself.
   using Lane = std::pair<SessionId, SessionId>;
   using Waiting = std::map<Lane, std::deque<Turn>>;
   static Lane lane_of(SessionId session, const Message& message);

@@ -1,6 +1,6 @@
-// OwnerConnection: the connection of a server that follows with the owner of its world. It makes one at
-// a time, to the address that it is told, and reports what comes to WorldServer. It makes no further
-// attempt by itself: whoever watches the lease knows the address of the next owner.
+// OwnerConnection: the connection of a server that follows with the owner of its world. It makes
+// one at a time, to the address that it is told, and reports what comes to WorldServer. It makes no
+// further attempt by itself: whoever watches the lease knows the address of the next owner.
 // Threads: connect_to() any; the others the world strand.
 #pragma once
 #include <asio/any_io_executor.hpp>
@@ -19,15 +19,15 @@ namespace runstone {
 
 class OwnerConnection {
  public:
-  /// `io`, `strand` and the threads of `decoders` must outlive the object. `is_encrypted`: the owner
-  /// takes encrypted connections only.
+  /// `io`, `strand` and the threads of `decoders` must outlive the object. `is_encrypted`: the
+  /// owner takes encrypted connections only.
   OwnerConnection(asio::io_context& io, WorldStrand& strand, asio::any_io_executor decoders,
                   std::uint16_t chunk_edge, bool is_encrypted);
 
   /// Sets what gets the messages. Call it before connect_to().
   void attach(WorldServer& world) { world_ = &world; }
-  /// Connects to the owner at HOST:PORT, unless a connection there exists or is being made, or end() was
-  /// called. Ends a connection that leads elsewhere; a later call then connects.
+  /// Connects to the owner at HOST:PORT, unless a connection there exists or is being made, or
+  /// end() was called. Ends a connection that leads elsewhere; a later call then connects.
   void connect_to(const std::string& address);
   /// Queues a message. Returns false if there is no room, or no connection.
   bool send(const EncodedMessage& message) { return link_ != nullptr && link_->send(message); }

@@ -17,8 +17,8 @@ class PeriodicTask {
   PeriodicTask(WorldStrand& strand, std::chrono::milliseconds interval, std::function<void()> task)
       : strand_(strand), interval_(interval), task_(std::move(task)), timer_(strand.make_timer()) {}
 
-  /// Starts the task, also after stop(). The first run comes one interval later. Requires that the task
-  /// does not run.
+  /// Starts the task, also after stop(). The first run comes one interval later. Requires that the
+  /// task does not run.
   void start() {
     strand_.post([this] { schedule(++period_); });
   }

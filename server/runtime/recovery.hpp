@@ -23,13 +23,13 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store);
 Result<std::uint64_t, std::string> replay_log(LogReader& store, const WorldStart& start,
                                               WorldServer& world);
 
-/// Writes the parts of the log that an earlier owner may not have written, raises the epoch, and reads
-/// what a server needs to take the world over. `last`: the last record of this server. Fails if the log
-/// has other records than this server; nothing is written then.
+/// Writes the parts of the log that an earlier owner may not have written, raises the epoch, and
+/// reads what a server needs to take the world over. `last`: the last record of this server. Fails
+/// if the log has other records than this server; nothing is written then.
 Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<LogPart>& parts,
                                                Version last);
-/// Reads what a server that follows has missed: the records from `first` on, `records_max` at most, and
-/// all players and names. Cost: O(players + names + records).
+/// Reads what a server that follows has missed: the records from `first` on, `records_max` at most,
+/// and all players and names. Cost: O(players + names + records).
 Result<ReadLog, std::string> read_missed_log(WorldReader& store, Sequence first,
                                              std::size_t records_max = 8'192);
 

@@ -50,7 +50,7 @@ struct ServerThreads {
 class ServerCore final : public NetEvents {
  public:
   /// The core keeps references to the members of `threads`, and to `config`, `store` and
-  /// `generator`. All of them must outlive it. `store` is of the folder `config.world`. `on_failure`
+  /// `generator`. All of them must outlive it. `store` is open at world_place(config). `on_failure`
   /// is called at most once, from the log writer's thread, when the log cannot be written any more.
   /// `actions`: the commands that the program carries out.
   ServerCore(const ServerThreads& threads, const ServerConfig& config, Store& store,
@@ -68,22 +68,23 @@ class ServerCore final : public NetEvents {
   /// Reads what the store remembers, raises the epoch, replays the log above the checkpoint, and
   /// starts the log writer.
   Result<void, std::string> recover();
-  /// Reads the same, and follows the owner of the world instead. Whoever calls it tells where the owner
-  /// is: connect_to().
+  /// Reads the same, and follows the owner of the world instead. Whoever calls it tells where the
+  /// owner is: connect_to().
   Result<void, std::string> follow();
   /// Connects to the owner at HOST:PORT, unless there is a connection. Thread: any.
   void connect_to(const std::string& address) { owner_.connect_to(address); }
-  /// Makes a server that follows the owner of the world, which `store` has open for writing. `store`
-  /// must outlive the core. `address`: where the other servers connect to this one. Blocks on the
-  /// database. Sessions go on. After an error the server must be stopped. Requires start(). Thread: any
-  /// but those of `threads`.
+  /// Makes a server that follows the owner of the world, which `store` has open for writing.
+  /// `store` must outlive the core. `address`: where the other servers connect to this one. Blocks
+  /// on the database. Sessions go on. After an error the server must be stopped. Requires start().
+  /// Thread: any but those of `threads`.
   Result<void, std::string> take_over(Store& store, const std::string& address);
-  /// Makes the owner a server that follows: begin_handover(), then end_handover(), then the caller gives
-  /// the lease up. Sessions go on. take_over() may follow. `successor` is as for
-  /// WorldServer::hand_over(). Returns the server that is to take the world over, or why nothing has
-  /// changed. Requires start(). Blocks. Thread: any but those of `threads`.
+  /// Makes the owner a server that follows: begin_handover(), then end_handover(), then the caller
+  /// gives the lease up. Sessions go on. take_over() may follow. `successor` is as for
+  /// WorldServer::hand_over(). Returns the server that is to take the world over, or why nothing
+  /// has changed. Requires start(). Blocks. Thread: any but those of `threads`.
   Result<SessionId, std::string> begin_handover(std::optional<SessionId> successor);
-  /// Writes the log and ends the log writer. After an error the server must be stopped. Likewise.
+  /// Writes the log and ends the log writer. After an error the server must be stopped. Requires
+  /// begin_handover(). Blocks. Thread: any but those of `threads`.
   Result<void, std::string> end_handover();
   /// How a server that follows gets on.
   struct FollowState {
@@ -102,8 +103,8 @@ class ServerCore final : public NetEvents {
   /// future becomes ready when this is done. It also becomes ready if the log fails, or if the disk
   /// is full and `stop_s` is over.
   std::future<void> begin_stop();
-  /// Ends the readers, the log of the chat, the keyframe thread and the log writer, which writes what
-  /// is queued.
+  /// Ends the readers, the log of the chat, the keyframe thread and the log writer, which writes
+  /// what is queued.
   /// Requires that the future of begin_stop() is ready.
   void stop_writer();
   /// Returns true if another server waits to take the world over. Requires that the future of
@@ -126,12 +127,12 @@ class ServerCore final : public NetEvents {
   /// strand. Thread: any.
   void command(const std::string& line, CommandReply reply);
 
-  /// Answers a question of a gateway, of which there is one: "status". The answer is the line of all
-  /// counters (counters_line.hpp) and a line "player NAME" for each session. Thread: any.
+  /// Answers a question of a gateway, of which there is one: "status". The answer is the line of
+  /// all counters (counters_line.hpp) and a line "player NAME" for each session. Thread: any.
   void answer_gateway(const std::string& question, CommandReply reply);
 
-  /// Takes over the settings that a running server may change, logs which, and replies. `read` is the
-  /// new configuration, or why there is none. Thread: any.
+  /// Takes over the settings that a running server may change, logs which, and replies. `read` is
+  /// the new configuration, or why there is none. Thread: any.
   void reload(Result<ServerConfig, std::string> read, CommandReply reply);
 
   // NetEvents: called on session strands.
@@ -157,9 +158,9 @@ class ServerCore final : public NetEvents {
   void close_stalled();
   /// Runs after every task of the world strand.
   void after_task();
-  /// Posts a task that handles the next message, unless none waits or the task is posted already. It
-  /// is posted again while messages wait. Tasks that were posted in between run first, so that later
-  /// messages take part in the turns.
+  /// Posts a task that handles the next message, unless none waits or the task is posted already.
+  /// It is posted again while messages wait. Tasks that were posted in between run first, so that
+  /// later messages take part in the turns.
   void schedule_turn();
   void handle(MessageTurns::Turn&& turn);
   /// Posts a task that sends chunks, if a session's delivery is not complete, unless it is posted
@@ -185,7 +186,7 @@ class ServerCore final : public NetEvents {
   std::shared_ptr<GatewayListener> gateway_;  // null: there is no gateway
   ConnectedSessions sessions_;
   MessageTurns messages_;                                     // used on the world strand
-  bool is_turn_posted_ = false, is_delivery_posted_ = false;  // likewise
+  bool is_turn_posted_ = false, is_delivery_posted_ = false;  // used on the world strand
   ChunkSource chunks_;
   ChunkSender sender_;
   WorldReaders readers_;
@@ -205,8 +206,8 @@ class ServerCore final : public NetEvents {
 
   LogWriter::Counters ended_logs_;  // of the earlier periods in which this server owned the world
 
-  // These parts exist from recover() or follow() on. Of a server that follows, the log exists only while
-  // it owns the world, and the commands from the first time on.
+  // These parts exist from recover() or follow() on. Of a server that follows, the log exists only
+  // while it owns the world, and the commands from the first time on.
   std::unique_ptr<ChatLog> chat_log_;  // null if chat_days is 0
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<DurableLog> log_;

@@ -34,14 +34,14 @@ class ServerEnvironment final : public WorldEnvironment {
         tiles_(tiles),
         owner_(owner) {}
 
-  /// Connects the world, which is made after the environment. Call it once, before the first session
-  /// connects. `chat_log` may be null. Both must outlive the object.
+  /// Connects the world, which is made after the environment. Call it once, before the first
+  /// session connects. `chat_log` may be null. Both must outlive the object.
   void attach(WorldServer& world, ChatLog* chat_log) {
     world_ = &world;
     chat_log_ = chat_log;
   }
-  /// Connects what the owner of the world has. Until then, the log has no room. Both must outlive the
-  /// object, the log until detach_log().
+  /// Connects what the owner of the world has. Until then, the log has no room. Both must outlive
+  /// the object, the log until detach_log().
   void attach(DurableLog& log, CommandRunner& commands) {
     log_ = &log;
     commands_ = &commands;

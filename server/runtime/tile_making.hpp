@@ -1,6 +1,6 @@
-// TileMaking: makes and saves tiles for the world strand. Tiles are made by threads of their own, so
-// that they delay neither chunks nor edits; the threads have a low priority. Tiles are saved by the
-// log writer, a few at a time.
+// TileMaking: makes and saves tiles for the world strand. Tiles are made by threads of their own,
+// so that they delay neither chunks nor edits; the threads have a low priority. Tiles are saved by
+// the log writer, a few at a time.
 // Threads: the world strand, unless a call says otherwise. The threads end with stop().
 #pragma once
 #include <asio/thread_pool.hpp>
@@ -29,8 +29,8 @@ class TileMaking {
  public:
   using Tiles = std::vector<std::pair<ChunkKey, ChunkPtr>>;
   enum class End { made, stopped, failed };
-  /// Brings the tiles of a request, the requested one last if it was made. `stopped`: the request has
-  /// reached TileRequest::steps_max.
+  /// Brings the tiles of a request, the requested one last if it was made. `stopped`: the request
+  /// has reached TileRequest::steps_max.
   using Then = std::function<void(const ChunkKey&, const std::vector<MadeTile>&, End)>;
 
   /// Makes a chunk as it was after an edit. Kind::cancelled: the server stops.
@@ -48,8 +48,8 @@ class TileMaking {
   Sequence newest_edit(const ChunkKey& tile);
   /// Returns true if the client's copy is the tile as it is now; see TileSource::is_current().
   bool is_current(const CachedChunk& copy);
-  /// Writes tiles when the earlier ones are written. Drops tiles if too many wait. The writer must not
-  /// call back after the strand has ended.
+  /// Writes tiles when the earlier ones are written. Drops tiles if too many wait. The writer must
+  /// not call back after the strand has ended.
   void save(Tiles tiles, LogWriter& writer);
 
   /// Ends the threads. Waits for the tiles that are being made, and drops the requests that wait.

@@ -23,12 +23,12 @@ WorldReaders::OpenedHistoryResult open(Moments& moments, const HistoryRequest& r
 }  // namespace
 
 WorldReaders::WorldReaders(WorldStrand& strand, asio::thread_pool& workers, ChunkSource& chunks,
-                           const std::string& folder, const Generator& generator)
+                           const std::string& place, const Generator& generator)
     : strand_(strand),
       workers_(workers),
       chunks_(chunks),
       generator_(generator),
-      moments_(folder, generator) {}
+      moments_(place, generator) {}
 
 void WorldReaders::load_chunk(const ChunkKey& key, std::function<void(StoreResult<Chunk>)> then) {
   asio::post(workers_, [this, key, then = std::move(then)] {

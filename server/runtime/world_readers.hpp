@@ -1,4 +1,4 @@
-// WorldReaders: reads the world folder for the world strand: chunks, chunks of the past, and the
+// WorldReaders: reads the stored world for the world strand: chunks, chunks of the past, and the
 // log. Each call returns at once; `then` runs later on the world strand. There are three groups of
 // threads, so that one kind of read does not wait for another:
 //   - the workers, shared with encoding, load chunks;
@@ -26,7 +26,7 @@ class WorldReaders {
  public:
   /// All must outlive the object. The workers must have ended when it is destroyed.
   WorldReaders(WorldStrand& strand, asio::thread_pool& workers, ChunkSource& chunks,
-               const std::string& folder, const Generator& generator);
+               const std::string& place, const Generator& generator);
 
   void load_chunk(const ChunkKey& key, std::function<void(StoreResult<Chunk>)> then);
 

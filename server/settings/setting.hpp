@@ -1,5 +1,5 @@
-// Setting: one value of a program's configuration, as text. Values are checked when they are set, so
-// a configuration is always valid. Thread: any.
+// Setting: one value of a program's configuration, as text. Values are checked when they are set,
+// so a configuration is always valid. Thread: any.
 #pragma once
 #include <charconv>
 #include <cstdint>

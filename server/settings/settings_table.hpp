@@ -53,9 +53,9 @@ class SettingsTable {
       return failure(name + " = \"" + text + "\": " + *wrong);
     return {};
   }
-  /// Sets the values that a TOML file names; `file` is only for messages. Fails on unknown names and
-  /// wrong values, with their line; `config` is then unchanged. `sections`: a kind of sections that
-  /// the caller reads (read_toml_sections); empty: there are none.
+  /// Sets the values that a TOML file names; `file` is only for messages. Fails on unknown names
+  /// and wrong values, with their line; `config` is then unchanged. `sections`: a kind of sections
+  /// that the caller reads (read_toml_sections); empty: there are none.
   Result<void, TextError> read_toml(Config& config, std::string_view toml, std::string_view file,
                                     std::string_view sections = {}) const {
     auto values = read_toml_settings(toml, file);
@@ -65,7 +65,7 @@ class SettingsTable {
     });
     return read_values(config, *values, file);
   }
-  /// The same for values that were read.
+  /// Sets the values of a file that was read. Fails and changes nothing if one is wrong.
   Result<void, TextError> read_values(Config& config, const std::vector<TomlSetting>& values,
                                       std::string_view file) const {
     Config read = config;

@@ -28,12 +28,13 @@ struct TomlSection {
   std::string name;  // "valley"
   std::vector<TomlSetting> settings;
 };
-/// Returns the sections of a kind, such as "server", by name. Fails if the file is no TOML, or if the
-/// kind is a value and no table of sections.
+/// Returns the sections of a kind, such as "server", by name. Fails if the file is no TOML, or if
+/// the kind is a value and no table of sections.
 Result<std::vector<TomlSection>, TextError> read_toml_sections(std::string_view toml,
                                                                std::string_view file,
                                                                std::string_view kind);
-/// Returns all keys of a file with their values. `file` is only for messages. Fails if it is no TOML.
+/// Returns all keys of a file with their values. `file` is only for messages. Fails if it is no
+/// TOML.
 Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view toml,
                                                                std::string_view file);
 /// Returns true if a setting of this type takes the value. A flag may also be quoted.

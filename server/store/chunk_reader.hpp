@@ -51,8 +51,8 @@ class ChunkReader : public virtual WorldInfo {
   /// touched. It is 0 if there is none.
   virtual StoreResult<Sequence> checkpoint() = 0;
 
-  /// Returns a stored tile, or nullopt if there is none, or if the world is of format 3 and open for
-  /// reading only. Fails (corrupt) if the row is damaged; the tile can be made again.
+  /// Returns a stored tile, or nullopt if there is none, or if the world is of format 3 and open
+  /// for reading only. Fails (corrupt) if the row is damaged; the tile can be made again.
   virtual StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key) = 0;
   /// Returns keys and versions of all stored tiles, ascending by key.
   virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys() = 0;

@@ -35,8 +35,8 @@ Result<Chunk, std::string> chunk_of(std::string_view table, const ChunkRow& row,
 /// it can.
 std::string unfit(const Chunk& chunk, std::uint16_t chunk_edge);
 
-/// Returns the statement that inserts or replaces a row. Its parameters are lod, x, y, z, epoch, seq,
-/// both halves of the digest, checksum and data.
+/// Returns the statement that inserts or replaces a row. Its parameters are lod, x, y, z, epoch,
+/// seq, both halves of the digest, checksum and data.
 std::string save_chunk_text(const std::string& table);
 /// Binds lod, x, y, z to parameters 1 to 4.
 void bind_key(sql::Statement& statement, const ChunkKey& key);

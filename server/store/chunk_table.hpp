@@ -27,7 +27,7 @@ class ChunkTable {
   /// (bad_request) if
   ///   - the chunk has another edge;
   ///   - its digest is not that of its voxels;
-  ///   - its version is older than the stored one, or, in `base`, the same.
+  ///   - its version is older than the stored one, or, in `base`, not newer.
   StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge,
                          RowFold& fold);
   /// Returns "base" or "snapshot".

@@ -24,7 +24,8 @@ class ClaimTable {
   /// Adds a claim, in the caller's transaction, and updates the fold of `name_claim`. Requires that
   /// the name has no owner.
   StoreResult<void> add(const NameClaim& claim, RowFold& fold);
-  /// Removes a claim likewise. Requires that the name has an owner.
+  /// Removes a claim, in the caller's transaction, and updates the fold of `name_claim`. Requires
+  /// that the name has an owner.
   StoreResult<void> remove(const std::string& folded, RowFold& fold);
 
  private:

@@ -1,4 +1,5 @@
-// copy_stored_world: copies a world from one place to another, e.g. from SQLite to PostgreSQL or back.
+// copy_stored_world: copies a world from one place to another, e.g. from SQLite to PostgreSQL or
+// back.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -16,13 +17,15 @@ struct CopiedWorld {
 
 using CopyProgress = std::function<void(std::uint64_t rows, std::uint64_t all)>;
 
-/// Copies every row of a world, as it is at one moment, and verifies the copy (WorldReader::check()).
-/// `from` and `to` are places, see create_world(). The copy is the same world: its id, its keys and its
-/// log are those of the original, so only one of the two may go on. Fails
+/// Copies every row of a world, as it is at one moment, and verifies the copy
+/// (WorldReader::check()). `from` and `to` are places, see create_world(). The copy is the same
+/// world: its id, its keys and its log are those of the original, so only one of the two may go on.
+/// Fails
 ///   - as open_world() of `from`;
-///   - as create_world() of `to`. A copy that is interrupted leaves nothing in a database. In a folder
-///     it leaves a file that is no world;
-///   - as WorldReader::check() if the original is damaged. The copy then stays, with the same damage.
+///   - as create_world() of `to`. A copy that is interrupted leaves nothing in a database. In a
+///     folder it leaves a file that is no world;
+///   - as WorldReader::check() if the original is damaged. The copy then stays, with the same
+///     damage.
 /// `progress` is called with the rows so far and the number of all. Blocks.
 StoreResult<CopiedWorld> copy_stored_world(const std::string& from, const std::string& to,
                                            const CopyProgress& progress = {});

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "common/sql/database.hpp"
-#include "server/store/keyframe_reader.hpp"
+#include "server/store/keyframe.hpp"
 
 namespace runstone {
 

@@ -2,11 +2,12 @@
 // A compaction moves the beginning of the log: edits before it are in the base alone.
 #pragma once
 #include <functional>
+#include <limits>
 #include <optional>
 
+#include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
-#include "server/store/log_query.hpp"
 #include "server/store/store_error.hpp"
 #include "server/store/world_info.hpp"
 
@@ -26,6 +27,17 @@ struct LogRange {
   friend bool operator==(const LogRange&, const LogRange&) = default;
 };
 
+/// Conditions on edits of the log: author, time, place and cause. A condition that is not set holds
+/// for every edit.
+struct LogQuery {
+  std::optional<AuthorId> author;
+  TimeUs from_us = std::numeric_limits<TimeUs>::min();   // UTC, included
+  TimeUs until_us = std::numeric_limits<TimeUs>::max();  // included
+  std::optional<VoxelBox> box;  // not empty; overlaps the bounding box of the edit
+  std::optional<Cause> cause;
+  Sequence first = 1, last = kSequenceMax;  // both included
+};
+
 class LogReader : public virtual WorldInfo {
  public:
   using EachRecord = std::function<bool(const EditRecord&)>;
@@ -37,8 +49,8 @@ class LogReader : public virtual WorldInfo {
   virtual StoreResult<LogEnd> log_head() = 0;
   /// Returns the last sequence ever logged, compacted or not, or 0 if there is none.
   StoreResult<Sequence> last_sequence();
-  /// Returns sequence, epoch and time of an edit, or nullopt if the log does not have it. The edit 0 is
-  /// the state before the first one; an empty log has it.
+  /// Returns sequence, epoch and time of an edit, or nullopt if the log does not have it. The edit
+  /// 0 is the state before the first one; an empty log has it.
   StoreResult<std::optional<LogEnd>> edit_at(Sequence seq);
   /// Returns the last edit that is not later than a time (UTC). If all edits are later, returns the
   /// sequence before the first edit of the log. Fails (bad_request) if all are later and one of

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/sql/database.hpp"
-#include "server/store/log_query.hpp"
 #include "server/store/log_reader.hpp"
 #include "server/store/segment_table.hpp"
 

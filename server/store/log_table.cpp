@@ -20,8 +20,8 @@ constexpr const char* kSelect =
     "WHERE log = 0 AND seq BETWEEN ?1 AND ?2 ORDER BY seq";
 
 constexpr int kColumns = 16;  // of a row, but for `log`
-// The rows that one statement inserts. PostgreSQL takes less than half the time for a row then; SQLite
-// takes the same.
+// The rows that one statement inserts. PostgreSQL takes less than half the time for a row then; with
+// SQLite the time does not change.
 constexpr std::size_t kManyRows = 16;
 
 /// Returns the statement that inserts so many rows.

@@ -11,8 +11,9 @@
 //     for many chunks.
 //   - A full disk: what was to be written stays queued and is written again once a second, until
 //     there is room. has_room() returns false meanwhile. It also returns false while less space is
-//     free than the reserve: the reserve is for what is queued already. Jobs for keyframes and tiles
-//     end with an error while the disk is full, because they hold nothing that the log does not.
+//     free than the reserve: the reserve is for what is queued already. Jobs for keyframes and
+//     tiles end with an error while the disk is full, because they hold nothing that the log does
+//     not.
 //   - A world in a database has an owner (WorldSink::is_owned()). has_room() returns false while
 //     another program may own it.
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
@@ -35,16 +36,22 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/disk_space.hpp"
 #include "server/store/world_sink.hpp"
 
 namespace runstone {
+
+/// The room for more edits on the disk of a world.
+enum class DiskSpace : std::uint8_t {
+  enough,
+  low,  // less is free than the reserve: queued edits are written, new ones are rejected
+  full  // a write found no room: it is repeated, and new edits are rejected
+};
 
 class LogWriter {
  public:
   struct Limits {
     std::size_t queued_records_max = 65536;  // counted until they are durable
-    /// Records per transaction. A single larger batch is one transaction all the same.
+    /// Records per transaction. A single larger batch is one transaction, too.
     std::size_t commit_records_max = 4096;
     /// The least time between the begins of two commits of records, unless the writer stops.
     std::chrono::milliseconds commit_interval{0};
@@ -85,15 +92,16 @@ class LogWriter {
 
   /// Returns true if append() may be called with this many records now. Only append() reduces the
   /// room of the queue, so the thread that appends can rely on the answer, even if the disk space
-  /// changes before it appends. Returns false after a failure, after stop(), and while another program
-  /// may own the world.
+  /// changes before it appends. Returns false after a failure, after stop(), and while another
+  /// program may own the world.
   bool has_room(std::size_t records) const;
   /// Queues one batch. It becomes durable as a whole. It takes room for its records; a batch of
   /// players only takes room for one record. Requires has_room() for that. A writer that has failed
   /// or stopped drops the batch.
   void append(std::vector<PlayerRow> players, std::vector<EditRecord> records);
-  /// Queues changes of names likewise. They take room for one record, and are written before all
-  /// records that are queued later.
+  /// Queues changes of names. Requires has_room() for one record. A writer that has failed or
+  /// stopped drops them. They take room for one record, and are written before all records that are
+  /// queued later.
   void change_names(std::vector<NameChange> names);
   /// Queues a job. Returns false, and takes nothing, if the queue of jobs is full or the writer has
   /// failed or stopped.
@@ -103,8 +111,8 @@ class LogWriter {
   /// keyframe with the last one. The writer thread calls `done` when all of it is on disk, or has
   /// failed. Returns false as save_snapshots(); `done` is not called then.
   bool save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, JobDone done);
-  /// Queues a job that calls WorldSink::save_tiles() for each slice of tiles. `done` and the result are
-  /// as for save_keyframe().
+  /// Queues a job that calls WorldSink::save_tiles() for each slice of tiles. `done` and the result
+  /// are as for save_keyframe().
   bool save_tiles(SnapshotChunks tiles, JobDone done);
   /// Writes everything that is queued, calls the callbacks, and ends the thread. If the disk is
   /// full, it tries once more and gives up: Counters::queued_records are the records that are lost.

@@ -58,8 +58,8 @@ class PlayerTable {
   StoreResult<std::optional<HighWater>> stored_mark(const HighWater& mark);
 
   std::string file_;
-  /// The watermarks that were raised last, so that the next edits of their clients wait for no row of
-  /// PostgreSQL. SQLite has its pages in memory, and each row is verified before it is replaced.
+  /// The watermarks that were raised last, so that the next edits of their clients wait for no row
+  /// of PostgreSQL. SQLite has its pages in memory, and each row is verified before it is replaced.
   bool keeps_raised_;
   std::map<std::pair<AuthorId, ClientInstance>, HighWater> raised_;
   sql::Statement players_, player_, marks_, mark_, put_, raise_;

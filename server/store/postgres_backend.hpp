@@ -15,8 +15,8 @@
 
 namespace runstone {
 
-/// Do the same as create_world() and open_world() for an address of a PostgreSQL database. The
-/// database and the schema must exist.
+/// Create and open a world at the address of a PostgreSQL database, see create_world() and
+/// open_world(). The database and the schema must exist.
 StoreResult<std::unique_ptr<Store>> create_postgres_world(const std::string& url,
                                                           const WorldMeta& meta,
                                                           const LeaseTerms& lease);
@@ -33,8 +33,8 @@ class PostgresBackend final : public WorldBackend {
   /// `lease` is null if the world is open for reading only.
   PostgresBackend(sql::Database database, std::unique_ptr<PostgresLease> lease)
       : database_(std::move(database)), lease_(std::move(lease)) {}
-  /// Gives the lease and the writer's lock back at once. PostgreSQL itself frees the lock a little after
-  /// the connection ends.
+  /// Gives the lease and the writer's lock back at once. PostgreSQL itself frees the lock a little
+  /// after the connection ends.
   ~PostgresBackend() override;
 
   sql::Database& database() override { return database_; }

@@ -1,5 +1,5 @@
-// ReadSpan: joins the reads of a thread to transactions of a bounded number of reads, because a read in
-// a transaction costs less (WorldReader::begin_reads()).
+// ReadSpan: joins the reads of a thread to transactions of a bounded number of reads, because a
+// read in a transaction costs less (WorldReader::begin_reads()).
 // Thread: that of the reader.
 #pragma once
 #include "server/store/world_reader.hpp"

@@ -1,6 +1,6 @@
-// SqlStore: a world in the tables of an SQL database. It enforces the rules of Store; the tables know
-// only their rows, and the backend knows the database system. docs/edit-log.md, "The database",
-// describes the tables.
+// SqlStore: a world in the tables of an SQL database. It enforces the rules of Store; the tables
+// know only their rows, and the backend knows the database system. docs/edit-log.md, "The
+// database", describes the tables.
 #pragma once
 #include <functional>
 #include <map>
@@ -30,8 +30,8 @@ namespace runstone {
 
 class SqlStore final : public Store {
  public:
-  /// Opens a world. Converts an older format if it is open for writing. Checks meta rows and log ids,
-  /// and whether the log is as long as it was durable.
+  /// Opens a world. Converts an older format if it is open for writing. Checks meta rows and log
+  /// ids, and whether the log is as long as it was durable.
   static StoreResult<std::unique_ptr<SqlStore>> open(std::unique_ptr<WorldBackend> backend,
                                                      StoreAccess access);
 
@@ -61,21 +61,17 @@ class SqlStore final : public Store {
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys() override;
   StoreResult<std::vector<std::string>> rows_of_no_tile() override;
 
-  // KeyframeReader
+  // WorldReader
   StoreResult<std::vector<Keyframe>> keyframes() override;
   StoreResult<std::vector<StoredChunk>> keyframe_chunks() override;
   StoreResult<StoredMoment> stored_moment(Sequence at) override;
   StoreResult<std::optional<Chunk>> load_stored(const StoredChunk& chunk) override;
   StoreResult<std::optional<Chunk>> load_kept(const ChunkKey& key, Sequence at) override;
-
-  // PlayerReader
   StoreResult<std::vector<PlayerRow>> players() override;
   StoreResult<std::vector<UsedName>> player_names() override;
   StoreResult<std::vector<NameClaim>> name_claims() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
   AuthorId author_max() const override { return state_.author_max; }
-
-  // WorldReader
   StoreResult<void> begin_reads() override;
   StoreResult<void> end_reads() override;
   const std::optional<StoreError>& loss() const override { return loss_; }
@@ -102,15 +98,13 @@ class SqlStore final : public Store {
   StoreResult<void> append_history(std::span<const PlayerRow> players,
                                    std::span<const EditRecord> records) override;
 
-  // Maintenance
-  StoreResult<void> compact(Sequence keyframe) override;
-  StoreResult<void> shrink() override;
-
   // Store
   StoreResult<Epoch> raise_epoch() override;
   StoreResult<Epoch> begin_branch(TimeUs now_us) override;
   Epoch epoch() const override { return state_.epoch; }
   StoreResult<std::vector<std::string>> accept_losses() override;
+  StoreResult<void> compact(Sequence keyframe) override;
+  StoreResult<void> shrink() override;
 
  private:
   /// The tables of an open database.

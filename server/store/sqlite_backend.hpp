@@ -20,7 +20,7 @@ struct SqliteOptions {
   bool sync = true;
 };
 
-/// Do the same as create_world() and open_world() for a folder, with options.
+/// Create and open a world in a folder, with options, see create_world() and open_world().
 StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder,
                                                         const WorldMeta& meta,
                                                         const SqliteOptions& options);

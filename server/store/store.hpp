@@ -1,12 +1,10 @@
 // Store: a world on disk: base, one edit log, snapshots, keyframes, players, meta. docs/edit-log.md
 // gives the schema. It is the union of small interfaces, one for each use:
-//   - WorldReader reads. It is itself the union of LogReader, ChunkReader, KeyframeReader and
-//     PlayerReader;
+//   - WorldReader reads. A function that needs less takes a LogReader or a ChunkReader;
 //   - WorldSink is what the log writer of a running server calls;
-//   - ImportSink fills a new world;
-//   - Maintenance shortens the log of a world that no server runs.
-// SqlStore implements it on SQLite and on PostgreSQL. Every call blocks on the disk or the network, so
-// the world strand makes none: one writer thread owns a Store, and readers open their own. These
+//   - ImportSink fills a new world.
+// SqlStore implements it on SQLite and on PostgreSQL. Every call blocks on the disk or the network,
+// so the world strand makes none: one writer thread owns a Store, and readers open their own. These
 // rules keep a world safe:
 //   - append() returns after the data is on disk: what it has written is durable;
 //   - a snapshot may only be saved at a version that is durable;
@@ -38,10 +36,27 @@ class ImportSink {
                                            std::span<const EditRecord> records) = 0;
 };
 
-class Maintenance {
+class Store : public WorldReader, public WorldSink, public ImportSink {
  public:
-  virtual ~Maintenance() = default;
-
+  /// Raises the epoch by one and returns it. It is durable on return. A server calls it once per
+  /// start.
+  virtual StoreResult<Epoch> raise_epoch() = 0;
+  /// Raises the epoch to the first one of a new branch (common/core/epoch_branch.hpp) and returns
+  /// it. It is durable on return. A copy of a world begins with it, because its log and that of the
+  /// original go on with different edits. `now_us` is the time in UTC.
+  virtual StoreResult<Epoch> begin_branch(TimeUs now_us) = 0;
+  /// Returns the epoch of the last start, or 0 if the world was never started. It is not lower if
+  /// that start is lost.
+  virtual Epoch epoch() const = 0;
+  /// Makes a world usable that has lost edits, players or watermarks. Requires StoreAccess::repair.
+  /// Returns a line for each loss; there are none if nothing is lost. Deletes all tiles, because a
+  /// tile may contain lost edits.
+  ///   - Lost edits: the world stays as the rest of the log makes it. The epoch becomes that of a
+  ///     new branch, and the next raise_epoch() ends the loss. In PostgreSQL it does so in any
+  ///     case, because nobody notices that a database was put back from a backup.
+  ///   - Lost players: the rest is counted anew. Their numbers are not given again.
+  ///   - Lost watermarks: those of edits in the log are made again, and all are counted anew.
+  virtual StoreResult<std::vector<std::string>> accept_losses() = 0;
   /// Moves all edits up to a keyframe into the base, in one transaction. Requires that no server
   /// runs the world.
   ///   - The base is completed from the keyframe.
@@ -57,37 +72,14 @@ class Maintenance {
   virtual StoreResult<void> shrink() = 0;
 };
 
-class Store : public WorldReader, public WorldSink, public ImportSink, public Maintenance {
- public:
-  /// Raises the epoch by one and returns it. It is durable on return. A server calls it once per
-  /// start.
-  virtual StoreResult<Epoch> raise_epoch() = 0;
-  /// Raises the epoch to the first one of a new branch (common/core/epoch_branch.hpp) and returns
-  /// it. It is durable on return. A copy of a world begins with it, because its log and that of the
-  /// original go on with different edits. `now_us` is the time in UTC.
-  virtual StoreResult<Epoch> begin_branch(TimeUs now_us) = 0;
-  /// Returns the epoch of the last start, or 0 if the world was never started. It is not lower if
-  /// that start is lost.
-  virtual Epoch epoch() const = 0;
-  /// Makes a world usable that has lost edits, players or watermarks. Requires StoreAccess::repair.
-  /// Returns a line for each loss; there are none if nothing is lost. Deletes all tiles, because a
-  /// tile may contain lost edits.
-  ///   - Lost edits: the world stays as the rest of the log makes it. The epoch becomes that
-  ///     of a new branch, and the next raise_epoch() ends the loss. In PostgreSQL it does so in any case,
-  ///     because nobody notices that a database was put back from a backup.
-  ///   - Lost players: the rest is counted anew. Their numbers are not given again.
-  ///   - Lost watermarks: those of edits in the log are made again, and all are counted anew.
-  virtual StoreResult<std::vector<std::string>> accept_losses() = 0;
-};
-
 // A place is a folder, for a world in an SQLite file, or the address of a PostgreSQL database:
 // postgresql://...
 bool is_database(const std::string& place);
 /// Returns the place for messages. It has no password.
 std::string place_name(const std::string& place);
 
-/// Creates a world and opens it for writing. A folder is made if it does not exist. Fails if the place
-/// holds a world already. `lease` matters for a database only.
+/// Creates a world and opens it for writing. A folder is made if it does not exist. Fails if the
+/// place holds a world already. `lease` matters for a database only.
 StoreResult<std::unique_ptr<Store>> create_world(const std::string& place, const WorldMeta& meta,
                                                  const std::string& vfs = "",
                                                  const LeaseTerms& lease = {});
@@ -98,9 +90,9 @@ enum class StoreAccess {
   repair       // writes, also if the world has a loss
 };
 /// Opens an existing world. Fails (locked) if another program has it open for writing, and `access`
-/// is not read_only; if that program has ended without giving the lease of a database back, waits until
-/// the lease has run out. `vfs` is the name of an SQLite VFS, for tests; an empty name means the default
-/// one.
+/// is not read_only; if that program has ended without giving the lease of a database back, waits
+/// until the lease has run out. `vfs` is the name of an SQLite VFS, for tests; an empty name means
+/// the default one.
 StoreResult<std::unique_ptr<Store>> open_world(const std::string& place, StoreAccess access,
                                                const std::string& vfs = "",
                                                const LeaseTerms& lease = {});

@@ -35,8 +35,8 @@ class WorldBackend {
   /// Makes it kWorldFormat, in the caller's transaction.
   virtual StoreResult<void> set_format() = 0;
 
-  /// Returns true if the backend keeps a mark of how far the log was durable outside the database. Without
-  /// it nobody notices that a database was put back from a backup: its rows fit each other.
+  /// Returns true if the backend keeps a mark of how far the log was durable outside the database.
+  /// Without it nobody notices that a database was put back from a backup: its rows fit each other.
   virtual bool has_mark() const = 0;
   // These calls do nothing if there is no mark.
 
@@ -53,7 +53,7 @@ class WorldBackend {
   virtual void keep_on_close(bool keep) = 0;
   /// Runs the database's own check. Fails (corrupt) with what it found.
   virtual StoreResult<void> check() = 0;
-  /// See Maintenance::shrink().
+  /// See Store::shrink().
   virtual StoreResult<void> shrink() = 0;
 };
 

@@ -1,5 +1,5 @@
-// World folder: opens a world for a server, or creates it. Every error is one line that names the
-// file. All functions block on the disk: they are for the start of a program.
+// OpenedWorld: a world that is opened for a server, or created. Every error is one line that names
+// the file. All functions block on the disk: they are for the start of a program.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -30,8 +30,8 @@ struct OpenedWorld {
   std::vector<std::string> losses;     // that were accepted, one line each
 };
 
-/// Returns false if the place holds no world. Returns true also if a database does not answer: opening
-/// the world then says so.
+/// Returns false if the place holds no world. Returns true also if a database does not answer:
+/// opening the world then says so.
 bool has_world(const std::string& place);
 /// Reads a material table. An empty name means the built-in one.
 Result<MaterialTable, std::string> read_materials(const std::string& file);

@@ -25,8 +25,8 @@ StoreResult<void> create_schema(sql::Database& database);
 StoreResult<void> add_tables_of_format_3(sql::Database& database);
 /// Makes the table that format 4 adds to format 3, without rows, in the caller's transaction.
 StoreResult<void> add_tables_of_format_4(sql::Database& database);
-/// Fails with newer_version, bad_request or corrupt if this program cannot read a world of this format.
-/// `file` names the world in the error.
+/// Fails with newer_version, bad_request or corrupt if this program cannot read a world of this
+/// format. `file` names the world in the error.
 StoreResult<void> check_format(const std::string& file, std::uint32_t version);
 /// Reads the marks from the main file alone, so that a file that is refused does not change. `vfs`
 /// is that of sql::open_sqlite(). Fails with not_a_world, newer_version or corrupt.

@@ -1,5 +1,5 @@
-// WorldSink: the writes of a running server: edits, names, snapshots, keyframes and tiles. Each call
-// is one transaction. It fails (locked) and writes nothing if another program owns the world.
+// WorldSink: the writes of a running server: edits, names, snapshots, keyframes and tiles. Each
+// call is one transaction. It fails (locked) and writes nothing if another program owns the world.
 #pragma once
 #include <functional>
 #include <optional>
@@ -10,7 +10,7 @@
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
-#include "server/store/keyframe_reader.hpp"
+#include "server/store/keyframe.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/environment/player_rows.hpp"
 
@@ -22,16 +22,16 @@ class WorldSink {
  public:
   virtual ~WorldSink() = default;
 
-  /// Returns false while another program may own the world. Then no edit may be ordered, because it may
-  /// never be written. Thread: any.
+  /// Returns false while another program may own the world. Then no edit may be ordered, because it
+  /// may never be written. Thread: any.
   virtual bool is_owned() const { return true; }
-  /// `on_lost` is called once, when another program owns the world or the connection to its database has
-  /// ended: no write succeeds from then on. It is called on another thread, or in this call if it
-  /// happened before. An empty function ends the watch; no call is under way when this returns. Thread:
-  /// any.
+  /// `on_lost` is called once, when another program owns the world or the connection to its
+  /// database has ended: no write succeeds from then on. It is called on another thread, or in this
+  /// call if it happened before. An empty function ends the watch; no call is under way when this
+  /// returns. Thread: any.
   virtual void watch_ownership(std::function<void(const StoreError&)> /*on_lost*/) {}
-  /// Publishes the address at which other servers of the world reach this one: HOST:PORT. A world that only
-  /// one machine can reach has no place for it: the call then does nothing.
+  /// Publishes the address at which other servers of the world reach this one: HOST:PORT. A world
+  /// that only one machine can reach has no place for it: the call then does nothing.
   virtual StoreResult<void> publish_address(const std::string& /*address*/) { return {}; }
   /// Gives the world up, so that another program need not wait. No write succeeds from then on.
   virtual void give_up() {}
@@ -46,8 +46,8 @@ class WorldSink {
   /// return. It may be repeated. Fails (bad_request) if another key owns a claimed name.
   virtual StoreResult<void> change_names(std::span<const NameChange> changes) = 0;
   /// Replaces the snapshots of these chunks and, if given, moves the checkpoint. Deletes the tiles
-  /// above these chunks that are older. Fails (bad_request) if a chunk or the checkpoint is ahead of
-  /// the log.
+  /// above these chunks that are older. Fails (bad_request) if a chunk or the checkpoint is ahead
+  /// of the log.
   virtual StoreResult<void> save_snapshots(ChunkSpan chunks,
                                            std::optional<Sequence> checkpoint) = 0;
   /// Adds chunks as edits of the log left them and, if given, the keyframe that they complete. A

@@ -1,5 +1,5 @@
-// TileCache: the tiles that were made or read last, up to a number of bytes. Threads: any. The mutex
-// is a leaf.
+// TileCache: the tiles that were made or read last, up to a number of bytes. Threads: any. The
+// mutex is a leaf.
 #pragma once
 #include <cstddef>
 #include <list>

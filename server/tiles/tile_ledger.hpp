@@ -17,16 +17,17 @@ namespace runstone {
 
 class TileLedger {
  public:
-  /// Reports that edit `seq` touched these chunks, or that edits up to it did. A server reports each
-  /// commit, and at its start the edits that are in no snapshot. Cost: one look-up a chunk, and a
-  /// few instructions for each tile above that the same edit did not reach yet.
+  /// Reports that edit `seq` touched these chunks, or that edits up to it did. A server reports
+  /// each commit, and at its start the edits that are in no snapshot. Cost: one look-up a chunk,
+  /// and a few instructions for each tile above that the same edit did not reach yet.
   void edited(std::span<const ChunkCoord> chunks, Sequence seq);
-  /// Does the same for keys of level of detail 0.
+  /// Reports touched chunks by their keys, of level of detail 0.
   void edited(std::span<const ChunkKey> chunks, Sequence seq);
-  /// Does the same unless another thread uses the ledger at the moment; then it returns false and
-  /// does nothing. A thread that must not wait calls it: threads of low priority use the ledger, too.
+  /// Reports touched chunks as edited() unless another thread uses the ledger at the moment; then
+  /// it returns false and does nothing. A thread that must not wait calls it: threads of low
+  /// priority use the ledger, too.
   bool try_edited(std::span<const ChunkKey> chunks, Sequence seq);
-  /// Reports chunks that the world's folder has rows for, with their versions. Keys of tiles are
+  /// Reports chunks that the store has rows for, with their versions. Keys of tiles are
   /// ignored.
   void stored(std::span<const std::pair<ChunkKey, Version>> chunks);
 
@@ -34,7 +35,7 @@ class TileLedger {
   /// stored() got them.
   Sequence newest_edit(const ChunkKey& tile) const;
   /// Returns true if a chunk below the tile, or the chunk itself at level 0, is stored or was
-  /// edited. It is complete once stored() got all chunks of the folder.
+  /// edited. It is complete once stored() got all chunks of the store.
   bool is_stored_or_edited(const ChunkKey& tile) const;
 
  private:

@@ -1,12 +1,13 @@
-// TileSource: makes tiles of a world: levels of detail of its chunks. A tile is taken from the first
-// of these that has it:
+// TileSource: makes tiles of a world: levels of detail of its chunks. A tile is taken from the
+// first of these that has it:
 //   1. the tiles that were made lately, in memory;
 //   2. the generator's coarse form, from level kCoarseLevelMin on, if nothing below the tile is
 //      stored or edited. It is an approximation;
-//   3. the table of tiles in the world's folder;
+//   3. the table of tiles of the world;
 //   4. its eight children, which are chunks or tiles of the level below.
-// A tile of 1 or 3 is used only if no edit below it is newer. A damaged row of a tile is reported and
-// the tile is made again. A damaged chunk is reported, and the tiles above it show nothing there.
+// A tile of 1 or 3 is used only if no edit below it is newer. A damaged row of a tile is reported
+// and the tile is made again. A damaged chunk is reported, and the tiles above it show nothing
+// there.
 // Threads: any. Calls block on the disk, so workers make them.
 #pragma once
 #include <atomic>
@@ -36,15 +37,15 @@ class TileSource {
  public:
   struct Options {
     std::size_t cache_bytes = std::size_t{16} << 20;  // of the tiles that were made lately
-    /// False: no tile is read from the folder, so that stored tiles can be compared with others.
+    /// False: no tile is read from the store, so that stored tiles can be compared with others.
     bool reads_stored_tiles = true;
     bool adds_veils = true;  // false: made tiles have no MadeTile::veiled
   };
   /// Reports a damaged row. The text names file, table and row.
   using Warn = std::function<void(const std::string&)>;
 
-  /// Chunk source, generator and ledger must outlive the object. `edge` is that of the world's chunks.
-  /// `warn` is called on the threads that call make().
+  /// Chunk source, generator and ledger must outlive the object. `edge` is that of the world's
+  /// chunks. `warn` is called on the threads that call make().
   TileSource(ChunkSource& chunks, const Generator& generator, std::int32_t edge, TileLedger& ledger,
              Warn warn, Options options);
   TileSource(ChunkSource& chunks, const Generator& generator, std::int32_t edge, TileLedger& ledger,
@@ -59,15 +60,15 @@ class TileSource {
   /// call stops between two tiles, and the list lacks the requested one. The next call finds the
   /// tiles that this one made in memory. The first call reads the keys of all stored chunks.
   /// Requires a tile inside the world, and that every edit up to request.head was reported to the
-  /// ledger. Fails if the folder cannot be read. A request with `at` also requires `past_chunk` and
+  /// ledger. Fails if the world cannot be read. A request with `at` also requires `past_chunk` and
   /// request.past_made. A tile below which an edit is later than `at` is made of its children at
   /// that moment. It is a past tile (MadeTile::is_past), which is kept in request.past_made alone.
   /// Other tiles are the present ones.
   StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
                                           const VisibilityTable& visibility,
                                           const PastChunk& past_chunk = {});
-  /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now. It
-  /// makes no tile and reads none from the disk. If the tile with its veil is in memory, the
+  /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now.
+  /// It makes no tile and reads none from the disk. If the tile with its veil is in memory, the
   /// digests are compared. Otherwise the version must be that of the newest edit below the tile.
   /// Returns false before the first make(), because the edits before the start are not known then.
   /// Cost: two look-ups. It may wait for other threads for a moment.
@@ -75,7 +76,7 @@ class TileSource {
 
  private:
   class Making;  // one call of make()
-  /// Passes the chunks that the folder has to the ledger, unless it was done.
+  /// Passes the chunks that are stored to the ledger, unless it was done.
   StoreResult<void> find_ground();
   /// Adds MadeTile::veiled, unless the tile has it.
   void add_veiled(MadeTile& tile, const VisibilityTable& visibility);

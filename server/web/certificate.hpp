@@ -24,8 +24,8 @@ class Certificate {
   const TlsContext* context() const { return context_ ? &*context_ : nullptr; }
   /// Returns when the certificate ends, in seconds of UTC since 1970; 0 without TLS.
   std::int64_t ends_s() const { return ends_s_; }
-  /// Returns a line that says why browsers refuse the certificate today: it has ended, or is not valid
-  /// yet. Returns nullopt if it is valid, or without TLS.
+  /// Returns a line that says why browsers refuse the certificate today: it has ended, or is not
+  /// valid yet. Returns nullopt if it is valid, or without TLS.
   std::optional<std::string> fault() const;
 
   /// Reads the files again. If the new certificate cannot be used, or has a fault(), the old one

@@ -1,5 +1,5 @@
-// ClientFiles: the files of the client for browsers, as the preset web builds them. They are read once,
-// when the gateway starts. Their names are fixed, so no path of a request leads to a disk.
+// ClientFiles: the files of the client for browsers, as the preset web builds them. They are read
+// once, when the gateway starts. Their names are fixed, so no path of a request leads to a disk.
 // Thread: any, after load().
 #pragma once
 #include <map>

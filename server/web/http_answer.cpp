@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "server/map/map_request.hpp"
-#include "server/web/map_page.hpp"
 #include "server/web/metrics_text.hpp"
+#include "server/web/page_files.hpp"
 #include "server/web/web_pages.hpp"
 #include "server/web/web_world.hpp"
 
@@ -49,7 +49,7 @@ constexpr std::array<Route, 9> kRoutes = {{
        return metrics_answer(world, in.web);
      }},
     {kStylePath, false,
-     [](const PageContents& /*in*/) { return fixed("text/css; charset=utf-8", style_sheet()); }},
+     [](const PageContents& /*in*/) { return fixed("text/css; charset=utf-8", style_css()); }},
     {"/map", false,
      [](const PageContents& in) {
        HttpAnswer page{in.config.world.empty() ? 404U : 200U, kHtml, map_page(in.config)};
@@ -57,11 +57,9 @@ constexpr std::array<Route, 9> kRoutes = {{
        return page;
      }},
     {"/map.css", false,
-     [](const PageContents& /*in*/) { return fixed("text/css; charset=utf-8", map_style()); }},
+     [](const PageContents& /*in*/) { return fixed("text/css; charset=utf-8", map_css()); }},
     {"/map.js", false,
-     [](const PageContents& /*in*/) {
-       return fixed("text/javascript; charset=utf-8", map_script());
-     }},
+     [](const PageContents& /*in*/) { return fixed("text/javascript; charset=utf-8", map_js()); }},
     {kMapPlayersPath, true,
      [](const PageContents& in) {
        return HttpAnswer{200, "application/json", map_players_json(in.server)};
@@ -154,7 +152,7 @@ HttpAnswer answer_gateway_request(const HttpRequest& request, const GatewayConte
     answer.location = std::string(folder) + "/";
     return answer;
   }
-  if (path == kStylePath) return fixed("text/css; charset=utf-8", style_sheet());
+  if (path == kStylePath) return fixed("text/css; charset=utf-8", style_css());
   if (path == kMetricsPath) return metrics_answer(contents.worlds, contents.web);
   if (path == kStatusPath)
     return {200, kHtml, gateway_status_page(contents.config, contents.worlds, contents.web)};

@@ -1,5 +1,5 @@
-// HttpAnswer: the answer to an HTTP request that opens no WebSocket. Paths come from fixed tables and
-// nothing is looked up on disk, so no path can lead out of anything.
+// HttpAnswer: the answer to an HTTP request that opens no WebSocket. Paths come from fixed tables
+// and nothing is looked up on disk, so no path can lead out of anything.
 #pragma once
 #include <memory>
 #include <span>
@@ -31,7 +31,7 @@ enum class HttpCaching {
 enum class PageScripts {
   none,
   own,    // those of the gateway, which may connect to it: the map
-  client  // likewise, and WebAssembly: the client for browsers
+  client  // scripts of the gateway and WebAssembly: the client for browsers
 };
 
 struct HttpAnswer {
@@ -74,8 +74,8 @@ struct PageContents {
 };
 /// Returns the answer to a request.
 HttpAnswer answer_request(const HttpRequest& request, const PageContents& contents);
-/// The contents of the pages that belong to no single world: the list of the worlds, the status of all
-/// of them, and the metrics. Only a gateway with several servers has them.
+/// The contents of the pages that belong to no single world: the list of the worlds, the status of
+/// all of them, and the metrics. Only a gateway with several servers has them.
 struct GatewayContents {
   const WebConfig& config;
   std::span<const WorldStatus> worlds;  // each has a status if shows_status()

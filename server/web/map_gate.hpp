@@ -1,5 +1,5 @@
-// MapGate limits the requests of each address for the map of a world, and passes them to the threads
-// that draw.
+// MapGate limits the requests of each address for the map of a world, and passes them to the
+// threads that draw.
 // Thread: the gateway's.
 #pragma once
 #include <utility>
@@ -41,8 +41,8 @@ class MapGate {
     if (!may_ask) ++counters_.map_refused;
     return may_ask;
   }
-  /// Returns the answer to a request for a path below kMapDataPath. The address pays for the time of
-  /// drawing.
+  /// Returns the answer to a request for a path below kMapDataPath. The address pays for the time
+  /// of drawing.
   boost::asio::awaitable<MapAnswer> answer(AddressBlock from, std::string_view target,
                                            std::string if_none_match);
   std::size_t cache_bytes() const { return service_ == nullptr ? 0 : service_->cache_bytes(); }

@@ -17,10 +17,10 @@ Result<std::vector<std::string>, std::string> parse_origins(const std::string& t
 
 class OriginCheck {
  public:
-  /// `allowed`: as parse_origins() returns them. If there are none, pages of this gateway may. Without
-  /// encryption only those that were opened by an address in digits or as "localhost" may: a page of
-  /// somebody else could let its own name lead to this gateway (DNS rebinding). A certificate prevents
-  /// that, because it does not have that name.
+  /// `allowed`: as parse_origins() returns them. If there are none, pages of this gateway may.
+  /// Without encryption only those that were opened by an address in digits or as "localhost" may:
+  /// a page of somebody else could let its own name lead to this gateway (DNS rebinding). A
+  /// certificate prevents that, because it does not have that name.
   OriginCheck(std::vector<std::string> allowed, bool is_encrypted)
       : allowed_(std::move(allowed)),
         is_encrypted_(is_encrypted),

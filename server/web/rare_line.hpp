@@ -1,5 +1,5 @@
-// RareLine: a line for the operator that a peer can cause as often as it likes. It is printed once a
-// minute at most, and says how often it was left out. Thread: one.
+// RareLine: a line for the operator that a peer can cause as often as it likes. It is printed once
+// a minute at most, and says how often it was left out. Thread: one.
 #pragma once
 #include <cstdint>
 #include <iostream>

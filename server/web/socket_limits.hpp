@@ -18,7 +18,7 @@ class SocketLimits {
   /// Counts a connection and returns null. If the address may not have it now, it counts nothing
   /// and returns the name of the setting that forbids it.
   const char* try_add(AddressBlock from, TimeUs now_us);
-  /// The same. Returns false if the address may not have the connection.
+  /// Counts a connection. Returns false, and counts nothing, if the address may not have it now.
   bool add(AddressBlock from, TimeUs now_us) { return try_add(from, now_us) == nullptr; }
   /// Counts a further request on a connection. Returns false if the address may not ask now.
   bool ask(AddressBlock from, TimeUs now_us) { return connects_.take(from, 1, now_us); }

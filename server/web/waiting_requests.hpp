@@ -1,4 +1,5 @@
-// WaitingRequests: how many requests of an address, and of its range of addresses, wait for the maps.
+// WaitingRequests: how many requests of an address, and of its range of addresses, wait for the
+// maps.
 // Thread: one.
 #pragma once
 #include <cstddef>

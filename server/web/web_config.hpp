@@ -36,9 +36,10 @@ struct WebConfig {
   /// Origins of pages that may open a WebSocket, such as "https://play.example.org", separated by
   /// blanks or commas. Empty: only pages of this gateway.
   std::string origins;
-  std::string world;                   // folder of the world, for its map; empty: no map
+  std::string world;                   // place of the world, for its map; empty: no map
   std::uint64_t map_memory_mib = 128;  // of what was drawn, 8..65536
-  /// Milliseconds a second in which the map draws for one address, 40 seconds' worth at once. 0: no limit.
+  /// Milliseconds a second in which the map draws for one address, 40 seconds' worth at once. 0: no
+  /// limit.
   std::uint64_t map_ms_per_second = 250;
   std::uint64_t map_requests_per_second = 60;  // of one address, ten times at once, 0: no limit
   std::uint64_t sockets_max = 1'024;           // connections in any state, 1..65536
@@ -59,13 +60,13 @@ const SettingsTable<WebConfig>& web_settings();
 /// Reads the settings and the sections of a TOML file, see SettingsTable::read_toml().
 Result<void, TextError> read_web_toml(WebConfig& config, std::string_view toml,
                                       std::string_view file);
-/// Returns why the sections and the other settings do not fit together, or nullopt. Flags and variables of
-/// the environment may come after the file.
+/// Returns why the sections and the other settings do not fit together, or nullopt. Flags and
+/// variables of the environment may come after the file.
 std::optional<std::string> fault_of_servers(const WebConfig& config);
 /// Returns all settings and sections as TOML, which read_web_toml() reads back.
 std::string to_web_toml(const WebConfig& config);
-/// Returns the configuration for the pages and the map of one server of several: that of the gateway
-/// with what the section says.
+/// Returns the configuration for the pages and the map of one server of several: that of the
+/// gateway with what the section says.
 WebConfig config_for(const WebConfig& gateway, const WebServer& server);
 
 }  // namespace runstone

@@ -31,7 +31,8 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   bool is_silent_websocket() const { return is_websocket() && !websocket_->has_sent(); }
   /// Returns true once the connection is closed. The object lives until its coroutine has ended.
   bool is_closed() const { return is_closed_ || !stream_.has_socket(); }
-  /// Returns the address of the browser for the log, or "an unknown address" if the browser has gone.
+  /// Returns the address of the browser for the log, or "an unknown address" if the browser has
+  /// gone.
   std::string address() const;
   /// Closes the connection without a word.
   void close() {

@@ -1,7 +1,7 @@
-// Frames between a WebSocket and the stream of the server. A binary message of a browser is one frame
-// of the protocol as it is in the stream, with its header (protocol/codec/frame.hpp). A message to a
-// browser is one frame or several. So bytes pass in both directions unchanged, and only their bounds
-// are looked at here.
+// Frames between a WebSocket and the stream of the server. A binary message of a browser is one
+// frame of the protocol as it is in the stream, with its header (protocol/codec/frame.hpp). A
+// message to a browser is one frame or several. So bytes pass in both directions unchanged, and
+// only their bounds are looked at here.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -18,8 +18,8 @@ inline constexpr std::size_t kFrameBytesMax = kFrameHeaderBytes + kFragmentBytes
 /// header only the length is read; the server checks the rest.
 const char* fault_of_web_message(ByteView message);
 
-/// Appends the header of a WebSocket's message to a browser: binary, in one fragment, not masked (RFC
-/// 6455). `bytes`: of its contents.
+/// Appends the header of a WebSocket's message to a browser: binary, in one fragment, not masked
+/// (RFC 6455). `bytes`: of its contents.
 void append_web_header(Bytes& out, std::size_t bytes);
 
 /// Cuts the server's stream into frames. It holds at most two frames. Thread: one.
@@ -27,7 +27,8 @@ class FrameCutter {
  public:
   FrameCutter() : bytes_(2 * kFrameBytesMax) {}
 
-  /// Returns the room for what is read next. It is empty only while a whole frame has not been taken.
+  /// Returns the room for what is read next. It is empty only while a whole frame has not been
+  /// taken.
   std::span<std::uint8_t> room() { return std::span(bytes_).subspan(end_); }
   /// Reports that so many bytes were read into room().
   void add(std::size_t bytes) { end_ += bytes; }

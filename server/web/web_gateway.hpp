@@ -26,8 +26,8 @@ class WebGateway {
   std::uint16_t port() const;
   bool is_encrypted() const;
   /// Reads the certificate again, for connections that are made from then on. If it cannot be used,
-  /// the old one stays. Either way a line for the operator says so. The gateway does the same by
-  /// itself when the files have changed.
+  /// the old one stays. Either way a line for the operator says so. The gateway reads
+  /// it by itself when the files have changed.
   void reload_certificate();
 
  private:

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/web/page_files.hpp"
+
 namespace runstone {
 namespace {
 
@@ -231,28 +233,26 @@ std::string gateway_status_page(const WebConfig& config, std::span<const WorldSt
   return html_page(config.title + ": state", body);
 }
 
-std::string_view style_sheet() {
-  return R"(body { margin: 2rem auto; max-width: 42rem; padding: 0 1rem; font: 1rem/1.5 sans-serif;
-  color: #222; background: #fafaf8; overflow-wrap: anywhere; }
-h1 { font-size: 1.6rem; }
-h2, caption { font-size: 1.1rem; font-weight: bold; text-align: left; }
-table { border-collapse: collapse; margin: 1rem 0; width: 100%; }
-th, td { border-bottom: 1px solid #ccc; padding: 0.2rem 0; text-align: left; }
-th { font-weight: normal; }
-td { text-align: right; font-variant-numeric: tabular-nums; }
-pre { background: #eee; padding: 0.5rem; overflow-x: auto; }
-a { color: #14568c; }
-.play a { font-size: 1.3rem; font-weight: bold; }
-.up { color: #1c6b2a; }
-.down { color: #9c2a10; }
-@media (prefers-color-scheme: dark) {
-  body { color: #ddd; background: #1b1c1e; }
-  pre { background: #2a2c2f; }
-  a { color: #8fc1ee; }
-  .up { color: #7fce8c; }
-  .down { color: #f09a84; }
+std::string map_page(const WebConfig& config) {
+  if (config.world.empty()) {
+    return html_page(config.title + ": map",
+                     "<p>This gateway shows no map: its host has not turned it on.</p>\n"
+                     "<p><a href=\"./\">Back to the world</a></p>\n");
+  }
+  constexpr std::string_view kMark = "{title}";
+  const std::string title = html_text(config.title);
+  std::string out(map_html());
+  for (std::size_t at = out.find(kMark); at != std::string::npos;
+       at = out.find(kMark, at + title.size()))
+    out.replace(at, kMark.size(), title);
+  return out;
 }
-)";
+
+std::string map_players_json(const ServerStatus& server) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const PlayerPlace& player : server.places)
+    out.push_back({player.name, player.x, player.y, player.z});
+  return out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace runstone

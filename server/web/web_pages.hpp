@@ -1,5 +1,5 @@
-// The pages of world and state. They are plain HTML without scripts and load nothing but the style
-// sheet of the gateway.
+// The pages of world, state and map. All but that of the map are plain HTML without scripts, and
+// load nothing but the style sheet of the gateway.
 #pragma once
 #include <span>
 #include <string>
@@ -25,12 +25,14 @@ std::string worlds_page(const WebConfig& config, std::span<const WorldStatus> wo
 /// Returns the page of the state of such a gateway.
 std::string gateway_status_page(const WebConfig& config, std::span<const WorldStatus> worlds,
                                 const WebCounters& web);
-/// Returns the page of the state of server and gateway. `recent_edits`: JSON of the map's service, a
-/// list of edits with time, author and what; empty or anything else: none are shown.
+/// Returns the page of the state of server and gateway. `recent_edits`: JSON of the map's service,
+/// a list of edits with time, author and what; empty or anything else: none are shown.
 /// `is_one_of_several`: the gateway has a page of its own.
 std::string status_page(const WebConfig& config, const ServerStatus& server, const WebCounters& web,
                         std::string_view recent_edits = {}, bool is_one_of_several = false);
-/// Returns the style sheet of both pages.
-std::string_view style_sheet();
+/// Returns the page of the map, or a page that says that there is none.
+std::string map_page(const WebConfig& config);
+/// Returns where the players are on the map, as JSON: a list of [name, x, y, z].
+std::string map_players_json(const ServerStatus& server);
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// WebStream: a TCP connection of a browser, with or without TLS, as a stream for Beast. Frames of the
-// server are written past Beast, without waiting: write_now().
+// WebStream: a TCP connection of a browser, with or without TLS, as a stream for Beast. Frames of
+// the server are written past Beast, without waiting: write_now().
 // Thread: the gateway's.
 #pragma once
 #include <utility>
@@ -40,15 +40,16 @@ class WebStream {
   executor_type get_executor() { return socket_.get_executor(); }
   Socket& next_layer() { return socket_; }
   const Socket& next_layer() const { return socket_; }
-  /// Returns false after close(), and after Beast has closed a WebSocket that was silent for too long.
+  /// Returns false after close(), and after Beast has closed a WebSocket that was silent for too
+  /// long.
   bool has_socket() const { return socket_.is_open(); }
 
   /// Performs the TLS handshake, if the stream has TLS. Returns false if it failed.
   static boost::asio::awaitable<bool> handshake(WebStream& stream);
   /// Reads what has come. `error` is would_block if nothing has.
   std::size_t read_now(boost::asio::mutable_buffer into, ErrorCode& error);
-  /// Queues bytes behind those that are unsent, and sends what the socket takes. Returns false if the
-  /// connection has failed.
+  /// Queues bytes behind those that are unsent, and sends what the socket takes. Returns false if
+  /// the connection has failed.
   bool write_now(ByteView bytes);
   /// Sends more of what is unsent. Returns false if the connection has failed.
   bool send_now();
@@ -86,8 +87,8 @@ class WebStream {
   }
 
  private:
-  /// A read or a write that waits for the socket. `Self` has go(error), which returns false if it has
-  /// to wait longer, and the number of bytes for the handler.
+  /// A read or a write that waits for the socket. `Self` has go(error), which returns false if it
+  /// has to wait longer, and the number of bytes for the handler.
   template <class Self, class Handler>
   struct Waiting {
     Waiting(WebStream* of, Handler then) : stream(of), handler(std::move(then)) {}

@@ -1,9 +1,9 @@
 // WebSocketSession: passes frames between a browser's WebSocket and a connection to the server, in
-// both directions. Nothing is queued: each direction holds what it has read, and reads again when the
-// other side has taken it. Frames of the server that come together are one message, so that they cost
-// the gateway and the browser only once. So a slow side slows the other one down, as TCP does.
-// A WebSocket that breaks a rule is closed with a code and words. Its connection to the server then
-// just ends.
+// both directions. Nothing is queued: each direction holds what it has read, and reads again when
+// the other side has taken it. Frames of the server that come together are one message, so that
+// they cost the gateway and the browser only once. So a slow side slows the other one down, as TCP
+// does. A WebSocket that breaks a rule is closed with a code and words. Its connection to the
+// server then just ends.
 // Thread: the gateway's.
 #pragma once
 #include <utility>
@@ -39,19 +39,20 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   bool is_open() const { return is_open_; }
   /// Returns true once a message of the browser was passed on.
   bool has_sent() const { return has_sent_; }
-  /// Closes the WebSocket with a code and words of at most 123 bytes. Later calls do nothing. Requires
-  /// is_open().
+  /// Closes the WebSocket with a code and words of at most 123 bytes. Later calls do nothing.
+  /// Requires is_open().
   void end(CloseCode code, const char* words);
   /// Closes the connection to the server. What waits for it fails.
   void close_link();
 
  private:
-  /// Connects to the server, and sends the address of the browser. Returns the error if that failed.
+  /// Connects to the server, and sends the address of the browser. Returns the error if that
+  /// failed.
   static boost::asio::awaitable<boost::system::error_code> open_link(
       std::shared_ptr<WebSocketSession> self);
   static boost::asio::awaitable<void> browser_to_server(std::shared_ptr<WebSocketSession> self);
-  // Frames of the server take a shorter way than coroutines and Beast, because each edit of a player
-  // is sent to all others: they are read, and written past Beast in the same turn.
+  // Frames of the server take a shorter way than coroutines and Beast, because each edit of a
+  // player is sent to all others: they are read, and written past Beast in the same turn.
   void read_link();
   void on_link(const boost::system::error_code& error, std::size_t bytes);
   /// Waits until the browser has taken what was written, then goes on.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "common/core/assert.hpp"
+#include "common/formats/block_materials.hpp"
 #include "common/formats/luanti_block.hpp"
 #include "tests/support/formats/luanti_bytes.hpp"
 
@@ -12,18 +13,23 @@ using namespace runstone;
 namespace {
 
 void decode(ByteView row) {
-  const auto block = decode_luanti_block(row);
-  if (!block) return;
-  RUNSTONE_ASSERT(validate(block->voxels).has_value());
-  for (std::size_t i = 0; i < block->voxels.runs.size(); ++i) {
-    RUNSTONE_ASSERT(block->voxels.runs.material(i) <= block->names.size());
-  }
-  MaterialTable table;
-  for (const std::string& name : block->names) {
-    MaterialInfo info = material_of_luanti_node(name, true);
-    const bool known = table.find(info.name).has_value();
-    RUNSTONE_ASSERT(table.add(std::move(info)).has_value() != known);
-  }
+  const auto read = read_luanti_block(row, [](ForeignPiece&& piece) -> Result<void> {
+    RUNSTONE_ASSERT(validate(piece.voxels).has_value());
+    for (std::size_t i = 0; i < piece.voxels.runs.size(); ++i) {
+      RUNSTONE_ASSERT(piece.voxels.runs.material(i) <= piece.blocks.size());
+    }
+    BlockMaterials materials(formats().front(), true);
+    materials.note(piece);
+    const auto table = materials.make_table();
+    RUNSTONE_ASSERT(table.has_value());
+    const RunChunk voxels = materials.resolve(piece);
+    RUNSTONE_ASSERT(validate(voxels).has_value());
+    for (std::size_t i = 0; i < voxels.runs.size(); ++i) {
+      RUNSTONE_ASSERT(table->knows(voxels.runs.material(i)));
+    }
+    return {};
+  });
+  if (!read) RUNSTONE_ASSERT(read.error().what[0] != '\0');
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ struct ApplyScratch {
   std::vector<IndexSpan> spans;       // of a single edit
   std::vector<Change> changes;        // ascending, disjoint
   std::vector<Run> runs;              // new runs of all edit areas, one after another
-  std::vector<Run> whole;             // the same, with the kept runs between them
+  std::vector<Run> whole;             // new runs of all edit areas, with the kept runs between them
   std::vector<EditArea> areas;        // of write_changes(); apply_stack() uses those of its result
   std::vector<std::uint64_t> active;  // the active set: bit i is part i of `stack`
   std::vector<std::uint32_t> starting;  // chains of parts by the layer where they begin

@@ -44,7 +44,7 @@ class Brush {
     for (std::int32_t at = first & -lanes(); at < last; at += lanes())
       stroke_at(at, line, first, last);
   }
-  /// Does the same for a line of at most lanes() voxels.
+  /// Draws the voxels [first, last) of a line of at most lanes() voxels.
   HWY_INLINE void stroke_short(Material* line, std::int32_t first, std::int32_t last) const {
     stroke_at(0, line, first, last);
   }

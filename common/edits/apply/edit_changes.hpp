@@ -18,7 +18,7 @@ inline std::span<const Change> changes_of(const ApplyScratch& scratch, const App
   return scratch.changes;
 }
 
-/// Returns the changes that apply_stack() would make, in the same way, and makes none: no digest is
+/// Returns the changes that apply_stack() would make, and makes none: no digest is
 /// computed and no run is written. They ascend and are disjoint. The span is invalid after the next
 /// call that uses the scratch. Requires what apply_stack() does. Cost: O(rows of the edits + runs
 /// crossed + log runs).

@@ -40,7 +40,8 @@ struct ApplyResult {
 ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
                         std::span<const EditDescriptor> edits, ApplyScratch& scratch);
 
-/// Does the same with a `result` that the caller reuses, so that a steady state allocates nothing.
+/// Applies edits as the form of apply_stack() that returns a result, into a `result` that the
+/// caller reuses, so that a steady state allocates nothing.
 void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
                  std::span<const EditDescriptor> edits, ApplyScratch& scratch, ApplyResult& result);
 

@@ -65,8 +65,8 @@ inline LineBits differing_plain(const Material* a, const Material* b, std::uint3
   return out;
 }
 
-/// Returns the same bits. Compares 16 voxels a step if the CPU has SSE2. Requires both arrays to be
-/// readable up to the next multiple of 16.
+/// Returns the bits of differing_plain(). Compares 16 voxels a step if the CPU has SSE2. Requires
+/// both arrays to be readable up to the next multiple of 16.
 inline LineBits differing(const Material* a, const Material* b, std::uint32_t count) {
 #ifdef __SSE2__
   std::array<std::uint64_t, 2> word{};

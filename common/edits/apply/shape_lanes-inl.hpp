@@ -6,7 +6,7 @@
 // doubles.
 //   - Roots: for an integer v < 2^52 the rounded square root has the right integer part. Just below
 //     a square k^2 the true root is at most k - 1/(2k), and doubles below k <= 2^26 lie closer
-//     together than that. The same holds for floats if v < 2^22; spheres need v <= r * r + r <
+//     together than that. For floats, this holds if v < 2^22; spheres need v <= r * r + r <
 //     2^18.01.
 //   - Quotients: floor(x / a) is computed as floor((x + 1/2) * (1 / a)). This value is at least
 //     1/(2a) away from any integer. Two roundings move it by less than |x| / a * 2^-51, which is

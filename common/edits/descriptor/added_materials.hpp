@@ -20,8 +20,8 @@ struct AddedMaterials {
 /// The rows of one record, at most. A record is then no larger than the largest edit of a player,
 /// and the message about it takes a small part of a session's queue of edits.
 inline constexpr std::size_t kAddedMaterialsMax = 512;
-/// The maximum size of the bytes without looks: `first` and the count, then per row the name with its
-/// length, colour and visibility.
+/// The maximum size of the bytes without looks: `first` and the count, then per row the name with
+/// its length, colour and visibility.
 inline constexpr std::size_t kAddedMaterialsBytesMax =
     3 + 2 + kAddedMaterialsMax * (1 + kMaterialNameBytesMax + 4 + 1);
 /// The maximum size of the looks.

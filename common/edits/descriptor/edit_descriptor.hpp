@@ -1,9 +1,9 @@
 // EditDescriptor: the effect of an edit as geometry, a mask and a material. A whole brush stroke or
 // pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
-// in the log and in exports. The meaning of a kind is frozen; a change is a new kind.
-// Two kinds have no voxels: one changes who may do what, the other adds materials. They stand in the
-// same order as the others.
+// in the log and in exports. The meaning of a kind is frozen; a change is a new kind. Two kinds
+// have no voxels: one changes who may do what, the other adds materials. They stand in the same
+// order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -188,8 +188,8 @@ Bytes encode(const EditDescriptor& edit);
 /// Decodes exactly one descriptor. Fails if bytes are left over or are not canonical. The result is
 /// valid.
 Result<EditDescriptor> decode_descriptor(ByteView in);
-/// Does the same and fails for a kind without voxels, which players neither send nor receive as an
-/// edit.
+/// Decodes a descriptor as decode_descriptor(). Fails also for a kind without voxels, which players
+/// neither send nor receive as an edit.
 Result<EditDescriptor> decode_voxel_edit(ByteView in);
 
 }  // namespace runstone

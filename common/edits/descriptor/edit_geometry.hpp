@@ -33,7 +33,7 @@ bool touches(const EditDescriptor& edit, const VoxelBox& box);
 /// This order is part of the protocol: a commit lists one previous version per touched chunk in it.
 /// `edge`: 16, 32, 64 or 128.
 std::vector<ChunkCoord> touched_chunks(const EditDescriptor& edit, std::int32_t edge);
-/// Writes the same chunks to `out` and reuses its memory.
+/// Replaces `out` by the touched chunks and reuses its memory.
 void touched_chunks(const EditDescriptor& edit, std::int32_t edge, std::vector<ChunkCoord>& out);
 
 /// Returns an upper bound for the number of touched_chunks(): the number of chunks that the

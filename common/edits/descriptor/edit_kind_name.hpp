@@ -4,7 +4,8 @@
 
 namespace runstone {
 
-/// Returns one word in lower case, such as "box". A kind that this program does not know is an "edit".
+/// Returns one word in lower case, such as "box". A kind that this program does not know is an
+/// "edit".
 constexpr const char* name_of(EditKind kind) {
   switch (kind) {
     case EditKind::set_voxel:

@@ -30,9 +30,9 @@ inline constexpr std::uint8_t kEditRecordVersion = 1;
 /// checks the maximum of each kind.
 inline constexpr std::size_t kRecordDescriptorBytesMax = std::size_t{1} << 20;
 
-/// Fails if sequence, client sequence or subject is outside its range, or if the cause is not that of
-/// the edit: a change of rights has the cause `rights`, new materials have the cause `materials`, and
-/// no other edit has one of these.
+/// Fails if sequence, client sequence or subject is outside its range, or if the cause is not that
+/// of the edit: a change of rights has the cause `rights`, new materials have the cause
+/// `materials`, and no other edit has one of these.
 Result<void> validate_fields(const EditRecord& record);
 
 /// Returns the canonical bytes without the checksum: version byte, numbers, bounding box,

@@ -55,7 +55,8 @@ struct OrderedShape {
 std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent,
                                  AxisOrder order);
 
-/// Does the same for a single voxel. Most edits are single voxels, so it has no boxes and is inline.
+/// Returns nullopt if the voxel lies outside the chunk. Most edits are single voxels, so this form
+/// of clip() has no boxes and is inline.
 inline std::optional<OrderedShape> clip_voxel(VoxelPos at, VoxelPos origin, Extent extent,
                                               AxisOrder order) {
   const auto x = static_cast<std::uint32_t>(at.x - origin.x);
@@ -132,7 +133,7 @@ void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, A
   }
 }
 
-/// Does the same as append_spans() of edit_geometry.hpp for a shape that is clipped already.
+/// Appends spans as append_spans() of edit_geometry.hpp, for a shape that is clipped already.
 void append_spans(const OrderedShape& shape, OrderedExtent e, std::vector<IndexSpan>& out);
 
 /// Merges the spans from `start` on, which several shapes appended, into one ascending list of

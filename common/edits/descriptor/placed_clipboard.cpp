@@ -168,7 +168,7 @@ std::optional<PlacedCells> placed_cells(const Paste& paste, const VoxelBox& box,
   RunChunk cells =
       cut(paste.clipboard->cells(), part.first, part.extent, backward_axes(paste.orientation));
   cells = reorder(cells, order_in_clipboard(paste.orientation, order));
-  // The runs stay the same; the axes get the names that they have in the world.
+  // The runs do not change; the axes get the names that they have in the world.
   cells.extent = paste.orientation.rotated(cells.extent);
   cells.order = order;
   return PlacedCells{inside, std::move(cells)};

@@ -10,7 +10,7 @@
 // Proof: after every edit, a voxel of `restored` holds the material of its last writer that is not
 // selected, or the start if there is none, because exactly such writers write it. The writers after
 // that one are all selected, so they are the tail, and the material is that before the tail. If the
-// tail is empty, the last writer wrote both chunks, and both hold the same.
+// tail is empty, the last writer wrote both chunks, and both hold its material.
 #pragma once
 #include <cstdint>
 #include <vector>

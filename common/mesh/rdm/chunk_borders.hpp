@@ -55,8 +55,8 @@ class ChunkBorders {
   const std::uint32_t* transparent_rows(Direction side) const {
     return rows(side) + row_words(side) * row_count(side);
   }
-  /// Returns the materials of a side's transparent voxels, in the order of rows and bits; or a single
-  /// material if all of them have it.
+  /// Returns the materials of a side's transparent voxels, in the order of rows and bits; or a
+  /// single material if all of them have it.
   std::span<const Material> transparent_materials(Direction side) const {
     return std::span(materials_).subspan(at(side).first_material, at(side).materials);
   }

@@ -6,10 +6,10 @@
 
 namespace runstone::rdm {
 
-/// Does what palette.list() does for all runs, and gives materials the same indices. While the chunk
-/// has few materials, a vector of runs is compared with each of them, which is several times as fast
-/// as looking each run up. The bytes are valid only if palette.fit_bytes() is true afterwards.
-/// Requires room for an index a run at `out`. Cost: O(runs).
+/// Does what palette.list() does for all runs, and gives materials the same indices. While the
+/// chunk has few materials, a vector of runs is compared with each of them, which is several times
+/// as fast as looking each run up. The bytes are valid only if palette.fit_bytes() is true
+/// afterwards. Requires room for an index a run at `out`. Cost: O(runs).
 void index_runs(const RunList& runs, const VisibilityTable& visibility, ChunkPalette& palette,
                 BytePaletteIndex* out);
 

@@ -181,7 +181,8 @@ class LayerBuilder {
     }
     return same;
   }
-  /// Does the same for a line of the chunk.
+  /// Returns the bits at which a transparent voxel of a line of the chunk touches its own material
+  /// beyond a border.
   Row same_beyond_line(Side side, std::uint32_t row, const Index* line) const {
     const Row ours = Line::at(line).transparent() & valid_;
     return same_beyond(side, row, e_.f, ours, [line](unsigned bit) { return line[bit]; });

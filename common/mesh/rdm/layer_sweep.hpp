@@ -21,8 +21,8 @@ void sweep_layers(const SweepInput& input, const Borders<Row64>& borders, SweepS
 void sweep_layers(const SweepInput& input, const Borders<Row128>& borders,
                   SweepState<Row128>& state);
 
-/// Does the same with one row and one index at a time. This is the plain path, whose results the
-/// others must equal.
+/// Puts the quads of the chunk into the buckets, one row and one index at a time. This is the plain
+/// path, whose results the others must equal.
 void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders,
                         SweepState<Row64>& state);
 void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders,

@@ -64,8 +64,8 @@ class QuadEmitter {
     QuadBuckets::Bucket* const buckets = pass_of(quad);
     QuadBuckets::put(buckets[layer], quad);
   }
-  /// Does the same, or, if `joins`, adds one row to the quad that was put last into that layer.
-  /// Requires a quad of one row.
+  /// Puts a quad whose strip ends before row `row`, or, if `joins`, adds one row to the quad that
+  /// was put last into that layer. Requires a quad of one row.
   HWY_INLINE void close_or_join(Quad open, std::uint32_t layer, std::uint32_t row,
                                 bool joins) const {
     Quad quad = shape_.close(open, row);

@@ -27,8 +27,8 @@ class QuadShape {
         rows_shift_(u_axis_of(axis_of(direction)) == strip ? 28 : 21),
         strip_bits_(~(std::uint64_t{127} << row_shift_ | std::uint64_t{127} << rows_shift_)) {}
 
-  /// Returns the quad of a strip whose last row is not known yet. Its number of rows is negative and
-  /// borrows from the bits above, so no field of it may be read before close(). close() adds
+  /// Returns the quad of a strip whose last row is not known yet. Its number of rows is negative
+  /// and borrows from the bits above, so no field of it may be read before close(). close() adds
   /// `row_end` modulo 2^64, which repays the borrow exactly.
   constexpr Quad open(const Strip& s, Material material) const {
     return {(base_ | std::uint64_t{s.layer} << layer_shift_ |

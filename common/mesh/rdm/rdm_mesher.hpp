@@ -32,8 +32,8 @@ class RdmScratch {
   RdmScratch& operator=(RdmScratch&&) noexcept;
   struct State;
   State& state() { return *state_; }
-  /// Makes later calls mesh one row at a time, without vector instructions. The quads are the same.
-  /// It is for tests and measurements.
+  /// Makes later calls mesh one row at a time, without vector instructions. The quads do not
+  /// change. It is for tests and measurements.
   void use_plain_path(bool plain);
 
  private:
@@ -52,10 +52,10 @@ class RdmScratch {
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out);
 
-/// Makes the same mesh with kept borders of neighbours. The runs of such a neighbour are not read,
-/// except the single run of a uniform one. Requires borders that match `neighbours` as they are now.
-/// If `chunk_borders` is not null, it becomes the result of chunk_borders->read(chunk, visibility).
-/// That costs little, because the sweep visits all voxels of the chunk anyway.
+/// Makes the mesh with kept borders of neighbours. The runs of such a neighbour are not read,
+/// except the single run of a uniform one. Requires borders that match `neighbours` as they are
+/// now. If `chunk_borders` is not null, it becomes the result of chunk_borders->read(chunk,
+/// visibility). That costs little, because the sweep visits all voxels of the chunk anyway.
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out,
               ChunkBorders* chunk_borders = nullptr);
@@ -68,7 +68,8 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
 ///     change by apply_stack() only passes the union of ApplyResult::dirty. The client compares the
 ///     runs instead (layer_diff.hpp), because its shown runs also change by snapshots and by
 ///     predictions that are withdrawn.
-///   - `beyond` are the same of each neighbour. Only its layer that touches the chunk matters.
+///   - `beyond` are the layers of each neighbour in which a voxel changed since. Only its layer
+///     that touches the chunk matters.
 ///
 /// In each dirty layer, the rows in which a voxel may have changed are decoded and joined with the
 /// quads above and below them. Calls mesh_rdm() where that costs less. Returns true if only layers

@@ -21,7 +21,8 @@ struct StripLanes {
   using V = typename Lanes::V;
   V face, start, end;
 
-  /// Does the same as strips_along(). `face` and `cut` point to the first of the rows.
+  /// Returns the strips of rows, as strips_along() of one row. `face` and `cut` point to the first
+  /// of the rows.
   static HWY_INLINE StripLanes along(const Row* face, [[maybe_unused]] const Row* cut) {
     const V f = Lanes::load(face);
     V before = Lanes::up(f);
@@ -33,7 +34,8 @@ struct StripLanes {
     }
     return {f, Lanes::without(f, before), Lanes::without(f, behind)};
   }
-  /// Does the same as changed(). `cut` points to the first of the rows.
+  /// Returns the changed bits of rows, as changed() of row_strips.hpp those of one row. `cut`
+  /// points to the first of the rows.
   static HWY_INLINE V changed(const StripLanes& now, const StripLanes& before,
                               [[maybe_unused]] const Row* cut) {
     V x = Lanes::either(Lanes::differing(now.face, before.face),
@@ -44,7 +46,7 @@ struct StripLanes {
     }
     return x;
   }
-  /// Does the same as ends_with() of row_strips.hpp.
+  /// Returns the ends of strips of rows, as ends_with() of row_strips.hpp those of one row.
   HWY_INLINE V ends_with(V x) const {
     x = Lanes::both(x, face);
     const V inner = Lanes::without(face, end);

@@ -179,8 +179,8 @@ class StripTracer {
     }
   }
 
-  /// Rows of strips and their cuts, the same of the previous rows, and the bits whose material
-  /// differs between them.
+  /// Rows of strips and their cuts, strips and cuts of the previous rows, and the bits whose
+  /// material differs between them.
   struct Lines {
     const Row *face, *cut, *face_before, *cut_before, *differs;
   };

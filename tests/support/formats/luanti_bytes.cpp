@@ -28,7 +28,8 @@ Bytes luanti_plain(const LuantiBlockFields& fields) {
   out.push_back(fields.content_width);
   out.push_back(fields.params_width);
   for (const std::uint16_t id : fields.nodes) put_u16(out, id);
-  out.insert(out.end(), 2 * 4096, 0x0f);
+  out.insert(out.end(), 4096, 0x0f);  // light
+  out.insert(out.end(), fields.param2.begin(), fields.param2.end());
   out.insert(out.end(), fields.rest.begin(), fields.rest.end());
   return out;
 }

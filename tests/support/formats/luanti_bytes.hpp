@@ -16,6 +16,7 @@ struct LuantiBlockFields {
   std::vector<std::pair<std::uint16_t, std::string>> names;
   std::uint8_t content_width = 2, params_width = 2;
   std::vector<std::uint16_t> nodes = std::vector<std::uint16_t>(4096);  // z * 256 + y * 16 + x
+  Bytes param2 = Bytes(4096);                                           // in the same order
   Bytes rest = {0, 0, 0, 0, 0, 10, 0, 0};  // empty metadata, objects and timers
 };
 

@@ -1,5 +1,5 @@
 // runstone-replay verify: exit codes, table and report of sound, tampered and damaged worlds.
-#include "server/replay/verify_command.hpp"
+#include "server/replay/replay_commands.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 #include "common/core/hash.hpp"
+#include "common/formats/block_assembler.hpp"
 #include "tests/support/formats/luanti_bytes.hpp"
 
 using namespace runstone;
@@ -24,9 +26,9 @@ LuantiBlockFields sample() {
   return fields;
 }
 
-std::string name_at(const LuantiBlock& block, LocalPos at) {
+std::string name_at(const ForeignPiece& block, LocalPos at) {
   const Material material = material_at(block.voxels, at);
-  return material == kEmpty ? "" : block.names[material - 1u];
+  return material == kEmpty ? "" : block.blocks[material - 1u].name;
 }
 
 ErrorCode code_of(ByteView row) {
@@ -35,10 +37,10 @@ ErrorCode code_of(ByteView row) {
   return block.error().code;
 }
 
-void check_sound(const LuantiBlock& block) {
+void check_sound(const ForeignPiece& block) {
   REQUIRE(validate(block.voxels).has_value());
   for (std::size_t i = 0; i < block.voxels.runs.size(); ++i) {
-    REQUIRE(block.voxels.runs.material(i) <= block.names.size());
+    REQUIRE(block.voxels.runs.material(i) <= block.blocks.size());
   }
 }
 
@@ -48,7 +50,8 @@ TEST_CASE("a block's nodes are decoded at their places", "[formats]") {
   const auto block = decode_luanti_block(luanti_row(sample()));
   REQUIRE(block.has_value());
   check_sound(*block);
-  CHECK(block->names == std::vector<std::string>{"air", "default:stone", "default:dirt"});
+  CHECK(block->blocks ==
+        std::vector<ForeignBlock>{{"air", ""}, {"default:stone", ""}, {"default:dirt", ""}});
   CHECK(block->voxels.order == AxisOrder::xyz);
   CHECK(block->voxels.runs.size() == 7);
   CHECK(name_at(*block, {0, 0, 0}) == "default:stone");
@@ -74,7 +77,25 @@ TEST_CASE("a block that the game wrote decodes to its known contents", "[formats
                       static_cast<std::uint8_t>(i / 256)};
     REQUIRE(name_at(*block, at) == nodes[i]);
   }
-  CHECK(to_hex(digest_of(block->voxels)) == "0481e14fc178484e13c9df2eeae9a9dd");
+  // The pinned digest is of the names alone: materials of one name are the same material.
+  std::map<std::string, Material> first_of_name;
+  std::vector<Material> by_name{kEmpty};
+  std::map<std::string, int> states;
+  for (std::size_t i = 0; i < block->blocks.size(); ++i) {
+    const auto id = static_cast<Material>(i + 1);
+    by_name.push_back(first_of_name.try_emplace(block->blocks[i].name, id).first->second);
+  }
+  CHECK(to_hex(digest_of(with_materials(block->voxels, by_name))) ==
+        "0481e14fc178484e13c9df2eeae9a9dd");
+  for (std::size_t i = 0; i < block->voxels.runs.size(); ++i) {
+    const ForeignBlock& node = block->blocks[block->voxels.runs.material(i) - 1u];
+    if (!node.states.empty()) {
+      states[node.name + " " + node.states] +=
+          static_cast<int>(block->voxels.runs.end(i) - block->voxels.runs.begin(i));
+    }
+  }
+  CHECK(states == std::map<std::string, int>{{"default:chest param2=2", 1},
+                                             {"stairs:stair_cobble param2=3", 8}});
 }
 
 TEST_CASE("random blocks decode node by node", "[formats]") {
@@ -115,6 +136,38 @@ TEST_CASE("ignore nodes become material 0", "[formats]") {
   REQUIRE(block.has_value());
   CHECK(material_at(block->voxels, {1, 0, 0}) == kEmpty);
   CHECK(name_at(*block, {0, 0, 0}) == "default:stone");
+}
+
+TEST_CASE("the second parameter of a node is its state", "[formats]") {
+  LuantiBlockFields fields = sample();
+  fields.param2.assign(4096, 0);
+  fields.param2[0] = 3;         // stone
+  fields.param2[16 * 3] = 255;  // stone
+  fields.param2[2] = 3;         // air
+  fields.names[2].second = "ignore";
+  fields.param2[1] = 3;  // ignore
+  const auto block = decode_luanti_block(luanti_row(fields));
+  REQUIRE(block.has_value());
+  check_sound(*block);
+  const auto node_at = [&](LocalPos at) {
+    return block->blocks[material_at(block->voxels, at) - 1u];
+  };
+  CHECK(node_at({0, 0, 0}) == ForeignBlock{"default:stone", "param2=3"});
+  CHECK(node_at({0, 3, 0}) == ForeignBlock{"default:stone", "param2=255"});
+  CHECK(node_at({2, 0, 0}) == ForeignBlock{"air", "param2=3"});
+  CHECK(node_at({3, 0, 0}) == ForeignBlock{"air", ""});
+  CHECK(material_at(block->voxels, {1, 0, 0}) == kEmpty);
+  CHECK(block->blocks.size() == 6);
+}
+
+TEST_CASE("long names with many states are rejected", "[formats]") {
+  LuantiBlockFields fields;
+  fields.names = {{0, std::string(60'000, 'a')}};
+  for (std::size_t i = 0; i < fields.param2.size(); ++i)
+    fields.param2[i] = static_cast<std::uint8_t>(i);
+  CHECK(code_of(luanti_row(fields)) == ErrorCode::limit_exceeded);
+  fields.names = {{0, std::string(4'000, 'a')}};
+  CHECK(decode_luanti_block(luanti_row(fields)).has_value());
 }
 
 TEST_CASE("two ids with one name are both decoded", "[formats]") {

@@ -7,16 +7,20 @@ using namespace runstone;
 
 namespace {
 
+MaterialInfo material_of(std::string_view name, bool keep_all) {
+  return material_of_luanti_node({std::string(name), ""}, keep_all);
+}
+
 Visibility visibility_of(std::string_view name, bool keep_all = false) {
-  return material_of_luanti_node(name, keep_all).visibility;
+  return material_of(name, keep_all).visibility;
 }
 
 }  // namespace
 
 TEST_CASE("air and nodes that are not generated are air", "[formats]") {
   for (const bool keep_all : {false, true}) {
-    CHECK(material_of_luanti_node("air", keep_all) == MaterialTable()[kEmpty]);
-    CHECK(material_of_luanti_node("ignore", keep_all) == MaterialTable()[kEmpty]);
+    CHECK(material_of("air", keep_all) == MaterialTable()[kEmpty]);
+    CHECK(material_of("ignore", keep_all) == MaterialTable()[kEmpty]);
   }
 }
 
@@ -26,10 +30,10 @@ TEST_CASE("ground is opaque, water and glass are transparent, plants are empty",
   CHECK(visibility_of("default:sand_with_kelp") == Visibility::opaque);
   CHECK(visibility_of("default:water_source") == Visibility::transparent);
   CHECK(visibility_of("default:glass") == Visibility::transparent);
-  CHECK(material_of_luanti_node("default:water_flowing", false).body == MaterialBody::liquid);
-  CHECK(material_of_luanti_node("default:lava_source", false).body == MaterialBody::liquid);
-  CHECK(material_of_luanti_node("default:glass", false).body == MaterialBody::solid);
-  CHECK(material_of_luanti_node("default:grass_3", true).body == MaterialBody::passable);
+  CHECK(material_of("default:water_flowing", false).body == MaterialBody::liquid);
+  CHECK(material_of("default:lava_source", false).body == MaterialBody::liquid);
+  CHECK(material_of("default:glass", false).body == MaterialBody::solid);
+  CHECK(material_of("default:grass_3", true).body == MaterialBody::passable);
   CHECK(visibility_of("default:grass_3") == Visibility::empty);
   CHECK(visibility_of("default:grass_3", true) == Visibility::transparent);
   CHECK(visibility_of("default:torch_wall") == Visibility::empty);
@@ -40,9 +44,7 @@ TEST_CASE("ground is opaque, water and glass are transparent, plants are empty",
 }
 
 TEST_CASE("stairs and walls have the colour of their material", "[formats]") {
-  const auto colour = [](std::string_view name) {
-    return material_of_luanti_node(name, false).colour;
-  };
+  const auto colour = [](std::string_view name) { return material_of(name, false).colour; };
   CHECK(colour("stairs:stair_cobble") == colour("default:cobble"));
   CHECK(colour("stairs:stair_inner_brick") == colour("default:brick"));
   CHECK(colour("stairs:slab_wood") == colour("default:wood"));
@@ -51,7 +53,7 @@ TEST_CASE("stairs and walls have the colour of their material", "[formats]") {
 
 TEST_CASE("nodes have the look that belongs to their name", "[formats]") {
   const auto look = [](std::string_view name) {
-    const auto given = material_of_luanti_node(name, true).look;
+    const auto given = material_of(name, true).look;
     REQUIRE(given.has_value());
     return *given;
   };
@@ -63,15 +65,14 @@ TEST_CASE("nodes have the look that belongs to their name", "[formats]") {
 }
 
 TEST_CASE("unknown names get a shade of the colour of their kind", "[formats]") {
-  const auto a = material_of_luanti_node("mod:oak_leaves", false),
-             b = material_of_luanti_node("mod:fir_leaves", false);
+  const auto a = material_of("mod:oak_leaves", false), b = material_of("mod:fir_leaves", false);
   CHECK(a.colour != b.colour);
   for (const auto& leaves : {a, b}) {
     CHECK(leaves.colour[1] > leaves.colour[0]);
     CHECK(leaves.colour[1] > leaves.colour[2]);
   }
   // Pinned: colours are stored in worlds, so they must not depend on compiler or run.
-  const auto colour = material_of_luanti_node("mod:xyzzy", false).colour;
+  const auto colour = material_of("mod:xyzzy", false).colour;
   const std::array<int, 4> pinned{colour[0], colour[1], colour[2], colour[3]};
   CHECK(pinned == std::array<int, 4>{140, 201, 113, 255});
 }
@@ -85,12 +86,12 @@ TEST_CASE("every name becomes a row that a table accepts", "[formats]") {
     for (std::uint32_t k = 0; k < size; ++k) name += static_cast<char>(random.below(256));
     if (i % 2 == 0) name = "mod:" + std::string(random.below(100), 'a') + std::to_string(i);
     CAPTURE(name);
-    const MaterialInfo info = material_of_luanti_node(name, random.below(2) == 0);
-    CHECK(info == material_of_luanti_node(name, info.visibility == Visibility::transparent));
+    const MaterialInfo info = material_of(name, random.below(2) == 0);
+    CHECK(info == material_of(name, info.visibility == Visibility::transparent));
     if (!table.find(info.name)) REQUIRE(table.add(info).has_value());
   }
   CHECK(table.size() > 400);
-  CHECK(material_of_luanti_node(std::string(65, 'a'), false).name !=
-        material_of_luanti_node(std::string(66, 'a'), false).name);
-  CHECK(material_of_luanti_node("default:stone", false).name == "default:stone");
+  CHECK(material_of(std::string(65, 'a'), false).name !=
+        material_of(std::string(66, 'a'), false).name);
+  CHECK(material_of("default:stone", false).name == "default:stone");
 }

@@ -5,10 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "server/replay/bench_command.hpp"
-#include "server/replay/diff_command.hpp"
-#include "server/replay/play_command.hpp"
-#include "server/replay/timelapse_command.hpp"
+#include "server/replay/replay_commands.hpp"
 #include "tests/support/replay/run_replay.hpp"
 
 using namespace runstone;

@@ -1,6 +1,8 @@
 #include "server/web/http_answer.hpp"
 
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -71,6 +73,22 @@ TEST_CASE("the pages load nothing from elsewhere and need no script", "[web]") {
   CHECK(get("/style.css").body.find("url(") == std::string::npos);
   CHECK(get("/style.css").caching == HttpCaching::an_hour);
   CHECK(get("/").caching == HttpCaching::none);
+}
+
+TEST_CASE("the page of the map has the title of the world as text", "[web]") {
+  WebConfig config;
+  config.world = "world";
+  config.title = "A & {title}";
+  const HttpAnswer answer = get("/map", running_server(), config);
+  CHECK(answer.status == 200);
+  CHECK(has(answer, "<title>A &amp; {title}: map</title>"));
+  CHECK(has(answer, "<h1><a href=\"./\">A &amp; {title}</a></h1>"));
+  for (const char* file : {"map.js", "map.css"}) {
+    CHECK(has(answer, file));
+    std::ifstream in(std::string(RUNSTONE_SOURCE_DIR) + "/server/web/page/" + file,
+                     std::ios::binary);
+    CHECK(get(std::string("/") + file).body == std::string(std::istreambuf_iterator<char>(in), {}));
+  }
 }
 
 TEST_CASE("a page says in words that the server is not running", "[web]") {

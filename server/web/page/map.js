@@ -1,9 +1,4 @@
-#include "server/web/map_page.hpp"
-
-namespace runstone {
-
-std::string_view map_script() {
-  return R"js('use strict';
+'use strict';
 // The map: tiles on a canvas. World coordinates are voxels, x to the right and z down. A tile is kept
 // with its ETag, so a request for another moment costs nothing where nothing changed.
 const GLOW_MS = 5000, TILES_MAX = 400, LOADS_MAX = 6, STEP_MS = 150, STEPS = 200;
@@ -459,7 +454,3 @@ el('in').addEventListener('click', () => zoomMiddle(1.5));
 el('out').addEventListener('click', () => zoomMiddle(1 / 1.5));
 addEventListener('resize', redraw);
 poll();
-)js";
-}
-
-}  // namespace runstone

@@ -1,0 +1,50 @@
+#include "common/formats/block_materials.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "common/formats/block_assembler.hpp"
+
+namespace runstone {
+
+void BlockMaterials::note(const ForeignPiece& piece) {
+  std::vector<bool> occurs(piece.blocks.size() + 1);
+  for (std::size_t i = 0; i < piece.voxels.runs.size(); ++i)
+    occurs[piece.voxels.runs.material(i)] = true;
+  for (std::size_t i = 0; i < piece.blocks.size() && bytes_ <= kForeignBlockBytesMax; ++i) {
+    const ForeignBlock& block = piece.blocks[i];
+    if (occurs[i + 1] && ids_.try_emplace(block, kEmpty).second)
+      bytes_ += sizeof(block) + block.name.size() + block.states.size();
+  }
+}
+
+Result<MaterialTable> BlockMaterials::make_table() {
+  if (bytes_ > kForeignBlockBytesMax) {
+    return fail(ErrorCode::limit_exceeded,
+                "the names and states of the blocks take more than 64 MiB");
+  }
+  MaterialTable table;
+  for (auto& [block, id] : ids_) {
+    MaterialInfo info = format_.material_of(block, keep_all_);
+    if (info.visibility == Visibility::empty) continue;
+    if (const auto known = table.find(info.name)) {
+      id = *known;
+      continue;
+    }
+    const auto added = table.add(std::move(info));
+    if (!added) return Unexpected<Error>{added.error()};
+    id = *added;
+  }
+  return table;
+}
+
+RunChunk BlockMaterials::resolve(const ForeignPiece& piece) const {
+  std::vector<Material> to(piece.blocks.size() + 1, kEmpty);
+  for (std::size_t i = 0; i < piece.blocks.size(); ++i) {
+    const auto known = ids_.find(piece.blocks[i]);
+    if (known != ids_.end()) to[i + 1] = known->second;
+  }
+  return with_materials(piece.voxels, to);
+}
+
+}  // namespace runstone
