@@ -1,4 +1,4 @@
-#include "server/admin/peer_address.hpp"
+#include "server/admin/server_address.hpp"
 
 #include <asio/ip/address.hpp>
 #include <asio/ip/host_name.hpp>
@@ -22,6 +22,11 @@ std::string host_of_machine() {
 }
 
 }  // namespace
+
+std::string player_address_of(const ServerConfig& config, std::uint16_t port) {
+  const auto address = parse_host_port(config.player_address, port);
+  return address ? to_string(*address) : std::string();
+}
 
 std::string peer_address_of(const ServerConfig& config, std::uint16_t port) {
   if (const auto set = parse_host_port(config.peer_address, port)) return to_string(*set);
