@@ -9,6 +9,7 @@
 
 #include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
+#include "server/admin/command_table.hpp"
 #include "server/admin/config_reload.hpp"
 #include "server/runtime/counters_line.hpp"
 #include "server/runtime/derived_config.hpp"
@@ -350,13 +351,7 @@ std::string ServerCore::status_of_follower() const {
 void ServerCore::command(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)]() mutable {
     if (!world_->is_following()) return commands_->run(line, std::move(reply));
-    if (line == "stop") {
-      actions_.stop();
-      return reply({"", true, true});
-    }
-    if (line == "reload" && actions_.reload) return actions_.reload(std::move(reply));
-    if (line == "status") return reply({status_of_follower(), true, true});
-    refuse(reply, kGiveThere);
+    give_command(FollowerCall{actions_, status_of_follower(), std::move(reply)}, line);
   });
 }
 
@@ -369,7 +364,7 @@ void ServerCore::answer_gateway(const std::string& question, CommandReply reply)
       text += fmt::format("\nplace {:.1f} {:.1f} {:.1f} {}", player.at.x, player.at.y, player.at.z,
                           player.name);
     }
-    reply({std::move(text), true, true});
+    reply(CommandAnswer::last(std::move(text)));
   });
 }
 
@@ -385,7 +380,7 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
     world_->reconfigure(world_config_of(running_, store_.meta(), port()));
     if (commands_) commands_->set_operators(running_.operators);
     logger("app").info("reload: {}", reloaded.text());
-    reply({reloaded.text(), true, true});
+    reply(CommandAnswer::last(reloaded.text()));
   });
 }
 

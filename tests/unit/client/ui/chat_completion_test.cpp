@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "server/admin/command_rules.hpp"
+#include "server/admin/command_table.hpp"
 
 using namespace runstone;
 
