@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "server/admin/command_reader.hpp"
+#include "server/admin/word_reader.hpp"
 
 namespace runstone {
 namespace {

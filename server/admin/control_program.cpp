@@ -1,8 +1,8 @@
 #include "server/admin/control_program.hpp"
 
-#include <sodium.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <asio/io_context.hpp>
 #include <asio/local/stream_protocol.hpp>
 #include <asio/read_until.hpp>
@@ -11,12 +11,10 @@
 #include <iostream>
 #include <ostream>
 #include <system_error>
-#include <variant>
 
 #include "common/core/text.hpp"
 #include "common/os/passphrase.hpp"
-#include "protocol/codec/password_key.hpp"
-#include "server/admin/command.hpp"
+#include "server/admin/command_table.hpp"
 #include "server/admin/control_socket.hpp"
 
 namespace runstone {
@@ -27,12 +25,17 @@ bool is_quoted(const std::string& word) {
   return word.size() >= 2 && word.front() == '"' && word.back() == '"';
 }
 
-/// Returns the words of a command. FILE of `materials add FILE` becomes a whole path, because the
-/// server reads it and may run in another folder.
+/// Returns the words of a command. The last one becomes a whole path if it is the name of a file,
+/// because the server reads the file and may run in another folder.
 std::vector<std::string> with_whole_path(std::vector<std::string> words) {
+  const CommandRow* row = find_command(words);
+  const bool is_file =
+      row != nullptr && row->words.ends_with(" FILE") &&
+      static_cast<std::size_t>(std::count(row->words.begin(), row->words.end(), ' ')) + 1 ==
+          words.size();
   std::error_code ignored;
-  if (words.size() == 3 && words[0] == "materials" && words[1] == "add" && !is_quoted(words[2]))
-    words[2] = std::filesystem::absolute(words[2], ignored).string();
+  if (is_file && !is_quoted(words.back()))
+    words.back() = std::filesystem::absolute(words.back(), ignored).string();
   return words;
 }
 
@@ -57,23 +60,16 @@ Result<std::string, std::string> read_new_password() {
   return line;
 }
 
-Result<std::string, std::string> with_password(const std::string& line, const ReadPassword& read) {
+Result<std::string, std::string> completed_line(const std::string& line,
+                                                const ReadPassword& read_password) {
   const auto command = parse_command(line, 0);
-  const auto* rights = command ? std::get_if<RightsCommand>(&*command) : nullptr;
-  const auto* set = rights == nullptr ? nullptr : std::get_if<SetPasswordCommand>(rights);
-  if (set == nullptr || set->has_verifier) return line;  // the server answers mistakes
-  const auto text = read();
-  if (!text) return failure(text.error());
-  PasswordSalt salt{};
-  randombytes_buf(salt.data(), salt.size());
-  const auto password = join_password(*text, salt, set->password.role);
-  if (!password) return failure("password set: " + password.error());
-  return line + " verifier " + verifier_text(*password);
+  if (!command || command->row->complete == nullptr) return line;  // the server answers mistakes
+  return command->row->complete(line, command->meaning, read_password);
 }
 
 Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out,
                                          const ReadPassword& read_password) {
-  auto completed = with_password(control_line(with_whole_path(request.words)), read_password);
+  auto completed = completed_line(control_line(with_whole_path(request.words)), read_password);
   if (!completed) return failure(completed.error());
   std::string line = *std::move(completed);
   if (!is_printable_utf8(line))

@@ -1,11 +1,11 @@
 // runstone-server control: sends one command to a running server and prints the answer.
 #pragma once
-#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "common/core/result.hpp"
+#include "server/admin/command_row.hpp"
 
 namespace runstone {
 
@@ -22,11 +22,10 @@ std::string control_line(const std::vector<std::string>& words);
 /// Returns a new password: typed twice at the terminal without being shown or, if standard input is
 /// no terminal, its first line.
 Result<std::string, std::string> read_new_password();
-using ReadPassword = std::function<Result<std::string, std::string>()>;
-
-/// Returns the line, and for `password set` adds what the world keeps of the password that is read
-/// now. So the password itself leaves this process in no form.
-Result<std::string, std::string> with_password(const std::string& line, const ReadPassword& read);
+/// Returns the line with what its command adds to it here (CommandRow::complete). A password is read
+/// for `password set` alone.
+Result<std::string, std::string> completed_line(const std::string& line,
+                                                const ReadPassword& read_password);
 
 /// Sends the command and prints each line of the answer to `out` as it arrives. Returns true if the
 /// command succeeded. The error is one line: the command has control characters such as a newline,

@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <string_view>
 
+#include "common/core/hex.hpp"
 #include "common/names/folded_name.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
-#include "server/admin/command_reader.hpp"
-#include "server/admin/public_key_text.hpp"
+#include "server/admin/word_reader.hpp"
 
 namespace runstone {
 namespace {
@@ -59,7 +59,8 @@ Result<PublicKey, std::string> KnownPlayers::find(const std::string& word) const
     if (key != authors_.end()) return key->second;
     return failure("nobody has that author number (players lists them)");
   }
-  if (const auto key = parse_public_key(word)) return *key;
+  PublicKey typed{};
+  if (read_hex(word, typed)) return typed;
   std::set<PublicKey> meant;
   if (const auto named = names_.find(folded_name(word)); named != names_.end())
     meant = named->second;

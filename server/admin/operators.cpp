@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/admin/public_key_text.hpp"
+#include "common/core/hex.hpp"
 
 namespace runstone {
 Result<std::set<PublicKey>, std::string> parse_operators(std::string_view text) {
@@ -12,12 +12,10 @@ Result<std::set<PublicKey>, std::string> parse_operators(std::string_view text) 
        at = text.find_first_not_of(kBetween, at)) {
     const std::size_t end = std::min(text.find_first_of(kBetween, at), text.size());
     const std::string_view word = text.substr(at, end - at);
-    const auto key = parse_public_key(word);
-    if (!key) {
-      return Unexpected<std::string>{"\"" + std::string(word) +
-                                     "\" is no public key: 64 hexadecimal digits"};
-    }
-    keys.insert(*key);
+    PublicKey key{};
+    if (!read_hex(word, key))
+      return failure("\"" + std::string(word) + "\" is no public key: 64 hexadecimal digits");
+    keys.insert(key);
     at = end;
   }
   return keys;

@@ -67,7 +67,7 @@ void BackupChild::follow(int output, pid_t pid, const CommandReply& reply) {
   while (text.ends_with('\n')) text.pop_back();
   const bool is_ok = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   if (!is_ok && text.empty()) text = "backup: the program " + how_it_ended(status);
-  reply({std::move(text), true, is_ok});
+  reply(CommandAnswer::last(std::move(text), is_ok));
 }
 
 void BackupChild::stop() {

@@ -18,7 +18,7 @@
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/control_socket.hpp"
-#include "server/admin/peer_address.hpp"
+#include "server/admin/server_address.hpp"
 #include "server/runtime/encryption.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/runtime/low_priority_threads.hpp"

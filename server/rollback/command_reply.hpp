@@ -1,4 +1,4 @@
-// CommandReply: how RollbackService and CommandHandler answer a command.
+// CommandReply: how a command is answered.
 #pragma once
 #include <functional>
 #include <memory>
@@ -17,12 +17,19 @@ struct CommandAnswer {
   bool is_ok = true;  // of the last answer
   /// The last answer to a preview of a rollback, as far as a client shows it.
   std::shared_ptr<const RestorePreview> restore = nullptr;
+
+  /// The last answer, to a command that succeeded or, unless `is_ok`, that did not.
+  static CommandAnswer last(std::string text, bool is_ok = true) {
+    return {std::move(text), true, is_ok};
+  }
+  /// An answer that others follow.
+  static CommandAnswer progress(std::string text) { return {std::move(text), false, true}; }
 };
 using CommandReply = std::function<void(const CommandAnswer&)>;
 
 /// Sends the only answer to a command that cannot be carried out.
 inline void refuse(const CommandReply& reply, std::string text) {
-  reply({std::move(text), true, false});
+  reply(CommandAnswer::last(std::move(text), false));
 }
 
 }  // namespace runstone

@@ -206,9 +206,9 @@ void RollbackService::apply(const std::string& id, AuthorId author, CommandReply
   order.instance = new_instance();
   order.cause = Cause::rollback;
   order.selection = preview->selection;
-  reply({"rollback " + id + " begins: " + counted(preview->voxels, "voxel") + " in " +
-             counted(preview->chunks, "chunk") + "; `rollback cancel " + id + "` stops it",
-         false, true});
+  reply(CommandAnswer::progress("rollback " + id + " begins: " + counted(preview->voxels, "voxel") +
+                                " in " + counted(preview->chunks, "chunk") + "; `rollback cancel " +
+                                id + "` stops it"));
   start_job(std::move(order), "rollback " + id, std::move(reply)).preview =
       previews_[preview->number];
 }
@@ -220,7 +220,7 @@ void RollbackService::cancel(const std::string& id, CommandReply reply) {
         (job->job.progress().first != 0 && std::to_string(job->job.progress().first) == id);
     if (!is_it || job->player_change_of) continue;
     job->job.cancel();
-    return reply({"rollback " + id + " stops", true, true});
+    return reply(CommandAnswer::last("rollback " + id + " stops"));
   }
   RollbackPreview* const preview = find_preview(id);
   if (preview == nullptr)
@@ -231,7 +231,7 @@ void RollbackService::cancel(const std::string& id, CommandReply reply) {
   }
   preview->is_wanted->store(false);
   previews_.erase(preview->number);
-  reply({"preview " + id + " is forgotten", true, true});
+  reply(CommandAnswer::last("preview " + id + " is forgotten"));
 }
 
 Sequence RollbackService::rollback_named(const std::string& id, const CommandReply& reply) {
@@ -320,7 +320,7 @@ void RollbackService::list(CommandReply reply) {
         }
         if (all.empty()) all = "no previews, and no rollback was ever applied\n";
         all.pop_back();
-        reply({all, true, true});
+        reply(CommandAnswer::last(all));
       });
 }
 
@@ -358,7 +358,7 @@ void RollbackService::step(Job& job, const Clocks& now) {
 void RollbackService::report_wait(Job& job) const {
   if (!job.player_change_of || job.has_reported_wait || job.wait_text().empty()) return;
   job.has_reported_wait = true;
-  job.reply({job.name + " " + job.wait_text(), false, true});
+  job.reply(CommandAnswer::progress(job.name + " " + job.wait_text()));
 }
 
 bool RollbackService::answer_if_ended(Job& job) {
@@ -393,7 +393,7 @@ bool RollbackService::answer_if_ended(Job& job) {
   text += undo_hint;
   if (!is_on_disk)
     text += " (not all of it is on disk yet: what is not will be missing after a restart)";
-  job.reply({text, true, state == RestoreJob::State::done && is_on_disk});
+  job.reply(CommandAnswer::last(text, state == RestoreJob::State::done && is_on_disk));
   if (job.player_change_of) player_changes_.erase(*job.player_change_of);
   return true;
 }

@@ -2,7 +2,7 @@
 
 #include <future>
 
-#include "server/admin/chat_list.hpp"
+#include "server/admin/world_lists.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/world/people/chat_state.hpp"
 
@@ -36,7 +36,7 @@ std::vector<ChatEntry> newest_chat(ChatLog& log) {
 void list_chat(ChatLog& log, const ChatQuery& query, const CommandReply& reply) {
   const bool is_taken = log.search(query, [reply](const ChatLog::Found& found) {
     if (!found) return refuse(reply, "chat log: " + found.error());
-    reply({chat_list(*found), true, true});
+    reply(CommandAnswer::last(chat_list(*found)));
   });
   if (!is_taken) refuse(reply, "chat log: too many commands read it now: try again later");
 }

@@ -3,14 +3,18 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "common/core/text.hpp"
 #include "common/rights/right.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
-#include "server/admin/answer_lines.hpp"
+#include "protocol/limits.hpp"
+#include "server/admin/command_table.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/runtime/read_clocks.hpp"
 
@@ -21,12 +25,6 @@ namespace {
 bool has_power(RightSet rights) {
   return rights.has(Right::roll_back) || rights.has(Right::moderate) || rights.has(Right::grant) ||
          rights.has(Right::administer);
-}
-
-/// Returns the text of a command for the log. Somebody may type the password itself by mistake.
-std::string logged_text(const std::string& command) {
-  const std::size_t first = std::min(command.find_first_not_of(" \""), command.size());
-  return command.compare(first, 8, "password") == 0 ? "password ..." : command;
 }
 
 /// Returns the actions with replies that may be called from any thread.
@@ -64,6 +62,21 @@ OperatorActions on_strand(WorldStrand& strand, const OperatorActions& actions) {
 
 }  // namespace
 
+std::vector<std::string> answer_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    std::string_view rest = std::string_view(text).substr(at, end - at);
+    do {
+      const std::string_view line = cut_utf8(rest, kCommandLineBytesMax);
+      lines.emplace_back(line);
+      rest.remove_prefix(line.size());
+    } while (!rest.empty());
+    at = end + 1;
+  }
+  return lines;
+}
+
 CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReaders& readers,
                              std::set<PublicKey> operators, const std::string& world_folder,
                              const OperatorActions& actions)
@@ -73,35 +86,36 @@ CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReade
       operators_(std::move(operators)),
       rollback_(world, *this,
                 [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); }),
-      handler_(world, rollback_, *this, world_folder, on_strand(strand, actions),
-               [this](const PublicKey& key) { return operators_.contains(key); }) {}
+      services_{world,
+                rollback_,
+                *this,
+                world_folder,
+                on_strand(strand, actions),
+                [this](const PublicKey& key) { return operators_.contains(key); }} {}
 
 void CommandRunner::run(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)] {
     if (world_.cluster().is_following()) return refuse(reply, kGiveThere);
-    handler_.run({}, line, read_clocks(), reply);
+    give_command({services_, {}, read_clocks(), reply}, line);
     tick(read_clocks());
   });
 }
 
 void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key,
                         const std::string& text) {
-  // The handler may answer at once, and WorldServer must not be called from within its own call.
+  // A command may answer at once, and WorldServer must not be called from within its own call.
   strand_.post([this, session, author, key, text] {
-    if (world_.cluster().is_following())
-      return world_.people().commands().answer(session, {kGiveThere}, true, false);
-    const CommandCaller caller{author,
-                               {key, operators_.contains(key)},
-                               world_.people().commands().restore_preview_view(session)};
+    if (world_.cluster().is_following()) return world_.people().commands().answer(session, {kGiveThere}, true, false);
+    const CommandCaller caller{
+        author, {key, operators_.contains(key)}, world_.people().commands().restore_preview_view(session)};
     if (caller.actor.is_operator || has_power(world_.rights().state().role_of(key).rights))
       logger("app").info("command author={} key={} command=\"{}\"", author, key_fingerprint(key),
-                         logged_text(text));
+                         logged_command(text));
     const auto reply = [this, session](const CommandAnswer& answer) {
       if (answer.restore) world_.people().commands().show_restore(session, *answer.restore);
-      world_.people().commands().answer(session, answer_lines(answer.text), answer.is_done,
-                                        answer.is_ok);
+      world_.people().commands().answer(session, answer_lines(answer.text), answer.is_done, answer.is_ok);
     };
-    handler_.run(caller, text, read_clocks(), reply);
+    give_command({services_, caller, read_clocks(), reply}, text);
     tick(read_clocks());
   });
 }

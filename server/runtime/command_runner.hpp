@@ -1,13 +1,14 @@
 // CommandRunner: carries out the commands of the console, the control socket and clients, and owns
 // the services behind them: rollback, undo and redo. A server that has handed the world over keeps
-// it, because workers may still answer. Commands are refused then.
-// Threads: run(line, reply) may be called from any thread, everything else from the world strand.
+// it, because workers may still answer. Commands are refused then. Threads: run(line, reply) may be
+// called from any thread, everything else from the world strand.
 #pragma once
 #include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
-#include "server/admin/command_handler.hpp"
+#include "server/admin/command_call.hpp"
 #include "server/rollback/rollback_service.hpp"
 #include "server/runtime/world_readers.hpp"
 #include "server/runtime/world_strand.hpp"
@@ -15,9 +16,9 @@
 
 namespace runstone {
 
-/// The answer of a server that follows.
-inline constexpr const char* kGiveThere =
-    "this server follows the owner of the world: give the command there";
+/// Splits an answer for a client at its line breaks. A line that is longer than
+/// kCommandLineBytesMax goes on in further lines, because no message has longer ones.
+std::vector<std::string> answer_lines(const std::string& text);
 
 class CommandRunner final : private RollbackService::Workers {
  public:
@@ -39,7 +40,7 @@ class CommandRunner final : private RollbackService::Workers {
   /// every tick, and when the log became durable or failed.
   void tick(const Clocks& now) {
     rollback_.tick(now);
-    handler_.tick();
+    services_.tick();
   }
   /// Returns false while rollbacks, undos or redos are under way.
   bool is_idle() const { return rollback_.is_idle(); }
@@ -54,7 +55,7 @@ class CommandRunner final : private RollbackService::Workers {
   WorldReaders& readers_;
   std::set<PublicKey> operators_;
   RollbackService rollback_;
-  CommandHandler handler_;
+  CommandServices services_;
 };
 
 }  // namespace runstone

@@ -5,8 +5,8 @@
 #include "common/os/host_port.hpp"
 #include "common/tiles/tile_rules.hpp"
 #include "protocol/default_port.hpp"
-#include "server/admin/player_address.hpp"
 #include "server/admin/reserved_names.hpp"
+#include "server/admin/server_address.hpp"
 #include "server/world/people/chat_state.hpp"
 
 namespace runstone {

@@ -9,6 +9,7 @@
 
 #include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
+#include "server/admin/command_table.hpp"
 #include "server/admin/config_reload.hpp"
 #include "server/runtime/counters_line.hpp"
 #include "server/runtime/derived_config.hpp"
@@ -220,8 +221,7 @@ Result<void, std::string> ServerCore::end_handover() {
   auto is_written = ended->get_future();
   strand_.post([this, ended] {
     const LogWriter::Counters counters = log_counters_now();
-    if (log_->has_failed() || log_->durable() != world_->order().head() ||
-        counters.queued_records > 0)
+    if (log_->has_failed() || log_->durable() != world_->order().head() || counters.queued_records > 0)
       return ended->set_value(false);
     world_->cluster().handover_written(read_clocks());
     ended_logs_ = counters;
@@ -351,13 +351,7 @@ std::string ServerCore::status_of_follower() const {
 void ServerCore::command(const std::string& line, CommandReply reply) {
   strand_.post([this, line, reply = std::move(reply)]() mutable {
     if (!world_->cluster().is_following()) return commands_->run(line, std::move(reply));
-    if (line == "stop") {
-      actions_.stop();
-      return reply({"", true, true});
-    }
-    if (line == "reload" && actions_.reload) return actions_.reload(std::move(reply));
-    if (line == "status") return reply({status_of_follower(), true, true});
-    refuse(reply, kGiveThere);
+    give_command(FollowerCall{actions_, status_of_follower(), std::move(reply)}, line);
   });
 }
 
@@ -370,7 +364,7 @@ void ServerCore::answer_gateway(const std::string& question, CommandReply reply)
       text += fmt::format("\nplace {:.1f} {:.1f} {:.1f} {}", player.at.x, player.at.y, player.at.z,
                           player.name);
     }
-    reply({std::move(text), true, true});
+    reply(CommandAnswer::last(std::move(text)));
   });
 }
 
@@ -386,7 +380,7 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
     world_->reconfigure(world_config_of(running_, store_.meta(), port()));
     if (commands_) commands_->set_operators(running_.operators);
     logger("app").info("reload: {}", reloaded.text());
-    reply({reloaded.text(), true, true});
+    reply(CommandAnswer::last(reloaded.text()));
   });
 }
 
@@ -436,8 +430,7 @@ void ServerCore::finish_stop_if_flushed() {
 
 StopState ServerCore::stop_state() const {
   if (!log_) return {};
-  return {log_->has_failed(), world_->order().head() - log_->durable(),
-          world_->order().dirty_chunks()};
+  return {log_->has_failed(), world_->order().head() - log_->durable(), world_->order().dirty_chunks()};
 }
 
 void ServerCore::stop_writer() {

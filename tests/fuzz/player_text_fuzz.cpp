@@ -12,7 +12,7 @@
 #include "protocol/limits.hpp"
 #include "protocol/rules/chat_text.hpp"
 #include "server/admin/address_range_text.hpp"
-#include "server/admin/command.hpp"
+#include "server/admin/command_table.hpp"
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
 

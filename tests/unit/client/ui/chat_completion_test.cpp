@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "server/admin/command_rules.hpp"
+#include "server/admin/command_table.hpp"
 
 using namespace runstone;
 
@@ -67,4 +67,16 @@ TEST_CASE("the completed commands are commands of the server", "[client_ui]") {
   }
   CHECK(std::ranges::is_sorted(completed_commands()));
   CHECK_FALSE(has("teleport"));
+}
+
+TEST_CASE("each command that players may give is completed", "[client_ui]") {
+  for (const CommandRow& row : command_table()) {
+    if (row.rule.is_local) continue;
+    INFO(row.words);
+    const std::string words = std::string(row.words) + " ";
+    CHECK(std::ranges::any_of(completed_commands(), [&](std::string_view each) {
+      const std::string command = std::string(each) + " ";
+      return words.starts_with(command) || command.starts_with(words);
+    }));
+  }
 }

@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "protocol/codec/password_key.hpp"
-#include "server/admin/command.hpp"
+#include "server/admin/password_commands.hpp"
+#include "server/admin/rollback_commands.hpp"
+#include "tests/unit/server/admin/parsed_command.hpp"
 
 using namespace runstone;
 
@@ -25,9 +27,7 @@ TEST_CASE("a name with blanks is one author however the shell is quoted", "[admi
        {std::vector<std::string>{"log", "author", "the mole"},
         {"log", "author", "\"the mole\""},
         {"log author \"the mole\""}}) {
-    const auto command = parse_command(control_line(words), 0);
-    REQUIRE(command.has_value());
-    const auto& filter = std::get<LogCommand>(*command).filter;
+    const CommandFilter filter = test::parsed<LogCommand>(control_line(words)).filter;
     REQUIRE(filter.authors.size() == 1);
     CHECK(filter.authors[0].name == "the mole");
   }
@@ -36,16 +36,14 @@ TEST_CASE("a name with blanks is one author however the shell is quoted", "[admi
 TEST_CASE("control adds to `password set` what the world keeps, and not the password",
           "[admin][control]") {
   const auto type = [] { return Result<std::string, std::string>("correct horse"); };
-  const auto line = with_password("password set role visitor", type);
+  const auto line = completed_line("password set role visitor", type);
   REQUIRE(line.has_value());
   CHECK(line->find("correct") == std::string::npos);
-  const auto command = parse_command(*line, 0);
-  REQUIRE(command.has_value());
-  const auto& set = std::get<SetPasswordCommand>(std::get<RightsCommand>(*command));
+  const auto set = test::parsed<SetPasswordCommand>(*line);
   CHECK(set.has_verifier);
   CHECK(set.password.role == "visitor");
   CHECK(is_key_of(set.password, password_key("correct horse", set.password.salt).value()));
-  CHECK(*with_password("password set role visitor", type) != *line);  // the salt is drawn anew
+  CHECK(*completed_line("password set role visitor", type) != *line);  // the salt is drawn anew
 }
 
 TEST_CASE("control reads no password for other commands and for mistakes", "[admin][control]") {
@@ -55,16 +53,16 @@ TEST_CASE("control reads no password for other commands and for mistakes", "[adm
   };
   for (const char* line : {"status", "password", "password clear", "password set hunter2",
                            "password set role", "say password set", ""})
-    CHECK(with_password(line, type).value() == line);
+    CHECK(completed_line(line, type).value() == line);
   const auto done = "password set verifier " + std::string(96, 'a');
-  CHECK(with_password(done, type).value() == done);
+  CHECK(completed_line(done, type).value() == done);
 }
 
 TEST_CASE("a short password and a missing one are refused before anything is sent",
           "[admin][control]") {
   const auto short_one = [] { return Result<std::string, std::string>("1234567"); };
-  CHECK(with_password("password set", short_one).error() ==
+  CHECK(completed_line("password set", short_one).error() ==
         "password set: the password has fewer than 8 characters: take some words");
   const auto none = []() -> Result<std::string, std::string> { return failure("no line"); };
-  CHECK(with_password("password set", none).error() == "no line");
+  CHECK(completed_line("password set", none).error() == "no line");
 }

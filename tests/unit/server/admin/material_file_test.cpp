@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "server/admin/command_handler.hpp"
+#include "server/admin/command_table.hpp"
 #include "tests/unit/server/rollback/rollback_bench.hpp"
 
 namespace runstone::test {
@@ -23,7 +23,7 @@ struct AddBench : RollbackBench {
 
   CommandAnswer give(const CommandCaller& caller, const std::string& line) {
     answers.clear();
-    handler.run(caller, line, bench.now(), reply());
+    give_command({services, caller, bench.now(), reply()}, line);
     run_all();
     return answer();
   }
@@ -34,8 +34,8 @@ struct AddBench : RollbackBench {
   }
 
   const std::string file = folder / "my wool.toml";
-  CommandHandler handler{bench.server,  service, *this,
-                         folder.path(), {},      [](const PublicKey&) { return false; }};
+  CommandServices services{bench.server,  service, *this,
+                           folder.path(), {},      [](const PublicKey&) { return false; }};
 };
 
 constexpr const char* kTwoRows =

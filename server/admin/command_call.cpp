@@ -1,0 +1,127 @@
+#include "server/admin/command_call.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <variant>
+
+#include "server/admin/rights_reason.hpp"
+
+namespace runstone {
+namespace {
+
+/// Returns the keys that the state of rights names, some more than once.
+std::vector<PublicKey> keys_of(const RightsState& state) {
+  std::vector<PublicKey> keys;
+  for (const auto& [key, grant] : state.grants()) keys.push_back(key);
+  for (const Decided<Restrict>* restriction : state.restrictions()) {
+    if (const auto* key = std::get_if<PublicKey>(&restriction->value.subject)) keys.push_back(*key);
+  }
+  for (const auto& [name, box] : state.boxes()) {
+    if (box.value.owner) keys.push_back(*box.value.owner);
+    keys.insert(keys.end(), box.value.members.begin(), box.value.members.end());
+  }
+  return keys;
+}
+
+/// Returns what the world strand knows about players. A worker adds what the store has.
+KnownPlayers::Sources sources_of(const WorldServer& world, const std::vector<std::string>& words) {
+  KnownPlayers::Sources sources;
+  for (const OnlinePlayer& player : world.people().online())
+    sources.present.push_back({player.author, player.key, player.name});
+  sources.visitors = world.order().players().visitors();
+  // Only a fingerprint finds a key without a name.
+  if (std::any_of(words.begin(), words.end(), is_fingerprint))
+    sources.others = keys_of(world.rights().state());
+  return sources;
+}
+
+/// What a worker finds out about the players that a command means.
+struct PlayerLookUp {
+  KnownPlayers players;
+  std::vector<PublicKey> keys;
+};
+
+Result<PlayerLookUp, std::string> look_up_players(WorldReader& reader,
+                                                  KnownPlayers::Sources sources,
+                                                  const std::vector<std::string>& words) {
+  PlayerLookUp found;
+  auto stored = reader.players();
+  auto used = reader.player_names();
+  auto claims = reader.name_claims();
+  if (!claims) return failure(claims.error().message());
+  if (!used) return failure(used.error().message());
+  if (!stored) return failure(stored.error().message());
+  sources.stored = *std::move(stored);
+  sources.used = *std::move(used);
+  sources.claims = *std::move(claims);
+  found.players = KnownPlayers(sources);
+  for (const std::string& word : words) {
+    const auto key = found.players.find(word);
+    if (!key) return failure("\"" + word + "\": " + key.error());
+    found.keys.push_back(*key);
+  }
+  return found;
+}
+
+}  // namespace
+
+bool has_right(const CommandCaller& caller, const RightsState& state, Right right, TimeUs now_us) {
+  if (!caller.actor.key || caller.actor.is_operator) return true;
+  return state.decide(*caller.actor.key, right, now_us).is_allowed;
+}
+
+std::optional<std::string> why_not(const CommandCaller& caller, const RightsState& state,
+                                   const CommandRule& rule, TimeUs now_us) {
+  if (!caller.actor.key) return std::nullopt;
+  if (rule.is_local) return "this command is for the console and `runstone-server control`";
+  if (caller.actor.is_operator || rule.any_of == RightSet()) return std::nullopt;
+  const PublicKey& key = *caller.actor.key;
+  std::string names;
+  std::optional<std::string> restricted;
+  for (std::size_t i = 0; i < kRightCount; ++i) {
+    const auto right = static_cast<Right>(i);
+    if (!rule.any_of.has(right)) continue;
+    const RightsDecision decision = state.decide(key, right, now_us);
+    if (decision.is_allowed) return std::nullopt;
+    names += (names.empty() ? "" : " or ") + std::string(name_of(right));
+    if (const auto kind = restriction_of(decision.reason))
+      restricted = "you are " + restriction_text(state, *kind, key, now_us);
+  }
+  if (restricted) return restricted;
+  return "this command needs the right " + names + "; your role is " + state.role_of(key).name;
+}
+
+void CommandServices::tick() {
+  for (Waiting& each : std::exchange(waiting, {})) {
+    if (world.order().durable() >= each.needed) {
+      each.begin();
+    } else if (!world.order().accepts_edits()) {
+      each.refuse();
+    } else {
+      waiting.push_back(std::move(each));
+    }
+  }
+}
+
+void CommandCall::with_players(const std::vector<std::string>& words,
+                               std::function<void(const KnownPlayers&, const Keys&)> go_on) const {
+  on_worker(
+      "",
+      [sources = sources_of(world(), words), words](WorldReader& reader) {
+        return look_up_players(reader, sources, words);
+      },
+      [go_on = std::move(go_on)](const PlayerLookUp& found) { go_on(found.players, found.keys); });
+}
+
+void CommandCall::change_rights(const RightsChange& change, const std::string& text) const {
+  if (const auto valid = validate(change); !valid) return refuse(valid.error().what);
+  const std::size_t sessions = world().session_count();
+  const auto seq = world().changes().change_rights(change, caller.actor, caller.author, now);
+  if (!seq) return refuse(seq.error());
+  std::string line = text + " (record " + std::to_string(*seq) + ")";
+  const std::size_t left = world().session_count();
+  if (left < sessions) line += "; sessions ended: " + std::to_string(sessions - left);
+  answer(line);
+}
+
+}  // namespace runstone

@@ -1,0 +1,109 @@
+// CommandCall: one command under way, with its caller, what commands work on, and the way to
+// answer. Thread: the world strand. Reads from the disk run on the workers.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "common/rights/change_rules.hpp"
+#include "common/rights/rights_state.hpp"
+#include "protocol/codec/messages.hpp"
+#include "server/admin/command_row.hpp"
+#include "server/admin/known_players.hpp"
+#include "server/admin/operator_actions.hpp"
+#include "server/rollback/rollback_service.hpp"
+#include "server/world/world_server.hpp"
+
+namespace runstone {
+
+/// Who gives a command.
+struct CommandCaller {
+  AuthorId author = 0;  // 0: console or control
+  RightsActor actor;    // without a key: console or control
+  /// The view of a client that shows what a rollback would change, otherwise nullopt.
+  std::optional<View> preview_view = std::nullopt;
+};
+
+/// Returns true if the caller has the right now. Console and operators have every right.
+bool has_right(const CommandCaller& caller, const RightsState& state, Right right, TimeUs now_us);
+
+/// Returns why the caller may not give a command with this rule, as a sentence, or nullopt. The
+/// sentence names the right that is missing and the caller's role, or the restriction.
+std::optional<std::string> why_not(const CommandCaller& caller, const RightsState& state,
+                                   const CommandRule& rule, TimeUs now_us);
+
+/// What commands work on. The references must outlive the object.
+struct CommandServices {
+  WorldServer& world;
+  RollbackService& rollback;
+  RollbackService::Workers& workers;
+  const std::string world_folder;  // for the pictures of previews
+  const OperatorActions actions;
+  /// Returns true if the server's settings name the key as an operator's.
+  const std::function<bool(const PublicKey&)> is_operator;
+
+  /// A command that begins when the log is on disk up to a sequence. `refuse` answers it if the log
+  /// cannot be written any more.
+  struct Waiting {
+    Sequence needed = 0;
+    std::function<void()> begin, refuse;
+  };
+  std::vector<Waiting> waiting = {};
+
+  /// Begins the work that waited for the disk. Call it when the log became durable or failed.
+  void tick();
+};
+
+struct CommandCall {
+  CommandServices& services;  // must outlive the call
+  CommandCaller caller;
+  Clocks now;
+  CommandReply reply;
+
+  WorldServer& world() const { return services.world; }
+  const RightsState& rights() const { return world().rights().state(); }
+  TimeUs rights_time() const { return world().rights().time(); }
+
+  /// Sends the last answer to a command that succeeded.
+  void answer(std::string text) const { reply(CommandAnswer::last(std::move(text))); }
+  /// Sends an answer that others follow.
+  void report(std::string text) const { reply(CommandAnswer::progress(std::move(text))); }
+  /// Sends the only answer to a command that cannot be carried out.
+  void refuse(std::string text) const { runstone::refuse(reply, std::move(text)); }
+
+  /// Calls `work`, which returns a Result, on a worker, and then `go_on` with the value on the
+  /// world strand. Refuses the command if no reader can be opened or `work` fails; the text begins
+  /// with `name`.
+  template <class Work, class GoOn>
+  void on_worker(const std::string& name, Work work, GoOn go_on) const;
+
+  using Keys = std::vector<PublicKey>;  // one for each word that was looked up
+  /// Looks up players on a worker. Calls `go_on` with what is known and with the key of each word,
+  /// or refuses the command if a word means nobody or several players.
+  void with_players(const std::vector<std::string>& words,
+                    std::function<void(const KnownPlayers&, const Keys&)> go_on) const;
+  /// Orders a change of rights, if the caller may make it. Answers with "text (record N)" and the
+  /// number of sessions that it ended, or with why it was refused.
+  void change_rights(const RightsChange& change, const std::string& text) const;
+};
+
+inline std::string error_text(const StoreError& error) { return error.message(); }
+inline std::string error_text(const std::string& error) { return error; }
+
+template <class Work, class GoOn>
+void CommandCall::on_worker(const std::string& name, Work work, GoOn go_on) const {
+  auto found = std::make_shared<std::optional<std::invoke_result_t<Work, WorldReader&>>>();
+  services.workers.run(
+      [found, work](WorldReader& reader, const Generator&) { found->emplace(work(reader)); },
+      [found, call = *this, name, go_on](const std::string& error) {
+        if (!error.empty()) return call.refuse(name + error);
+        if (!**found) return call.refuse(name + error_text((*found)->error()));
+        go_on(***found);
+      });
+}
+
+}  // namespace runstone

@@ -1,0 +1,175 @@
+#include "server/admin/command_table.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "server/admin/ground_commands.hpp"
+#include "server/admin/host_commands.hpp"
+#include "server/admin/moderation_commands.hpp"
+#include "server/admin/password_commands.hpp"
+#include "server/admin/player_commands.hpp"
+#include "server/admin/role_commands.hpp"
+#include "server/admin/rollback_commands.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr const char* kPlayerHelp = "PLAYER: a name, #N, a fingerprint, or a key of 64 hex digits";
+constexpr const char* kBoxHelp =
+    "BOX: X Y Z X Y Z, two opposite corners, both inside; or columns X Z X Z, from the bottom to "
+    "the top";
+constexpr const char* kFilterHelp =
+    "FILTERS, any of: author NAME or author #N (several: any of them), "
+    "since 1h or since 2026-11-21T23:57:42Z,\n"
+    "  until likewise, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials";
+
+bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right, bool is_local) {
+  if (rule.is_local) return is_local;
+  if (rule.any_of == RightSet()) return true;
+  for (std::size_t i = 0; i < kRightCount; ++i) {
+    const auto right = static_cast<Right>(i);
+    if (rule.any_of.has(right) && has_right(right)) return true;
+  }
+  return false;
+}
+
+/// Takes the first word of words that single blanks separate.
+std::string_view take_first(std::string_view& words) {
+  const std::string_view first = words.substr(0, words.find(' '));
+  words.remove_prefix(std::min(first.size() + 1, words.size()));
+  return first;
+}
+
+bool is_any_word(std::string_view word) { return word[0] >= 'A' && word[0] <= 'Z'; }
+
+/// Returns how many words of a line name the row's command before the first word in capitals.
+std::size_t naming_words(const CommandRow& row) {
+  std::size_t count = 0;
+  for (std::string_view rest = row.words; !rest.empty() && !is_any_word(take_first(rest));) ++count;
+  return count;
+}
+
+/// Returns how many words of the line the row has, or 0 if the row does not fit the line.
+std::size_t fitting_words(const CommandRow& row, const std::vector<std::string>& words) {
+  std::size_t count = 0;
+  for (std::string_view rest = row.words; !rest.empty(); ++count) {
+    const std::string_view word = take_first(rest);
+    if (count == words.size() || (!is_any_word(word) && word != words[count])) return 0;
+  }
+  return count;
+}
+
+/// Returns the error about a line that fits no row. If commands begin with its first word, the
+/// error lists the words that may come second.
+std::string no_command(const std::vector<std::string>& words) {
+  const std::string& name = words.front();
+  std::vector<std::string> seconds;
+  for (const CommandRow& row : command_table()) {
+    std::string_view rest = row.words;
+    if (take_first(rest) == name) seconds.emplace_back(take_first(rest));
+  }
+  if (seconds.empty()) return "\"" + name + "\" is no command: `help` names them";
+  std::string list = seconds.front();
+  for (std::size_t i = 1; i < seconds.size(); ++i)
+    list += (i + 1 == seconds.size() ? " or " : ", ") + seconds[i];
+  if (words.size() == 1) return name + ": " + list + " is missing";
+  return name + " \"" + words[1] + "\": " + list;
+}
+
+Result<Command, std::string> parse_words(const CommandRow& row, WordReader reader) {
+  auto meaning = row.functions.parse(reader);
+  if (!meaning) return failure(meaning.error());
+  return Command{&row, *std::move(meaning)};
+}
+
+/// Returns the row of a line that is a word and a text, or null. `text` becomes the text.
+const CommandRow* find_text_command(std::string_view line, std::string_view& text) {
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  for (const CommandRow& row : command_table()) {
+    if (!row.takes_text || !line.starts_with(std::string(row.words) + " ")) continue;
+    text = line.substr(row.words.size() + 1);
+    return &row;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const std::vector<CommandRow>& command_table() {
+  static const std::vector<CommandRow> table = [] {
+    std::vector<CommandRow> rows;
+    for (const auto& part :
+         {player_commands(), ground_commands(), moderation_commands(), rollback_commands(),
+          role_commands(), password_commands(), host_commands()})
+      rows.insert(rows.end(), part.begin(), part.end());
+    return rows;
+  }();
+  return table;
+}
+
+const CommandRow* find_command(const std::vector<std::string>& words) {
+  const CommandRow* found = nullptr;
+  std::size_t most = 0;
+  for (const CommandRow& row : command_table()) {
+    const std::size_t count = fitting_words(row, words);
+    if (count <= most) continue;
+    most = count;
+    found = &row;
+  }
+  return found;
+}
+
+Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us) {
+  std::string_view text;
+  if (const CommandRow* row = find_text_command(line, text)) {
+    const std::vector<std::string> name{std::string(row->words)};
+    return parse_words(*row, WordReader(name, 1, now_us, text));
+  }
+  const auto words = command_words(line);
+  if (!words) return failure(words.error());
+  if (words->empty()) return failure("no command: `help` names them");
+  const CommandRow* row = find_command(*words);
+  if (row == nullptr) return failure(no_command(*words));
+  return parse_words(*row, WordReader(*words, naming_words(*row), now_us));
+}
+
+std::string command_help(const std::function<bool(Right)>& has_right, bool is_local) {
+  std::string text;
+  for (const CommandRow& row : command_table()) {
+    const bool has_line = *row.help != '\0';
+    if (has_line && may_give(row.rule, has_right, is_local)) text += std::string(row.help) + "\n";
+  }
+  text += kPlayerHelp;
+  if (has_right(Right::claim) || has_right(Right::protect)) text += std::string("\n") + kBoxHelp;
+  if (has_right(Right::roll_back)) text += std::string("\n") + kFilterHelp;
+  return text;
+}
+
+std::string logged_command(const std::string& line) {
+  const std::string_view begin =
+      std::string_view(line).substr(std::min(line.find_first_not_of(" \""), line.size()));
+  for (const CommandRow& row : command_table()) {
+    std::string_view rest = row.words;
+    const std::string word(take_first(rest));
+    if (row.is_secret && begin.starts_with(word)) return word + " ...";
+  }
+  return line;
+}
+
+void give_command(const CommandCall& call, const std::string& line) {
+  // Restrictions end by the clock of the log, which may be ahead of the system's.
+  const auto command = parse_command(line, std::max(call.now.utc_us, call.rights_time()));
+  if (!command) return call.refuse(command.error());
+  if (auto why = why_not(call.caller, call.rights(), command->row->rule, call.rights_time()))
+    return call.refuse(*std::move(why));
+  command->row->functions.run(call, command->meaning);
+}
+
+void give_command(const FollowerCall& call, const std::string& line) {
+  for (const CommandRow& row : command_table()) {
+    if (row.words == line && row.run_at_follower != nullptr) return row.run_at_follower(call);
+  }
+  refuse(call.reply, kGiveThere);
+}
+
+}  // namespace runstone

@@ -1,0 +1,173 @@
+#include "server/admin/host_commands.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/codec/key_fingerprint.hpp"
+#include "protocol/rules/chat_text.hpp"
+#include "server/admin/command_call.hpp"
+#include "server/admin/material_file.hpp"
+#include "server/admin/world_lists.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr const char* kCannot = "this server cannot do that";
+
+Result<std::string, std::string> parse_name(WordReader& reader) {
+  return reader.result(reader.take_only("one name comes after it, in quotes if it has blanks"));
+}
+
+void release_name(const CommandCall& call, const std::string& name) {
+  const auto released = call.world().release_name(name);
+  if (!released) return call.refuse("names release: " + released.error());
+  call.answer("\"" + released->name + "\" was owned by " + key_fingerprint(released->key) +
+              "; the next player who joins under it owns it");
+}
+
+Result<std::string, std::string> parse_material_file(WordReader& reader) {
+  return reader.result(reader.take_only("one file comes after it, in quotes if it has blanks"));
+}
+
+/// Returns how many materials were added, the record, and a line for each.
+std::string added_text(const AddedAt& at, const std::vector<MaterialRow>& rows) {
+  std::string text = std::to_string(rows.size()) + (rows.size() == 1 ? " material" : " materials") +
+                     " added (record " + std::to_string(at.seq) + ")";
+  for (const std::string& line : material_lines(at.first, rows)) text += "\n" + line;
+  return text;
+}
+
+void add_materials(const CommandCall& call, const std::string& file) {
+  call.on_worker(
+      "materials add: ", [file](WorldReader&) { return read_material_file(file); },
+      [call, file](const std::vector<MaterialFileRow>& read) {
+        std::vector<MaterialRow> rows;
+        for (const MaterialFileRow& each : read) rows.push_back(each.row);
+        const auto added = call.world().add_materials(rows, call.now);
+        if (added) return call.answer(added_text(*added, rows));
+        TextError wrong{file, 0, "", added.error().what};
+        if (const auto row = added.error().row) {
+          wrong.line = read[*row].line;
+          wrong.key = "material[" + std::to_string(*row) + "]";
+        }
+        call.refuse("materials add: " + wrong.message());
+      });
+}
+
+/// Parses what comes after `say`. A text that is quoted as a whole is taken without its quotes.
+Result<std::string, std::string> parse_say(WordReader& reader) {
+  std::string_view rest = reader.text();
+  const std::size_t last = rest.find_last_not_of(' ');
+  rest = rest.substr(0, last == std::string_view::npos ? 0 : last + 1);
+  rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+  const bool is_quoted =
+      rest.size() >= 2 && rest.front() == '"' && rest.find('"', 1) == rest.size() - 1;
+  if (is_quoted) rest = rest.substr(1, rest.size() - 2);
+  auto text = chat_text(rest);
+  if (!text) return failure("say: the text is refused: " + text.error());
+  return *std::move(text);
+}
+
+void say(const CommandCall& call, const std::string& text) {
+  const std::size_t sessions =
+      call.world().say(text, call.caller.actor.key.value_or(PublicKey{}), call.now);
+  call.answer("sent to " + std::to_string(sessions) + (sessions == 1 ? " session" : " sessions"));
+}
+
+Result<std::string, std::string> parse_backup(WordReader& reader) {
+  return reader.result(reader.take_only("the new folder comes after it"));
+}
+
+void back_up(const CommandCall& call, const std::string& folder) {
+  const auto& action = call.services.actions.back_up;
+  if (!action) return call.refuse(kCannot);
+  action(folder, call.reply);
+}
+
+void reload(const CommandCall& call) {
+  const auto& action = call.services.actions.reload;
+  if (!action) return call.refuse(kCannot);
+  action(call.reply);
+}
+
+void reload_at_follower(const FollowerCall& call) {
+  if (!call.actions.reload) return refuse(call.reply, kGiveThere);
+  call.actions.reload(call.reply);
+}
+
+void list_servers(const CommandCall& call) {
+  call.answer(server_list(call.world().known_servers()));
+}
+
+/// Parses the number of a server. Without one the server with the most players is meant.
+Result<std::optional<SessionId>, std::string> parse_server(WordReader& reader) {
+  constexpr const char* kRule =
+      "the number of one server comes after it, or nothing (servers lists them)";
+  if (reader.at_end()) return std::optional<SessionId>();
+  const auto number = number_of<SessionId>(reader.take_only(kRule));
+  if (!number) reader.wrong(reader.command() + ": " + kRule);
+  return reader.result(number);
+}
+
+void hand_over(const CommandCall& call, const std::optional<SessionId>& successor) {
+  if (const auto why = call.world().handover_refusal(successor))
+    return call.refuse("handover: " + *why);
+  const auto& action = call.services.actions.hand_over;
+  if (!action) return call.refuse(kCannot);
+  // A player at another server gets no later line: the next owner does not know of the command.
+  call.report("handing the world over");
+  action(successor, call.reply);
+}
+
+void stop(const CommandCall& call) {
+  call.answer("the server stops");
+  if (call.services.actions.stop) call.services.actions.stop();
+}
+
+void stop_follower(const FollowerCall& call) {
+  call.actions.stop();
+  call.reply(CommandAnswer::last(""));
+}
+
+constexpr CommandRule kAdministrators = needs(Right::administer);
+
+constexpr std::array<CommandRow, 8> kHostRows = {{
+    {"names release", kAdministrators,
+     "names release NAME        free a name, so that the next player who joins under it owns it",
+     parsed_by<parse_name, release_name>()},
+    {"materials add FILE", kLocal, "materials add FILE        add the materials of a file",
+     parsed_by<parse_material_file, add_materials>()},
+    {.words = "say",
+     .rule = kAdministrators,
+     .help = "say TEXT                  write to all players, as the server",
+     .functions = parsed_by<parse_say, say>(),
+     .takes_text = true},
+    {"backup", kLocal,
+     "backup DIR                copy the world to a new folder, while people go on playing",
+     parsed_by<parse_backup, back_up>()},
+    {.words = "reload",
+     .rule = kLocal,
+     .help = "reload                    read the settings again",
+     .functions = alone<reload>(),
+     .run_at_follower = reload_at_follower},
+    {"servers", kAdministrators,
+     "servers                   the servers of the world, with their numbers",
+     alone<list_servers>()},
+    {"handover", kAdministrators,
+     "handover [SERVER]         let another server own the world; nobody has to connect again",
+     parsed_by<parse_server, hand_over>()},
+    {.words = "stop",
+     .rule = kAdministrators,
+     .help = "stop                      stop the server",
+     .functions = alone<stop>(),
+     .run_at_follower = stop_follower},
+}};
+
+}  // namespace
+
+std::span<const CommandRow> host_commands() { return kHostRows; }
+
+}  // namespace runstone

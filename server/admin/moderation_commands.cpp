@@ -1,0 +1,247 @@
+#include "server/admin/moderation_commands.hpp"
+
+#include <array>
+#include <cstdint>
+#include <variant>
+
+#include "common/core/utc_text.hpp"
+#include "server/admin/address_range_text.hpp"
+#include "server/admin/command_call.hpp"
+#include "server/admin/rights_change_text.hpp"
+#include "server/admin/rights_lists.hpp"
+#include "server/admin/world_lists.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr const char* kWidened = " [a single IPv6 address means its /64]";
+
+/// Returns a count of bytes in the largest unit of which there is at least one.
+std::string memory_text(std::size_t bytes) {
+  if (bytes < 1024) return std::to_string(bytes) + " bytes";
+  if (bytes < 1024 * 1024) return std::to_string(bytes / 1024) + " KiB";
+  return std::to_string(bytes / (1024 * 1024)) + " MiB";
+}
+
+void show_status(const CommandCall& call) {
+  const WorldServer& world = call.world();
+  const WorldCounters& c = world.counters();
+  const WorldMemory memory = world.order().memory();
+  call.answer("sessions " + std::to_string(world.session_count()) + ", edits " +
+              std::to_string(world.order().head()) + " (on disk " + std::to_string(world.order().durable()) +
+              "), since the start " + std::to_string(c.edits_ordered) + " ordered and " +
+              std::to_string(c.edits_rejected) + " rejected\nchunks in memory " +
+              std::to_string(world.order().chunks().resident_count()) + " (" + memory_text(memory.voxels) +
+              "), waiting edits " + memory_text(memory.stacked + memory.queued) +
+              ", damaged chunks " + std::to_string(c.chunks_failed) +
+              ", rollbacks and undos under way " +
+              std::to_string(call.services.rollback.running()));
+}
+
+void show_status_of_follower(const FollowerCall& call) {
+  call.reply(CommandAnswer::last(call.status));
+}
+
+Result<std::monostate, std::string> parse_names(WordReader& reader) {
+  if (!reader.at_end()) reader.wrong("names \"" + reader.peek() + "\": release NAME");
+  return reader.result(std::monostate());
+}
+
+void list_names(const CommandCall& call, std::monostate) {
+  std::vector<OwnedName> owned;
+  for (const NameClaim& claim : call.world().order().names().all())
+    owned.push_back({claim.name, claim.key, call.world().order().players().author_of(claim.key)});
+  call.answer(name_list(owned));
+}
+
+Result<KickCommand, std::string> parse_kick(WordReader& reader) {
+  KickCommand command;
+  command.player = reader.player("kick");
+  command.reason = reader.reason();
+  if (!reader.at_end()) reader.wrong("kick \"" + reader.peek() + "\": reason \"TEXT\"");
+  return reader.result(command);
+}
+
+void kick(const CommandCall& call, const KickCommand& command) {
+  call.with_players(
+      {command.player},
+      [call, reason = command.reason](const KnownPlayers& players, const CommandCall::Keys& keys) {
+        const std::string who = players.text_of(keys[0]);
+        // A player may kick whom the player may mute: those who have fewer rights.
+        const Restrict mute{RestrictionKind::mute, keys[0], 0, ""};
+        if (auto why = call.world().rights().change_refusal(mute, call.caller.actor))
+          return call.refuse(*std::move(why));
+        const std::size_t ended = call.world().people().kick(keys[0], reason);
+        if (ended == 0) return call.refuse(who + " is not here");
+        call.answer(who + " was kicked; sessions ended: " + std::to_string(ended));
+      });
+}
+
+/// Takes the subject of a restriction. Only bans are for addresses.
+RestrictionWord take_subject(WordReader& reader, RestrictionKind kind) {
+  const std::string& word = reader.command();
+  const bool is_ban = kind == RestrictionKind::ban;
+  if (reader.at_end()) {
+    reader.wrong(word + ": " + (is_ban ? "a player, an address or a range" : kPlayerWord) +
+                 " is missing");
+    return {};
+  }
+  const auto range = parse_address_range(reader.peek());
+  if (!range) return {reader.player(word), std::nullopt, false};
+  const std::string text = reader.take("", "");
+  if (!is_ban) reader.wrong(word + " \"" + text + "\": only bans are for addresses");
+  if (!*range) {
+    reader.wrong(word + " \"" + text + "\": " + range->error());
+    return {};
+  }
+  return {"", (*range)->range, (*range)->is_widened};
+}
+
+template <RestrictionKind kind>
+Result<RestrictCommand, std::string> parse_restrict(WordReader& reader) {
+  RestrictCommand command;
+  command.kind = kind;
+  command.who = take_subject(reader, kind);
+  while (!reader.at_end()) {
+    if (reader.take_word("for")) {
+      command.until_us = reader.end_of_duration("for");
+    } else if (reader.peek() == "reason") {
+      command.reason = reader.reason();
+    } else {
+      reader.wrong(reader.command() + " \"" + reader.peek() +
+                   "\": for DURATION or reason \"TEXT\"");
+    }
+  }
+  return reader.result(command);
+}
+
+/// Calls `go_on` with the subject of a restriction and its text.
+void with_subject(
+    const CommandCall& call, const RestrictionWord& word,
+    const std::function<void(const RestrictionSubject&, const std::string& who)>& go_on) {
+  if (word.range) return go_on(*word.range, "everybody from " + subject_text(*word.range));
+  call.with_players({word.player},
+                    [go_on](const KnownPlayers& players, const CommandCall::Keys& keys) {
+                      go_on(keys[0], players.text_of(keys[0]));
+                    });
+}
+
+void restrict_subject(const CommandCall& call, const RestrictCommand& command) {
+  with_subject(call, command.who,
+               [call, command](const RestrictionSubject& subject, const std::string& who) {
+                 std::string text = who + " is " + restricted_text(command.kind);
+                 if (command.until_us != 0) text += " until " + utc_text(command.until_us);
+                 if (!command.reason.empty()) text += ": " + command.reason;
+                 if (command.who.is_widened) text += kWidened;
+                 call.change_rights(
+                     Restrict{command.kind, subject, command.until_us, command.reason}, text);
+               });
+}
+
+template <RestrictionKind kind>
+Result<LiftCommand, std::string> parse_lift(WordReader& reader) {
+  const LiftCommand command{kind, take_subject(reader, kind)};
+  reader.expect_end(reader.command());
+  return reader.result(command);
+}
+
+void lift_restriction(const CommandCall& call, const LiftCommand& command) {
+  with_subject(
+      call, command.who,
+      [call, command](const RestrictionSubject& subject, const std::string& who) {
+        const TimeUs now_us = call.rights_time();
+        const std::string kind = restricted_text(command.kind);
+        const Decided<Restrict>* found = call.rights().find_restriction(command.kind, subject);
+        if (found == nullptr || (found->value.until_us != 0 && found->value.until_us <= now_us)) {
+          std::string text = who + " is not " + kind;
+          const auto* range = std::get_if<AddressRange>(&subject);
+          const auto* wider =
+              range == nullptr ? nullptr : call.rights().address_ban(range->first, now_us);
+          if (wider != nullptr) text += ", but " + subject_text(wider->value.subject) + " is";
+          return call.refuse(text + " (bans lists all)");
+        }
+        call.change_rights(
+            Lift{command.kind, subject},
+            who + " is no longer " + kind + (command.who.is_widened ? kWidened : ""));
+      });
+}
+
+void list_restrictions(const CommandCall& call) {
+  call.with_players({}, [call](const KnownPlayers& players, const CommandCall::Keys&) {
+    call.answer(restriction_list(call.rights(), call.rights_time(), players));
+  });
+}
+
+void list_refusals(const CommandCall& call) {
+  call.with_players({}, [call](const KnownPlayers& players, const CommandCall::Keys&) {
+    call.answer(refusal_list(call.world().rights().refusals(), players));
+  });
+}
+
+Result<ChatQuery, std::string> parse_chat_log(WordReader& reader) {
+  if (!reader.take_word("log"))
+    return failure("chat: log comes after it, and then by, since or limit");
+  ChatQuery query;
+  while (!reader.at_end()) {
+    const std::string word = reader.take("", "");
+    if (word == "by") {
+      query.by = reader.take(word, "a name, a fingerprint, a key or server");
+    } else if (word == "since") {
+      query.since_us = reader.moment(word);
+    } else if (word == "limit") {
+      query.limit = static_cast<std::uint64_t>(
+          reader.number(word, 1, static_cast<std::int64_t>(kChatLinesListedMax)));
+    } else {
+      return failure("chat log \"" + word + "\": by, since or limit");
+    }
+  }
+  return reader.result(query, "chat log ");
+}
+
+void list_chat_log(const CommandCall& call, const ChatQuery& query) {
+  const auto& list = call.services.actions.list_chat;
+  if (!list) return call.refuse("chat log: this server keeps no log of the chat (chat_days = 0)");
+  list(query, call.reply);
+}
+
+constexpr CommandRule kModerators = needs(Right::moderate);
+
+constexpr std::array<CommandRow, 12> kModerationRows = {{
+    {.words = "status",
+     .rule = kModerators,
+     .help = "status                    what the server does",
+     .functions = alone<show_status>(),
+     .run_at_follower = show_status_of_follower},
+    {"names", kModerators, "names                     which key owns which name",
+     parsed_by<parse_names, list_names>()},
+    {"kick", kModerators,
+     "kick PLAYER [reason TEXT] end the sessions of a player, who may come back",
+     parsed_by<parse_kick, kick>()},
+    {"ban", kModerators,
+     "ban PLAYER|ADDRESS|RANGE [for DURATION] [reason TEXT]\n"
+     "                          let nobody join with this key, or from there",
+     parsed_by<parse_restrict<RestrictionKind::ban>, restrict_subject>()},
+    {"mute", kModerators, "mute PLAYER ...           let a player not write to others",
+     parsed_by<parse_restrict<RestrictionKind::mute>, restrict_subject>()},
+    {"freeze", kModerators, "freeze PLAYER ...         let a player not edit",
+     parsed_by<parse_restrict<RestrictionKind::freeze>, restrict_subject>()},
+    {"unban", kModerators, "unban, unmute, unfreeze   end a ban, a mute or a freeze",
+     parsed_by<parse_lift<RestrictionKind::ban>, lift_restriction>()},
+    {"unmute", kModerators, "", parsed_by<parse_lift<RestrictionKind::mute>, lift_restriction>()},
+    {"unfreeze", kModerators, "",
+     parsed_by<parse_lift<RestrictionKind::freeze>, lift_restriction>()},
+    {"bans", kModerators, "bans                      the bans, mutes and freezes in force",
+     alone<list_restrictions>()},
+    {"refusals", kModerators, "refusals                  what players were refused lately",
+     alone<list_refusals>()},
+    {"chat", kModerators,
+     "chat log [by PLAYER] [since MOMENT] [limit N]\n"
+     "                          the newest lines of the chat, the last one at the bottom",
+     parsed_by<parse_chat_log, list_chat_log>()},
+}};
+
+}  // namespace
+
+std::span<const CommandRow> moderation_commands() { return kModerationRows; }
+
+}  // namespace runstone

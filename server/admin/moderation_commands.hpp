@@ -1,0 +1,42 @@
+// The commands of moderators: status, names, kick, ban, mute, freeze, unban, unmute, unfreeze,
+// bans, refusals, chat log.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+
+#include "common/core/ids.hpp"
+#include "common/rights/address_range.hpp"
+#include "common/rights/rights_change.hpp"
+#include "server/admin/command_row.hpp"
+
+namespace runstone {
+
+struct KickCommand {
+  std::string player;
+  std::string reason;  // may be empty
+  friend bool operator==(const KickCommand&, const KickCommand&) = default;
+};
+/// Whom a restriction is for: a player, or a range of addresses.
+struct RestrictionWord {
+  std::string player;                 // empty: a range
+  std::optional<AddressRange> range;  // nullopt: a player
+  bool is_widened = false;            // a single IPv6 address was typed, which means its /64
+  friend bool operator==(const RestrictionWord&, const RestrictionWord&) = default;
+};
+struct RestrictCommand {
+  RestrictionKind kind{};
+  RestrictionWord who;
+  TimeUs until_us = 0;  // UTC; 0: until it is lifted
+  std::string reason;   // may be empty
+  friend bool operator==(const RestrictCommand&, const RestrictCommand&) = default;
+};
+struct LiftCommand {
+  RestrictionKind kind{};
+  RestrictionWord who;
+  friend bool operator==(const LiftCommand&, const LiftCommand&) = default;
+};
+
+std::span<const CommandRow> moderation_commands();
+
+}  // namespace runstone

@@ -1,0 +1,27 @@
+// The commands about roles, grants and invites, and the one that takes a record about rights back.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "common/core/ids.hpp"
+#include "common/rights/role.hpp"
+#include "server/admin/command_row.hpp"
+
+namespace runstone {
+
+struct GrantCommand {
+  std::string player;
+  std::string role;
+  friend bool operator==(const GrantCommand&, const GrantCommand&) = default;
+};
+struct CreateInviteCommand {
+  std::string role = kBuilderRole;
+  std::uint32_t uses = 1;
+  TimeUs until_us = 0;  // UTC
+  friend bool operator==(const CreateInviteCommand&, const CreateInviteCommand&) = default;
+};
+
+std::span<const CommandRow> role_commands();
+
+}  // namespace runstone

@@ -1,0 +1,275 @@
+#include "server/admin/rollback_commands.hpp"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include "common/core/utc_text.hpp"
+#include "server/admin/author_names.hpp"
+#include "server/admin/command_call.hpp"
+#include "server/admin/material_file.hpp"
+#include "server/admin/rights_change_text.hpp"
+#include "server/draw/preview_pictures.hpp"
+#include "server/history/edit_text.hpp"
+#include "server/rollback/newest_edits.hpp"
+#include "server/rollback/preview_edits.hpp"
+
+namespace runstone {
+namespace {
+
+struct CauseName {
+  std::string_view name;
+  Cause cause;
+};
+constexpr std::array<CauseName, 8> kCauses = {{{"player", Cause::player},
+                                               {"console", Cause::console},
+                                               {"rollback", Cause::rollback},
+                                               {"undo", Cause::undo},
+                                               {"redo", Cause::redo},
+                                               {"import", Cause::import},
+                                               {"rights", Cause::rights},
+                                               {"materials", Cause::materials}}};
+constexpr const char* kCauseNames =
+    "player, console, rollback, undo, redo, import, rights or materials";
+
+CommandFilter::Author author_of(const std::string& word, WordReader& reader) {
+  if (word.starts_with('#')) {
+    const auto number = number_of<AuthorId>(std::string_view(word).substr(1));
+    if (!number) reader.wrong("author \"" + word + "\": a number after #, or a name");
+    return {"", number};
+  }
+  return {word, std::nullopt};
+}
+
+/// Reads one filter with its values. Returns false if the next word is no filter.
+bool take_filter(WordReader& reader, CommandFilter& filter) {
+  const std::string word = reader.peek();
+  if (word == "author") {
+    reader.take("", "");
+    filter.authors.push_back(author_of(reader.take(word, "a name, or # and a number,"), reader));
+  } else if (word == "since" || word == "until") {
+    reader.take("", "");
+    (word == "since" ? filter.from_us : filter.until_us) = reader.moment(word);
+  } else if (word == "box") {
+    reader.take("", "");
+    filter.box = reader.box(word);
+  } else if (word == "cause") {
+    reader.take("", "");
+    const std::string name = reader.take(word, kCauseNames);
+    const auto found =
+        std::find_if(kCauses.begin(), kCauses.end(), [&](const auto& c) { return c.name == name; });
+    if (found != kCauses.end()) filter.cause = found->cause;
+    if (found == kCauses.end()) reader.wrong("cause \"" + name + "\": " + kCauseNames);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+StoreResult<AuthorNames> read_author_names(WorldReader& reader) {
+  const auto rows = reader.players();
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  const auto used = reader.player_names();
+  if (!used) return Unexpected<StoreError>{used.error()};
+  return AuthorNames(*rows, *used);
+}
+
+/// Calls `go_on` with the filter for the log. Names of authors are looked up on a worker; the
+/// command is refused if one is unknown or ambiguous, with a text that begins with `command`.
+void with_selection(const CommandCall& call, const CommandFilter& filter,
+                    const std::string& command,
+                    const std::function<void(const SelectionFilter&)>& go_on) {
+  SelectionFilter out;
+  out.from_us = filter.from_us.value_or(out.from_us);
+  out.until_us = filter.until_us.value_or(out.until_us);
+  out.box = filter.box;
+  out.cause = filter.cause;
+  std::vector<std::string> unknown;
+  for (const CommandFilter::Author& author : filter.authors) {
+    if (author.number) out.authors.push_back(*author.number);
+    if (!author.number) unknown.push_back(author.name);
+  }
+  if (unknown.empty()) return go_on(out);
+  call.on_worker(command + ": ", read_author_names,
+                 [call, out, unknown, command, go_on](const AuthorNames& names) {
+                   SelectionFilter selected = out;
+                   for (const std::string& name : unknown) {
+                     const std::string quoted = "author \"" + name + "\"";
+                     const auto named = names.find(name);
+                     if (!named) return call.refuse(command + " " + quoted + ": " + named.error());
+                     if (!names.is_in_use(name, *named))
+                       call.report(quoted + " is now called " + names.of(*named));
+                     selected.authors.push_back(*named);
+                   }
+                   go_on(selected);
+                 });
+}
+
+Result<LogCommand, std::string> parse_log(WordReader& reader) {
+  LogCommand log;
+  while (!reader.at_end()) {
+    if (take_filter(reader, log.filter)) continue;
+    const std::string word = reader.take("", "");
+    if (word != "limit")
+      return failure("log \"" + word + "\": author, since, until, box, cause or limit");
+    const std::string text = reader.take(word, "how many edits");
+    const auto number = number_of<std::uint64_t>(text);
+    if (!number || *number == 0 || *number > kLogLinesMax) {
+      reader.wrong("limit \"" + text + "\": a number from 1 to " + std::to_string(kLogLinesMax));
+    } else {
+      log.limit = *number;
+    }
+  }
+  return reader.result(log, "log ");
+}
+
+/// Returns the lines of the newest edits that the filter selects. Blocks on the disk.
+Result<std::string, std::string> read_log_lines(WorldReader& reader, const SelectionFilter& filter,
+                                                std::uint64_t limit) {
+  const auto names = read_author_names(reader);
+  const auto newest = newest_edits(reader, filter, limit);
+  const auto materials = reader.materials();
+  if (!materials) return failure(materials.error().message());
+  if (!newest) return failure(newest.error().message());
+  if (!names) return failure(names.error().message());
+  std::string text;
+  for (const EditRecord& record : *newest) {
+    text += (text.empty() ? "" : "\n") +
+            log_line(record, names->with_key(record.op.author), *materials);
+  }
+  return text.empty() ? std::string("no edit matches") : text;
+}
+
+void list_log(const CommandCall& call, const LogCommand& command) {
+  call.world().commit(call.now);
+  with_selection(
+      call, command.filter, "log", [call, limit = command.limit](SelectionFilter filter) {
+        filter.last = call.world().durable();
+        call.on_worker(
+            "log: ",
+            [filter, limit](WorldReader& reader) { return read_log_lines(reader, filter, limit); },
+            [call](const std::string& text) { call.answer(text); });
+      });
+}
+
+Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
+  RollbackPreviewCommand preview;
+  while (!reader.at_end()) {
+    if (reader.take_word("picture")) {
+      preview.picture = true;
+      continue;
+    }
+    if (take_filter(reader, preview.filter)) continue;
+    return failure("rollback preview \"" + reader.peek() +
+                   "\": author, since, until, box, cause or picture");
+  }
+  if (!reader.error().empty()) return failure("rollback preview " + reader.error());
+  if (preview.filter.cause == Cause::rights)
+    return failure("rollback preview cause \"rights\": rights undo SEQ takes these records back");
+  if (preview.filter.cause == Cause::materials)
+    return failure("rollback preview cause \"materials\": added materials stay");
+  // A preview without filters would select the whole world, most likely by mistake.
+  if (preview.filter == CommandFilter{}) {
+    return failure(
+        "rollback preview: say whose edits, when, where or why: author, since, until, "
+        "box or cause");
+  }
+  return preview;
+}
+
+void preview_rollback(const CommandCall& call, const RollbackPreviewCommand& command) {
+  const auto edits = call.caller.preview_view
+                         ? std::make_shared<PreviewEdits>(*call.caller.preview_view)
+                         : std::shared_ptr<PreviewEdits>();
+  const auto pictures = command.picture
+                            ? std::make_shared<PreviewPictures>(call.services.world_folder)
+                            : std::shared_ptr<PreviewPictures>();
+  const auto view_plan = [edits, pictures](const RestorePlan& plan) {
+    if (edits) edits->add(plan);
+    if (pictures) pictures->add(plan);
+  };
+  RollbackPreview::Summary summarise;
+  if (pictures) {
+    summarise = [pictures](WorldReader& reader, const Generator& generator, const std::string& id,
+                           const ShouldContinue& wanted) {
+      return pictures->draw(reader, generator, id, wanted);
+    };
+  }
+  const auto answer = [edits, reply = call.reply](CommandAnswer given) {
+    if (edits && given.restore) {
+      RestorePreview shown = *given.restore;
+      edits->take(shown);
+      given.restore = std::make_shared<const RestorePreview>(std::move(shown));
+    }
+    reply(given);
+  };
+  with_selection(call, command.filter, "rollback preview",
+                 [call, answer, view_plan, summarise](const SelectionFilter& filter) {
+                   call.services.rollback.preview(filter, call.now, answer, view_plan, summarise);
+                 });
+}
+
+Result<std::string, std::string> parse_rollback_id(WordReader& reader) {
+  return reader.result(reader.take_only("one id comes after it (rollback list names them)"));
+}
+
+void apply_rollback(const CommandCall& call, const std::string& id) {
+  call.services.rollback.apply(id, call.caller.author, call.reply);
+}
+void cancel_rollback(const CommandCall& call, const std::string& id) {
+  call.services.rollback.cancel(id, call.reply);
+}
+void undo_rollback(const CommandCall& call, const std::string& id) {
+  call.services.rollback.undo_rollback(id, call.caller.author, call.now, call.reply);
+}
+void list_rollbacks(const CommandCall& call) { call.services.rollback.list(call.reply); }
+
+constexpr CommandRule kRollback = needs(Right::roll_back);
+
+constexpr std::array<CommandRow, 6> kRollbackRows = {{
+    {"log", kRollback, "log FILTERS [limit N]     the newest edits, the last one at the bottom",
+     parsed_by<parse_log, list_log>()},
+    {"rollback preview", kRollback,
+     "rollback preview FILTERS [picture]\n"
+     "                          what a rollback of these edits would do; "
+     "`picture` draws the area before and after",
+     parsed_by<parse_preview, preview_rollback>()},
+    {"rollback apply", kRollback,
+     "rollback apply ID         do it, while people go on playing; "
+     "what others built since stays",
+     parsed_by<parse_rollback_id, apply_rollback>()},
+    {"rollback cancel", kRollback, "rollback cancel ID        stop it, or forget a preview",
+     parsed_by<parse_rollback_id, cancel_rollback>()},
+    {"rollback undo", kRollback, "rollback undo ID          take a rollback back",
+     parsed_by<parse_rollback_id, undo_rollback>()},
+    {"rollback list", kRollback, "rollback list             previews, and the rollbacks so far",
+     alone<list_rollbacks>()},
+}};
+
+}  // namespace
+
+std::span<const CommandRow> rollback_commands() { return kRollbackRows; }
+
+std::string_view name_of(Cause cause) {
+  const auto found =
+      std::find_if(kCauses.begin(), kCauses.end(), [&](const auto& c) { return c.cause == cause; });
+  return found == kCauses.end() ? "?" : found->name;
+}
+
+std::string log_line(const EditRecord& record, const std::string& author,
+                     const MaterialTable& materials) {
+  std::string line =
+      std::to_string(record.version.seq) + " " + utc_text(record.time_us) + " " + author + " ";
+  line += name_of(record.cause);
+  if (record.subject != 0)
+    line += (restores(record.cause) ? " of " : " with ") + std::to_string(record.subject);
+  if (const RightsChange* change = rights_change_of(record.edit))
+    return line + " " + rights_change_text(*change);
+  if (const AddedMaterials* added = added_materials_of(record.edit))
+    return line + " " + added_materials_text(*added);
+  return line + " " + edit_text(record, materials);
+}
+
+}  // namespace runstone

@@ -1,0 +1,252 @@
+// The answers of the commands about rights.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "protocol/codec/key_fingerprint.hpp"
+#include "server/admin/command_table.hpp"
+#include "server/admin/password_commands.hpp"
+#include "tests/unit/server/rollback/rollback_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr SessionId kFirst = 1, kSecond = 2;  // the key of session n is that of seed n
+
+/// A world with two players, and its commands.
+struct RightsBench : RollbackBench {
+  RightsBench()
+      : services{bench.server, service,
+                 *this,        folder.path(),
+                 {},           [this](const PublicKey& key) { return key == operator_key; }} {
+    join(kFirst);
+    join(kSecond);
+  }
+
+  CommandAnswer give(const CommandCaller& caller, const std::string& line) {
+    answers.clear();
+    const Clocks now = bench.now();
+    give_command({services, caller, {now.steady_us, now.utc_us - set_back_us}, reply()}, line);
+    for (int i = 0; i < 3; ++i) {
+      run_all();
+      services.tick();
+    }
+    return answer();
+  }
+  CommandAnswer console(const std::string& line) { return give({}, line); }
+  CommandAnswer player(std::uint8_t who, const std::string& line) {
+    const PublicKey key = key_of(who);
+    return give({who, {key, key == operator_key}}, line);
+  }
+  /// Gives a command at the console that must succeed.
+  std::string done(const std::string& line) {
+    const CommandAnswer given = console(line);
+    INFO(line << ": " << given.text);
+    CHECK(given.is_ok);
+    return given.text;
+  }
+
+  static PublicKey key_of(std::uint8_t who) { return key_pair_of(seed_of(who)).public_key; }
+  /// Returns "player1 #1 9M1Q-Z7CR-04KD".
+  static std::string text_of(std::uint8_t who) {
+    const std::string number = std::to_string(who);
+    return "player" + number + " #" + number + " " + key_fingerprint(key_of(who));
+  }
+  std::string role_of(std::uint8_t who) { return bench.server.rights().role_of(key_of(who)).name; }
+  Sequence head() { return bench.server.head(); }
+  static std::string record(Sequence seq) { return " (record " + std::to_string(seq) + ")"; }
+
+  TimeUs set_back_us = 0;  // of the system's clock, after the world was started
+  PublicKey operator_key{};
+  CommandServices services;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("grants and revokes answer with the key's fingerprint and the record",
+          "[admin][rights]") {
+  RightsBench bench;
+  CHECK(bench.done("grant player1 moderator") ==
+        RightsBench::text_of(1) + " has the role moderator" + bench.record(1));
+  CHECK(bench.role_of(1) == "moderator");
+  CHECK(has(bench.done("grants"), RightsBench::text_of(1) + ": moderator; record "));
+  CHECK(has(bench.done("roles"), "moderator: "));
+  CHECK(has(bench.done("revoke #1"), RightsBench::text_of(1) + " has the default role "));
+  CHECK_FALSE(bench.console("revoke #1").is_ok);
+  CHECK(bench.console("grant nobody builder").text ==
+        "\"nobody\": nobody of that name is known here (players and names list the others)");
+  CHECK(has(bench.console("grant player1 mason").text, "mason"));
+  CHECK_FALSE(bench.console("grant player1 mason").is_ok);
+}
+
+TEST_CASE("the console makes roles, and players need the right", "[admin][rights]") {
+  RightsBench bench;
+  CHECK(bench.done("role set mason see,build claims 2") ==
+        "role mason is see,build claims 2" + bench.record(1));
+  bench.done("role default mason");
+  CHECK(bench.role_of(2) == "mason");
+  const CommandAnswer refused = bench.player(2, "role set mason see,build,administer");
+  CHECK_FALSE(refused.is_ok);
+  CHECK(refused.text == "this command needs the right administer; your role is mason");
+  CHECK_FALSE(bench.console("role remove mason").is_ok);  // it is the default role
+  bench.done("role default builder");
+  CHECK(bench.done("role remove mason") == "role mason is removed" + bench.record(4));
+  CHECK(has(bench.player(2, "help").text, "claim NAME"));
+  CHECK_FALSE(has(bench.player(2, "help").text, "rollback"));
+  CHECK(has(bench.done("help"), "reload "));
+}
+
+TEST_CASE("control sets a password that the console and players cannot type", "[admin][rights]") {
+  RightsBench bench;
+  CHECK(has(bench.console("password set").text, "runstone-server control"));
+  CHECK(bench.head() == 0);
+  const JoinPassword password{"visitor", {1}, {2}};
+  const std::string line = "password set role visitor verifier " + verifier_text(password);
+  bench.done("grant player1 administrator");
+  CHECK_FALSE(bench.player(1, line).is_ok);
+  CHECK(bench.done(line) ==
+        "players without a granted role join with the password and get the role visitor; others "
+        "still join as builder (role default nobody keeps them out)" +
+            bench.record(2));
+  CHECK(bench.bench.server.rights().password().value == password);
+  bench.done("role default nobody");
+  CHECK(bench.done(line) ==
+        "players without a granted role join with the password and get the role visitor" +
+            bench.record(4));
+  CHECK(has(bench.done("password"), "gets the role visitor; record 4, "));
+  CHECK(has(bench.player(1, "password clear").text, "the world has no password"));
+  CHECK_FALSE(bench.bench.server.rights().password().value.has_value());
+  CHECK(bench.console("password clear").text == "The world has no password.");
+}
+
+TEST_CASE("a ban holds after the system's clock was set back", "[admin][rights]") {
+  RightsBench bench;
+  bench.set_back_us = 86'400'000'000;
+  bench.done("ban player1 for 1h");
+  CHECK(bench.bench.server.session_count() == 1);
+  CHECK(has(bench.done("bans"), RightsBench::text_of(1)));
+}
+
+TEST_CASE("a ban ends sessions and is listed until it is lifted", "[admin][rights]") {
+  RightsBench bench;
+  const std::string text = bench.done("ban player1 for 1d reason \"broke the bridge\"");
+  CHECK(has(text, RightsBench::text_of(1) + " is banned until "));
+  CHECK(has(text, ": broke the bridge (record "));
+  CHECK(has(text, "; sessions ended: 1"));
+  CHECK(bench.bench.server.session_count() == 1);
+  CHECK(has(bench.done("bans"), "\"broke the bridge\""));
+  CHECK(bench.done("unban player1") ==
+        RightsBench::text_of(1) + " is no longer banned" + bench.record(2));
+  CHECK(bench.console("unban player1").text ==
+        RightsBench::text_of(1) + " is not banned (bans lists all)");
+  CHECK(bench.done("bans") == "nobody is banned, muted or frozen");
+
+  CHECK(has(bench.done("ban 2001:db8::1"),
+            "everybody from 2001:db8::/64 is banned [a single IPv6 address means its /64]"));
+  bench.done("ban 192.0.2.0/24");
+  CHECK(bench.console("unban 192.0.2.7").text ==
+        "everybody from 192.0.2.7 is not banned, but 192.0.2.0/24 is (bans lists all)");
+  bench.done("unban 192.0.2.0/24");
+  bench.done("mute player2 reason spam");
+  bench.done("unmute player2");
+  bench.done("freeze player2");
+  CHECK(bench.player(2, "undo").text == "you are frozen");
+}
+
+TEST_CASE("a player kicks only players with fewer rights", "[admin][rights]") {
+  RightsBench bench;
+  bench.done("grant player1 moderator");
+  bench.done("grant player2 administrator");
+  bench.done("grant " + std::string(64, 'a') + " administrator");  // somebody must stay one
+  CHECK_FALSE(bench.player(1, "kick player2").is_ok);
+  CHECK_FALSE(bench.player(1, "ban player2").is_ok);
+  bench.done("grant player2 builder");
+  CHECK(bench.player(1, "kick player2 reason \"have a walk\"").text ==
+        RightsBench::text_of(2) + " was kicked; sessions ended: 1");
+  CHECK(has(bench.console("kick player2").text, " is not here"));
+}
+
+TEST_CASE("boxes are protected, shared and removed by command", "[admin][rights]") {
+  RightsBench bench;
+  bench.done("grant player1 builder");
+  bench.done("grant player2 builder");
+  CHECK(bench.done("protect town 0 0 0 9 9 9 priority 3") ==
+        "town protects 0 0 0 to 9 9 9, priority 3, owner nobody" + bench.record(3));
+  CHECK(bench.done("protect town owner player1") ==
+        "town protects 0 0 0 to 9 9 9, priority 3, owner " + RightsBench::text_of(1) +
+            bench.record(4));
+  CHECK(bench.player(1, "protect town add player2 role:moderator").text ==
+        "town admits: " + RightsBench::text_of(2) + ", the role moderator" + bench.record(5));
+  CHECK_FALSE(bench.player(1, "protect town add player2").is_ok);
+  CHECK(has(bench.done("protected at 9 9 9"), ", members " + RightsBench::text_of(2)));
+  CHECK(bench.done("protected at 10 9 9") == "no box protects 10 9 9");
+  CHECK_FALSE(bench.player(2, "unprotect town").is_ok);
+  CHECK(bench.player(1, "protect town remove player2").is_ok);
+  CHECK(bench.player(1, "unprotect town").is_ok);
+  CHECK(has(bench.console("unprotect town").text, "there is no protected box \"town\""));
+  CHECK(has(bench.console("protect town priority 1").text, "there is no protected box \"town\""));
+
+  CHECK(bench.player(2, "claim home 20 0 0 29 9 9").text ==
+        "home protects 20 0 0 to 29 9 9 for you" + bench.record(8));
+  CHECK(has(bench.player(1, "claim home 40 0 0 49 9 9").text, "of somebody else"));
+  CHECK_FALSE(bench.player(1, "claim hut 25 0 0 35 9 9").is_ok);
+  CHECK(has(bench.console("claim hut 25 0 0 35 9 9").text, "claims are for players"));
+  CHECK(bench.done("protect strip columns 100 100 120 120") ==
+        "strip protects columns 100 100 to 120 120, priority 0, owner nobody" + bench.record(9));
+}
+
+TEST_CASE("why answers everybody about themselves and moderators about others", "[admin][rights]") {
+  RightsBench bench;
+  bench.done("grant player2 builder");
+  CHECK(bench.player(2, "why player2 build").is_ok);
+  const CommandAnswer refused = bench.player(2, "why player1 build");
+  CHECK_FALSE(refused.is_ok);
+  CHECK(refused.text ==
+        "about other players: this command needs the right moderate; your role is builder");
+  CHECK(has(bench.done("why player2 build 1 2 3"), "yes: " + RightsBench::text_of(2)));
+  bench.operator_key = RightsBench::key_of(2);
+  CHECK(has(bench.done("why player2 administer"), "`operators` names the key"));
+  CHECK(bench.player(2, "why player1 build").is_ok);
+}
+
+TEST_CASE("a record about rights is listed and taken back", "[admin][rights]") {
+  RightsBench bench;
+  bench.done("grant player1 builder");
+  const std::string first = std::to_string(bench.head());
+  bench.done("grant player1 moderator");
+  const std::string second = std::to_string(bench.head());
+  const std::string shown = key_fingerprint(RightsBench::key_of(1));
+  CHECK(has(bench.done("log cause rights"), " rights gave " + shown + " the role moderator"));
+  CHECK(has(bench.console("rights undo " + first).text, "decides nothing any more"));
+  CHECK(bench.done("rights undo " + second) == "record " + second + " (gave " + shown +
+                                                   " the role moderator) is taken back: gave " +
+                                                   shown + " the role builder" + bench.record(3));
+  CHECK(bench.role_of(1) == "builder");
+  CHECK(has(bench.console("rights undo 99").text, "record 99 changes no rights"));
+}
+
+TEST_CASE("taking a record back waits until later ones are on disk", "[admin][rights]") {
+  RightsBench bench;
+  const Clocks now = bench.bench.now();
+  const std::string key(64, 'a');
+  bench.done("grant " + key + " builder");
+  const std::string first = std::to_string(bench.head());
+  bench.done("role set mason see");
+  give_command({bench.services, {}, now, bench.reply()},
+               "role set mason see,build");  // not on disk yet
+  REQUIRE(bench.bench.server.durable() < bench.head());
+  bench.answers.clear();
+  give_command({bench.services, {}, now, bench.reply()}, "rights undo " + first);
+  CHECK(bench.works.empty());
+  CHECK(bench.answers.empty());
+  bench.run_all();
+  bench.services.tick();
+  bench.run_all();
+  CHECK(bench.answer().is_ok);
+  CHECK(bench.bench.server.rights().grants().empty());
+}
+
+}  // namespace runstone::test
