@@ -19,17 +19,18 @@ constexpr std::size_t kLoggedReasonsMax = 16;
 }  // namespace
 
 OwnerConnection::OwnerConnection(asio::io_context& io, WorldStrand& strand,
-                                 asio::any_io_executor decoders, std::uint16_t chunk_edge,
-                                 bool is_encrypted)
+                                 const Ownership& ownership, asio::any_io_executor decoders,
+                                 std::uint16_t chunk_edge, bool is_encrypted)
     : io_(io),
       strand_(strand),
+      ownership_(ownership),
       decoders_(std::move(decoders)),
       chunk_edge_(chunk_edge),
       is_encrypted_(is_encrypted) {}
 
 void OwnerConnection::connect_to(const std::string& address) {
   strand_.post([this, address] {
-    if (has_ended_) return;
+    if (has_ended_ || !ownership_.is(OwnershipState::following)) return;
     if (link_ == nullptr) return connect(address);
     if (address == address_) return;
     // The server there may stand still, and would later speak as if it were the owner.
@@ -61,8 +62,10 @@ void OwnerConnection::connect(const std::string& address) {
     strand_.post([this, address, why] {
       link_.reset();
       world_->owner_disconnected();
+      const bool is_meant = has_ended_ || ownership_.is(OwnershipState::taking_over) ||
+                            ownership_.is(OwnershipState::owning);
       const std::string line = address + ": " + why;
-      if (!has_ended_ && is_not_logged_yet(line)) logger("world").warn("OWNER LOST: {}", line);
+      if (!is_meant && is_not_logged_yet(line)) logger("world").warn("OWNER LOST: {}", line);
     });
   };
   std::optional<TlsContext> tls;

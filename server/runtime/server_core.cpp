@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <span>
-#include <thread>
 
 #include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
@@ -50,8 +49,8 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
       readers_(strand_, threads.workers, chunks_, world_place(config), generator),
       tiles_(strand_, chunks_, generator, store.meta().chunk_edge,
              [this](Sequence at, const ChunkKey& key) { return readers_.past_chunk(at, key); }),
-      owner_(threads.io, strand_, threads.decoders.get_executor(), store.meta().chunk_edge,
-             !config.insecure),
+      owner_(threads.io, strand_, ownership_, threads.decoders.get_executor(),
+             store.meta().chunk_edge, !config.insecure),
       environment_(sessions_, *listener_, sender_, readers_, tiles_, owner_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
       tile_resends_(strand_.make_timer()),
@@ -103,6 +102,7 @@ Result<void, std::string> ServerCore::follow() {
   if (const auto made = make_world(*start); !made) return made;
   if (const auto ended = store_.end_reads(); !ended) return failure(ended.error().message());
   world_->follow();
+  ownership_.follow();
   return {};
 }
 
@@ -118,7 +118,7 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
       std::move(world_config), start, environment_,
       [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
   const auto replayed = replay_log(store_, start, *world_);
-  if (!replayed) return Unexpected<std::string>{replayed.error()};
+  if (!replayed) return failure(replayed.error());
   environment_.attach(*world_, chat_log_.get());
   owner_.attach(*world_);
   logger("world").info("world={} seq={} checkpoint={} replayed={} players={} snapshots={}",
@@ -154,27 +154,33 @@ Result<void, std::string> ServerCore::take_over(Store& store, const std::string&
     std::vector<LogPart> parts;
     Version last;
   };
-  auto stopped = std::make_shared<std::promise<Left>>();
-  auto left = stopped->get_future();
-  strand_.post([this, stopped] {
-    owner_.end("this server takes the world over");
-    Left now{world_->stop_following(), world_->last_record()};
-    stopped->set_value(std::move(now));
+  const auto left = strand_.ask([this] {
+    ownership_.begin_takeover();
+    owner_.leave("this server takes the world over");
+    return Left{world_->stop_following(), world_->last_record()};
   });
-  const Left mine = left.get();
-  const auto start = prepare_takeover(store, mine.parts, mine.last);
-  if (!start) return failure(start.error());
+  if (!left) return failure(left.error());
+  const auto failed = [this](std::string why) {
+    ownership_.fail_takeover();
+    return failure(std::move(why));
+  };
+  const auto start = prepare_takeover(store, left->parts, left->last);
+  if (!start) return failed(start.error());
   // Now, because the log writer has the store from the next step on. The others connect a moment later.
   if (const auto published = store.publish_address(address); !published)
-    return failure(published.error().message());
-  auto taken = std::make_shared<std::promise<bool>>();
-  auto is_taken = taken->get_future();
-  strand_.post([this, &store, start = *start, taken] {
+    return failed(published.error().message());
+  const auto is_taken = strand_.ask([this, &store, &start] {
     checkpoints_.stop();
-    make_log(store, start.read.last);
-    taken->set_value(world_->take_over(start, read_clocks()));
+    make_log(store, start->read.last);
+    const bool is_same_log = world_->take_over(*start, read_clocks());
+    if (is_same_log)
+      ownership_.end_takeover();
+    else
+      ownership_.find_fork();
+    return is_same_log;
   });
-  if (!is_taken.get()) {
+  if (!is_taken) return failed(is_taken.error());
+  if (!*is_taken) {
     log_->stop();
     return failure("the log has other edits than this server");
   }
@@ -183,61 +189,54 @@ Result<void, std::string> ServerCore::take_over(Store& store, const std::string&
 }
 
 Result<SessionId, std::string> ServerCore::begin_handover(std::optional<SessionId> successor) {
+  const auto head = strand_.ask([this, successor]() -> Result<Sequence, std::string> {
+    if (const auto why = world_->handover_refusal(successor)) return failure(*why);
+    return world_->head();
+  });
+  if (!head) return failure(head.error());
   // Edits go on while the log is written up to now. If that takes long, the pause would be long, too.
-  auto asked = std::make_shared<std::promise<Result<Sequence, std::string>>>();
-  auto head = asked->get_future();
-  strand_.post([this, successor, asked] {
-    if (const auto why = world_->handover_refusal(successor))
-      return asked->set_value(Unexpected<std::string>{*why});
-    asked->set_value(world_->head());
-  });
-  const Result<Sequence, std::string> needed = head.get();
-  if (!needed) return Unexpected<std::string>{needed.error()};
+  using Written = Result<void, std::string>;
   const TimeUs until_us = steady_now_us() + kWriteBeforeUs;
-  while (log_->durable() < *needed) {
-    if (log_->has_failed()) return Unexpected<std::string>{"the log cannot be written"};
+  const auto written = strand_.ask_until([this, &head, until_us]() -> std::optional<Written> {
+    if (log_->durable() >= *head) return Written();
+    if (log_->has_failed()) return failure("the log cannot be written");
     if (steady_now_us() >= until_us)
-      return Unexpected<std::string>{"the database takes too long to write the log"};
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  auto begun = std::make_shared<std::promise<Result<SessionId, std::string>>>();
-  auto answer = begun->get_future();
-  strand_.post([this, successor, begun] {
-    if (const auto why = world_->handover_refusal(successor))
-      return begun->set_value(Unexpected<std::string>{*why});
-    if (!commands_->is_idle())
-      return begun->set_value(Unexpected<std::string>{
-          "rollbacks or undos are under way: wait, or cancel them (rollback list)"});
-    begun->set_value(world_->hand_over(successor, read_clocks()));
+      return failure("the database takes too long to write the log");
+    return std::nullopt;  // the log reports on the strand, which ticks as well
   });
-  return answer.get();
+  if (!written) return failure(written.error());
+  return strand_.ask([this, successor]() -> Result<SessionId, std::string> {
+    if (const auto why = world_->handover_refusal(successor)) return failure(*why);
+    if (!commands_->is_idle())
+      return failure("rollbacks or undos are under way: wait, or cancel them (rollback list)");
+    ownership_.begin_handover();
+    return world_->hand_over(successor, read_clocks());
+  });
 }
 
 Result<void, std::string> ServerCore::end_handover() {
   log_->stop();
   // The reports of the log are on the strand already.
-  auto ended = std::make_shared<std::promise<bool>>();
-  auto is_written = ended->get_future();
-  strand_.post([this, ended] {
+  auto ended = strand_.ask([this]() -> Result<void, std::string> {
     const LogWriter::Counters counters = log_counters_now();
     if (log_->has_failed() || log_->durable() != world_->head() || counters.queued_records > 0)
-      return ended->set_value(false);
+      return failure("not all edits could be written to the log");
     world_->handover_written(read_clocks());
+    ownership_.end_handover();
     ended_logs_ = counters;
     environment_.detach_log();
     log_.reset();
-    owner_.begin();
     checkpoints_.start();
-    ended->set_value(true);
+    return {};
   });
-  if (is_written.get()) return {};
-  return failure("not all edits could be written to the log");
+  if (!ended) ownership_.lose_log();
+  return ended;
 }
 
 ServerCore::FollowState ServerCore::follow_state() const {
   const TimeUs heard_us = owner_heard_us_.load();
   const bool hears_owner = heard_us != 0 && steady_now_us() - heard_us < kOwnerHeardUsMax;
-  return {is_live_.load(), has_forked_.load(), hears_owner};
+  return {is_live_.load(), hears_owner};
 }
 
 void ServerCore::read_checkpoint() {
@@ -267,6 +266,7 @@ DurableLog::Events ServerCore::log_events() {
   };
   events.on_failed = [this] {
     world_->log_failed();
+    ownership_.lose_log();
     commands_->tick(read_clocks());
   };
   events.on_failed_in_writer = on_failure_;
@@ -309,9 +309,8 @@ void ServerCore::after_task() {
   schedule_delivery();
   schedule_tile_resends();
   is_live_.store(world_->is_live());
-  has_forked_.store(world_->has_forked());
+  if (world_->has_forked() && ownership_.is(OwnershipState::following)) ownership_.find_fork();
   owner_heard_us_.store(world_->owner_heard_us().value_or(0));
-  finish_stop_if_flushed();
 }
 
 void ServerCore::log_counters() {
@@ -360,6 +359,15 @@ void ServerCore::command(const std::string& line, CommandReply reply) {
   });
 }
 
+CommandAnswer ServerCore::answer_of(const std::string& line) {
+  const auto replied = std::make_shared<std::optional<CommandAnswer>>();  // used on the world strand
+  command(line, [replied](const CommandAnswer& answer) {
+    if (answer.is_done) *replied = answer;
+  });
+  const auto answer = strand_.ask_until([replied] { return *replied; });
+  return answer ? *answer : CommandAnswer{answer.error(), true, false};
+}
+
 void ServerCore::answer_gateway(const std::string& question, CommandReply reply) {
   if (question != "status") return refuse(reply, "the only question is `status`");
   strand_.post([this, memory_bytes = process_memory_bytes(), reply = std::move(reply)] {
@@ -397,13 +405,10 @@ void ServerCore::write_activity() {
   if (!line.empty()) logger("app").info("{}", line);
 }
 
-std::future<void> ServerCore::begin_stop() {
+bool ServerCore::stop_world() {
   listener_->stop();
   if (gateway_) gateway_->stop();
-  auto promise = std::make_shared<std::promise<void>>();
-  std::future<void> answer = promise->get_future();
-  strand_.post([this, promise = std::move(promise)]() mutable {
-    stopping_ = std::move(promise);
+  strand_.post([this] {
     owner_.end("this server stops");
     if (commands_) commands_->stop();
     const Clocks now = read_clocks();
@@ -413,24 +418,24 @@ std::future<void> ServerCore::begin_stop() {
     // has not run.
     listener_->close_all(GoodbyeReason::closing, "the server stops");
   });
-  return answer;
+  const auto hands_over = strand_.ask_until([this] { return finish_stop(); }, WorldStrand::kAnyTime);
+  return *hands_over;
 }
 
-void ServerCore::finish_stop_if_flushed() {
+std::optional<bool> ServerCore::finish_stop() {
   // Sessions end within the linger time of NetSession, which is a second.
   // Another server waits for the world, and not for the sessions here.
-  if (!stopping_ || (!sessions_.is_empty() && !world_->hands_over())) return;
+  if (!sessions_.is_empty() && !world_->hands_over()) return std::nullopt;
   const bool gives_up =
       log_ && (log_->has_failed() || (log_->is_full() && world_->is_stop_overdue()));
-  if (!gives_up && !world_->is_flushed()) return;
+  if (!gives_up && !world_->is_flushed()) return std::nullopt;
   ticks_.stop();
   stalls_.stop();
   activity_.stop();
   chat_retention_.stop();
   checkpoints_.stop();
   tile_resends_.cancel();
-  stopping_->set_value();
-  stopping_.reset();
+  return world_->hands_over();
 }
 
 StopState ServerCore::stop_state() const {
