@@ -315,10 +315,10 @@ StopReport Server::stop() {
   if (parts.status) parts.status->stop();
   const TimeUs due_us =
       steady_now_us() + static_cast<TimeUs>(parts.config.stop_s) * std::int64_t{1'000'000};
-  const bool has_heirs = parts.core->stop_world();
+  const bool successor_waits = parts.core->stop_world();
   parts.core->stop_writer();
   const bool is_owner = owns(ownership());
-  const bool hands_over = is_owner && has_heirs;
+  const bool hands_over = is_owner && successor_waits;
   if (hands_over) {
     parts.owned_store().give_up();
     logger("app").info("HANDED OVER: another server takes the world over");

@@ -200,8 +200,7 @@ Result<SessionId, std::string> ServerCore::begin_handover(std::optional<SessionI
   const auto written = strand_.ask_until([this, &head, until_us]() -> std::optional<Written> {
     if (log_->durable() >= *head) return Written();
     if (log_->has_failed()) return failure("the log cannot be written");
-    if (steady_now_us() >= until_us)
-      return failure("the database takes too long to write the log");
+    if (steady_now_us() >= until_us) return failure("the database takes too long to write the log");
     return std::nullopt;  // the log reports on the strand, which ticks as well
   });
   if (!written) return failure(written.error());
@@ -360,7 +359,8 @@ void ServerCore::command(const std::string& line, CommandReply reply) {
 }
 
 CommandAnswer ServerCore::answer_of(const std::string& line) {
-  const auto replied = std::make_shared<std::optional<CommandAnswer>>();  // used on the world strand
+  // Used on the world strand.
+  const auto replied = std::make_shared<std::optional<CommandAnswer>>();
   command(line, [replied](const CommandAnswer& answer) {
     if (answer.is_done) *replied = answer;
   });
@@ -418,7 +418,8 @@ bool ServerCore::stop_world() {
     // has not run.
     listener_->close_all(GoodbyeReason::closing, "the server stops");
   });
-  const auto hands_over = strand_.ask_until([this] { return finish_stop(); }, WorldStrand::kAnyTime);
+  const auto hands_over =
+      strand_.ask_until([this] { return finish_stop(); }, WorldStrand::kAnyTime);
   return *hands_over;
 }
 

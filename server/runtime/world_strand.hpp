@@ -58,9 +58,9 @@ class WorldStrand {
   AnswerOf<std::invoke_result_t<Question&>> ask(Question question,
                                                 std::chrono::milliseconds longest = kAnswerTime) {
     using Answer = std::invoke_result_t<Question&>;
-    return ask_until([question = std::move(question)]() mutable {
-      return std::optional<Answer>(question());
-    }, longest);
+    return ask_until(
+        [question = std::move(question)]() mutable { return std::optional<Answer>(question()); },
+        longest);
   }
   /// Waits until `question()`, which returns an optional, returns a value: it runs as for ask(), and
   /// again behind every later task of the strand. Fails if there is no value within `longest`. The

@@ -92,10 +92,11 @@ TEST_CASE("an owner keeps its world when it loses its log, and no other failure 
     State state;
     bool owns, has_failed;
   };
-  for (const Row row : {Row{State::owning, true, false}, Row{State::handing_over, false, false},
-                        Row{State::following, false, false}, Row{State::taking_over, false, false},
-                        Row{State::log_lost, true, true}, Row{State::handover_failed, false, true},
-                        Row{State::forked, false, true}, Row{State::takeover_failed, false, true}}) {
+  for (const Row row :
+       {Row{State::owning, true, false}, Row{State::handing_over, false, false},
+        Row{State::following, false, false}, Row{State::taking_over, false, false},
+        Row{State::log_lost, true, true}, Row{State::handover_failed, false, true},
+        Row{State::forked, false, true}, Row{State::takeover_failed, false, true}}) {
     Ownership server;
     bring(server, row.state);
     CHECK(server.state() == row.state);
