@@ -14,6 +14,7 @@
 #include "server/rollback/rollback_service.hpp"
 #include "server/runtime/server_core.hpp"
 #include "server/store/world_folder.hpp"
+#include "server/world/cluster/ownership.hpp"
 
 namespace runstone {
 
