@@ -38,23 +38,30 @@ struct Error {
   }
 };
 
+/// An error on its way into a Result. failure() and fail() make it.
 template <class E>
 struct Unexpected {
   E error;
 };
 
-/// Shortens `return Unexpected<Error>{...}`.
-inline Unexpected<Error> fail(ErrorCode code, const char* what, std::uint64_t offset = 0) {
-  return {Error{code, what, offset}};
+/// Makes the error that a function returns: `return failure(opened.error());`. Its type is that of the
+/// argument, or std::string, a line of text, for everything that converts to one.
+template <class E>
+  requires(!std::is_convertible_v<E, std::string>)
+Unexpected<std::remove_cvref_t<E>> failure(E&& error) {
+  return {std::forward<E>(error)};
 }
-
-/// Shortens `return Unexpected<std::string>{...}`: a failure that is reported as a line of text.
 inline Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
+
+/// Makes an Error that a function returns.
+inline Unexpected<Error> fail(ErrorCode code, const char* what, std::uint64_t offset = 0) {
+  return failure(Error{code, what, offset});
+}
 
 template <class T, class E = Error>
 class [[nodiscard]] Result {
  public:
-  /// Both constructors are implicit, so that a function can return a value or fail(...).
+  /// Both constructors are implicit, so that a function can return a value or failure(...).
   template <class U = T>
     requires std::is_convertible_v<U, T> && (!std::is_same_v<std::remove_cvref_t<U>, Result>)
   Result(U&& value) : state_(std::in_place_index<0>, std::forward<U>(value)) {}

@@ -3,18 +3,11 @@
 #include <sys/stat.h>
 
 #include <cstdlib>
-#include <future>
-#include <memory>
 
 namespace runstone {
 
 std::string make_first_invite(Server& server) {
-  // The answer shares the promise: it may still be setting the value when the wait below ends.
-  const auto promise = std::make_shared<std::promise<CommandAnswer>>();
-  auto answered = promise->get_future();
-  server.command("invite role administrator uses 1 for 24h",
-                 [promise](const CommandAnswer& answer) { promise->set_value(answer); });
-  const CommandAnswer answer = answered.get();
+  const CommandAnswer answer = server.answer_of("invite role administrator uses 1 for 24h");
   if (!answer.is_ok) return "there is no invite for an administrator: " + answer.text;
   const std::string link = answer.text.substr(0, answer.text.find('\n'));
   return "This world has no administrator. The first who joins with this link, within 24 hours, is "

@@ -5,7 +5,6 @@
 #include <asio/executor_work_guard.hpp>
 #include <asio/io_context.hpp>
 #include <asio/thread_pool.hpp>
-#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -107,10 +106,8 @@ struct Server::Parts {
   std::unique_ptr<ServerCore> core;
   bool is_unclaimed = false;
   bool is_running = false;
-  bool has_failed_to_take_over = false;  // the thread of the watch has ended when this is read
-  std::atomic<bool> is_following{false};
 
-  /// The store that has the lease, unless this server follows.
+  /// The store that has the lease. Requires that this server does not follow.
   Store& owned_store() { return writer ? *writer : *world.store; }
   /// Makes the core, and binds the addresses.
   Result<void, std::string> prepare(const std::optional<TlsContext>& certificate,
@@ -245,7 +242,6 @@ Result<std::unique_ptr<Server>, std::string> Server::follow(const ServerConfig& 
   parts->local_lock = *std::move(local_lock);
   parts->world.store = *std::move(store);
   parts->world.generator = *std::move(generator);
-  parts->is_following = true;
   const auto prepared = parts->prepare(*certificate, std::move(on_failure), std::move(actions));
   if (!prepared) return failure(prepared.error());
   if (const auto begun = parts->core->follow(); !begun) return failure(begun.error());
@@ -257,38 +253,34 @@ Result<std::unique_ptr<Server>, std::string> Server::follow(const ServerConfig& 
 
 void Server::connect_to(const std::string& owner) { parts_->core->connect_to(owner); }
 ServerCore::FollowState Server::follow_state() const { return parts_->core->follow_state(); }
-bool Server::is_following() const { return parts_->is_following; }
+OwnershipState Server::ownership() const { return parts_->core->ownership(); }
 
-Result<void, std::string> Server::take_over() {
+Result<void, OwnershipError> Server::take_over() {
   Parts& parts = *parts_;
   LeaseTerms lease = lease_of(parts.config);
   lease.waits = false;  // if another server was faster, the players here wait for it
   auto writer = open_world(world_place(parts.config), StoreAccess::read_write, "", lease);
-  if (!writer) return failure(writer.error().message());
+  if (!writer) return failure(OwnershipError{writer.error().message(), false});
   parts.writer = *std::move(writer);
-  parts.is_following = false;
   const auto taken = parts.core->take_over(*parts.writer, parts.peer_address());
-  if (!taken) {
-    parts.has_failed_to_take_over = true;
-    parts.writer->give_up();  // another server need not wait for the lease to run out
-  }
-  return taken;
+  if (taken) return {};
+  parts.writer->give_up();  // another server need not wait for the lease to run out
+  return failure(OwnershipError{taken.error(), has_failed(ownership())});
 }
 
-Result<void, HandoverError> Server::hand_over(std::optional<SessionId> successor) {
+Result<void, OwnershipError> Server::hand_over(std::optional<SessionId> successor) {
   Parts& parts = *parts_;
   const auto refused = [](std::string why) {
-    return Unexpected<HandoverError>{{std::move(why), false}};
+    return failure(OwnershipError{std::move(why), false});
   };
-  if (parts.is_following) return refused("this server does not own the world");
+  if (!owns(ownership())) return refused("this server does not own the world");
   if (!parts.config.standby)
     return refused("a server that was started without --standby does not follow another one");
   const auto begun = parts.core->begin_handover(successor);
   if (!begun) return refused(begun.error());
-  parts.is_following = true;
   const auto ended = parts.core->end_handover();
   parts.owned_store().give_up();  // after an error, too: a follower may have the edits
-  if (!ended) return Unexpected<HandoverError>{{ended.error(), true}};
+  if (!ended) return failure(OwnershipError{ended.error(), has_failed(ownership())});
   parts.writer.reset();
   logger("app").info("HANDED OVER: server={} takes the world over, and this server follows it",
                      *begun);
@@ -300,6 +292,7 @@ bool Server::is_unclaimed() const { return parts_->is_unclaimed; }
 void Server::command(const std::string& line, CommandReply reply) {
   parts_->core->command(line, std::move(reply));
 }
+CommandAnswer Server::answer_of(const std::string& line) { return parts_->core->answer_of(line); }
 void Server::reload(Result<ServerConfig, std::string> read, CommandReply reply) {
   if (read && !parts_->config.insecure) {
     // A certificate is renewed in the same file, so it is read whether a setting has changed or not.
@@ -322,9 +315,10 @@ StopReport Server::stop() {
   if (parts.status) parts.status->stop();
   const TimeUs due_us =
       steady_now_us() + static_cast<TimeUs>(parts.config.stop_s) * std::int64_t{1'000'000};
-  parts.core->begin_stop().wait();
+  const bool successor_waits = parts.core->stop_world();
   parts.core->stop_writer();
-  const bool hands_over = !parts.is_following && parts.core->hands_over();
+  const bool is_owner = owns(ownership());
+  const bool hands_over = is_owner && successor_waits;
   if (hands_over) {
     parts.owned_store().give_up();
     logger("app").info("HANDED OVER: another server takes the world over");
@@ -340,7 +334,7 @@ StopReport Server::stop() {
   const StopState state = parts.core->stop_state();
   const auto live = parts.core->edited_chunks();
   parts.core.reset();
-  if (parts.is_following || parts.has_failed_to_take_over) return {};
+  if (!is_owner) return {};
   // Once the world is handed over, its rows are those of another server.
   StopReport report = sum_up(parts.owned_store(), live, state, [due_us, hands_over] {
     return !hands_over && steady_now_us() < due_us;

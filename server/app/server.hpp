@@ -14,14 +14,16 @@
 #include "server/rollback/rollback_service.hpp"
 #include "server/runtime/server_core.hpp"
 #include "server/store/world_folder.hpp"
+#include "server/world/order/ownership.hpp"
 
 namespace runstone {
 
-/// Why a server did not hand the world over.
-struct HandoverError {
+/// Why a server did not take the world over, or did not hand it over.
+struct OwnershipError {
   std::string what;  // a sentence
-  bool must_stop =
-      false;  // the log could not be written: stop the server. Otherwise nothing has changed
+  // has_failed(ownership()): the server can neither own the world nor follow its owner any more, and has
+  // to be stopped. Otherwise nothing has changed.
+  bool must_stop = false;
 };
 
 class Server {
@@ -56,19 +58,22 @@ class Server {
   void connect_to(const std::string& owner);
   /// How a server that follows gets on.
   ServerCore::FollowState follow_state() const;
-  /// Takes the lease of the world, and makes a server that follows its owner. Players stay. Blocks
-  /// on the database. After an error the server must be stopped, unless is_following(): somebody
-  /// else has the lease then.
-  Result<void, std::string> take_over();
-  /// Lets another server take the world over, and makes the owner a server that follows. Players
-  /// stay. `successor` is as for WorldServer::hand_over(). Blocks on the database. Call
-  /// connect_to() afterwards as long as it follows.
-  Result<void, HandoverError> hand_over(std::optional<SessionId> successor);
-  bool is_following() const;
+  /// Takes the lease of the world, and makes a server that follows its owner. Players stay. Blocks on
+  /// the database. Requires that it follows.
+  Result<void, OwnershipError> take_over();
+  /// Lets another server take the world over, and makes the owner a server that follows. Players stay.
+  /// `successor` is as for WorldServer::hand_over(). Blocks on the database. Call connect_to()
+  /// afterwards as long as it follows.
+  Result<void, OwnershipError> hand_over(std::optional<SessionId> successor);
+  /// Returns the part that this server plays in its world. Thread: any.
+  OwnershipState ownership() const;
   void log_counters();
   /// Carries out a command as an operator. Replies come from another thread; the last one has
   /// is_done. A server that stops may leave out replies.
   void command(const std::string& line, CommandReply reply);
+  /// Carries out a command as an operator, and returns its last answer. Blocks until the world strand
+  /// has answered.
+  CommandAnswer answer_of(const std::string& line);
   /// Takes over the settings of `read` that a running server may change, or reports why there are
   /// none. The reply comes from another thread.
   void reload(Result<ServerConfig, std::string> read, CommandReply reply);

@@ -201,7 +201,6 @@ int run(const ServerOptions& options) {
   const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };
   std::unique_ptr<Server> running;
   std::optional<TakeoverWatch> watch;
-  bool has_failed_to_hand_over = false;
   BackupChild backup(config->world);
   OperatorActions actions;
   actions.stop = end;
@@ -218,9 +217,8 @@ int run(const ServerOptions& options) {
   actions.hand_over = [&](std::optional<SessionId> successor, CommandReply reply) {
     asio::post(main_loop, [&, successor, reply = std::move(reply)] {
       if (!running) return refuse(reply, "the server starts");
-      if (hand_over_and_watch(config->store, *running, watch, end, successor, reply)) return;
-      has_failed_to_hand_over = true;
-      main_loop.stop();
+      if (!hand_over_and_watch(config->store, *running, watch, end, successor, reply))
+        main_loop.stop();
     });
   };
   const auto start = [&] {
@@ -235,7 +233,7 @@ int run(const ServerOptions& options) {
   if (!server) return cannot_start(server.error());
   if (*server == nullptr) return kStopped;
   running = *std::move(server);
-  if (running->is_following()) watch.emplace(config->store, *running, end);
+  if (!owns(running->ownership())) watch.emplace(config->store, *running, end);
   if (running->is_unclaimed() && config->operators.empty()) welcome_administrator(*running);
   std::unique_ptr<InputEnd> input;
   if (options.stop_with_input) {
@@ -262,18 +260,16 @@ int run(const ServerOptions& options) {
   signals.wait_for_the_end(*running, [&] {
     running->reload(read_config(options), [](const CommandAnswer& /*the log has it*/) {});
   });
-  const bool has_failed_to_follow = has_failed_to_hand_over || (watch && watch->has_failed());
   watch.reset();
   backup.stop();
   if (console) console->close();
   logger("app").info("stopping");
-  const bool has_followed = running->is_following();
+  const OwnershipState part = running->ownership();
   const StopReport report = running->stop();
-  if (has_followed || has_failed_to_follow) {
-    std::cout << (has_failed_to_follow
-                      ? "stopped, because the server could not go on: see the log\n"
-                      : "stopped, and another server owns the world\n");
-    return has_failed_to_follow ? kFailed : kStopped;
+  if (!owns(part)) {
+    std::cout << (has_failed(part) ? "stopped, because the server could not go on: see the log\n"
+                                   : "stopped, and another server owns the world\n");
+    return has_failed(part) ? kFailed : kStopped;
   }
   log_stop(report, *config);
   bool is_written = true;

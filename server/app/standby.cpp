@@ -118,7 +118,7 @@ void TakeoverWatch::answer(const std::string& outcome, bool is_ok) {
 }
 
 bool TakeoverWatch::look() {
-  if (server_.follow_state().has_forked) {
+  if (server_.ownership() == OwnershipState::forked) {
     fail("the owner has other edits than this server: start it again");
     return false;
   }
@@ -140,16 +140,15 @@ bool TakeoverWatch::look() {
     answer("handover: no other server owns the world now, and this one owns it again", false);
     return false;
   }
-  if (server_.is_following()) {
-    logger("app").info("STANDBY: not taken over: {}", taken.error());
-    return true;
+  if (taken.error().must_stop) {
+    fail(taken.error().what);
+    return false;
   }
-  fail(taken.error());
-  return false;
+  logger("app").info("STANDBY: not taken over: {}", taken.error().what);
+  return true;
 }
 
 void TakeoverWatch::fail(const std::string& why) {
-  has_failed_.store(true);
   logger("app").error("STANDBY: {}", why);
   on_failure_();
 }

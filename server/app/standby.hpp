@@ -1,7 +1,6 @@
 // Standby: a server of a world that another server owns. It follows the owner and serves players,
 // and takes the world over when the owner has ended or does not answer.
 #pragma once
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -37,16 +36,13 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
 /// edits that it lacks.
 class TakeoverWatch {
  public:
-  /// `server` must outlive the object. `on_failure` is called at most once, from the thread, if the
-  /// server can neither follow nor own the world any more. `handed_over` is empty unless the server
-  /// has just handed the world over: it gets one answer, from any thread, when the world has an
-  /// owner again.
+  /// `server` must outlive the object. `on_failure` is called at most once, from the thread, if
+  /// has_failed(server.ownership()). `handed_over` is empty unless the server has just handed the world
+  /// over: it gets one answer, from any thread, when the world has an owner again.
   TakeoverWatch(const std::string& place, Server& server, std::function<void()> on_failure,
                 CommandReply handed_over = {});
   /// Ends the thread. Waits for a takeover that is under way.
   ~TakeoverWatch();
-  /// Returns true if `on_failure` was called. Thread: any.
-  bool has_failed() const { return has_failed_.load(); }
   TakeoverWatch(const TakeoverWatch&) = delete;
   TakeoverWatch& operator=(const TakeoverWatch&) = delete;
 
@@ -70,7 +66,6 @@ class TakeoverWatch {
   std::int64_t term_ = 0;      // of the lease of the last owner
   bool has_followed_ = false;  // this server was live with that owner
   int short_pauses_ = 0;       // that are left
-  std::atomic<bool> has_failed_{false};
   std::mutex mutex_;
   std::condition_variable wake_;
   bool is_stopping_ = false;  // guarded by mutex_

@@ -29,7 +29,7 @@ OwnerConnection::OwnerConnection(asio::io_context& io, WorldStrand& strand,
 
 void OwnerConnection::connect_to(const std::string& address) {
   strand_.post([this, address] {
-    if (has_ended_) return;
+    if (has_ended_ || !world_->order().ownership().is(OwnershipState::following)) return;
     if (link_ == nullptr) return connect(address);
     if (address == address_) return;
     // The server there may stand still, and would later speak as if it were the owner.
@@ -61,8 +61,11 @@ void OwnerConnection::connect(const std::string& address) {
     strand_.post([this, address, why] {
       link_.reset();
       world_->cluster().owner_disconnected();
+      const OwnershipState part = world_->order().ownership().state();
+      const bool is_meant =
+          has_ended_ || part == OwnershipState::taking_over || part == OwnershipState::owning;
       const std::string line = address + ": " + why;
-      if (!has_ended_ && is_not_logged_yet(line)) logger("world").warn("OWNER LOST: {}", line);
+      if (!is_meant && is_not_logged_yet(line)) logger("world").warn("OWNER LOST: {}", line);
     });
   };
   std::optional<TlsContext> tls;

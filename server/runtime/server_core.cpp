@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <span>
-#include <thread>
 
 #include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
@@ -119,7 +118,7 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
       std::move(world_config), start, environment_,
       [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
   const auto replayed = replay_log(store_, start, *world_);
-  if (!replayed) return Unexpected<std::string>{replayed.error()};
+  if (!replayed) return failure(replayed.error());
   environment_.attach(*world_, chat_log_.get());
   owner_.attach(*world_);
   logger("world").info("world={} seq={} checkpoint={} replayed={} players={} snapshots={}",
@@ -155,27 +154,27 @@ Result<void, std::string> ServerCore::take_over(Store& store, const std::string&
     std::vector<LogPart> parts;
     Version last;
   };
-  auto stopped = std::make_shared<std::promise<Left>>();
-  auto left = stopped->get_future();
-  strand_.post([this, stopped] {
-    owner_.end("this server takes the world over");
-    Left now{world_->cluster().stop_following(), world_->order().last_record()};
-    stopped->set_value(std::move(now));
+  const auto left = strand_.ask([this] {
+    owner_.leave("this server takes the world over");
+    return Left{world_->cluster().stop_following(), world_->order().last_record()};
   });
-  const Left mine = left.get();
-  const auto start = prepare_takeover(store, mine.parts, mine.last);
-  if (!start) return failure(start.error());
+  if (!left) return failure(left.error());
+  const auto failed = [this](std::string why) {
+    world_->cluster().takeover_failed();
+    return failure(std::move(why));
+  };
+  const auto start = prepare_takeover(store, left->parts, left->last);
+  if (!start) return failed(start.error());
   // Now, because the log writer has the store from the next step on. The others connect a moment later.
   if (const auto published = store.publish_address(address); !published)
-    return failure(published.error().message());
-  auto taken = std::make_shared<std::promise<bool>>();
-  auto is_taken = taken->get_future();
-  strand_.post([this, &store, start = *start, taken] {
+    return failed(published.error().message());
+  const auto is_taken = strand_.ask([this, &store, &start] {
     checkpoints_.stop();
-    make_log(store, start.read.last);
-    taken->set_value(world_->cluster().take_over(start, read_clocks()));
+    make_log(store, start->read.last);
+    return world_->cluster().take_over(*start, read_clocks());
   });
-  if (!is_taken.get()) {
+  if (!is_taken) return failed(is_taken.error());
+  if (!*is_taken) {
     log_->stop();
     return failure("the log has other edits than this server");
   }
@@ -184,61 +183,52 @@ Result<void, std::string> ServerCore::take_over(Store& store, const std::string&
 }
 
 Result<SessionId, std::string> ServerCore::begin_handover(std::optional<SessionId> successor) {
+  const auto head = strand_.ask([this, successor]() -> Result<Sequence, std::string> {
+    if (const auto why = world_->cluster().handover_refusal(successor)) return failure(*why);
+    return world_->order().head();
+  });
+  if (!head) return failure(head.error());
   // Edits go on while the log is written up to now. If that takes long, the pause would be long, too.
-  auto asked = std::make_shared<std::promise<Result<Sequence, std::string>>>();
-  auto head = asked->get_future();
-  strand_.post([this, successor, asked] {
-    if (const auto why = world_->cluster().handover_refusal(successor))
-      return asked->set_value(Unexpected<std::string>{*why});
-    asked->set_value(world_->order().head());
-  });
-  const Result<Sequence, std::string> needed = head.get();
-  if (!needed) return Unexpected<std::string>{needed.error()};
+  using Written = Result<void, std::string>;
   const TimeUs until_us = steady_now_us() + kWriteBeforeUs;
-  while (log_->durable() < *needed) {
-    if (log_->has_failed()) return Unexpected<std::string>{"the log cannot be written"};
-    if (steady_now_us() >= until_us)
-      return Unexpected<std::string>{"the database takes too long to write the log"};
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  auto begun = std::make_shared<std::promise<Result<SessionId, std::string>>>();
-  auto answer = begun->get_future();
-  strand_.post([this, successor, begun] {
-    if (const auto why = world_->cluster().handover_refusal(successor))
-      return begun->set_value(Unexpected<std::string>{*why});
-    if (!commands_->is_idle())
-      return begun->set_value(Unexpected<std::string>{
-          "rollbacks or undos are under way: wait, or cancel them (rollback list)"});
-    begun->set_value(world_->cluster().hand_over(successor, read_clocks()));
+  const auto written = strand_.ask_until([this, &head, until_us]() -> std::optional<Written> {
+    if (log_->durable() >= *head) return Written();
+    if (log_->has_failed()) return failure("the log cannot be written");
+    if (steady_now_us() >= until_us) return failure("the database takes too long to write the log");
+    return std::nullopt;  // the log reports on the strand, which ticks as well
   });
-  return answer.get();
+  if (!written) return failure(written.error());
+  return strand_.ask([this, successor]() -> Result<SessionId, std::string> {
+    if (const auto why = world_->cluster().handover_refusal(successor)) return failure(*why);
+    if (!commands_->is_idle())
+      return failure("rollbacks or undos are under way: wait, or cancel them (rollback list)");
+    return world_->cluster().hand_over(successor, read_clocks());
+  });
 }
 
 Result<void, std::string> ServerCore::end_handover() {
   log_->stop();
   // The reports of the log are on the strand already.
-  auto ended = std::make_shared<std::promise<bool>>();
-  auto is_written = ended->get_future();
-  strand_.post([this, ended] {
+  auto ended = strand_.ask([this]() -> Result<void, std::string> {
     const LogWriter::Counters counters = log_counters_now();
-    if (log_->has_failed() || log_->durable() != world_->order().head() || counters.queued_records > 0)
-      return ended->set_value(false);
+    if (log_->has_failed() || log_->durable() != world_->order().head() ||
+        counters.queued_records > 0)
+      return failure("not all edits could be written to the log");
     world_->cluster().handover_written(read_clocks());
     ended_logs_ = counters;
     environment_.detach_log();
     log_.reset();
-    owner_.begin();
     checkpoints_.start();
-    ended->set_value(true);
+    return {};
   });
-  if (is_written.get()) return {};
-  return failure("not all edits could be written to the log");
+  if (!ended) world_->log_failed();
+  return ended;
 }
 
 ServerCore::FollowState ServerCore::follow_state() const {
   const TimeUs heard_us = owner_heard_us_.load();
   const bool hears_owner = heard_us != 0 && steady_now_us() - heard_us < kOwnerHeardUsMax;
-  return {is_live_.load(), has_forked_.load(), hears_owner};
+  return {is_live_.load(), hears_owner};
 }
 
 void ServerCore::read_checkpoint() {
@@ -310,9 +300,7 @@ void ServerCore::after_task() {
   schedule_delivery();
   schedule_tile_resends();
   is_live_.store(world_->cluster().is_live());
-  has_forked_.store(world_->cluster().has_forked());
   owner_heard_us_.store(world_->cluster().owner_heard_us().value_or(0));
-  finish_stop_if_flushed();
 }
 
 void ServerCore::log_counters() {
@@ -355,6 +343,16 @@ void ServerCore::command(const std::string& line, CommandReply reply) {
   });
 }
 
+CommandAnswer ServerCore::answer_of(const std::string& line) {
+  // Used on the world strand.
+  const auto replied = std::make_shared<std::optional<CommandAnswer>>();
+  command(line, [replied](const CommandAnswer& answer) {
+    if (answer.is_done) *replied = answer;
+  });
+  const auto answer = strand_.ask_until([replied] { return *replied; });
+  return answer ? *answer : CommandAnswer{answer.error(), true, false};
+}
+
 void ServerCore::answer_gateway(const std::string& question, CommandReply reply) {
   if (question != "status") return refuse(reply, "the only question is `status`");
   strand_.post([this, memory_bytes = process_memory_bytes(), reply = std::move(reply)] {
@@ -392,13 +390,10 @@ void ServerCore::write_activity() {
   if (!line.empty()) logger("app").info("{}", line);
 }
 
-std::future<void> ServerCore::begin_stop() {
+bool ServerCore::stop_world() {
   listener_->stop();
   if (gateway_) gateway_->stop();
-  auto promise = std::make_shared<std::promise<void>>();
-  std::future<void> answer = promise->get_future();
-  strand_.post([this, promise = std::move(promise)]() mutable {
-    stopping_ = std::move(promise);
+  strand_.post([this] {
     owner_.end("this server stops");
     if (commands_) commands_->stop();
     const Clocks now = read_clocks();
@@ -408,29 +403,31 @@ std::future<void> ServerCore::begin_stop() {
     // has not run.
     listener_->close_all(GoodbyeReason::closing, "the server stops");
   });
-  return answer;
+  const auto hands_over =
+      strand_.ask_until([this] { return finish_stop(); }, WorldStrand::kAnyTime);
+  return *hands_over;
 }
 
-void ServerCore::finish_stop_if_flushed() {
+std::optional<bool> ServerCore::finish_stop() {
   // Sessions end within the linger time of NetSession, which is a second.
   // Another server waits for the world, and not for the sessions here.
-  if (!stopping_ || (!sessions_.is_empty() && !world_->cluster().hands_over())) return;
+  if (!sessions_.is_empty() && !world_->cluster().hands_over()) return std::nullopt;
   const bool gives_up =
       log_ && (log_->has_failed() || (log_->is_full() && world_->order().is_stop_overdue()));
-  if (!gives_up && !world_->order().is_flushed()) return;
+  if (!gives_up && !world_->order().is_flushed()) return std::nullopt;
   ticks_.stop();
   stalls_.stop();
   activity_.stop();
   chat_retention_.stop();
   checkpoints_.stop();
   tile_resends_.cancel();
-  stopping_->set_value();
-  stopping_.reset();
+  return world_->cluster().hands_over();
 }
 
 StopState ServerCore::stop_state() const {
   if (!log_) return {};
-  return {log_->has_failed(), world_->order().head() - log_->durable(), world_->order().dirty_chunks()};
+  return {log_->has_failed(), world_->order().head() - log_->durable(),
+          world_->order().dirty_chunks()};
 }
 
 void ServerCore::stop_writer() {

@@ -9,7 +9,6 @@
 #include <asio/thread_pool.hpp>
 #include <atomic>
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +35,7 @@
 #include "server/runtime/world_readers.hpp"
 #include "server/runtime/world_strand.hpp"
 #include "server/store/world_folder.hpp"
+#include "server/world/order/ownership.hpp"
 #include "server/world/world_server.hpp"
 
 namespace runstone {
@@ -83,13 +83,14 @@ class ServerCore final : public NetEvents {
   /// WorldServer::hand_over(). Returns the server that is to take the world over, or why nothing
   /// has changed. Requires start(). Blocks. Thread: any but those of `threads`.
   Result<SessionId, std::string> begin_handover(std::optional<SessionId> successor);
-  /// Writes the log and ends the log writer. After an error the server must be stopped. Requires
-  /// begin_handover(). Blocks. Thread: any but those of `threads`.
+  /// Writes the log and ends the log writer. After an error the server must be stopped. Requires the
+  /// same as begin_handover().
   Result<void, std::string> end_handover();
+  /// Returns the part that this server plays in its world. Thread: any.
+  OwnershipState ownership() const { return world_->order().ownership().state(); }
   /// How a server that follows gets on.
   struct FollowState {
     bool is_live = false;      // it has reached the owner
-    bool has_forked = false;   // it cannot go on
     bool hears_owner = false;  // it is connected with an owner that does not stand still
   };
   /// Thread: any.
@@ -99,17 +100,13 @@ class ServerCore final : public NetEvents {
   std::uint16_t port() const { return listener_->port(); }
 
   /// Stops in this order: no new connections; a goodbye to each session; every accepted edit is
-  /// ordered and made durable; changed chunks are written as snapshots, for at most `stop_s`. The
-  /// future becomes ready when this is done. It also becomes ready if the log fails, or if the disk
-  /// is full and `stop_s` is over.
-  std::future<void> begin_stop();
-  /// Ends the readers, the log of the chat, the keyframe thread and the log writer, which writes
-  /// what is queued.
-  /// Requires that the future of begin_stop() is ready.
+  /// ordered and made durable; changed chunks are written as snapshots, for at most `stop_s`. Blocks
+  /// until this is done, or the log has failed, or the disk is full and `stop_s` is over. Returns true
+  /// if another server waits to take the world over. Thread: any but those of `threads`.
+  bool stop_world();
+  /// Ends the readers, the log of the chat, the keyframe thread and the log writer, which writes what
+  /// is queued. Requires stop_world().
   void stop_writer();
-  /// Returns true if another server waits to take the world over. Requires that the future of
-  /// begin_stop() is ready.
-  bool hands_over() const { return world_->cluster().hands_over(); }
   /// Returns what the stop has left undone. Requires stop_writer(), and that no thread runs the
   /// strand any more.
   StopState stop_state() const;
@@ -126,6 +123,8 @@ class ServerCore final : public NetEvents {
   /// Carries out a command of the console or the control socket. The replies come on the world
   /// strand. Thread: any.
   void command(const std::string& line, CommandReply reply);
+  /// Carries out a command, and returns its last answer. Blocks. Thread: any but those of `threads`.
+  CommandAnswer answer_of(const std::string& line);
 
   /// Answers a question of a gateway, of which there is one: "status". The answer is the line of
   /// all counters (counters_line.hpp) and a line "player NAME" for each session. Thread: any.
@@ -167,7 +166,9 @@ class ServerCore final : public NetEvents {
   /// already.
   void schedule_delivery();
   void schedule_tile_resends();
-  void finish_stop_if_flushed();
+  /// Ends the timers if the stop that is under way has nothing more to wait for. Returns nullopt if it
+  /// has, otherwise true if another server waits to take the world over.
+  std::optional<bool> finish_stop();
   std::string all_counters(std::uint64_t memory_bytes) const;
   /// Returns the answer to the command `status` at a server that follows.
   std::string status_of_follower() const;
@@ -198,11 +199,9 @@ class ServerCore final : public NetEvents {
   bool is_resend_scheduled_ = false;  // used on the world strand
   PeriodicTask ticks_, stalls_, activity_, chat_retention_, checkpoints_;
   // Written by the world strand. The time is WorldServer::owner_heard_us(), 0 without a connection.
-  std::atomic<bool> is_live_{false}, has_forked_{false};
+  std::atomic<bool> is_live_{false};
   std::atomic<TimeUs> owner_heard_us_{0};
   ActivitySample sampled_;  // at the last write_activity(). Used on the world strand
-  // The answer of begin_stop(), set while it waits. Used on the world strand.
-  std::shared_ptr<std::promise<void>> stopping_;
 
   LogWriter::Counters ended_logs_;  // of the earlier periods in which this server owned the world
 

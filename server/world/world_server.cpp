@@ -308,7 +308,7 @@ void WorldServer::set_disk_is_full(bool is_full, const Clocks& now) {
   remove_closed();
 }
 
-void WorldServer::log_failed() { rooms_->order.log_failed(); }
+void WorldServer::log_failed() { rooms_->order.ownership().lose_log(); }
 
 void WorldServer::begin_stop(const Clocks& now) {
   rooms_->commits.commit_all(LargeEdits::all, now);  // the edits that were accepted

@@ -17,6 +17,21 @@ Cluster::Cluster(const World& world, const RandomBytes& random)
       handover_(world.config, world.environment, world.sessions, world.order, world.commits,
                 world.chat, followers_, following_) {}
 
+void Cluster::follow() {
+  world_.order.ownership().follow();
+  following_.begin();
+}
+
+std::vector<LogPart> Cluster::stop_following() {
+  world_.order.ownership().begin_takeover();
+  return following_.stop();
+}
+
+void Cluster::handover_written(const Clocks& now) {
+  world_.order.ownership().end_handover();
+  followers_.close_kept_at(now.steady_us + kFollowersKeptUs);
+}
+
 void Cluster::owner_connected(const std::optional<ChannelBinding>& binding, const Clocks& now) {
   if (is_following()) following_.connected(binding, now);
 }
@@ -38,9 +53,12 @@ void Cluster::checkpoint_moved(Sequence checkpoint) {
 }
 
 bool Cluster::take_over(const Takeover& start, const Clocks& now) {
-  if (!following_.catch_up(start.read, now)) return false;
+  if (!following_.catch_up(start.read, now)) {
+    world_.order.ownership().find_fork();
+    return false;
+  }
   followers_.close_all("this server owns the world again");  // they get its log from the start
-  following_.end();
+  world_.order.ownership().end_takeover();
   handover_.begin_owning(now);
   world_.order.begin_owning(start.checkpoint, start.author_max);
   servers_.hold(now);

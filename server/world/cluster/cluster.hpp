@@ -30,13 +30,13 @@ class Cluster {
   Cluster(const World& world, const RandomBytes& random);
 
   // What this server is.
-  bool is_following() const { return world_.order.ownership().is_following(); }
+  bool is_following() const { return world_.order.is_following(); }
   /// Returns true if this server is the owner, and no other one can be it.
   bool owns_world() const { return world_.order.owns_world(); }
   /// Returns false if this server follows, and has not reached the owner.
   bool is_live() const { return !is_following() || link_.is_live(); }
   /// Returns true if this server has edits that the log does not have. It cannot go on then.
-  bool has_forked() const { return is_following() && following_.has_forked(); }
+  bool has_forked() const { return world_.order.ownership().is(OwnershipState::forked); }
   /// Returns when this server last heard the owner that it follows, by the steady clock, or nullopt if
   /// it is not connected with one.
   std::optional<TimeUs> owner_heard_us() const { return link_.heard_us(); }
@@ -53,7 +53,7 @@ class Cluster {
 
   // Following the owner.
   /// From now on another server owns the world, and this one follows it.
-  void follow() { following_.begin(); }
+  void follow();
   /// The connection with the owner. Ignored unless is_following().
   void owner_connected(const std::optional<ChannelBinding>& binding, const Clocks& now);
   void owner_received(Message&& message, const Clocks& now);
@@ -65,19 +65,19 @@ class Cluster {
   /// Stops following, because the caller has the lease of the world. Players stay; what they do waits.
   /// Returns the parts of the log that the earlier owner may not have written, in order. The caller
   /// writes those whose records the log lacks, then calls take_over().
-  std::vector<LogPart> stop_following() { return following_.stop(); }
+  std::vector<LogPart> stop_following();
   /// Makes this server the owner. Sessions go on, and edits that wait are ordered. Returns false if the
   /// log has other edits than this server: nothing may be written then.
   bool take_over(const Takeover& start, const Clocks& now);
+  /// Reports that the database failed before take_over(). The server must be stopped.
+  void takeover_failed() { world_.order.ownership().fail_takeover(); }
 
   // Handing over. The caller then writes the log, calls handover_written(), and gives the lease up.
   // Reports about the log may come until then.
   SessionId hand_over(std::optional<SessionId> successor, const Clocks& now) {
     return handover_.hand_over(successor, now);
   }
-  void handover_written(const Clocks& now) {
-    followers_.close_kept_at(now.steady_us + kFollowersKeptUs);
-  }
+  void handover_written(const Clocks& now);
 
   // Sessions.
   bool is_follower(SessionId link) const { return followers_.contains(link); }

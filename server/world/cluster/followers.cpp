@@ -141,7 +141,7 @@ std::optional<RelayedMessage> Followers::received(SessionId link, const Message&
   }
   // This server has handed the world over. What its followers send now, they send again to the next
   // owner.
-  if (order_.ownership().is_following()) return std::nullopt;
+  if (order_.is_following()) return std::nullopt;
   if (const auto* open = std::get_if<RelayOpen>(&message)) {
     on_relay_open(link, *open, now);
   } else if (const auto* relay = std::get_if<Relay>(&message)) {
@@ -182,7 +182,7 @@ void Followers::close_lost(const Clocks& now) {
     }
   }
   for (const auto& [link, why] : lost) close(link, GoodbyeReason::timed_out, why);
-  if (order_.ownership().is_following() && now.steady_us >= kept_until_us_)
+  if (order_.is_following() && now.steady_us >= kept_until_us_)
     close_all("this server does not own the world any more");
 }
 
@@ -216,8 +216,7 @@ void Followers::keep_without_log(SessionId successor) {
 
 void Followers::send_durable() {
   if (all_.empty()) return;
-  order_.feed().send_to_served(encode_message(receipts_.durable()),
-                               order_.ownership().is_following());
+  order_.feed().send_to_served(encode_message(receipts_.durable()), order_.is_following());
 }
 
 }  // namespace runstone

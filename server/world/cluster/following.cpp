@@ -20,28 +20,22 @@ constexpr TimeUs kRowsKeptUs = 10'000'000;
 
 void Following::begin() {
   world_.order.feed().clear_unwritten();
-  world_.order.ownership().follow();
   world_.link.begin();
   read_to_ = 0;
   read_again_us_ = 0;
   not_durable_.clear();
-  has_forked_ = is_taking_over_ = false;
   disconnected();
 }
 
-void Following::end() { world_.order.ownership().take_over(); }
-
 std::vector<LogPart> Following::stop() {
   disconnected();
-  is_taking_over_ = true;
   std::vector<LogPart> parts;
   for (const KeptPart& kept : not_durable_) parts.push_back(kept.part);
   return parts;
 }
 
 bool Following::catch_up(const ReadLog& read, const Clocks& now) {
-  if (take(read, now) || world_.order.head() != read.last) has_forked_ = true;
-  return !has_forked_;
+  return !take(read, now) && world_.order.head() == read.last;
 }
 
 void Following::leave(const std::string& why) {
@@ -57,7 +51,9 @@ void Following::disconnected() {
 }
 
 void Following::connected(const std::optional<ChannelBinding>& binding, const Clocks& now) {
-  if (is_taking_over_) return world_.environment.leave_owner("this server takes over");
+  const OwnershipState state = world_.order.ownership().state();
+  if (state == OwnershipState::taking_over || state == OwnershipState::takeover_failed)
+    return world_.environment.leave_owner("this server takes over");
   waiting_.clear();
   if (!world_.link.connected(binding, now)) leave_slow();
 }
@@ -115,7 +111,7 @@ void Following::read_more() {
 void Following::on_follow_answer(const FollowAnswer& answer, const Clocks& now) {
   read_to_ = answer.head;
   if (world_.order.head() > answer.head) {
-    has_forked_ = true;
+    world_.order.ownership().find_fork();
     return leave("the owner has fewer edits than this server");
   }
   if (world_.order.head() == answer.head && not_durable_.empty()) return go_live(now);
@@ -249,7 +245,7 @@ void Following::log_read(const Result<ReadLog, std::string>& read, const Clocks&
   if (world_.link.stage() != Stage::reading) return;
   if (!read) return leave(read.error());
   if (const auto why = take(*read, now)) {
-    has_forked_ = true;
+    world_.order.ownership().find_fork();
     return leave(*why);
   }
   const Version known = world_.order.last_record();

@@ -9,7 +9,7 @@
 //     owner has handled it. Clients are told so (Resumes), and send again the edits that have no answer.
 //     The operation id keeps them from being applied twice.
 //   - If the owner has ordered edits differently from what arrived here (it took the world over from a
-//     server that had sent them), this server cannot go on: has_forked().
+//     server that had sent them), this server cannot go on (Ownership::find_fork()).
 // Bounds: records that are not durable: those of the owner's log queue; messages of the owner that wait
 // while records are read: kWaitingMax, then the connection is made anew.
 // Thread: the world strand.
@@ -63,17 +63,14 @@ class Following {
   };
   explicit Following(const World& world) : world_(world) {}
 
-  /// Makes this server one that follows and has no connection with the owner yet.
+  /// Begins to follow. There is no connection with the owner yet.
   void begin();
-  bool has_forked() const { return has_forked_; }
   /// Ends the connection with the owner, and what it says. Returns the parts of the log that the owner
   /// may not have written, in order.
   std::vector<LogPart> stop();
-  /// Takes what a reader has found, up to the end of the log. Returns false, and has_forked() from now on,
-  /// if the log has other edits than this server.
+  /// Takes what a reader has found, up to the end of the log. Returns false if the log has other edits
+  /// than this server.
   bool catch_up(const ReadLog& read, const Clocks& now);
-  /// Ends following.
-  void end();
 
   // The connection with the owner.
   void connected(const std::optional<ChannelBinding>& binding, const Clocks& now);
@@ -115,8 +112,6 @@ class Following {
   TimeUs read_again_us_ = 0;     // when it reads next, because the records are not durable yet
   std::deque<Message> waiting_;  // of the owner, while records are read
   std::deque<KeptPart> not_durable_;
-  bool has_forked_ = false;
-  bool is_taking_over_ = false;  // messages of an owner are ignored
 };
 
 }  // namespace runstone

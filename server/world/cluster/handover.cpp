@@ -54,7 +54,7 @@ void Handover::begin_owning(const Clocks& now) {
 }
 
 std::optional<std::string> Handover::refusal(std::optional<SessionId> successor) const {
-  if (order_.ownership().is_following()) return "this server does not own the world";
+  if (order_.is_following()) return "this server does not own the world";
   if (!order_.log_accepts()) return "the server stops, or its log cannot be written";
   if (!environment_.owns_world())
     return "the database does not answer: another server may own the world";
@@ -72,6 +72,7 @@ SessionId Handover::hand_over(std::optional<SessionId> successor, const Clocks& 
   chat_.broadcast();
   close_joining_sessions();
   followers_.keep_without_log(next);
+  order_.ownership().begin_handover();
   following_.begin();
   better_owner_.reset();
   return next;

@@ -31,8 +31,7 @@ struct KnownServer {
 class Handover {
  public:
   Handover(const WorldConfig& config, WorldEnvironment& environment, Sessions& sessions,
-           const Order& order, Commits& commits, Chat& chat, Followers& followers,
-           Following& following)
+           Order& order, Commits& commits, Chat& chat, Followers& followers, Following& following)
       : config_(config),
         environment_(environment),
         sessions_(sessions),
@@ -72,7 +71,7 @@ class Handover {
   const WorldConfig& config_;
   WorldEnvironment& environment_;
   Sessions& sessions_;
-  const Order& order_;
+  Order& order_;
   Commits& commits_;
   Chat& chat_;
   Followers& followers_;

@@ -54,8 +54,7 @@ bool Loads::load_again(const ChunkKey& key, OperatorLogLevel level, const std::s
                        const Clocks& now) {
   auto pause_us = retries_.failed(key, now.steady_us);
   // The database of several servers may be away for long.
-  if (!pause_us && base_.order.ownership().is_following())
-    pause_us = retries_.failed(key, now.steady_us);
+  if (!pause_us && base_.order.is_following()) pause_us = retries_.failed(key, now.steady_us);
   if (!pause_us) return false;
   base_.environment.report(level, "chunk=" + text_of(key) + " not read, again in " +
                                       std::to_string(*pause_us / 1'000'000) + " s: " + why);

@@ -106,7 +106,7 @@ void Order::forget_gone_authors(const std::set<AuthorId>& present) {
 }
 
 std::vector<ChunkKey> Order::step_checkpointer(const Clocks& now) {
-  if (ownership_.is_following()) return {};  // the owner of the world writes snapshots
+  if (is_following()) return {};  // the owner of the world writes snapshots
   if (is_stop_due(now.steady_us)) checkpointer_.abandon();
   return checkpointer_.step(authority_, durable_, now, environment_);
 }
@@ -117,13 +117,12 @@ WorldMemory Order::memory() const {
 }
 
 void Order::begin_stop(TimeUs due_us) {
-  log_accepts_ = false;
   stop_due_us_ = due_us;
   checkpointer_.finish();
 }
 
 bool Order::is_flushed() const {
-  if (ownership_.is_following()) return true;
+  if (is_following()) return true;
   return authority_.queue().size() == 0 && durable_ == head() &&
          (checkpointer_.is_clean(authority_) || is_stop_overdue());
 }

@@ -98,15 +98,15 @@ class Order {
   /// Edits are rejected busy until there is space again.
   bool is_disk_full() const { return disk_is_full_; }
   void set_disk_is_full(bool is_full) { disk_is_full_ = is_full; }
-  /// Edits are rejected busy from now on.
-  void log_failed() { log_accepts_ = false; }
   /// Returns false if the server stops, or the log has failed.
-  bool log_accepts() const { return log_accepts_; }
+  bool log_accepts() const { return !is_stopping() && !ownership_.is(OwnershipState::log_lost); }
+  /// Returns true if another server orders the edits, or is to do so.
+  bool is_following() const { return !owns(ownership_.state()); }
   /// Returns false if this server orders no edits: it stops, its log has failed, or another server owns
   /// the world.
-  bool accepts_edits() const { return log_accepts_ && !ownership_.is_following(); }
+  bool accepts_edits() const { return log_accepts() && !is_following(); }
   /// Returns true if this server is the owner, and no other one can be it.
-  bool owns_world() const { return !ownership_.is_following() && environment_.owns_world(); }
+  bool owns_world() const { return !is_following() && environment_.owns_world(); }
 
   // Players.
   /// Reports that a session of the author has ended, or that the author got a number in vain.
@@ -163,7 +163,6 @@ class Order {
   LogFeed feed_;
   Sequence durable_ = 0;
   bool disk_is_full_ = false;
-  bool log_accepts_ = true;
   std::optional<TimeUs> stop_due_us_;
   ClientInstance own_instance_ = 0;  // of the server's own edits of this run
   ClientSequence own_seq_ = 0;       // of the last one

@@ -226,7 +226,7 @@ void Joining::on_hello(Session& session, const Hello& hello) {
   if (close_if_banned(session)) return;
   if (!is_server(session)) {
     if (close_if_no_seat(session) || close_if_no_name(session)) return;
-  } else if (world_.order.ownership().is_following()) {
+  } else if (world_.order.is_following()) {
     return world_.sessions.close(session, GoodbyeReason::closing,
                                  "this server does not own the world");
   }
@@ -283,7 +283,7 @@ void Joining::open_let_in(Session& session, const SessionAccepted& accepted, con
 }
 
 void Joining::open_authenticated(const Clocks& now) {
-  if (world_.order.ownership().is_following()) return;  // the owner of the world lets players in
+  if (world_.order.is_following()) return;  // the owner of the world lets players in
   std::vector<Session*> ready;
   for (Session* session : world_.sessions.all()) {
     if (session->stage == SessionStage::authenticating && session->is_authenticated &&

@@ -14,6 +14,11 @@
 
 namespace runstone {
 
+/// The parts of the protocol that a server does not offer while it follows: they need what only the
+/// owner has in memory.
+inline constexpr std::uint64_t kFeaturesOfOwner =
+    kFeatureKeyTransfer | kFeatureRestorePreview | kFeaturePreviews;
+
 class Joining {
  public:
   /// What joining needs of the world. All must outlive the object.
@@ -54,7 +59,8 @@ class Joining {
   void open_authenticated(const Clocks& now);
   /// Returns the optional parts of the protocol that this server offers now.
   std::uint64_t offered_features() const {
-    return world_.order.ownership().offered(world_.config.features);
+    return world_.order.is_following() ? world_.config.features & ~kFeaturesOfOwner
+                                       : world_.config.features;
   }
   /// Notes that the key is proved, and the rest is decided elsewhere or later.
   void set_authenticated(Session& session);

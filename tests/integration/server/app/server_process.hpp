@@ -117,7 +117,7 @@ class ServerProcess {
     running = *std::move(server);
     const std::uint16_t port = running->port();
     if (::write(socket, &port, sizeof port) != static_cast<ssize_t>(sizeof port)) return 1;
-    if (running->is_following()) watch.emplace(values.store, *running, on_failure);
+    if (!owns(running->ownership())) watch.emplace(values.store, *running, on_failure);
     end.async_wait(asio::posix::stream_descriptor::wait_read,
                    [&](const asio::error_code& /*error*/) { loop.stop(); });
     loop.run();

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 using namespace runstone;
 
@@ -35,6 +36,30 @@ TEST_CASE("a result holds its error with code, text and offset", "[core][result]
   CHECK(r.error().code == ErrorCode::bad_value);
   CHECK(std::string(r.error().what) == "odd");
   CHECK(r.error().offset == 7);
+}
+
+TEST_CASE("the type of a failure follows from what has failed", "[core][result]") {
+  struct Place {
+    std::string file;
+    int line = 0;
+  };
+  const Place place{"world.toml", 3};
+  const Result<int, Place> copied = failure(place);
+  CHECK(copied.error().line == 3);
+  const Result<void, Place> moved = failure(Place{"world.toml", 4});
+  CHECK(moved.error().file == "world.toml");
+  const Result<int> passed_on = failure(half(3).error());
+  CHECK(passed_on.error().offset == 7);
+  // Text is kept as a line, because nobody keeps the characters that a pointer leads to.
+  static_assert(std::is_same_v<decltype(failure("a line")), Unexpected<std::string>>);
+  const Result<void, std::string> line = failure("a line");
+  CHECK(line.error() == "a line");
+}
+
+TEST_CASE("an error that cannot be copied is moved into a result", "[core][result]") {
+  auto number = std::make_unique<int>(6);
+  const Result<int, std::unique_ptr<int>> held = failure(std::move(number));
+  CHECK(*held.error() == 6);
 }
 
 TEST_CASE("a result without a value holds success or an error", "[core][result]") {
