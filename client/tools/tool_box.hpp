@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "client/tools/building_tools.hpp"
 #include "client/tools/edit_preview.hpp"
 #include "client/tools/symmetry.hpp"
 #include "client/tools/tool.hpp"

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "client/play/tool_actions.hpp"
+#include "client/play/player_actions.hpp"
 #include "tests/support/authority_model.hpp"
 #include "tests/support/chunks_message.hpp"
 #include "tests/support/test_keys.hpp"
