@@ -1,8 +1,8 @@
 // Client: the main thread of runstone-client while it plays on a server. It owns the session, the
 // play and the script, and passes between them the results of the network thread, the mesh workers
-// and the draw thread. Its loop never waits for a peer or for a frame. Each turn handles
-// what has arrived. The next turn begins when more arrives (WakeUp), when a frame or the next poll
-// of the window is due, or when the script is due.
+// and the draw thread. Its loop never waits for a peer or for a frame. Each turn handles what has
+// arrived. The next turn begins when more arrives (WakeUp), when a frame or the next poll of the
+// window is due, or when the script is due.
 #pragma once
 #include <array>
 #include <csignal>

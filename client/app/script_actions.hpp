@@ -42,9 +42,9 @@ class ScriptActions final : public ScriptHost {
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {
     return session_.edit_wait_us(edit, now_us);
   }
-  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
-                                   ActionPart part) override {
-    return play_.tool().submit(edit, due_us, now_us, part);
+  Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                    ActionPart part) override {
+    return play_.tool().propose(edit, due_us, now_us, part);
   }
   bool loaded() const override;
   bool sees_horizon() const override;

@@ -78,12 +78,12 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
     case Action::copy:
       return words(box.copy(replica, true), "copied");
     case Action::cut:
-      return words(tool.submit(box.cut(replica, true), now_us), "cut");
+      return words(tool.propose(box.cut(replica, true), now_us), "cut");
     case Action::paste:
       if (!box.clipboard().content) return KeyAnswer(failure("nothing was copied"));
       return choose_tool(tool, "paste");
     case Action::clear_selection:
-      return words(tool.submit(box.fill(kEmpty), now_us), "cleared");
+      return words(tool.propose(box.fill(kEmpty), now_us), "cleared");
     case Action::rotate:
       box.rotate(1);
       return KeyAnswer(std::string("the clipboard is turned"));
