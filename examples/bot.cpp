@@ -64,8 +64,8 @@ class ExampleBot {
 
   void place() {
     const auto stone = session_.welcome()->materials.find("stone");
-    const auto seq = session_.submit({SetVoxel{target_}, {}, stone.value_or(1)}, steady_now_us(),
-                                     steady_now_us());
+    const auto seq = session_.offer({SetVoxel{target_}, {}, stone.value_or(1)}, steady_now_us(),
+                                    steady_now_us());
     placed_ = seq.has_value();
   }
 

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "client/panels/panel_actions.hpp"
 #include "client/play/time_travel.hpp"
 #include "client/render/projection.hpp"
 #include "client/replica/ray_pick.hpp"
@@ -45,39 +44,21 @@ std::optional<InspectionMode> mode_of(Action action) {
 
 }  // namespace
 
-ClientHud::ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline,
-                     TerminalChat& chat, WorldPanels& panels, EditTool& tool, std::string name,
-                     const KeyMap& keys, double scale)
-    : session_(session),
-      player_(player),
-      pipeline_(pipeline),
-      chat_(chat),
-      panels_(panels),
-      tool_(tool),
-      name_(std::move(name)),
-      hud_(keys, scale),
-      hotbar_(player) {}
+ClientHud::ClientHud(Play& play, std::string name, double scale)
+    : play_(play), name_(std::move(name)), hud_(play.input().keys(), scale) {}
 
 bool ClientHud::act(Action action) {
-  if (hotbar_.act(action)) return true;
   if (action == Action::interface) {
     is_shown_ = !is_shown_;
     return true;
   }
   if (const auto mode = mode_of(action)) {
-    InspectionModes modes = pipeline_.inspection().modes();
+    InspectionModes modes = play_.pipeline().inspection().modes();
     modes.set(*mode, !modes[*mode]);
-    pipeline_.inspect(modes);
+    play_.pipeline().inspect(modes);
     return true;
   }
   return hud_.act(action);
-}
-
-bool ClientHud::take_chat() {
-  std::vector<ShownLine> lines = chat_.take_shown();
-  const bool has_lines = !lines.empty();
-  for (ShownLine& line : lines) hud_.hear(std::move(line));
-  return has_lines;
 }
 
 std::shared_ptr<const OverlayFrame> ClientHud::make_frame(const HudScene& scene, TimeUs now_us) {
@@ -85,45 +66,36 @@ std::shared_ptr<const OverlayFrame> ClientHud::make_frame(const HudScene& scene,
   HudState shown = state(scene);
   if (hud_.shows_statistics()) shown.statistics = statistics(scene, now_us);
   auto frame = hud_.make_frame(shown, scene.size, seconds);
-  for (const UiAction& action : hud_.take_actions()) carry_out(action, now_us);
+  for (const UiAction& action : hud_.take_actions()) play_.carry_out(action, now_us);
   if (!is_shown_) return nullptr;
   return frame;
 }
 
 HudState ClientHud::state(const HudScene& scene) const {
   HudState out;
-  out.materials = &pipeline_.materials();
-  out.slots = hotbar_.slots().slots();
-  out.slot = hotbar_.slots().slot();
-  out.is_captured = scene.is_captured;
+  play_.fill(out, shown_panels());
+  out.is_captured = out.is_captured || !scene.has_window;
   out.is_connected = scene.is_connected;
-  const WorldPos eye = player_.eye();
+  const WorldPos eye = play_.player().eye();
   out.place = fmt::format("{:.0f} {:.0f} {:.0f}  {}", std::floor(eye.x), std::floor(eye.y),
-                          std::floor(eye.z), player_.is_walking() ? "walking" : "flying");
-  if (scene.sight) {
-    out.aimed_at = scene.sight->material;
-    out.sight = scene.sight->voxel;
-  }
-  out.tools = &tool_.box();
-  out.has_preview = tool_.has_preview();
+                          std::floor(eye.z), play_.player().is_walking() ? "walking" : "flying");
   out.state = scene.state;
-  out.tool = scene.tool;
+  out.tool = play_.tool().text();
   out.shows_players = scene.shows_players;
   if (out.shows_players) add_players(out);
   add_plates(scene, out);
-  out.timeline = timeline();
-  out.inspection = pipeline_.inspection().modes();
-  panels_.fill(out, shown_panels());
+  add_timeline(out.timeline);
+  out.inspection = play_.pipeline().inspection().modes();
   return out;
 }
 
 ShownPanels ClientHud::shown_panels() const { return runstone::shown_panels(hud_.panels()); }
 
 void ClientHud::add_players(HudState& state) const {
-  const auto& permissions = session_.replica().ground().permissions();
+  const auto& permissions = play_.session().replica().ground().permissions();
   state.players.push_back({name_, "you", permissions ? permissions->role : "", {}});
-  const WorldPos eye = player_.eye();
-  for (const auto& [author, other] : session_.others()) {
+  const WorldPos eye = play_.player().eye();
+  for (const auto& [author, other] : play_.session().others()) {
     ListedPlayer listed{with_unseen_replaced(other.name),
                         key_fingerprint(other.key),
                         with_unseen_replaced(other.role),
@@ -143,9 +115,9 @@ void ClientHud::add_plates(const HudScene& scene, HudState& state) const {
     WorldPos head;
   };
   std::vector<Seen> seen;
-  for (const auto& [author, pose] : panels_.poses()) {
-    const auto other = session_.others().find(author);
-    if (other == session_.others().end()) continue;
+  for (const auto& [author, pose] : play_.panels().poses()) {
+    const auto other = play_.session().others().find(author);
+    if (other == play_.session().others().end()) continue;
     const auto at =
         project(scene.camera, scene.size, pose.at.x, pose.at.y + kPlateHeight, pose.at.z);
     if (at && at->distance <= kPlateDistanceMax)
@@ -164,34 +136,32 @@ void ClientHud::add_plates(const HudScene& scene, HudState& state) const {
 double ClientHud::plate_alpha(const WorldPos& head, double distance) const {
   const double far = (kPlateDistanceMax - distance) / (kPlateDistanceMax - kPlateFadeFrom);
   const double alpha = std::clamp(far, 0.0, 1.0);
-  const WorldPos eye = player_.eye();
+  const WorldPos eye = play_.player().eye();
   const double dx = head.x - eye.x, dy = head.y - eye.y, dz = head.z - eye.z;
   const double length = std::max(1e-6, std::sqrt(dx * dx + dy * dy + dz * dz));
   const bool is_hidden =
-      pick(session_.replica(), eye, {dx / length, dy / length, dz / length}, length).has_value();
+      pick(play_.session().replica(), eye, {dx / length, dy / length, dz / length}, length)
+          .has_value();
   return is_hidden ? alpha * kPlateBehindWall : alpha;
 }
 
-TimelineState ClientHud::timeline() const {
-  TimelineState out;
-  const Replica& replica = session_.replica();
-  const ShownSequence now = shown_sequence(session_);
-  out.newest = now.newest;
-  out.shown = now.shown;
-  out.is_loading = session_.loading_history();
-  if (const auto& past = replica.past()) {
-    out.is_past = true;
+void ClientHud::add_timeline(TimelineState& state) const {
+  const ShownSequence now = shown_sequence(play_.session());
+  state.newest = now.newest;
+  state.shown = now.shown;
+  state.is_loading = play_.session().loading_history();
+  if (const auto& past = play_.session().replica().past()) {
+    state.is_past = true;
     const std::time_t seconds = past->utc_us / 1'000'000;
     if (past->utc_us != 0)
-      out.moment = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(seconds));
+      state.moment = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(seconds));
   }
-  return out;
 }
 
 StatisticsState ClientHud::statistics(const HudScene& scene, TimeUs now_us) {
   StatisticsState out;
-  out.renderer = pipeline_.renderer_name();
-  const std::deque<FrameDone>& frames = pipeline_.recent_frames();
+  out.renderer = play_.pipeline().renderer_name();
+  const std::deque<FrameDone>& frames = play_.pipeline().recent_frames();
   for (const FrameDone& frame : frames)
     out.frame_ms.push_back(static_cast<float>(frame.presented_us - frame.started_us) / 1e3F);
   if (frames.size() > 1) {
@@ -206,34 +176,35 @@ StatisticsState ClientHud::statistics(const HudScene& scene, TimeUs now_us) {
     out.quads_drawn = stats.quads_drawn;
     out.tile_parts_drawn = stats.tile_parts_drawn;
   }
-  out.chunk_bytes = scene.memory.chunks;
-  out.edit_bytes = scene.memory.edits;
-  out.mesh_bytes = scene.memory.meshes;
-  out.gpu_bytes = scene.memory.gpu;
-  out.bytes_max = scene.memory_max;
-  out.tiles = session_.replica().far_tiles().count();
-  out.tile_levels = session_.view().levels;
-  out.far_bytes = pipeline_.far_bytes();
-  out.far_bytes_max = scene.far_bytes_max;
-  out.reach = scene.reach;
-  out.mesh_jobs = pipeline_.mesh_jobs();
+  const MemoryUse memory = play_.limits().use();
+  out.chunk_bytes = memory.chunks;
+  out.edit_bytes = memory.edits;
+  out.mesh_bytes = memory.meshes;
+  out.gpu_bytes = memory.gpu;
+  out.bytes_max = play_.limits().budget().bytes_max();
+  out.tiles = play_.session().replica().far_tiles().count();
+  out.tile_levels = play_.session().view().levels;
+  out.far_bytes = play_.pipeline().far_bytes();
+  out.far_bytes_max = play_.limits().far().bytes_max();
+  out.reach = play_.scene().reach();
+  out.mesh_jobs = play_.pipeline().mesh_jobs();
   const auto median_us = [](const Histogram& ns) -> std::optional<double> {
     const auto median = ns.percentile(0.5);
     if (!median) return std::nullopt;
     return static_cast<double>(*median) / 1e3;
   };
-  out.mesh_whole_us = median_us(pipeline_.whole_mesh_ns());
-  out.mesh_layers_us = median_us(pipeline_.layers_mesh_ns());
+  out.mesh_whole_us = median_us(play_.pipeline().whole_mesh_ns());
+  out.mesh_layers_us = median_us(play_.pipeline().layers_mesh_ns());
   add_traffic(scene.net, now_us, out);
-  if (session_.clock().known())
-    out.ping_ms = static_cast<double>(session_.clock().round_trip_us()) / 1e3;
-  out.pending_edits = session_.replica().local_edits().unanswered().size();
-  out.open_edits = pipeline_.recorder().open_edits();
-  out.digests_checked = session_.replica().counters().digests_checked;
-  out.digests_differed = session_.replica().counters().drifted;
+  if (play_.session().clock().known())
+    out.ping_ms = static_cast<double>(play_.session().clock().round_trip_us()) / 1e3;
+  out.pending_edits = play_.session().replica().local_edits().unanswered().size();
+  out.open_edits = play_.pipeline().recorder().open_edits();
+  out.digests_checked = play_.session().replica().counters().digests_checked;
+  out.digests_differed = play_.session().replica().counters().drifted;
   for (std::size_t s = 0; s < kStageCount; ++s)
     out.stages[s] = to_string(static_cast<LatencyStage>(s));
-  for (const RecentEdit& edit : pipeline_.recorder().recent()) {
+  for (const RecentEdit& edit : play_.pipeline().recorder().recent()) {
     EditWay way{edit.path == EditPath::local_predicted, {}};
     for (std::size_t s = 0; s < kStageCount; ++s)
       way.end_ms[s] =
@@ -258,14 +229,6 @@ void ClientHud::add_traffic(const NetCounts& net, TimeUs now_us, StatisticsState
   }
   constexpr std::array<const char*, 4> kNames = {"chunks", "edits", "control", "sent"};
   for (std::size_t i = 0; i < now.size(); ++i) out.traffic[i] = {kNames[i], now[i], rates_[i]};
-}
-
-void ClientHud::carry_out(const UiAction& action, TimeUs now_us) {
-  if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
-  if (const auto* held = std::get_if<HoldMaterial>(&action)) hotbar_.hold(held->material);
-  if (const auto* chosen = std::get_if<SetInspection>(&action)) pipeline_.inspect(chosen->modes);
-  if (const auto done = carry_out_panel(action, session_, panels_, tool_, now_us); !done)
-    notify(done.error(), NoticeKind::warning);
 }
 
 }  // namespace runstone

@@ -6,47 +6,30 @@
 #include <optional>
 #include <string>
 
-#include "client/app/terminal_chat.hpp"
-#include "client/display/mesh_pipeline.hpp"
-#include "client/panels/world_panels.hpp"
-#include "client/play/edit_tool.hpp"
-#include "client/play/player.hpp"
-#include "client/play/player_hotbar.hpp"
+#include "client/play/play.hpp"
 #include "client/report/report.hpp"
-#include "client/session/client_session.hpp"
 #include "client/ui/hud.hpp"
 
 namespace runstone {
 
 /// The client's own state, as the display shows it.
 struct HudScene {
-  bool is_captured = false, is_connected = false, shows_players = false;
-  std::optional<RayHit> sight;  // the voxel that the player looks at
-  std::string state;            // as HudState::state
-  std::string tool;             // as HudState::tool
-  NetCounts net;                // filled only while ClientHud::shows_statistics()
-  MemoryUse memory;             // likewise
-  std::size_t memory_max = 0;
-  std::size_t far_bytes_max = 0;  // likewise
-  double reach = 0;               // likewise; as FrameScene::reach()
+  bool has_window = false, is_connected = false, shows_players = false;
+  std::string state;  // as HudState::state
+  NetCounts net;      // filled only while ClientHud::shows_statistics()
   Camera camera;
   std::array<int, 2> size{};  // of the frame, in pixels
 };
 
 class ClientHud {
  public:
-  /// All but `keys` and the player's `name` must outlive this object.
-  ClientHud(ClientSession& session, Player& player, MeshPipeline& pipeline, TerminalChat& chat,
-            WorldPanels& panels, EditTool& tool, std::string name, const KeyMap& keys,
-            double scale);
+  /// `play` must outlive this object. `name` is that of the player.
+  ClientHud(Play& play, std::string name, double scale);
 
-  /// Fills the hotbar for a world. Call it when a world opens for the first time, or another one.
-  void enter(const MaterialTable& materials) { hotbar_.fill(materials); }
-  /// Takes the lines of chat that were printed. Returns true if there were any.
-  bool take_chat();
+  /// Adds a line to the chat.
+  void hear(ShownLine line) { hud_.hear(std::move(line)); }
   /// Carries out an action of a key. Returns false if it is no action of the display.
   bool act(Action action);
-  PlayerHotbar& hotbar() { return hotbar_; }
   void notify(std::string text, NoticeKind kind = NoticeKind::information) {
     hud_.notify(std::move(text), kind);
   }
@@ -72,20 +55,13 @@ class ClientHud {
   /// Returns the opacity of a name plate, 0 to 1. It fades with the distance, and is low behind
   /// walls.
   double plate_alpha(const WorldPos& head, double distance) const;
-  TimelineState timeline() const;
+  void add_timeline(TimelineState& state) const;
   StatisticsState statistics(const HudScene& scene, TimeUs now_us);
   void add_traffic(const NetCounts& net, TimeUs now_us, StatisticsState& out);
-  void carry_out(const UiAction& action, TimeUs now_us);
 
-  ClientSession& session_;
-  Player& player_;
-  MeshPipeline& pipeline_;
-  TerminalChat& chat_;
-  WorldPanels& panels_;
-  EditTool& tool_;
+  Play& play_;
   const std::string name_;
   Hud hud_;
-  PlayerHotbar hotbar_;
   bool is_shown_ = true;
   NetCounts net_before_;           // at net_us_
   std::array<double, 4> rates_{};  // bytes a second by class, in the interval before net_us_

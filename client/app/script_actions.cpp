@@ -35,38 +35,31 @@ std::vector<char32_t> characters_of(std::string_view text) {
 
 }  // namespace
 
-ScriptActions::ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline,
-                             EditTool& tool, const ViewFollower& view, TerminalChat& chat,
-                             InputRouter& input, ClientHud& hud, WorldPanels& panels,
+ScriptActions::ScriptActions(Play& play, TerminalChat& chat, ClientHud& hud,
                              std::string screenshot_folder)
-    : session_(session),
-      player_(player),
-      pipeline_(pipeline),
-      tool_(tool),
-      view_(view),
+    : play_(play),
+      session_(play.session()),
       chat_(chat),
-      input_(input),
       hud_(hud),
-      panels_(panels),
       screenshot_folder_(std::move(screenshot_folder)) {}
 
 void ScriptActions::move_to(const WorldPos& eye) {
-  player_.move_to(eye);
-  pipeline_.moved();
+  play_.player().move_to(eye);
+  play_.pipeline().moved();
 }
 
 void ScriptActions::look(double yaw, double pitch) {
-  player_.look(yaw, pitch);
-  pipeline_.moved();
+  play_.player().look(yaw, pitch);
+  play_.pipeline().moved();
 }
 
 void ScriptActions::set_time_of_day(double share) {
-  pipeline_.look().set_time_of_day(share);
-  pipeline_.moved();
+  play_.pipeline().look().set_time_of_day(share);
+  play_.pipeline().moved();
 }
 
 Result<Material, std::string> ScriptActions::material(std::string_view name) const {
-  const MaterialTable& materials = pipeline_.materials();
+  const MaterialTable& materials = play_.pipeline().materials();
   std::size_t id = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), id);
   if (error == std::errc{} && end == name.data() + name.size() && id < materials.size())
@@ -80,26 +73,28 @@ std::optional<std::int32_t> ScriptActions::surface(std::int32_t x, std::int32_t 
 
 void ScriptActions::finish_preview() {
   const Replica& shown = session_.replica();
-  if (!shown.opened() || !tool_.box().is_preview_shown()) return;
-  if (tool_.box().step_preview(shown, tool_.aim(), std::numeric_limits<std::size_t>::max()))
-    pipeline_.moved();
+  if (!shown.opened() || !play_.tool().box().is_preview_shown()) return;
+  if (play_.tool().box().step_preview(shown, play_.tool().aim(),
+                                      std::numeric_limits<std::size_t>::max()))
+    play_.pipeline().moved();
 }
 
 bool ScriptActions::loaded() const {
-  if (!view_.is_complete()) return false;
-  const auto since_us = view_.complete_since_us();
-  return pipeline_.is_up_to_date() || (since_us && steady_now_us() - *since_us >= kMeshWaitUsMax);
+  if (!play_.view().is_complete()) return false;
+  const auto since_us = play_.view().complete_since_us();
+  return play_.pipeline().is_up_to_date() ||
+         (since_us && steady_now_us() - *since_us >= kMeshWaitUsMax);
 }
 
 bool ScriptActions::sees_horizon() const {
-  if (!loaded() || !pipeline_.is_far_meshed()) return false;
+  if (!loaded() || !play_.pipeline().is_far_meshed()) return false;
   const FarTiles::Missing missing = session_.replica().far_tiles().missing();
   return missing.roots + missing.others == 0;
 }
 
 bool ScriptActions::synced(std::uint64_t mark) const {
   // Two pongs are needed, because the first one may answer a ping that was sent before the mark.
-  return view_.is_complete() && session_.pongs() >= mark + 2 &&
+  return play_.view().is_complete() && session_.pongs() >= mark + 2 &&
          session_.replica().local_edits().unanswered().empty();
 }
 
@@ -137,42 +132,42 @@ void ScriptActions::press(const KeyChord& chord) {
   event.is_pressed = true;
   KeyEvent release = event;
   release.is_pressed = false;
-  input_.push({event, release});
+  play_.input().push({event, release});
 }
 
 void ScriptActions::type(const std::string& text) {
   std::vector<InputEvent> events;
   for (const char32_t character : characters_of(text))
     events.emplace_back(CharacterEvent{character});
-  input_.push(events);
+  play_.input().push(events);
 }
 
 void ScriptActions::click(double x, double y) {
-  input_.push({CursorEvent{x, y, 0, 0}, ButtonEvent{MouseButton::left, true},
-               ButtonEvent{MouseButton::left, false}});
+  play_.input().push({CursorEvent{x, y, 0, 0}, ButtonEvent{MouseButton::left, true},
+                      ButtonEvent{MouseButton::left, false}});
 }
 
 void ScriptActions::inspect(InspectionMode mode, bool is_on) {
-  InspectionModes modes = pipeline_.inspection().modes();
+  InspectionModes modes = play_.pipeline().inspection().modes();
   modes.set(mode, is_on);
-  pipeline_.inspect(modes);
+  play_.pipeline().inspect(modes);
 }
 
 void ScriptActions::show_map(bool is_shown, bool is_full) {
   hud_.map().set_full(is_full);
   hud_.map().set_open(is_shown);
-  pipeline_.moved();
+  play_.pipeline().moved();
 }
 
 bool ScriptActions::show_rollback_answer() {
-  for (const std::string& line : panels_.rollback().answer()) fmt::print("{}\n", line);
+  for (const std::string& line : play_.panels().rollback().answer()) fmt::print("{}\n", line);
   std::fflush(stdout);
-  return panels_.rollback().has_succeeded();
+  return play_.panels().rollback().has_succeeded();
 }
 
 bool ScriptActions::screenshot(const std::string& file) {
-  if (!pipeline_.draws()) return false;
-  pipeline_.request_screenshot(screenshot_path(file), steady_now_us());
+  if (!play_.pipeline().draws()) return false;
+  play_.pipeline().request_screenshot(screenshot_path(file), steady_now_us());
   return true;
 }
 
@@ -181,8 +176,8 @@ std::string ScriptActions::screenshot_path(const std::string& file) const {
 }
 
 std::optional<bool> ScriptActions::screenshot_written() const {
-  if (!pipeline_.screenshots_done()) return std::nullopt;
-  return pipeline_.screenshots_written();
+  if (!play_.pipeline().screenshots_done()) return std::nullopt;
+  return play_.pipeline().screenshots_written();
 }
 
 }  // namespace runstone

@@ -7,28 +7,20 @@
 
 #include "client/app/client_hud.hpp"
 #include "client/app/terminal_chat.hpp"
-#include "client/display/mesh_pipeline.hpp"
-#include "client/input/input_router.hpp"
-#include "client/panels/world_panels.hpp"
-#include "client/play/edit_tool.hpp"
-#include "client/play/player.hpp"
-#include "client/play/view_follower.hpp"
+#include "client/play/play.hpp"
 #include "client/replica/copy_box.hpp"
 #include "client/report/report.hpp"
 #include "client/script/script_host.hpp"
-#include "client/session/client_session.hpp"
 
 namespace runstone {
 
 class ScriptActions final : public ScriptHost {
  public:
   /// All but `screenshot_folder` must outlive this object.
-  ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline, EditTool& tool,
-                const ViewFollower& view, TerminalChat& chat, InputRouter& input, ClientHud& hud,
-                WorldPanels& panels, std::string screenshot_folder);
+  ScriptActions(Play& play, TerminalChat& chat, ClientHud& hud, std::string screenshot_folder);
 
   bool ready() const override { return session_.connect_count() != 0; }
-  WorldPos eye() const override { return player_.eye(); }
+  WorldPos eye() const override { return play_.player().eye(); }
   void move_to(const WorldPos& eye) override;
   void look(double yaw, double pitch) override;
   void set_time_of_day(double share) override;
@@ -39,20 +31,20 @@ class ScriptActions final : public ScriptHost {
   Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
     return copy_box(session_.replica(), box, solid ? CopyEmpty::as_untouched : CopyEmpty::as_empty);
   }
-  std::optional<RayHit> pick() const override { return tool_.pick(); }
-  ToolBox& tool_box() override { return tool_.box(); }
+  std::optional<RayHit> pick() const override { return play_.tool().pick(); }
+  ToolBox& tool_box() override { return play_.tool().box(); }
   const Replica& replica() const override { return session_.replica(); }
-  Aim aim() const override { return tool_.aim(); }
-  void fix_aim(std::optional<FixedAim> aim) override { tool_.fix_aim(aim); }
-  void hold(Material material) override { hud_.hotbar().hold(material); }
+  Aim aim() const override { return play_.tool().aim(); }
+  void fix_aim(std::optional<FixedAim> aim) override { play_.tool().fix_aim(aim); }
+  void hold(Material material) override { play_.hotbar().hold(material); }
   void finish_preview() override;
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {
     return session_.edit_wait_us(edit, now_us);
   }
-  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
-                                   ActionPart part) override {
-    return tool_.submit(edit, due_us, now_us, part);
+  Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                    ActionPart part) override {
+    return play_.tool().propose(edit, due_us, now_us, part);
   }
   bool loaded() const override;
   bool sees_horizon() const override;
@@ -71,20 +63,20 @@ class ScriptActions final : public ScriptHost {
   void press(const KeyChord& chord) override;
   void type(const std::string& text) override;
   void click(double x, double y) override;
-  bool handling_input() const override { return input_.has_events(); }
+  bool handling_input() const override { return play_.input().has_events(); }
   void show_interface(bool is_shown) override { hud_.set_shown(is_shown); }
   void inspect(InspectionMode mode, bool is_on) override;
   void show_map(bool is_shown, bool is_full) override;
   void zoom_map(double pixels) override { hud_.map().set_zoom(pixels); }
   void show_timeline(bool is_shown) override { hud_.show_timeline(is_shown); }
-  bool loading_panels() const override { return panels_.is_loading(hud_.shown_panels()); }
+  bool loading_panels() const override { return play_.panels().is_loading(hud_.shown_panels()); }
   std::string preview_rollback(const std::string& filters) override {
-    return panels_.rollback().preview(filters);
+    return play_.panels().rollback().preview(filters);
   }
-  std::string apply_rollback() override { return panels_.carry_out(ApplyRollback{}); }
-  std::string undo_rollback() override { return panels_.carry_out(UndoRollback{}); }
-  std::string forget_rollback() override { return panels_.carry_out(ForgetRollback{}); }
-  bool rolling_back() const override { return panels_.rollback().is_busy(); }
+  std::string apply_rollback() override { return play_.carry_out(ApplyRollback{}); }
+  std::string undo_rollback() override { return play_.carry_out(UndoRollback{}); }
+  std::string forget_rollback() override { return play_.carry_out(ForgetRollback{}); }
+  bool rolling_back() const override { return play_.panels().rollback().is_busy(); }
   bool show_rollback_answer() override;
   bool screenshot(const std::string& file) override;
   /// Returns where the screenshot of this name goes.
@@ -99,15 +91,10 @@ class ScriptActions final : public ScriptHost {
   static constexpr TimeUs kMeshWaitUsMax = 10'000'000;
 
  private:
-  ClientSession& session_;
-  Player& player_;
-  MeshPipeline& pipeline_;
-  EditTool& tool_;
-  const ViewFollower& view_;
+  Play& play_;
+  ClientSession& session_;  // of play_
   TerminalChat& chat_;
-  InputRouter& input_;
   ClientHud& hud_;
-  WorldPanels& panels_;
   const std::string screenshot_folder_;
 };
 

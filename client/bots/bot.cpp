@@ -86,7 +86,7 @@ void Bot::act(TimeUs due_us, TimeUs now_us) {
   if (!edit) {
     ++counts_.not_ready;
   } else {
-    ++(submit(*edit, due_us, now_us) ? counts_.submitted : counts_.refused);
+    ++(offer(*edit, due_us, now_us) ? counts_.submitted : counts_.refused);
   }
 }
 

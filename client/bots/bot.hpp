@@ -58,7 +58,7 @@ class Bot {
   void end() { schedule_.end(); }
   /// Returns true if no edit is due any more, and every submitted edit was answered and is on disk.
   bool is_done() const { return schedule_.is_over() && is_answered(); }
-  /// Moves, submits what is due, and takes what arrived. Call it at due_us() at the latest.
+  /// Moves, offers what is due, and takes what arrived. Call it at due_us() at the latest.
   void step(TimeUs now_us);
   /// Returns when the next step is due.
   TimeUs due_us(TimeUs now_us) const;
@@ -79,7 +79,7 @@ class Bot {
   virtual TimeUs tick_due_us(TimeUs now_us) const = 0;
   virtual void drain_changes() {}
   /// Returns true if the session accepted the edit.
-  virtual bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) = 0;
+  virtual bool offer(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) = 0;
   virtual bool is_answered() const = 0;
   /// Sends a goodbye. The link then connects again.
   virtual void depart() = 0;

@@ -7,8 +7,8 @@ namespace runstone {
 HeadlessBot::HeadlessBot(BotConfig config, FleetStatistics& fleet, TimeUs (*clock)())
     : Bot(std::move(config)), fleet_(fleet), session_(config_.session, fleet, clock) {}
 
-bool HeadlessBot::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
-  return session_.submit(edit, due_us, now_us).has_value();
+bool HeadlessBot::offer(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
+  return session_.offer(edit, due_us, now_us).has_value();
 }
 
 BotCounts HeadlessBot::counts() const {

@@ -25,7 +25,7 @@ class HeadlessBot final : public Bot {
   const GroundHeight& ground() const override { return fleet_.ground; }
   void tick(TimeUs now_us) override { session_.tick(now_us); }
   TimeUs tick_due_us(TimeUs /*now_us*/) const override { return session_.tick_due_us(); }
-  bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
+  bool offer(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
   bool is_answered() const override { return session_.local_edits().all().empty(); }
   void depart() override { session_.close(GoodbyeReason::closing, ""); }
 

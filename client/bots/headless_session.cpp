@@ -147,11 +147,11 @@ void HeadlessSession::tick(TimeUs now_us) {
   connection_.request_chunks(versions_.take_requests());
 }
 
-Result<ClientSequence> HeadlessSession::submit(const EditDescriptor& edit, TimeUs submitted_us,
-                                               TimeUs now_us) {
+Result<ClientSequence> HeadlessSession::offer(const EditDescriptor& edit, TimeUs submitted_us,
+                                              TimeUs now_us) {
   if (const auto valid = validate(edit); !valid) return Unexpected<Error>{valid.error()};
   if (!welcome()) return fail(ErrorCode::bad_value, "no world is open");
-  const auto seq = local_edits_.submit(edit, {}, submitted_us);
+  const auto seq = local_edits_.add(edit, {}, submitted_us);
   if (!seq) return seq;
   local_edits_.mark_sent(*seq, now_us);
   fleet_.due.add(connection_.config().instance, *seq, submitted_us);

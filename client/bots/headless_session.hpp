@@ -47,7 +47,7 @@ class HeadlessSession {
   std::vector<Message> take_outgoing() { return connection_.take_outgoing(); }
   bool wants_close() const { return connection_.wants_close(); }
   void close(GoodbyeReason reason, std::string text) { connection_.close(reason, std::move(text)); }
-  Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
+  Result<ClientSequence> offer(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
   /// Until the first call no view is sent, and the server sends no chunks.
   void set_view(const View& view);
   void set_pose(const Pose& pose) { connection_.set_pose(pose); }

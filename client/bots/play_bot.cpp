@@ -62,10 +62,10 @@ void PlayBot::step(TimeUs now_us) {
   counts_.due = schedule_.due(now_us);
   if (!session_.is_open()) return;
   view_empty_chunk();
-  submit_due(now_us);
+  offer_due(now_us);
 }
 
-void PlayBot::submit_due(TimeUs now_us) {
+void PlayBot::offer_due(TimeUs now_us) {
   while (open_bytes_ < kOpenBytesMax &&
          session_.replica().local_edits().all().size() < kLocalEditsMax) {
     if (!held_) held_ = schedule_.next(now_us);
@@ -73,7 +73,7 @@ void PlayBot::submit_due(TimeUs now_us) {
     const EditDescriptor& edit = recorded_.edits[held_->index].edit;
     if (session_.edit_wait_us(edit, now_us) > 0) return;
     const auto due = std::exchange(held_, std::nullopt);
-    const auto sequence = session_.submit(edit, due->due_us, now_us);
+    const auto sequence = session_.offer(edit, due->due_us, now_us);
     if (!sequence) {
       ++counts_.refused[sequence.error().what];
       schedule_.dropped();

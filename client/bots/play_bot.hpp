@@ -35,7 +35,7 @@ class PlayBot {
   const std::string& name() const { return recorded_.name; }
 
   void begin(TimeUs now_us) { schedule_.begin(now_us); }
-  /// Submits what is due, and takes the changes of the replica. Call it every few milliseconds and
+  /// Offers what is due, and takes the changes of the replica. Call it every few milliseconds and
   /// after messages.
   void step(TimeUs now_us);
   /// Returns true if every edit was submitted and answered, and every applied edit is on disk.
@@ -53,7 +53,7 @@ class PlayBot {
     std::size_t bytes = 0;  // upper bound of its request
   };
   void view_empty_chunk();
-  void submit_due(TimeUs now_us);
+  void offer_due(TimeUs now_us);
   void drain_changes(TimeUs now_us);
 
   const RecordedAuthor& recorded_;

@@ -37,7 +37,7 @@ class PlaySchedule {
     std::size_t index = 0;  // of the edit
     TimeUs due_us = 0;
   };
-  /// Returns the edit to submit now, or nullopt if none is due or allowed. The caller must answer
+  /// Returns the edit to offer now, or nullopt if none is due or allowed. The caller must answer
   /// it with accepted(), dropped() or retry().
   std::optional<DueEdit> next(TimeUs now_us);
   /// The edit was applied.

@@ -14,8 +14,8 @@ ReplicaBot::ReplicaBot(BotConfig config, FleetStatistics& fleet)
 
 TimeUs ReplicaBot::tick_due_us(TimeUs now_us) const { return now_us + kTickUs; }
 
-bool ReplicaBot::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
-  const auto sequence = session_.submit(edit, due_us, now_us);
+bool ReplicaBot::offer(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
+  const auto sequence = session_.offer(edit, due_us, now_us);
   if (!sequence) return false;
   fleet_.due.add(config_.session.instance, *sequence, due_us);
   placed_.add(edit);

@@ -30,7 +30,7 @@ class ReplicaBot final : public Bot {
   void tick(TimeUs now_us) override { session_.tick(now_us); }
   TimeUs tick_due_us(TimeUs now_us) const override;
   void drain_changes() override;
-  bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
+  bool offer(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
   bool is_answered() const override { return is_answered_; }
   void depart() override { session_.close(GoodbyeReason::closing, ""); }
 

@@ -49,19 +49,18 @@ bool WorldPanels::is_loading(const ShownPanels& shown) const {
   return log.refusal().empty() && !is_empty && (log.band().empty() || log.is_waiting());
 }
 
-void WorldPanels::fill(HudState& state, const ShownPanels& shown) const {
+void WorldPanels::fill(HudState& state, const ShownPanels& shown, const Pose& me) const {
   for (const auto& [author, other] : session_.others())
     state.names.push_back(with_unseen_replaced(other.name));
-  if (shown.map) fill_map(state.map);
+  if (shown.map) fill_map(state.map, me);
   if (shown.timeline) fill_timeline(state.timeline);
   if (shown.rollback) fill_rollback(state.rollback);
 }
 
-void WorldPanels::fill_map(MapState& state) const {
+void WorldPanels::fill_map(MapState& state, const Pose& me) const {
   if (!session_.welcome()) return;
   state.map = &map_;
   const auto turned = [](std::uint16_t yaw) { return yaw * kRadiansPerTurn; };
-  const Pose me = player_.pose();
   state.me = {"", me.at.x, me.at.z, turned(me.yaw)};
   for (const auto& [author, pose] : poses_) {
     const auto other = session_.others().find(author);

@@ -8,7 +8,6 @@
 #include "client/display/smooth_players.hpp"
 #include "client/map/world_map.hpp"
 #include "client/panels/rollback_control.hpp"
-#include "client/play/player.hpp"
 #include "client/tools/tool_box.hpp"
 #include "client/ui/hud_state.hpp"
 #include "client/ui/panel_windows.hpp"
@@ -25,8 +24,8 @@ ShownPanels shown_panels(const PanelWindows& windows);
 class WorldPanels {
  public:
   /// All must outlive the object.
-  WorldPanels(ClientSession& session, const Player& player, const ToolBox& tools)
-      : session_(session), player_(player), tools_(tools), rollback_(session) {}
+  WorldPanels(ClientSession& session, const ToolBox& tools)
+      : session_(session), tools_(tools), rollback_(session) {}
 
   void set_materials(const MaterialTable& materials);
   /// Takes what changed in the replica.
@@ -34,8 +33,9 @@ class WorldPanels {
   /// Takes poses and answers, and does a bounded part of the work of open windows. Returns true if
   /// what they show has changed.
   bool step(const ShownPanels& shown, TimeUs now_us);
-  /// Fills the state of the open windows, and the names of the others.
-  void fill(HudState& state, const ShownPanels& shown) const;
+  /// Fills the state of the open windows, and the names of the others. `me` is the pose of the
+  /// player.
+  void fill(HudState& state, const ShownPanels& shown, const Pose& me) const;
 
   /// Returns where the others are shown in this turn, by author.
   const std::map<AuthorId, Pose>& poses() const { return poses_; }
@@ -43,20 +43,15 @@ class WorldPanels {
   bool take_moved(TimeUs now_us) { return players_.take_moved(now_us); }
   RollbackControl& rollback() { return rollback_; }
   const RollbackControl& rollback() const { return rollback_; }
-  /// As RollbackControl::carry_out().
-  std::string carry_out(const RollbackOrder& order) {
-    return rollback_.carry_out(order, player_.eye(), tools_.selection());
-  }
   /// Returns true while the contents of an open window are missing.
   bool is_loading(const ShownPanels& shown) const;
 
  private:
-  void fill_map(MapState& state) const;
+  void fill_map(MapState& state, const Pose& me) const;
   void fill_timeline(TimelineState& state) const;
   void fill_rollback(RollbackState& state) const;
 
   ClientSession& session_;
-  const Player& player_;
   const ToolBox& tools_;
   SmoothPlayers players_;
   std::map<AuthorId, Pose> poses_;

@@ -44,24 +44,24 @@ Aim EditTool::aim() const {
 
 Result<void, std::string> EditTool::press(ToolButton button, TimeUs now_us) {
   if (!session_.replica().opened()) return failure("no world is open");
-  return submit_beside(box_.press(session_.replica(), aim(), button), now_us);
+  return propose_beside(box_.press(session_.replica(), aim(), button), now_us);
 }
 
 Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs now_us) {
   const auto selected = box_.selection();
-  auto done =
-      submit_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command), now_us);
+  auto done = propose_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command),
+                             now_us);
   if (!done && box_.selection() != selected) box_.select(selected);  // it did not move
   return done;
 }
 
-Result<void, std::string> EditTool::submit_beside(const ToolEdits& edits, TimeUs now_us) {
+Result<void, std::string> EditTool::propose_beside(const ToolEdits& edits, TimeUs now_us) {
   if (edits && edits->size() == 1 && edits->front().material != kEmpty) {
     const auto* const voxel = std::get_if<SetVoxel>(&edits->front().shape);
     if (voxel != nullptr && player_.is_in(voxel->at))
       return failure("you stand there: step back first");
   }
-  return submit(edits, now_us);
+  return propose(edits, now_us);
 }
 
 void EditTool::drag() {
@@ -70,13 +70,13 @@ void EditTool::drag() {
 
 Result<void, std::string> EditTool::release(TimeUs now_us) {
   if (!session_.replica().opened()) return {};
-  return submit(box_.release(session_.replica(), aim()), now_us);
+  return propose(box_.release(session_.replica(), aim()), now_us);
 }
 
-Result<void, std::string> EditTool::submit(const ToolEdits& edits, TimeUs now_us) {
+Result<void, std::string> EditTool::propose(const ToolEdits& edits, TimeUs now_us) {
   if (!edits) return failure(edits.error());
   for (std::size_t i = 0; i < edits->size(); ++i) {
-    if (auto done = submit((*edits)[i], now_us, now_us, part_of_action(i, edits->size())); !done)
+    if (auto done = propose((*edits)[i], now_us, now_us, part_of_action(i, edits->size())); !done)
       return done;
   }
   return {};
@@ -114,12 +114,12 @@ std::string EditTool::text() const {
   return out;
 }
 
-Result<void, std::string> EditTool::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
-                                           ActionPart part) {
+Result<void, std::string> EditTool::propose(const EditDescriptor& edit, TimeUs due_us,
+                                            TimeUs now_us, ActionPart part) {
   if (part == ActionPart::first) action_ = 0;
   ClientSequence action = 0;
   if (part != ActionPart::alone) action = action_ != 0 ? action_ : kBeginsAction;
-  const auto seq = session_.submit(edit, due_us, now_us, action);
+  const auto seq = session_.offer(edit, due_us, now_us, action);
   if (seq) {
     if (action == kBeginsAction) action_ = *seq;
     recorder_.submitted(*seq, due_us);

@@ -1,5 +1,5 @@
-// EditTool: gives clicks to the tool box, submits the edits of clicks and scripts to the session,
-// and records when each was submitted. One thread.
+// EditTool: gives clicks to the tool box, proposes the edits of clicks and scripts to the session,
+// and records when each was proposed. One thread.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -45,7 +45,7 @@ class EditTool {
   /// Aims at a face of a voxel, wherever the player looks; nullopt follows the look again.
   void fix_aim(std::optional<FixedAim> aim) { fixed_aim_ = aim; }
 
-  /// Pass a press, a held button and a release to the tool box, and submit the edits that it
+  /// Pass a press, a held button and a release to the tool box, and propose the edits that it
   /// returns. They never place a single voxel where the player is. They fail with words for the
   /// player.
   Result<void, std::string> press(ToolButton button, TimeUs now_us);
@@ -53,11 +53,11 @@ class EditTool {
   Result<void, std::string> release(TimeUs now_us);
   /// Returns true if the tool acts again and again while the button is held.
   bool repeats() const { return &box_.tool() == box_.tools().front().get(); }
-  /// Submits the edits in their order, as one action. Fails with the first refusal; the edits after
-  /// it are not submitted. If `edits` is a failure, fails with it.
-  Result<void, std::string> submit(const ToolEdits& edits, TimeUs now_us);
+  /// Proposes the edits in their order, as one action. Fails with the first refusal; the edits after
+  /// it are not proposed. If `edits` is a failure, fails with it.
+  Result<void, std::string> propose(const ToolEdits& edits, TimeUs now_us);
 
-  /// Carries out a command of the tool window, and submits its edits. Fails with words for the
+  /// Carries out a command of the tool window, and proposes its edits. Fails with words for the
   /// player.
   Result<void, std::string> carry_out(const ToolCommand& command, TimeUs now_us);
 
@@ -73,18 +73,18 @@ class EditTool {
   /// for the plain voxel tool.
   std::string text() const;
 
-  /// Submits an edit that was due at `due_us`. Fails with the reason, which `on_refused` gets as
+  /// Proposes an edit that was due at `due_us`. Fails with the reason, which `on_refused` gets as
   /// well, if the client does not accept it. If the client had no room for it, the edit counts as
   /// infinitely late. Any other refusal, such as that of an edit while the view shows the past,
   /// counts in refused() only.
-  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
-                                   ActionPart part = ActionPart::alone);
+  Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                    ActionPart part = ActionPart::alone);
 
   std::uint64_t refused() const { return refused_; }
 
  private:
-  /// Submits the edits, unless they would put a voxel where the player stands.
-  Result<void, std::string> submit_beside(const ToolEdits& edits, TimeUs now_us);
+  /// Proposes the edits, unless they would put a voxel where the player stands.
+  Result<void, std::string> propose_beside(const ToolEdits& edits, TimeUs now_us);
 
   ClientSession& session_;
   const Player& player_;

@@ -46,22 +46,21 @@ Camera FrameScene::camera(std::optional<double> field_of_view) const {
   return out;
 }
 
-FrameContents FrameScene::contents(const std::map<AuthorId, Pose>& poses, bool outlines_aim,
-                                   bool shows_ground) const {
+FrameContents FrameScene::contents(bool outlines_aim, bool shows_ground) const {
   FrameContents out;
   out.at_eye = session_.replica().shown_at(player_.voxel()).value_or(kEmpty);
-  add_bodies(poses, out.bodies);
+  add_bodies(out.bodies);
   if (shows_ground) add_ground(out.markers);
   if (outlines_aim) add_aim(out.markers);
   add_selection(out.markers);
-  const std::span<const GhostChunk> ghosts = tool_.ghosts();
-  out.ghosts.assign(ghosts.begin(), ghosts.end());
+  for (const std::span<const GhostChunk> ghosts : {tool_.ghosts(), panels_.rollback().ghosts()})
+    out.ghosts.insert(out.ghosts.end(), ghosts.begin(), ghosts.end());
+  others_.append_ghosts(out.ghosts);
   return out;
 }
 
-void FrameScene::add_bodies(const std::map<AuthorId, Pose>& poses,
-                            std::vector<Body>& bodies) const {
-  for (const auto& [author, pose] : poses) {
+void FrameScene::add_bodies(std::vector<Body>& bodies) const {
+  for (const auto& [author, pose] : panels_.poses()) {
     if (const auto body = player_body(author, pose, player_.eye())) bodies.push_back(*body);
   }
 }

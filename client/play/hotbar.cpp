@@ -46,22 +46,36 @@ void Hotbar::fill(const MaterialTable& materials) {
         add(material);
     }
   }
-  slot_ = 0;
+  choose(0);
+}
+
+void Hotbar::choose(std::size_t slot) {
+  if (slot >= kSlotCount) return;
+  slot_ = slot;
+  if (slots_[slot_] != kEmpty) player_.hold(slots_[slot_]);
 }
 
 void Hotbar::scroll(int steps) {
   const auto count = static_cast<int>(kSlotCount);
   const int slot = (static_cast<int>(slot_) - steps) % count;
-  slot_ = static_cast<std::size_t>((slot + count) % count);
+  choose(static_cast<std::size_t>((slot + count) % count));
 }
 
 void Hotbar::hold(Material material) {
+  if (material == kEmpty) return;
   const auto found = std::find(slots_.begin(), slots_.end(), material);
   if (found != slots_.end()) {
     slot_ = static_cast<std::size_t>(found - slots_.begin());
   } else {
     slots_[slot_] = material;
   }
+  player_.hold(material);
+}
+
+bool Hotbar::act(Action action) {
+  if (action < Action::hold_slot_1 || action > Action::hold_slot_9) return false;
+  choose(static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::hold_slot_1));
+  return true;
 }
 
 }  // namespace runstone

@@ -1,9 +1,11 @@
-// Hotbar: nine slots with a material each, of which one is chosen. One thread.
+// Hotbar: nine slots with a material each, of which one is chosen. The player holds its material. A
+// player never holds an empty slot: the material held before stays. One thread.
 #pragma once
 #include <array>
 #include <cstddef>
 
 #include "client/input/action.hpp"
+#include "client/play/player.hpp"
 #include "common/core/ids.hpp"
 #include "common/materials/material_table.hpp"
 
@@ -11,22 +13,29 @@ namespace runstone {
 
 class Hotbar {
  public:
+  /// `player` must outlive the object.
+  explicit Hotbar(Player& player) : player_(player) {}
+
   /// Fills the slots for a world: first with what builders use most, as far as the world has it
   /// under one of their names and as a full block, and then with other full blocks in the order of
-  /// the table. So the slots have blocks even if the table begins with plants.
+  /// the table. So the slots have blocks even if the table begins with plants. Chooses the first
+  /// slot.
   void fill(const MaterialTable& materials);
-  /// Chooses a slot, 0 to kSlotCount - 1.
-  void choose(std::size_t slot) { slot_ = slot; }
+  /// Chooses a slot. Does nothing if there is no such slot.
+  void choose(std::size_t slot);
   /// Chooses the slot `steps` to the left. The first and the last slot are neighbours.
   void scroll(int steps);
-  /// Puts a material into the chosen slot. If another slot has it, chooses that slot instead.
+  /// Puts a material into the player's hand. If a slot has it, chooses that slot; otherwise puts it
+  /// into the chosen slot. Does nothing for kEmpty.
   void hold(Material material);
+  /// Carries out the action of a key that chooses a slot. Returns false if it is another action.
+  bool act(Action action);
 
-  Material held() const { return slots_[slot_]; }
   std::size_t slot() const { return slot_; }
   const std::array<Material, kSlotCount>& slots() const { return slots_; }
 
  private:
+  Player& player_;
   std::array<Material, kSlotCount> slots_{};
   std::size_t slot_ = 0;
 };

@@ -7,12 +7,14 @@
 
 #include "client/replica/replica_changes.hpp"
 #include "client/session/client_session.hpp"
+#include "client/ui/notice_list.hpp"
 
 namespace runstone {
 
-struct ServerNotice {
+/// A short text for the player.
+struct PlayerNotice {
   std::string text;
-  bool is_warning = false;
+  NoticeKind kind = NoticeKind::information;
 };
 
 class ServerNotices {
@@ -22,7 +24,7 @@ class ServerNotices {
 
   /// Returns the notices about the server's state that are new since the last call: why the past is
   /// not shown, and that the server is read-only, or no longer.
-  std::vector<ServerNotice> take_state();
+  std::vector<PlayerNotice> take_state();
 
  private:
   const ClientSession& session_;
@@ -31,6 +33,6 @@ class ServerNotices {
 };
 
 /// Returns the notice of a rejected edit.
-ServerNotice notice_of(const RejectedEdit& reject);
+PlayerNotice notice_of(const RejectedEdit& reject);
 
 }  // namespace runstone

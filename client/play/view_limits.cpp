@@ -1,5 +1,7 @@
 #include "client/play/view_limits.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace runstone {
@@ -41,11 +43,20 @@ bool ViewLimits::is_meshed(TimeUs now_us) const {
   return complete_since_us && now_us - *complete_since_us >= kMeshedUs;
 }
 
-bool ViewLimits::limit_view(TimeUs now_us) {
-  if (!budget_.step(use(), is_meshed(now_us), now_us)) return false;
-  view_.set_radii(budget_.radii());
+std::optional<LimitChange> ViewLimits::limit_view(TimeUs now_us) {
+  const MemoryUse before = use();
+  const ViewRadii was = budget_.radii();
+  if (!budget_.step(before, is_meshed(now_us), now_us)) return std::nullopt;
+  const ViewRadii now = budget_.radii(), wanted = budget_.wanted();
+  view_.set_radii(now);
   pipeline_.view_changed();
-  return true;
+  const bool has_shrunk = now.h + now.v < was.h + was.v;
+  return LimitChange{
+      fmt::format("memory: {} of {} MiB in use; the view {} to radius {} of {} chunks, {} of {} "
+                  "vertically",
+                  before.total() >> 20, budget_.bytes_max() >> 20, has_shrunk ? "shrinks" : "grows",
+                  now.h, wanted.h, now.v, wanted.v),
+      has_shrunk};
 }
 
 void ViewLimits::limit_meshes() {
@@ -53,11 +64,18 @@ void ViewLimits::limit_meshes() {
   pipeline_.set_mesh_bytes_max(budget_.room(kept) + kept.meshes + kept.gpu);
 }
 
-bool ViewLimits::limit_far(TimeUs now_us) {
+std::optional<LimitChange> ViewLimits::limit_far(TimeUs now_us) {
+  const std::size_t before = pipeline_.far_bytes();
+  const std::uint8_t was = far_.levels();
   const bool is_complete = is_meshed(now_us) && pipeline_.is_far_meshed();
-  if (!far_.step(pipeline_.far_bytes(), is_complete, now_us)) return false;
+  if (!far_.step(before, is_complete, now_us)) return std::nullopt;
   view_.set_far_levels(far_.levels());
-  return true;
+  const bool has_shrunk = far_.levels() < was;
+  return LimitChange{
+      fmt::format("memory: {} of {} MiB in use by far ground, which {} to {} of {} levels",
+                  before >> 20, far_.bytes_max() >> 20, has_shrunk ? "shrinks" : "grows",
+                  far_.levels(), far_.wanted()),
+      has_shrunk};
 }
 
 MemoryUse ViewLimits::use() const {

@@ -4,6 +4,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "client/display/mesh_pipeline.hpp"
@@ -21,6 +22,12 @@ struct ViewWishes {
   std::uint8_t far_levels = 0;
 };
 
+/// A change of what is seen, for the log.
+struct LimitChange {
+  std::string text;
+  bool has_shrunk = false;
+};
+
 class ViewLimits {
  public:
   /// All but `wishes` must outlive the object.
@@ -29,13 +36,14 @@ class ViewLimits {
 
   /// Call it when a world opens whose server allows this radius.
   void open_world(std::uint8_t radius_max);
-  /// Changes the view by one step at most. Returns true if it has changed. The caller then passes
-  /// the changes of the replica on before it calls limit_meshes().
-  bool limit_view(TimeUs now_us);
+  /// Changes the view by one step at most. Returns the change, or nullopt if there is none. After a
+  /// change the caller passes the changes of the replica on before it calls limit_meshes().
+  std::optional<LimitChange> limit_view(TimeUs now_us);
   /// Gives the meshes what the rest leaves of the budget.
   void limit_meshes();
-  /// Changes the levels of distant ground by one at most. Returns true if they have changed.
-  bool limit_far(TimeUs now_us);
+  /// Changes the levels of distant ground by one at most. Returns the change, or nullopt if there is
+  /// none.
+  std::optional<LimitChange> limit_far(TimeUs now_us);
 
   MemoryUse use() const;
   /// Returns what is left of the budget of all but the tiles.

@@ -7,8 +7,8 @@
 
 namespace runstone {
 
-Result<ClientSequence> LocalEdits::submit(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
-                                          TimeUs submitted_us, ClientSequence action) {
+Result<ClientSequence> LocalEdits::add(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
+                                       TimeUs submitted_us, ClientSequence action) {
   if (edits_.size() >= kLocalEditsMax) {
     return fail(ErrorCode::limit_exceeded, "too many local edits wait for the server");
   }

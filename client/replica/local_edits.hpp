@@ -2,7 +2,7 @@
 // server acknowledges an edit twice: by its commit, or by a reject, and by the durable watermark.
 // Every client session uses this one state machine, whether it has a replica or not.
 //
-//   submit --> pending --confirm--> confirmed --retire--> (removed, durable)
+//   add --> pending --confirm--> confirmed --retire--> (removed, durable)
 //                 |   --reject----> (removed, rejected)
 //                 |   --reject "already resolved"--> unseen --retire--> (removed, unseen)
 //                 |   --resume, at most the server's mark--> asking --> as pending
@@ -24,7 +24,7 @@
 
 namespace runstone {
 
-/// Bound of the edits kept at a time. When it is reached, submit() fails until the server catches
+/// Bound of the edits kept at a time. When it is reached, add() fails until the server catches
 /// up.
 inline constexpr std::size_t kLocalEditsMax = 16384;
 
@@ -74,8 +74,8 @@ class LocalEdits {
 
   /// Adds a pending edit. `action` is as LocalEdit::action, or kBeginsAction. Fails if
   /// kLocalEditsMax edits are kept.
-  Result<ClientSequence> submit(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
-                                TimeUs submitted_us, ClientSequence action = 0);
+  Result<ClientSequence> add(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
+                             TimeUs submitted_us, ClientSequence action = 0);
   /// Notes that the edit was put on the wire. An edit that left already is ignored.
   void mark_sent(ClientSequence seq, TimeUs now_us);
 

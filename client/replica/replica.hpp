@@ -4,7 +4,7 @@
 //   - the shown runs: the confirmed runs with the pending local edits applied by the same
 //     apply_stack(). Where nothing is pending they are the same object as the confirmed runs.
 //
-// How a local edit travels: submit() makes it pending (LocalEdits) and predicts it
+// How a local edit travels: predict() makes it pending (LocalEdits) and predicts it
 // (ChunkUpdater::predict). Its commit confirms it, and each chunk applies it from its inbox and
 // drops the prediction. A reject drops the prediction, too. The durable watermark retires it. A new
 // connection offers it again if the server lost it.
@@ -94,15 +94,15 @@ class Replica {
   const std::optional<View>& view() const { return views_.current(); }
 
   /// Shows a local edit at once and keeps it until it is durable. `submitted_us`: the click, or the
-  /// scheduled time. `action`: as in LocalEdits::submit(). Fails
+  /// scheduled time. `action`: as in LocalEdits::add(). Fails
   ///   - before open(), and while the past is shown;
   ///   - if the descriptor is invalid, has a material that the world lacks, or exceeds the heights
   ///     or the edit volume of the world;
   ///   - with not_permitted if the player may not make it, as far as this client knows (ground());
   ///   - if it touches an unavailable chunk or more than kTouchedChunksMax chunks;
   ///   - if kLocalEditsMax edits are kept.
-  Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
-                                ClientSequence action = 0);
+  Result<ClientSequence> predict(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
+                                 ClientSequence action = 0);
   void mark_sent(ClientSequence seq, TimeUs now_us) { local_edits_.mark_sent(seq, now_us); }
 
   /// Takes snapshots, also of tiles, and completes claimed chunks by the edits that they lack.

@@ -57,9 +57,9 @@ class ScriptHost {
   virtual std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const = 0;
   /// Returns how long this edit must wait for the player's edit budget. Requires a valid edit.
   virtual TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) = 0;
-  /// Submits an edit that was due at `due_us`. Fails with the reason if the client refuses it.
-  virtual Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
-                                           ActionPart part) = 0;
+  /// Proposes an edit that was due at `due_us`. Fails with the reason if the client refuses it.
+  virtual Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us,
+                                            TimeUs now_us, ActionPart part) = 0;
 
   /// Returns true if every chunk in the view around the player is here and, in a client that draws,
   /// drawn.

@@ -120,14 +120,14 @@ std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
   return Mask{mask.kind, *id};
 }
 
-ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit, ActionPart part) {
+ScriptRunner::Progress ScriptRunner::propose(const EditDescriptor& edit, ActionPart part) {
   if (const auto ok = validate(edit); !ok)
     return give_up(std::string("not an edit: ") + ok.error().what);
   if (const TimeUs wait_us = host_.edit_wait_us(edit, now_us_); wait_us > 0) {
     due_us_ = now_us_ + wait_us;
     return Progress::waits;
   }
-  if (const auto ok = host_.submit(edit, now_us_, now_us_, part); !ok)
+  if (const auto ok = host_.propose(edit, now_us_, now_us_, part); !ok)
     fail("edit refused: " + ok.error());
   return Progress::done;
 }
@@ -207,7 +207,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Set& c) {
   const auto at = resolve_voxel(c.at);
   const auto material = resolve_material(c.material);
   if (!at || !material) return Progress::stop;
-  return submit({SetVoxel{*at}, {}, *material});
+  return propose({SetVoxel{*at}, {}, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Box& c) {
@@ -216,7 +216,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Box& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!a || !b || !material || !mask) return Progress::stop;
-  return submit({FillBox{box_between(*a, *b)}, *mask, *material});
+  return propose({FillBox{box_between(*a, *b)}, *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
@@ -224,7 +224,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!centre || !material || !mask) return Progress::stop;
-  return submit({FillSphere{*centre, c.radius}, *mask, *material});
+  return propose({FillSphere{*centre, c.radius}, *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Stroke& c) {
@@ -238,7 +238,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Stroke& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!material || !mask) return Progress::stop;
-  return submit({std::move(stroke), *mask, *material});
+  return propose({std::move(stroke), *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Copy& c) {
@@ -257,7 +257,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Paste& c) {
   const auto at = resolve_voxel(c.at);
   const auto mask = resolve_mask(c.mask);
   if (!at || !mask) return Progress::stop;
-  return submit({runstone::Paste{*at, clipboard->second, c.orientation}, *mask, kEmpty});
+  return propose({runstone::Paste{*at, clipboard->second, c.orientation}, *mask, kEmpty});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Dig&) {
@@ -266,7 +266,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Dig&) {
     fail("nothing to dig within reach");
     return Progress::done;
   }
-  return submit({SetVoxel{hit->voxel}, {}, kEmpty});
+  return propose({SetVoxel{hit->voxel}, {}, kEmpty});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Place& c) {
@@ -278,7 +278,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Place& c) {
     fail("nothing to place against within reach");
     return Progress::done;
   }
-  return submit({SetVoxel{*at}, {}, *material});
+  return propose({SetVoxel{*at}, {}, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Burst& c) {
@@ -303,7 +303,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Burst& c) {
     at.z += offset();
     // A refused edit does not fail the script. The host counts it.
     static_cast<void>(
-        host_.submit({SetVoxel{at}, {}, *material}, due_us, now_us_, ActionPart::alone));
+        host_.propose({SetVoxel{at}, {}, *material}, due_us, now_us_, ActionPart::alone));
   }
   return Progress::done;
 }

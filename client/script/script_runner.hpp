@@ -37,7 +37,7 @@ class ScriptRunner {
     TimeUs at_us = 0;
     TimeUs last_us = 0;       // walk: time of the last movement
     std::uint64_t mark = 0;   // synced
-    std::uint32_t count = 0;  // burst: edits submitted
+    std::uint32_t count = 0;  // burst: edits proposed
     SplitMix64 random{0};     // burst
     WorldPos centre;          // burst: the player at its start; walk: the destination
   };
@@ -99,13 +99,13 @@ class ScriptRunner {
   void fail(const std::string& what);
   /// Records a failure and ends the script.
   Progress give_up(const std::string& what);
-  Progress submit(const EditDescriptor& edit, ActionPart part = ActionPart::alone);
+  Progress propose(const EditDescriptor& edit, ActionPart part = ActionPart::alone);
   /// Starts a command of a tool with its edits. If the tool refuses, the command fails, and the
   /// script goes on.
   void start_edits(ToolEdits edits);
-  /// Submits the edits of start_edits() that are left.
-  Progress submit_edits();
-  /// Carries out a command of the tools. Returns the edits to submit.
+  /// Proposes the edits of start_edits() that are left.
+  Progress propose_edits();
+  /// Carries out a command of the tools. Returns the edits to propose.
   ToolEdits carry_out(const ToolCommand& command);
   std::optional<WorldPos> resolve(const ScriptPosition& position);
   std::optional<VoxelPos> resolve_voxel(const ScriptPosition& position);

@@ -29,10 +29,10 @@ void ScriptRunner::start_edits(ToolEdits edits) {
   edits_ = *std::move(edits);
 }
 
-ScriptRunner::Progress ScriptRunner::submit_edits() {
+ScriptRunner::Progress ScriptRunner::propose_edits() {
   for (; state_.count < edits_.size(); ++state_.count) {
     const Progress progress =
-        submit(edits_[state_.count], part_of_action(state_.count, edits_.size()));
+        propose(edits_[state_.count], part_of_action(state_.count, edits_.size()));
     if (progress != Progress::done) return progress;
   }
   return Progress::done;
@@ -88,7 +88,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::UseTool& c) {
     if (edits && releases) edits = box.release(host_.replica(), aim);
     start_edits(std::move(edits));
   }
-  return submit_edits();
+  return propose_edits();
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Select& c) {
@@ -120,12 +120,12 @@ ScriptRunner::Progress ScriptRunner::run(const script::SelectionEdit& c) {
     }
     start_edits(carry_out(command));
   }
-  return submit_edits();
+  return propose_edits();
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::RunToolCommand& c) {
   if (!started_) start_edits(carry_out(c.command));
-  return submit_edits();
+  return propose_edits();
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::TypePlaces& c) {

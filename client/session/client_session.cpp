@@ -154,30 +154,30 @@ void ClientSession::tick(TimeUs now_us) {
   replica_->tick(now_us);
   previews_.expire(now_us);
   connection_.request_chunks(replica_->take_requests());
-  submit_lost_edits(now_us);
+  offer_lost_edits(now_us);
   send_waiting_edits(now_us);
 }
 
-void ClientSession::submit_lost_edits(TimeUs now_us) {
+void ClientSession::offer_lost_edits(TimeUs now_us) {
   lost_.forget_settled(replica_->local_edits());
   while (const LostEdit* lost = lost_.due(now_us)) {
-    const auto submitted = submit(lost->edit, lost->submitted_us, now_us, lost_.action());
-    const bool is_later = !submitted && submitted.error().code == ErrorCode::limit_exceeded;
+    const auto offered = offer(lost->edit, lost->submitted_us, now_us, lost_.action());
+    const bool is_later = !offered && offered.error().code == ErrorCode::limit_exceeded;
     if (is_later) return lost_.put_off(now_us);
-    if (submitted) {
-      lost_.submitted(*submitted);
+    if (offered) {
+      lost_.offered(*offered);
     } else {
       lost_.drop();
     }
   }
 }
 
-Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs submitted_us,
-                                             TimeUs now_us, ClientSequence action) {
+Result<ClientSequence> ClientSession::offer(const EditDescriptor& edit, TimeUs submitted_us,
+                                            TimeUs now_us, ClientSequence action) {
   // The edit is paid only once the replica has checked it.
   if (validate(edit) && allowance_.wait_us(edit, now_us) > 0)
     return fail(ErrorCode::limit_exceeded, "your edit budget is used up for now");
-  const auto seq = replica_->submit(edit, submitted_us, now_us, action);
+  const auto seq = replica_->predict(edit, submitted_us, now_us, action);
   if (seq) allowance_.pay(edit, now_us);
   if (seq && is_open()) {
     waiting_.push_back(*seq);

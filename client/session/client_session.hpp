@@ -72,12 +72,12 @@ class ClientSession {
   /// Queues a goodbye. wants_close() returns true afterwards.
   void close(GoodbyeReason reason, std::string text) { connection_.close(reason, std::move(text)); }
 
-  /// Shows and sends an edit. `submitted_us`: the click or the scheduled time; latency is measured
-  /// from there. `action` is as in LocalEdits::submit(): the edits of an action are undone as one.
-  /// Fails as Replica::submit() does, and with limit_exceeded if edit_wait_us() is not 0.
-  Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
-                                ClientSequence action = 0);
-  /// Returns why submit() has refused this edit with this error, for the player. If the player may
+  /// Shows an edit and offers it to the server. `submitted_us`: the click or the scheduled time; latency is measured
+  /// from there. `action` is as in LocalEdits::add(): the edits of an action are undone as one.
+  /// Fails as Replica::predict() does, and with limit_exceeded if edit_wait_us() is not 0.
+  Result<ClientSequence> offer(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
+                               ClientSequence action = 0);
+  /// Returns why offer() has refused this edit with this error, for the player. If the player may
   /// not make the edit, the text names the protected box or the role.
   std::string refusal_text(const EditDescriptor& edit, const Error& error) const;
   /// Returns how long the player's edit budget needs until it suffices for this edit, as far as
@@ -201,7 +201,7 @@ class ClientSession {
   /// Sends the claims of what is held, and then the view.
   void send_view();
   void send_waiting_edits(TimeUs now_us);
-  void submit_lost_edits(TimeUs now_us);
+  void offer_lost_edits(TimeUs now_us);
 
   ServerConnection connection_;
   std::unique_ptr<Replica> replica_ = std::make_unique<Replica>();

@@ -1,7 +1,7 @@
 // LostEdits: edits from before a reconnection that the server rejects for a while, because its log
 // is full, or because they cost more than is left of the edit budget. The player saw these edits
 // applied: there was no connection then, or the server lost them when it ended. So they are
-// submitted again, as new edits, until the server accepts them.
+// offered again, as new edits, until the server accepts them.
 // Bound: the edits that LocalEdits kept at the reconnection. Thread: one. Times are arguments.
 #pragma once
 #include <deque>
@@ -34,29 +34,29 @@ class LostEdits {
     edits_.push_back({local->edit, local->submitted_us, local->action});
     put_off(now_us);
   }
-  /// Returns the oldest edit if it is time to submit it, otherwise null.
+  /// Returns the oldest edit if it is time to offer it, otherwise null.
   const LostEdit* due(TimeUs now_us) const {
     return edits_.empty() || now_us < due_us_ ? nullptr : &edits_.front();
   }
-  /// Returns the action with which the oldest edit is submitted, so that the edits of one action
+  /// Returns the action with which the oldest edit is offered, so that the edits of one action
   /// stay one action. Requires that due() returned the edit.
   ClientSequence action() const {
     const ClientSequence was = edits_.front().action;
     if (was == 0) return 0;
     return was == action_ ? new_action_ : kBeginsAction;
   }
-  /// Removes the oldest edit, which was submitted as `seq`.
-  void submitted(ClientSequence seq) {
+  /// Removes the oldest edit, which was offered as `seq`.
+  void offered(ClientSequence seq) {
     const ClientSequence was = edits_.front().action;
     if (was != action_) new_action_ = seq;
     action_ = was;
     edits_.pop_front();
     again_.insert(seq);
   }
-  /// Removes the oldest edit, which can never be submitted.
+  /// Removes the oldest edit, which can never be offered.
   void drop() { edits_.pop_front(); }
   void put_off(TimeUs now_us) { due_us_ = now_us + kAgainUs; }
-  /// Forgets the submitted edits that are safe by now.
+  /// Forgets the offered edits that are safe by now.
   void forget_settled(const LocalEdits& edits) {
     std::erase_if(again_, [&](ClientSequence seq) { return edits.find(seq) == nullptr; });
   }
@@ -68,8 +68,8 @@ class LostEdits {
 
  private:
   std::deque<LostEdit> edits_;
-  std::set<ClientSequence> again_;  // that were submitted again and may be rejected once more
-  ClientSequence action_ = 0, new_action_ = 0;  // of the edit that was submitted last
+  std::set<ClientSequence> again_;  // that were offered again and may be rejected once more
+  ClientSequence action_ = 0, new_action_ = 0;  // of the edit that was offered last
   TimeUs due_us_ = 0;
 };
 

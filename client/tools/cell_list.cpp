@@ -10,7 +10,7 @@
 
 namespace runstone {
 
-Result<EditDescriptor, std::string> paste_of(std::vector<Cell> cells, Mask mask) {
+ToolEdits paste_of(std::vector<Cell> cells, Mask mask) {
   if (cells.empty()) return failure("there is nothing to change here");
   // If several cells have one place, the first one counts. So their order in the list is a part of
   // the key.
@@ -49,7 +49,7 @@ Result<EditDescriptor, std::string> paste_of(std::vector<Cell> cells, Mask mask)
   out.append(static_cast<std::uint32_t>(x * y * z) - out.filled(), std::nullopt);
   auto clipboard = out.finish();
   if (!clipboard) return failure("the change is too detailed for one edit");
-  return EditDescriptor{Paste{box.min, *std::move(clipboard), {}}, mask, kEmpty};
+  return std::vector{EditDescriptor{Paste{box.min, *std::move(clipboard), {}}, mask, kEmpty}};
 }
 
 }  // namespace runstone

@@ -1,10 +1,9 @@
 // CellList: voxels with a material each, from which a tool makes one paste.
 #pragma once
-#include <string>
 #include <vector>
 
+#include "client/tools/tool.hpp"
 #include "common/core/coords.hpp"
-#include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 
 namespace runstone {
@@ -18,6 +17,6 @@ struct Cell {
 /// its first entry counts. Fails with words for the player if there are no cells, if they are
 /// farther apart than 128 voxels along an axis, or if the clipboard becomes too long. Cost: O(cells
 /// log cells).
-Result<EditDescriptor, std::string> paste_of(std::vector<Cell> cells, Mask mask);
+ToolEdits paste_of(std::vector<Cell> cells, Mask mask);
 
 }  // namespace runstone

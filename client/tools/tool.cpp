@@ -2,16 +2,6 @@
 
 #include <algorithm>
 
-#include "client/tools/box_tool.hpp"
-#include "client/tools/extrude_tool.hpp"
-#include "client/tools/fill_tool.hpp"
-#include "client/tools/paint_tool.hpp"
-#include "client/tools/paste_tool.hpp"
-#include "client/tools/replace_tool.hpp"
-#include "client/tools/select_tool.hpp"
-#include "client/tools/sphere_tool.hpp"
-#include "client/tools/stroke_tool.hpp"
-#include "client/tools/voxel_tool.hpp"
 #include "common/core/assert.hpp"
 
 namespace runstone {
@@ -51,21 +41,6 @@ Mask Tool::mask() const {
     default:
       return {};
   }
-}
-
-std::vector<std::unique_ptr<Tool>> make_tools() {
-  std::vector<std::unique_ptr<Tool>> out;
-  out.push_back(std::make_unique<VoxelTool>());
-  out.push_back(std::make_unique<BoxTool>());
-  out.push_back(std::make_unique<SphereTool>());
-  out.push_back(std::make_unique<StrokeTool>());
-  out.push_back(std::make_unique<FillTool>());
-  out.push_back(std::make_unique<ReplaceTool>());
-  out.push_back(std::make_unique<PaintTool>());
-  out.push_back(std::make_unique<ExtrudeTool>());
-  out.push_back(std::make_unique<SelectTool>());
-  out.push_back(std::make_unique<PasteTool>());
-  return out;
 }
 
 }  // namespace runstone

@@ -2,6 +2,7 @@
 // ToolBox keeps the places chosen so far. Pure: no clock, socket, window or OpenGL. One thread.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,11 +12,21 @@
 
 #include "client/replica/replica.hpp"
 #include "client/tools/aim.hpp"
-#include "client/tools/tool_parameter.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 
 namespace runstone {
+
+/// A number of a tool that the player sets. A window or a script shows and sets all parameters in
+/// the same way.
+struct ToolParameter {
+  std::string name;  // one word, lower case
+  std::string unit;  // "voxels", or empty
+  std::int32_t low = 0, high = 0;
+  std::int32_t value = 0;
+  /// The names of the values low .. high. Empty if the parameter is a plain number.
+  std::vector<std::string> choices;
+};
 
 /// The content of a paste and its orientation.
 struct ToolClipboard {
@@ -83,9 +94,5 @@ class Tool {
 };
 
 using ToolEdits = Result<std::vector<EditDescriptor>, std::string>;
-
-/// Returns one of each tool, in the order in which a window lists them. The first one is the voxel
-/// tool.
-std::vector<std::unique_ptr<Tool>> make_tools();
 
 }  // namespace runstone

@@ -1,6 +1,6 @@
 // ToolBox: the tools of a player and the state that they share: the chosen tool, the places chosen
 // so far, the selection, the clipboard, the symmetry and the preview. It answers clicks with edits,
-// which the caller submits in the given order. Pure: no clock, socket, window or OpenGL. One
+// which the caller proposes in the given order. Pure: no clock, socket, window or OpenGL. One
 // thread.
 #pragma once
 #include <array>
@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "client/tools/building_tools.hpp"
 #include "client/tools/edit_preview.hpp"
 #include "client/tools/symmetry.hpp"
 #include "client/tools/tool.hpp"
@@ -33,7 +34,7 @@ class ToolBox {
   /// Changes the first parameter of the chosen tool by `steps`, within its range.
   void change_size(std::int32_t steps);
 
-  /// Takes the press of a button. Returns the edits to submit, which are none while places are
+  /// Takes the press of a button. Returns the edits to propose, which are none while places are
   /// being chosen. If the first place was chosen with the other button, forgets the places instead.
   /// Fails with words for the player. Requires an open replica.
   ToolEdits press(const Replica& replica, const Aim& aim, ToolButton button);

@@ -55,7 +55,7 @@ using ToolCommand =
     std::variant<ToolChoice, ParameterChange, PlacesChange, TypedApply, SelectionChange,
                  SelectionCommand, ClipboardTurn, SymmetryChange, PreviewChange>;
 
-/// Carries out a command. Returns the edits to submit, which may be none. Fails with words for the
+/// Carries out a command. Returns the edits to propose, which may be none. Fails with words for the
 /// player, for example if there is no world yet. `held` is the material in the hand.
 ToolEdits carry_out(ToolBox& box, const Replica& replica, Material held,
                     const ToolCommand& command);

@@ -1,6 +1,6 @@
 // WebClient: the browser client while it plays on a server. It is the counterpart of Client
-// (client/app) and is made of the same parts, but runs on one thread: turn() runs once a frame and
-// does in slices what the desktop client does on several threads. Thread: the page's only one.
+// (client/app): both make the turns of a Play. It has one thread: turn() runs once a frame and does
+// in slices what the desktop client does on several threads. Thread: the page's only one.
 #pragma once
 #include <array>
 #include <memory>
@@ -9,19 +9,8 @@
 #include <vector>
 
 #include "client/display/draw_queue.hpp"
-#include "client/display/mesh_pipeline.hpp"
-#include "client/input/input_router.hpp"
 #include "client/input/touch_pad.hpp"
-#include "client/panels/world_panels.hpp"
-#include "client/play/click_edits.hpp"
-#include "client/play/display_pace.hpp"
-#include "client/play/edit_tool.hpp"
-#include "client/play/frame_scene.hpp"
-#include "client/play/player.hpp"
-#include "client/play/player_motion.hpp"
-#include "client/play/view_follower.hpp"
-#include "client/play/view_limits.hpp"
-#include "client/report/report.hpp"
+#include "client/play/play.hpp"
 #include "client/tools/tool_box.hpp"
 #include "client/web/join_options.hpp"
 #include "client/web/web_hud.hpp"
@@ -41,8 +30,6 @@ class WebClient {
   /// Sends a goodbye to the server and ends the play.
   void leave();
 
-  /// Queues input for the next turn.
-  void push(const InputEvent& event) { input_.push({event}); }
   /// Begins, moves, ends or cancels a touch (`phase` is 0 to 3), at a place of the page. A touch
   /// that begins on a window is a mouse for this window.
   void touch(int id, int phase, double x, double y);
@@ -58,9 +45,7 @@ class WebClient {
   /// Takes the font of the windows.
   void set_font(ByteView font);
   void act(Action action);
-  /// Requests the world after an edit, as show_after() does.
-  void show_moment(Sequence seq) { show_after(session_, seq); }
-  WebHud& hud() { return hud_; }
+  Play& play() { return play_; }
   /// Returns null without a cache.
   WebCache* cache() { return network_.cache(); }
 
@@ -70,19 +55,10 @@ class WebClient {
 
   /// Returns true if the view is complete, meshed and on the screen.
   bool is_complete() const;
-  /// Returns the number of the player's edits that are not on the server's disk yet.
-  std::size_t unconfirmed() const { return session_.replica().local_edits().all().size(); }
-  const Player& player() const { return player_; }
-  const ToolBox& tools() const { return tools_; }
-  const WorldPanels& panels() const { return panels_; }
-  bool is_captured() const { return input_.is_captured(); }
   ShownPanels shown_panels() const { return windows_.shown(); }
   /// See UiContext.
   std::string field_text() const { return windows_.field_text(); }
   const WebSession& network() const { return network_; }
-  const MeshPipeline& pipeline() const { return pipeline_; }
-  std::optional<Material> shown_at(VoxelPos at) const { return session_.replica().shown_at(at); }
-  std::optional<RayHit> sight() const { return tool_.pick(); }
   /// Returns the measurements so far as the JSON of ClientReport.
   std::string report_json() const;
 
@@ -91,18 +67,13 @@ class WebClient {
   HudState hud_state() const;
   /// Makes the windows of a frame, and carries out what the user did in them.
   std::shared_ptr<const OverlayFrame> make_windows(TimeUs now_us);
-  void on_world_opened();
-  void take_new_materials();
-  void set_tool_materials(const MaterialTable& materials);
-  void drain_changes();
-  void limit_memory(TimeUs now_us);
+  void flush(TimeUs now_us);
   void handle_input(TimeUs now_us);
   /// Frees the mouse for windows that were opened, and captures it again when they are closed.
   void share_mouse();
   /// Tells the page whether a field of a window has the keyboard.
   void share_keyboard();
-  void follow_player(TimeUs now_us);
-  /// Sends what is queued, and meshes until this time, one chunk at least.
+  /// Meshes until this time, one chunk at least.
   void mesh_until(TimeUs until_us);
   void draw(TimeUs now_us);
   /// Shows the progress of joining, or the state while playing.
@@ -112,24 +83,15 @@ class WebClient {
   void keep_server_key();
 
   Screen& screen_;
-  const TimeUs started_us_;
   WebSession network_;
   ClientSession& session_;  // of network_
   DrawQueue queue_{nullptr};
-  MeshPipeline pipeline_;
-  Player player_;
   ToolBox tools_;
-  EditTool tool_;
-  PlayerMotion motion_;
-  ClickEdits clicks_;
-  InputRouter input_;
+  PlayLog log_;  // nothing is logged
+  Play play_;
+  MeshPipeline& pipeline_;  // of play_
   TouchPad touch_;
-  ViewFollower view_;
-  ViewLimits limits_;
-  WorldPanels panels_;
   WebWindows windows_;
-  FrameScene scene_;
-  DisplayPace pace_;
   WebHud hud_;
 
   std::array<int, 2> size_{640, 360};  // of the canvas, pixels
@@ -137,11 +99,8 @@ class WebClient {
   std::optional<int> window_touch_;    // the touch that began on a window
   bool types_ = false;                 // the page knows that a field of a window has the keyboard
   TimeUs windows_us_ = 0;              // when the windows were made last
-  std::optional<WorldId> world_;       // whose materials the hotbar has
   std::size_t pins_kept_ = 0;          // server keys that the page keeps
-  std::optional<TimeUs> opened_us_;    // when the first world opened
   std::optional<TimeUs> drawn_us_;     // when the last turn began, if it drew a frame
-  TimeUs input_us_ = 0;                // when input was last handled
   bool is_joined_ = false, is_over_ = false, is_exact_ = false;
 };
 

@@ -2,22 +2,22 @@
 
 #include <utility>
 
-#include "client/play/printed_line.hpp"
 #include "client/web/page.hpp"
 #include "common/core/text.hpp"
 #include "common/materials/readable_name.hpp"
 
 namespace runstone {
 
-void WebHud::enter(const MaterialTable& materials) {
-  page_clear_materials();
-  materials_ = 1;
-  add_materials(materials);
-  hotbar_.fill(materials);
-  slots_.reset();  // their colours may be others
-}
-
-void WebHud::add_materials(const MaterialTable& materials) {
+void WebHud::show_materials() {
+  if (!play_.was_opened()) return;
+  const WorldId& world = play_.session().welcome()->world_id;
+  if (world_ != world) {
+    world_ = world;
+    page_clear_materials();
+    materials_ = 1;
+    slots_.reset();  // their colours may be others
+  }
+  const MaterialTable& materials = play_.pipeline().materials();
   for (; materials_ < materials.size(); ++materials_) {
     const MaterialInfo& info = materials[static_cast<Material>(materials_)];
     const std::uint32_t colour =
@@ -28,48 +28,35 @@ void WebHud::add_materials(const MaterialTable& materials) {
 }
 
 void WebHud::show_slots() {
-  const Hotbar& slots = hotbar_.slots();
-  if (slots_ && slots_->slots() == slots.slots() && slots_->slot() == slots.slot()) return;
-  slots_ = slots;
+  const Slots now{play_.hotbar().slots(), play_.hotbar().slot()};
+  if (slots_ == now) return;
+  slots_ = now;
   for (std::size_t i = 0; i < kSlotCount; ++i)
-    page_slot(static_cast<int>(i), slots.slots()[i], i == slots.slot() ? 1 : 0);
+    page_slot(static_cast<int>(i), now.materials[i], i == now.chosen ? 1 : 0);
 }
 
-void WebHud::notify(std::string_view text, bool is_warning) {
-  page_notice(std::string(text).c_str(), is_warning ? 1 : 0);
+void WebHud::show_walking() {
+  const bool is_walking = play_.player().is_walking();
+  if (std::exchange(is_walking_, is_walking) != is_walking) page_walking(is_walking ? 1 : 0);
 }
 
-void WebHud::take(const ReplicaChanges& changes) {
-  for (const ServerNotice& notice : notices_.take_state()) notify(notice.text, notice.is_warning);
-  for (const RejectedEdit& reject : changes.rejects) notify(notice_of(reject).text, true);
-}
-
-void WebHud::say(const std::string& line) {
-  if (line.find_first_not_of(' ') == std::string::npos) return;
-  if (line.starts_with('/')) {
-    const auto given = session_.command(line.substr(1));
-    is_answer_due_ = is_answer_due_ || given.has_value();
-    if (!given) notify(given.error().what, true);
-  } else if (const auto sent = session_.chat(line); !sent) {
-    notify(sent.error(), true);
-  }
+void WebHud::notify(std::string_view text, NoticeKind kind) {
+  page_notice(std::string(text).c_str(), kind == NoticeKind::warning ? 1 : 0);
 }
 
 void WebHud::step() {
+  show_materials();
   show_slots();
-  for (const ChatLine& line : session_.drain_chat()) page_chat(printed_line(line).c_str());
-  if (is_answer_due_ && !session_.commanding()) {
-    is_answer_due_ = false;
-    for (const std::string& line : session_.command_lines())
-      page_chat(with_unseen_replaced(line).c_str());
-  }
+  show_walking();
+  for (const PlayerNotice& notice : play_.take_notices()) notify(notice.text, notice.kind);
+  for (const ShownLine& line : play_.chat().take_lines()) page_chat(line.text.c_str());
   show_players();
   show_time();
 }
 
 void WebHud::show_time() {
-  const ShownSequence now = shown_sequence(session_);
-  const bool is_past = session_.replica().past().has_value();
+  const ShownSequence now = shown_sequence(play_.session());
+  const bool is_past = play_.session().replica().past().has_value();
   if (time_ == now && is_past_ == is_past) return;
   time_ = now;
   is_past_ = is_past;
@@ -79,7 +66,7 @@ void WebHud::show_time() {
 void WebHud::show_players() {
   std::string names;
   int count = 0;
-  for (const auto& [author, other] : session_.others()) {
+  for (const auto& [author, other] : play_.session().others()) {
     if (other.name.empty()) continue;  // the pose of a player whose name has not come yet
     names += (names.empty() ? "" : "\n") + with_unseen_replaced(other.name);
     ++count;

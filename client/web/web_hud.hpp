@@ -2,57 +2,49 @@
 // page shows them beside the canvas; this object sends it what changed. Thread: the page's only
 // one.
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "client/play/player_hotbar.hpp"
-#include "client/play/server_notices.hpp"
+#include "client/play/play.hpp"
 #include "client/play/time_travel.hpp"
-#include "client/replica/replica_changes.hpp"
-#include "client/session/client_session.hpp"
-#include "common/materials/material_table.hpp"
 
 namespace runstone {
 
 class WebHud {
  public:
-  /// Both must outlive the object.
-  WebHud(ClientSession& session, Player& player)
-      : session_(session), hotbar_(player), notices_(session) {}
+  /// `play` must outlive the object.
+  explicit WebHud(Play& play) : play_(play) {}
 
-  /// Takes the materials of a world that opens, and fills the hotbar.
-  void enter(const MaterialTable& materials);
-  /// Adds the materials that the page does not have yet. Cost: O(new materials).
-  void add_materials(const MaterialTable& materials);
-  PlayerHotbar& hotbar() { return hotbar_; }
-  const PlayerHotbar& hotbar() const { return hotbar_; }
-
-  void notify(std::string_view text, bool is_warning);
-  /// Shows the notices about rejected edits, the past and the disk of the server.
-  void take(const ReplicaChanges& changes);
-  /// Sends a line: a command if it begins with "/", otherwise chat.
-  void say(const std::string& line);
-  /// Shows the changes of the hotbar, chat, answers and players. Call it every turn.
+  void notify(std::string_view text, NoticeKind kind);
+  /// Shows the changes of the materials, the hotbar, notices, chat, players and the past. Call it
+  /// every turn. Cost: O(new materials, lines and players).
   void step();
   /// Shows a line about the state while playing.
   void set_state(const std::string& text);
 
  private:
+  void show_materials();
   void show_slots();
+  void show_walking();
   void show_players();
   void show_time();
 
-  ClientSession& session_;
-  PlayerHotbar hotbar_;
-  ServerNotices notices_;
-  std::size_t materials_ = 1;  // that the page shows, and kEmpty
+  struct Slots {
+    std::array<Material, kSlotCount> materials{};
+    std::size_t chosen = 0;
+    friend bool operator==(const Slots&, const Slots&) = default;
+  };
+
+  Play& play_;
   // That the page shows.
-  std::optional<Hotbar> slots_;
+  std::optional<WorldId> world_;  // whose materials they are
+  std::size_t materials_ = 1;     // the rows of the table, with kEmpty
+  std::optional<Slots> slots_;
   std::string players_ = "?", state_;
   std::optional<ShownSequence> time_;
-  bool is_past_ = false;
-  bool is_answer_due_ = false;  // a command was sent, and its output is not shown
+  bool is_past_ = false, is_walking_ = false;
 };
 
 }  // namespace runstone

@@ -13,6 +13,7 @@
 #include "client/input/action.hpp"
 #include "client/input/dom_key.hpp"
 #include "client/platform/canvas_context.hpp"
+#include "client/play/time_travel.hpp"
 #include "client/session/join_check.hpp"
 #include "client/web/page.hpp"
 #include "client/web/web_client.hpp"
@@ -118,7 +119,8 @@ EMSCRIPTEN_KEEPALIVE void web_tick() {
 
 /// Returns the number of the player's edits that are not on the server's disk yet.
 EMSCRIPTEN_KEEPALIVE int web_unconfirmed() {
-  return client ? static_cast<int>(client->unconfirmed()) : 0;
+  return client ? static_cast<int>(client->play().session().replica().local_edits().all().size())
+                : 0;
 }
 
 EMSCRIPTEN_KEEPALIVE void web_leave() {
@@ -141,15 +143,15 @@ EMSCRIPTEN_KEEPALIVE void web_key(const char* code, const char* text, int is_pre
   event.control = (modifiers & 1) != 0;
   event.shift = (modifiers & 2) != 0;
   event.alt = (modifiers & 4) != 0;
-  client->push(event);
+  client->play().input().push({event});
   // Control and alt together are the key AltGr of some systems.
   if (event.is_pressed && character != 0 && event.control == event.alt)
-    client->push(CharacterEvent{static_cast<char32_t>(character)});
+    client->play().input().push({CharacterEvent{static_cast<char32_t>(character)}});
 }
 
 /// A character that no key has typed, such as one of an input method.
 EMSCRIPTEN_KEEPALIVE void web_character(std::uint32_t character) {
-  if (client) client->push(CharacterEvent{static_cast<char32_t>(character)});
+  if (client) client->play().input().push({CharacterEvent{static_cast<char32_t>(character)}});
 }
 
 /// `x` and `y` are a place of the page.
@@ -178,11 +180,11 @@ EMSCRIPTEN_KEEPALIVE void web_act(const char* name) {
 EMSCRIPTEN_KEEPALIVE void web_button(int button, int is_pressed) {
   if (!client || button < 0 || button > 2) return;
   constexpr MouseButton kButtons[] = {MouseButton::left, MouseButton::middle, MouseButton::right};
-  client->push(ButtonEvent{kButtons[button], is_pressed != 0});
+  client->play().input().push({ButtonEvent{kButtons[button], is_pressed != 0}});
 }
 
 EMSCRIPTEN_KEEPALIVE void web_wheel(double steps) {
-  if (client) client->push(WheelEvent{steps});
+  if (client) client->play().input().push({WheelEvent{steps}});
 }
 
 /// The browser has freed the mouse.
@@ -191,7 +193,7 @@ EMSCRIPTEN_KEEPALIVE void web_capture_lost() {
 }
 
 EMSCRIPTEN_KEEPALIVE void web_focus_lost() {
-  if (client) client->push(FocusEvent{false});
+  if (client) client->play().input().push({FocusEvent{false}});
 }
 
 /// `phase`: 0 begins, 1 moves, 2 ends, 3 all touches are cancelled.
@@ -204,22 +206,22 @@ EMSCRIPTEN_KEEPALIVE void web_tap_mode(int removes) {
 }
 
 EMSCRIPTEN_KEEPALIVE void web_choose_slot(int slot) {
-  if (client && slot >= 0) client->hud().hotbar().choose(static_cast<std::size_t>(slot));
+  if (client && slot >= 0) client->play().hotbar().choose(static_cast<std::size_t>(slot));
 }
 
 EMSCRIPTEN_KEEPALIVE void web_hold(int material) {
   if (client && material > 0 && static_cast<std::size_t>(material) < kMaterialCountMax)
-    client->hud().hotbar().hold(static_cast<Material>(material));
+    client->play().hotbar().hold(static_cast<Material>(material));
 }
 
 EMSCRIPTEN_KEEPALIVE void web_say(const char* line) {
-  if (client) client->hud().say(line);
+  if (client) client->play().chat().send(line);
 }
 
 /// Shows the world after an edit, or the live world for the newest edit and beyond.
 EMSCRIPTEN_KEEPALIVE void web_show_moment(double seq) {
   if (client && seq >= 0 && seq <= static_cast<double>(kSequenceShownMax))
-    client->show_moment(static_cast<Sequence>(seq));
+    show_after(client->play().session(), static_cast<Sequence>(seq));
 }
 
 /// Returns the address of so many bytes, for the functions that take bytes. They live until the next
@@ -266,24 +268,24 @@ EMSCRIPTEN_KEEPALIVE void web_camera(double x, double y, double z, double yaw, d
 
 /// Returns the material at a voxel, or -1 if it is not known.
 EMSCRIPTEN_KEEPALIVE int web_voxel(int x, int y, int z) {
-  const auto shown = client ? client->shown_at({x, y, z}) : std::nullopt;
+  const auto shown = client ? client->play().session().replica().shown_at({x, y, z}) : std::nullopt;
   return shown ? static_cast<int>(*shown) : -1;
 }
 
 EMSCRIPTEN_KEEPALIVE const char* web_state() {
   if (!client) return kept("{}");
-  const WorldPos& eye = client->player().eye();
-  const auto sight = client->sight();
+  const Play& play = client->play();
+  const WorldPos& eye = play.player().eye();
+  const auto sight = play.tool().pick();
   char text[512];
-  std::snprintf(text, sizeof text,
-                "{\"connected\": %s, \"complete\": %s, \"x\": %.3f, \"y\": %.3f, \"z\": %.3f, "
-                "\"walking\": %s, \"held\": %d, \"meshed\": %llu, \"frames\": %llu, \"sight\": %s",
-                client->network().is_connected() ? "true" : "false",
-                client->is_complete() ? "true" : "false", eye.x, eye.y, eye.z,
-                client->player().is_walking() ? "true" : "false", client->player().held(),
-                static_cast<unsigned long long>(client->pipeline().meshed_count()),
-                static_cast<unsigned long long>(client->pipeline().frames_presented()),
-                sight ? "[" : "null}");
+  std::snprintf(
+      text, sizeof text,
+      "{\"connected\": %s, \"complete\": %s, \"x\": %.3f, \"y\": %.3f, \"z\": %.3f, "
+      "\"walking\": %s, \"held\": %d, \"meshed\": %llu, \"frames\": %llu, \"sight\": %s",
+      client->network().is_connected() ? "true" : "false", client->is_complete() ? "true" : "false",
+      eye.x, eye.y, eye.z, play.player().is_walking() ? "true" : "false", play.player().held(),
+      static_cast<unsigned long long>(play.pipeline().meshed_count()),
+      static_cast<unsigned long long>(play.pipeline().frames_presented()), sight ? "[" : "null}");
   std::string out = text;
   if (sight) {
     out += std::to_string(sight->voxel.x) + ", " + std::to_string(sight->voxel.y) + ", " +
@@ -292,22 +294,26 @@ EMSCRIPTEN_KEEPALIVE const char* web_state() {
   return kept(std::move(out));
 }
 
-/// Returns what the windows show.
+/// Returns what the windows show, and the number of ghosts.
 EMSCRIPTEN_KEEPALIVE const char* web_windows() {
   if (!client) return kept("{}");
   const ShownPanels shown = client->shown_panels();
+  const Play& play = client->play();
+  std::vector<GhostChunk> others;
+  play.others_previews().append_ghosts(others);
   HudState state;
-  client->panels().fill(state, shown);
+  play.fill(state, shown);
   const auto word = [](bool is_true) {
     return is_true ? std::string("true") : std::string("false");
   };
-  return kept("{\"captured\": " + word(client->is_captured()) + ", \"map\": " + word(shown.map) +
+  return kept("{\"captured\": " + word(state.is_captured) + ", \"map\": " + word(shown.map) +
               ", \"rollback\": " + word(shown.rollback) + ", \"tools\": " + word(shown.tools) +
-              ", \"tool\": \"" + std::string(client->tools().tool().name()) + "\", \"tiles\": " +
+              ", \"tool\": \"" + std::string(state.tools->tool().name()) + "\", \"tiles\": " +
               std::to_string(state.map.map == nullptr ? 0 : state.map.map->tiles().size()) +
               ", \"phase\": " + std::to_string(static_cast<int>(state.rollback.phase)) +
               ", \"voxels\": " + std::to_string(state.rollback.voxels) +
-              ", \"ghosts\": " + std::to_string(client->panels().rollback().ghosts().size()) + "}");
+              ", \"ghosts\": " + std::to_string(play.panels().rollback().ghosts().size()) +
+              ", \"others\": " + std::to_string(others.size()) + "}");
 }
 
 /// Returns the text of the field of a window that has the keyboard, or an empty one.

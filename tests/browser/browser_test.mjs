@@ -188,6 +188,40 @@ test("what one builds and digs, the other sees, and a reload finds", async () =>
   await bob.page.close();
 });
 
+test("players see what others are about to do, in a browser and on the desktop", async () => {
+  const eve = await Player.open(await somebody(), world.address);
+  await eve.joined("eva");
+  await eve.complete();
+  const [x, y, z] = await eve.lookDown();
+  const ghosts = async () => (await eve.windows()).others;
+  assert.equal(await ghosts(), 0);
+  const end = world.desktop("dora", [`move ${x}.5 ${y + 8}.5 ${z}.5`, "preview on", "tool sphere",
+    `aim ${x} ${y} ${z} +y`, "wait loaded", "wait 300"]);
+  try {
+    await until("eva sees the preview of dora", async () => (await ghosts()) > 0);
+    await eve.drawn();
+    await eve.page.screenshot({ path: join(out, "preview-of-another.png") });
+    assert.equal(await eve.voxel(x, y + 1, z), 0);
+  } finally {
+    await end();
+  }
+  await until("the preview is gone with dora", async () => (await ghosts()) === 0);
+
+  const bob = await Player.open(await somebody(), world.address);
+  await bob.joined("bo");
+  await bob.complete();
+  const { y: height } = await bob.state();
+  await bob.camera(x + 0.5, height, z + 0.5, ABOVE.yaw, ABOVE.pitch);
+  await bob.act("next_tool");
+  await until("eva sees the preview of bo", async () => (await ghosts()) > 0);
+  await bob.act("preview");
+  await until("bo hides it", async () => (await ghosts()) === 0);
+  for (const player of [bob, eve]) {
+    assert.deepEqual(player.errors, []);
+    await player.page.close();
+  }
+});
+
 test("the timeline shows the past, in which nothing can be built, and leads back", async () => {
   const player = await Player.open(await somebody(), world.address);
   await player.joined("clio");

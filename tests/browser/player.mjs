@@ -64,6 +64,10 @@ export class Player {
   state() {
     return this.page.evaluate(() => JSON.parse(runstone.ccall("web_state", "string", [], [])));
   }
+  // Carries out an action of a key by its name.
+  act(name) {
+    return this.page.evaluate((action) => runstone.ccall("web_act", null, ["string"], [action]), name);
+  }
   hasWindowAt(x, y) {
     return this.page.evaluate((...at) => runstone._web_has_window_at(...at) !== 0, x, y);
   }

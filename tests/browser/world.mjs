@@ -89,6 +89,17 @@ export class World {
     return readFileSync(join(this.folder, "picture.png"));
   }
 
+  // Lets a desktop client without a window carry out the lines of a script. Returns a function that
+  // ends the client.
+  desktop(name, lines) {
+    const script = join(this.folder, `${name}.txt`);
+    writeFileSync(script, lines.map((line) => `${line}\n`).join(""));
+    const child = spawn(join(this.bin, "runstone-client"),
+      ["--connect", `127.0.0.1:${this.server.port}`, "--name", name, "--no-render", "--script", script],
+      { stdio: "ignore" });
+    return () => stop({ child });
+  }
+
   async close() {
     await stop(this.web);
     await stop(this.server);

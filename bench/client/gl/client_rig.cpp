@@ -176,7 +176,7 @@ void ClientRig::edit() {
   const VoxelPos at{0, is_set ? y : y + 1, kEditAhead};
   const Material material = is_set ? kEmpty : id_of(Block::brick);
   const auto submitted =
-      replica_.submit({SetVoxel{at}, {}, material}, steady_now_us(), steady_now_us());
+      replica_.predict({SetVoxel{at}, {}, material}, steady_now_us(), steady_now_us());
   RUNSTONE_ASSERT(submitted);
 }
 

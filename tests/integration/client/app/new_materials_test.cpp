@@ -51,7 +51,7 @@ TEST_CASE("one adds materials, two build with them, and nobody is disturbed",
   RawClient old(server->port());  // it does not offer the feature
   REQUIRE(old.join(9).has_value());
   const EditDescriptor of_lime{FillBox{{{2, 70, 2}, {6, 74, 6}}}, {}, kLime};
-  CHECK_FALSE(ann.session().submit(of_lime, steady_now_us(), steady_now_us()).has_value());
+  CHECK_FALSE(ann.session().offer(of_lime, steady_now_us(), steady_now_us()).has_value());
 
   const Answer added = control(world, {"materials", "add", file});
   REQUIRE(added.is_ok);

@@ -14,7 +14,7 @@ const EditDescriptor kEditInSpawn{SetVoxel{{3, 3, 3}}, {}, 2};
 
 /// Requires that the client refuses the edit, and returns the text for the player.
 std::string refused_edit(LiveSession& client, const EditDescriptor& edit) {
-  const auto seq = client.session().submit(edit, steady_now_us(), steady_now_us());
+  const auto seq = client.session().offer(edit, steady_now_us(), steady_now_us());
   REQUIRE_FALSE(seq.has_value());
   CHECK(seq.error().code == ErrorCode::not_permitted);
   return client.session().refusal_text(edit, seq.error());

@@ -48,7 +48,7 @@ class LiveSession final : private LinkCallbacks {
     until([&] { return session_.loaded() && replica().local_edits().all().empty(); });
   }
   void edit(const EditDescriptor& edit) {
-    REQUIRE(session_.submit(edit, steady_now_us(), steady_now_us()).has_value());
+    REQUIRE(session_.offer(edit, steady_now_us(), steady_now_us()).has_value());
   }
   /// Waits until the moment is here, or the request was refused.
   void travel(const HistoryRequest& travel) {

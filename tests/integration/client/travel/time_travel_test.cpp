@@ -69,7 +69,7 @@ TEST_CASE("a client sees its view as it was after any edit, and the live world a
   builder.build(10);
   for (int i = 0; i < 20; ++i) viewer.pump();
   CHECK(states_of(viewer.replica()) == builder.moments[1]);
-  CHECK_FALSE(viewer.session().submit({SetVoxel{{0, 0, 0}}, {}, 1}, 0, 0).has_value());
+  CHECK_FALSE(viewer.session().offer({SetVoxel{{0, 0, 0}}, {}, 1}, 0, 0).has_value());
 
   viewer.travel({});
   viewer.catch_up();

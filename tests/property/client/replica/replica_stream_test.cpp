@@ -200,7 +200,7 @@ class Simulation {
   Arrival arrival() const { return {now_, now_, now_}; }
 
   void submit(Peer& peer) {
-    const auto seq = peer.replica.submit(random_edit(rng_), now_, now_);
+    const auto seq = peer.replica.predict(random_edit(rng_), now_, now_);
     if (!seq) return;
     owed_.insert({peer.author, 1, *seq});
     offer(peer, *seq);

@@ -164,7 +164,7 @@ class MeshStream {
   // The server.
 
   void submit() {
-    if (const auto seq = replica_.submit(random_edit(rng_), now_, now_)) offered_.push_back(*seq);
+    if (const auto seq = replica_.predict(random_edit(rng_), now_, now_)) offered_.push_back(*seq);
   }
 
   void order(ClientSequence seq) {

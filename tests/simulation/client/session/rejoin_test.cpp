@@ -162,7 +162,7 @@ TEST_CASE(
     if (++seq % 2 == 0) continue;
     const VoxelPos o = origin_of(key.at, kEdge);
     REQUIRE(
-        joined.session().submit({SetVoxel{{o.x + 3, o.y + 14, o.z + 5}}, {}, 2}, 0, 0).has_value());
+        joined.session().offer({SetVoxel{{o.x + 3, o.y + 14, o.z + 5}}, {}, 2}, 0, 0).has_value());
   }
   joined.second();
   joined.second();

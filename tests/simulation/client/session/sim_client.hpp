@@ -51,7 +51,7 @@ class SimClient {
 
   /// Submits an edit and keeps it for the final check.
   void edit(const EditDescriptor& edit) {
-    const auto seq = session_.submit(edit, time_.now(), time_.now());
+    const auto seq = session_.offer(edit, time_.now(), time_.now());
     if (seq) submitted_[*seq] = edit;
     refused_ += replica().opened() && !seq ? 1 : 0;
   }

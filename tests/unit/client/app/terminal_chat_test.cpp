@@ -69,7 +69,8 @@ struct TypingBench : SessionBench {
 
 TEST_CASE_METHOD(TypingBench, "typed lines are chat, and commands after a slash",
                  "[client][chat]") {
-  TerminalChat chat(session, ends[0]);
+  Chat lines(session);
+  TerminalChat chat(lines, ends[0]);
   type(chat, "hello");
   type(chat, "   ");
   type(chat, "/players");
@@ -86,7 +87,8 @@ TEST_CASE_METHOD(TypingBench, "typed lines are chat, and commands after a slash"
 
 TEST_CASE_METHOD(TypingBench, "lines that were heard are found once, in their order",
                  "[client][chat]") {
-  TerminalChat chat(session, std::nullopt);
+  Chat lines(session);
+  TerminalChat chat(lines, std::nullopt);
   CHECK_FALSE(chat.take_heard("hello"));
   receive(ChatLines{{{ChatLineKind::player, 7, "ana", "hello", 1},
                      {ChatLineKind::player, 7, "ana", "ready", 2},

@@ -74,8 +74,8 @@ struct Bench {
     out.previous = {previous};
     return out;
   }
-  ClientSequence submit(TimeUs due_us) {
-    const auto seq = session->submit({SetVoxel{{1, 2, 3}}, {}, 1}, due_us, due_us);
+  ClientSequence offer(TimeUs due_us) {
+    const auto seq = session->offer({SetVoxel{{1, 2, 3}}, {}, 1}, due_us, due_us);
     REQUIRE(seq.has_value());
     return *seq;
   }
@@ -96,7 +96,7 @@ TEST_CASE("a headless session verifies commits and times each edit", "[bots][hea
   Bench bench;
   bench.fleet.due.add(99, 5, 400);
   clock_us = 2'000;
-  const ClientSequence mine = bench.submit(1'900);
+  const ClientSequence mine = bench.offer(1'900);
   clock_us = 2'500;
   const Commit commit{1,
                       {Bench::edit(3, 0, {2, 99, 5}), Bench::edit(4, 3, bench.own(mine)),
@@ -172,7 +172,7 @@ TEST_CASE("a gap in the versions of a chunk is found, and the chunk is requested
 
 TEST_CASE("a second answer to a local edit, or to none, is a violation", "[bots][headless]") {
   Bench bench;
-  const ClientSequence mine = bench.submit(0);
+  const ClientSequence mine = bench.offer(0);
   REQUIRE(bench.takes(Commit{1, {Bench::edit(1, 0, bench.own(mine))}}));
   CHECK(bench.violations().total() == 0);
   SECTION("not confirmed twice") {
@@ -187,7 +187,7 @@ TEST_CASE("a second answer to a local edit, or to none, is a violation", "[bots]
 
 TEST_CASE("a rejected edit is counted, and a commit of it is a violation", "[bots][headless]") {
   Bench bench;
-  const ClientSequence mine = bench.submit(0);
+  const ClientSequence mine = bench.offer(0);
   bench.give(Reject{mine, RejectReason::busy, "", 0});
   CHECK(bench.session->local_edits().counters().rejected == 1);
   CHECK(bench.session->local_edits().all().empty());
@@ -209,7 +209,7 @@ TEST_CASE("a durable watermark of another epoch, or a lower one, is a violation"
 
 TEST_CASE("a headless session offers edits again that the server has lost", "[bots][headless]") {
   Bench bench;
-  const ClientSequence first = bench.submit(0), second = bench.submit(0), third = bench.submit(0);
+  const ClientSequence first = bench.offer(0), second = bench.offer(0), third = bench.offer(0);
   REQUIRE(bench.takes(Commit{1, {Bench::edit(1, 0, bench.own(first))}}));
   bench.session->disconnected();
   std::vector<ClientSequence> offered;

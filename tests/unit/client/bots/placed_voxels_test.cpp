@@ -29,14 +29,14 @@ TEST_CASE("it is known which of the placed voxels are intact", "[bots]") {
   load_empty_chunk(replica);
   PlacedVoxels voxels;
   const auto set = [&](const EditDescriptor& edit) {
-    REQUIRE(replica.submit(edit, 0, 0).has_value());
+    REQUIRE(replica.predict(edit, 0, 0).has_value());
     voxels.add(edit);
   };
   set(voxel(1, 5));
   set(voxel(2, 5));
-  set(voxel(2, 6));                                        // the last edit of a voxel counts
-  set(voxel(40, 7));                                       // in a chunk that is not loaded
-  REQUIRE(replica.submit(voxel(1, 9), 0, 0).has_value());  // an edit of another author
+  set(voxel(2, 6));                                         // the last edit of a voxel counts
+  set(voxel(40, 7));                                        // in a chunk that is not loaded
+  REQUIRE(replica.predict(voxel(1, 9), 0, 0).has_value());  // an edit of another author
   const auto standing = voxels.compare(replica);
   CHECK(standing.held == 3);
   CHECK(standing.intact == 1);

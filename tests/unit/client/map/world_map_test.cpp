@@ -45,7 +45,7 @@ TEST_CASE("the map shows the tops of all shown chunks, and follows edits", "[cli
   CHECK(bench.map.tiles().size() == 16);
   bench.check_all();
   for (const auto& [key, tile] : bench.map.tiles()) CHECK(tile.image != nullptr);
-  bench.submit(
+  bench.predict(
       {{FillSphere{{3, 20, -7}, 6}, {}, 2}, {FillBox{{{-20, -32, 4}, {-4, 32, 9}}}, {}, 0}});
   bench.draw();
   bench.check_all();
@@ -70,11 +70,11 @@ TEST_CASE("an edit redraws its column, and a neighbour only if the border change
     return out;
   };
   const auto before = images();
-  bench.submit({{SetVoxel{{5, 0, 5}}, {}, 3}});
+  bench.predict({{SetVoxel{{5, 0, 5}}, {}, 3}});
   bench.draw();
   const auto inner = images();
   CHECK(changed(before, inner) == std::set<MapTileKey>{{0, 0}});
-  bench.submit({{SetVoxel{{15, 0, 5}}, {}, 3}});
+  bench.predict({{SetVoxel{{15, 0, 5}}, {}, 3}});
   bench.draw();
   CHECK(changed(inner, images()) == std::set<MapTileKey>{{0, 0}, {0, 1}, {1, 0}});
 }

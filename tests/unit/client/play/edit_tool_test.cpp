@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "client/play/tool_actions.hpp"
+#include "client/play/player_actions.hpp"
 #include "tests/support/codec/authority_model.hpp"
 #include "tests/support/codec/chunks_message.hpp"
 #include "tests/support/codec/test_keys.hpp"
@@ -53,8 +53,8 @@ struct Fixture {
     REQUIRE(session.is_open());
   }
   void receive(Message message) { session.receive(std::move(message), {kNow, kNow, kNow}); }
-  Result<void, std::string> submit(VoxelPos at) {
-    return tool.submit({SetVoxel{at}, {}, 1}, kNow, kNow);
+  Result<void, std::string> propose(VoxelPos at) {
+    return tool.propose({SetVoxel{at}, {}, 1}, kNow, kNow);
   }
   std::uint64_t infinite(EditPath path) const {
     return recorder.report()[path]
@@ -71,9 +71,9 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "an edit in the live world is submitted and counted until it is answered",
+TEST_CASE_METHOD(Fixture, "an edit in the live world is proposed and counted until it is answered",
                  "[client_app]") {
-  REQUIRE(submit({1, 2, 3}).has_value());
+  REQUIRE(propose({1, 2, 3}).has_value());
   CHECK(tool.refused() == 0);
   CHECK(session.replica().local_edits().all().size() == 1);
   recorder.take(session.replica().drain_changes(), session.clock(), kNow);
@@ -87,7 +87,7 @@ TEST_CASE_METHOD(Fixture, "an edit in the past is refused with a reason and is i
   past.past = true;
   receive(past);
   REQUIRE(session.replica().past());
-  const auto refused = submit({1, 2, 3});
+  const auto refused = propose({1, 2, 3});
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error() == "the past cannot be edited");
   CHECK(tool.refused() == 1);
@@ -99,8 +99,8 @@ TEST_CASE_METHOD(Fixture, "an edit in the past is refused with a reason and is i
 
 TEST_CASE_METHOD(Fixture, "an edit that finds no room is infinitely late", "[client_app]") {
   for (std::size_t i = 0; i < kLocalEditsMax; ++i)
-    REQUIRE(session.submit({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
-  REQUIRE_FALSE(submit({1, 2, 3}).has_value());
+    REQUIRE(session.offer({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
+  REQUIRE_FALSE(propose({1, 2, 3}).has_value());
   CHECK(tool.refused() == 0);
   for (const EditPath path : kPaths) CHECK(infinite(path) == 1);
 }
@@ -189,9 +189,9 @@ TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next act
   const std::vector<EditDescriptor> two = {{SetVoxel{{1, 2, 3}}, {}, 1},
                                            {SetVoxel{{4, 2, 3}}, {}, 1}};
   session.receive(Pong{kNow - 200, kNow}, {kNow, kNow, kNow});
-  REQUIRE(tool.submit(ToolEdits(two), kNow).has_value());
-  REQUIRE(submit({9, 9, 9}).has_value());
-  REQUIRE(tool.submit(ToolEdits(two), kNow).has_value());
+  REQUIRE(tool.propose(ToolEdits(two), kNow).has_value());
+  REQUIRE(propose({9, 9, 9}).has_value());
+  REQUIRE(tool.propose(ToolEdits(two), kNow).has_value());
   std::vector<ClientSequence> actions;
   for (const auto& [seq, local] : session.replica().local_edits().all())
     actions.push_back(local.action);

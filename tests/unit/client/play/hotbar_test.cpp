@@ -12,6 +12,11 @@ using namespace runstone;
 
 namespace {
 
+struct HotbarBench {
+  Player player;
+  Hotbar bar{player};
+};
+
 Material add(MaterialTable& table, const char* name, Visibility visibility, MaterialBody body) {
   const auto alpha = static_cast<std::uint8_t>(visibility == Visibility::opaque ? 255 : 128);
   const auto id = table.add({name, {90, 90, 90, alpha}, visibility, {}, body});
@@ -21,8 +26,8 @@ Material add(MaterialTable& table, const char* name, Visibility visibility, Mate
 
 }  // namespace
 
-TEST_CASE("the hotbar of the built-in table has nine different blocks", "[client_app]") {
-  Hotbar bar;
+TEST_CASE_METHOD(HotbarBench, "the hotbar of the built-in table has nine different blocks",
+                 "[client_app]") {
   const MaterialTable& table = default_material_table();
   bar.fill(table);
   CHECK(table[bar.slots()[0]].name == "stone");
@@ -33,14 +38,14 @@ TEST_CASE("the hotbar of the built-in table has nine different blocks", "[client
   }
 }
 
-TEST_CASE("the hotbar of an imported world begins with blocks, not with plants", "[client_app]") {
+TEST_CASE_METHOD(HotbarBench, "the hotbar of an imported world begins with blocks, not with plants",
+                 "[client_app]") {
   MaterialTable table;
   add(table, "default:acacia_bush_leaves", Visibility::transparent, MaterialBody::solid);
   add(table, "default:grass_1", Visibility::transparent, MaterialBody::passable);
   add(table, "default:water_source", Visibility::transparent, MaterialBody::liquid);
   const Material obsidian = add(table, "default:obsidian", Visibility::opaque, MaterialBody::solid);
   const Material stone = add(table, "default:stone", Visibility::opaque, MaterialBody::solid);
-  Hotbar bar;
   bar.fill(table);
   CHECK(bar.slots()[0] == stone);
   CHECK(bar.slots()[1] == obsidian);
@@ -48,7 +53,8 @@ TEST_CASE("the hotbar of an imported world begins with blocks, not with plants",
   CHECK(bar.slots()[3] == kEmpty);  // neither plants nor water
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    HotbarBench,
     "the hotbar of an imported world has the world's own materials, and built-in ones that it lacks",
     "[client_app]") {
   MaterialTable table;
@@ -56,7 +62,6 @@ TEST_CASE(
                            "default:stone", "default:tree", "default:wood"})
     add(table, name, Visibility::opaque, MaterialBody::solid);
   REQUIRE(append_palette(table, default_material_table()).has_value());
-  Hotbar bar;
   bar.fill(table);
   std::vector<std::string> names;
   for (const Material material : bar.slots()) names.push_back(table[material].name);
@@ -65,9 +70,9 @@ TEST_CASE(
                                           "glass", "default:tree", "lamp"});
 }
 
-TEST_CASE("the wheel goes round the slots, and a material takes the chosen slot once",
-          "[client_app]") {
-  Hotbar bar;
+TEST_CASE_METHOD(HotbarBench,
+                 "the wheel goes round the slots, and a material takes the chosen slot once",
+                 "[client_app]") {
   bar.fill(default_material_table());
   bar.scroll(1);
   CHECK(bar.slot() == 8);
@@ -76,8 +81,38 @@ TEST_CASE("the wheel goes round the slots, and a material takes the chosen slot 
   const Material gold = *find_material(default_material_table(), "gold");
   bar.hold(gold);
   CHECK(bar.slot() == 1);
-  CHECK(bar.held() == gold);
+  CHECK(player.held() == gold);
   bar.choose(4);
   bar.hold(gold);  // slot 1 has it
   CHECK(bar.slot() == 1);
+}
+
+TEST_CASE_METHOD(HotbarBench, "a player holds the material of the chosen slot", "[client]") {
+  bar.fill(default_material_table());
+  CHECK(player.held() == bar.slots()[0]);
+  CHECK(bar.act(Action::hold_slot_3));
+  CHECK(player.held() == bar.slots()[2]);
+  CHECK_FALSE(bar.act(Action::undo));
+  bar.scroll(1);
+  CHECK(player.held() == bar.slots()[1]);
+  bar.choose(kSlotCount);  // there is no such slot
+  CHECK(bar.slot() == 1);
+  const Material stone = bar.slots()[0];
+  bar.hold(stone);
+  CHECK(bar.slot() == 0);
+  CHECK(player.held() == stone);
+}
+
+TEST_CASE_METHOD(HotbarBench, "a player never holds an empty slot", "[client]") {
+  MaterialTable table;  // a world with one block fills one slot
+  const auto block =
+      table.add({"block", {90, 90, 90, 255}, Visibility::opaque, {}, MaterialBody::solid});
+  REQUIRE(block.has_value());
+  bar.fill(table);
+  REQUIRE(player.held() == *block);
+  bar.choose(5);
+  CHECK(player.held() == *block);
+  bar.hold(kEmpty);
+  CHECK(player.held() == *block);
+  CHECK(bar.slots()[5] == kEmpty);
 }

@@ -10,8 +10,8 @@ TEST_CASE("the notice of a rejected edit shows no hidden characters", "[client]"
   reject.detail =
       "a\xe2\x80\xae"
       "b";
-  const ServerNotice notice = notice_of(reject);
-  CHECK(notice.is_warning);
+  const PlayerNotice notice = notice_of(reject);
+  CHECK(notice.kind == NoticeKind::warning);
   CHECK(notice.text ==
         std::string("the server refused an edit: ") + to_string(reject.reason) + " a?b");
 }

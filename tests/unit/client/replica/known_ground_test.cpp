@@ -91,16 +91,16 @@ TEST_CASE_METHOD(ReplicaBench, "a refused edit is neither shown nor kept", "[rep
   load(kHere);
   replica.receive(kBuilds);
   REQUIRE(replica.receive(ProtectedGround{{}, {ground_box(1, kTown, false, "town")}}).has_value());
-  const auto refused = replica.submit(kInTown, 500, 600);
+  const auto refused = replica.predict(kInTown, 500, 600);
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error().code == ErrorCode::not_permitted);
   CHECK(replica.local_edits().all().empty());
   CHECK(replica.shown_at({1, 1, 1}) != Material{1});
   CHECK(replica.drain_changes().edits.empty());
-  submit(kOutside);
+  predict(kOutside);
   static_cast<void>(replica.open(parameters()));  // another session begins without rules
   CHECK(replica.ground().boxes().empty());
-  submit(kInTown);
+  predict(kInTown);
 }
 
 }  // namespace runstone::test

@@ -9,8 +9,8 @@ namespace {
 using Sequences = std::vector<ClientSequence>;
 
 struct LocalEditsFixture {
-  ClientSequence submit() {
-    const auto seq = edits.submit({SetVoxel{{1, 2, 3}}, {}, 1}, {{0, {0, 0, 0}}}, 500);
+  ClientSequence add() {
+    const auto seq = edits.add({SetVoxel{{1, 2, 3}}, {}, 1}, {{0, {0, 0, 0}}}, 500);
     REQUIRE(seq.has_value());
     return *seq;
   }
@@ -25,8 +25,8 @@ Reject resolved(ClientSequence seq, Sequence at) {
 }  // namespace
 
 TEST_CASE_METHOD(LocalEditsFixture, "client sequences ascend from 1 without gaps", "[replica]") {
-  CHECK(submit() == 1);
-  CHECK(submit() == 2);
+  CHECK(add() == 1);
+  CHECK(add() == 2);
   CHECK(edits.find(1)->submitted_us == 500);
   CHECK(edits.find(1)->chunks.size() == 1);
   CHECK(edits.unanswered() == Sequences{1, 2});
@@ -37,11 +37,11 @@ TEST_CASE_METHOD(LocalEditsFixture, "client sequences ascend from 1 without gaps
 TEST_CASE_METHOD(LocalEditsFixture, "the memory of an edit counts until the edit leaves",
                  "[replica]") {
   CHECK(edits.bytes() == 0);
-  const ClientSequence voxel = submit();
+  const ClientSequence voxel = add();
   const std::size_t one = edits.bytes();
   CHECK(one > sizeof(LocalEdit));
   const EditDescriptor stroke{FillStroke{std::vector<VoxelPos>(200, VoxelPos{1, 2, 3}), 1}, {}, 1};
-  const auto long_stroke = edits.submit(stroke, {}, 0);
+  const auto long_stroke = edits.add(stroke, {}, 0);
   REQUIRE(long_stroke.has_value());
   CHECK(edits.bytes() >= one + 200 * sizeof(VoxelPos));
   CHECK(edits.reject({*long_stroke, RejectReason::busy, "", 0}, {1, 0}).has_value());
@@ -50,15 +50,15 @@ TEST_CASE_METHOD(LocalEditsFixture, "the memory of an edit counts until the edit
   CHECK(edits.bytes() == one);
   CHECK(edits.retire(10).durable.size() == 1);
   CHECK(edits.bytes() == 0);
-  submit();
+  add();
   edits.clear();
   CHECK(edits.bytes() == 0);
 }
 
 TEST_CASE_METHOD(LocalEditsFixture,
                  "an edit beyond the bound is refused and counts as not submitted", "[replica]") {
-  for (std::size_t i = 0; i < kLocalEditsMax; ++i) submit();
-  const auto refused = edits.submit({SetVoxel{{1, 2, 3}}, {}, 1}, {}, 0);
+  for (std::size_t i = 0; i < kLocalEditsMax; ++i) add();
+  const auto refused = edits.add({SetVoxel{{1, 2, 3}}, {}, 1}, {}, 0);
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error().code == ErrorCode::limit_exceeded);
   CHECK(edits.counters().submitted == kLocalEditsMax);
@@ -66,7 +66,7 @@ TEST_CASE_METHOD(LocalEditsFixture,
 
 TEST_CASE_METHOD(LocalEditsFixture, "a confirmed edit is kept until its sequence is durable",
                  "[replica]") {
-  const ClientSequence seq = submit();
+  const ClientSequence seq = add();
   CHECK(edits.confirm(seq, {1, 10}) == LocalEditState::pending);
   CHECK(state(seq) == LocalEditState::confirmed);
   CHECK(edits.unanswered().empty());
@@ -80,7 +80,7 @@ TEST_CASE_METHOD(LocalEditsFixture, "a confirmed edit is kept until its sequence
 
 TEST_CASE_METHOD(LocalEditsFixture, "a second commit of an edit is recognised and counts once",
                  "[replica]") {
-  const ClientSequence seq = submit();
+  const ClientSequence seq = add();
   CHECK(edits.confirm(seq, {1, 10}) == LocalEditState::pending);
   CHECK(edits.confirm(seq, {1, 10}) == LocalEditState::confirmed);
   CHECK(edits.counters().confirmed == 1);
@@ -88,7 +88,7 @@ TEST_CASE_METHOD(LocalEditsFixture, "a second commit of an edit is recognised an
 
 TEST_CASE_METHOD(LocalEditsFixture,
                  "a rejected edit leaves, and a confirmed one cannot be rejected", "[replica]") {
-  const ClientSequence first = submit(), second = submit();
+  const ClientSequence first = add(), second = add();
   edits.confirm(second, {1, 10});
   const auto rejection = edits.reject({first, RejectReason::rate_limited, "", 0}, {1, 10});
   REQUIRE(rejection.has_value());
@@ -104,7 +104,7 @@ TEST_CASE_METHOD(LocalEditsFixture,
 TEST_CASE_METHOD(LocalEditsFixture,
                  "an edit that was resolved unseen is durable with the sequence it names",
                  "[replica]") {
-  const ClientSequence named = submit(), unnamed = submit();
+  const ClientSequence named = add(), unnamed = add();
   const auto rejection = edits.reject(resolved(named, 4), {1, 10});
   REQUIRE(rejection.has_value());
   CHECK(rejection->is_resolved);
@@ -121,7 +121,7 @@ TEST_CASE_METHOD(LocalEditsFixture,
 TEST_CASE_METHOD(LocalEditsFixture,
                  "a new connection offers lost edits again and asks about missed answers",
                  "[replica]") {
-  const ClientSequence confirmed = submit(), missed = submit(), lost = submit(), open = submit();
+  const ClientSequence confirmed = add(), missed = add(), lost = add(), open = add();
   edits.confirm(confirmed, {1, 10});
   edits.confirm(lost, {1, 11});
   edits.mark_sent(missed, 100);
@@ -141,7 +141,7 @@ TEST_CASE_METHOD(LocalEditsFixture,
 
 TEST_CASE_METHOD(LocalEditsFixture, "an unseen edit that the server lost is pending again",
                  "[replica]") {
-  const ClientSequence seq = submit();
+  const ClientSequence seq = add();
   edits.reject(resolved(seq, 3), {1, 10});
   CHECK(edits.resume(0) == Sequences{seq});
   CHECK(state(seq) == LocalEditState::pending);
@@ -150,7 +150,7 @@ TEST_CASE_METHOD(LocalEditsFixture, "an unseen edit that the server lost is pend
 
 TEST_CASE_METHOD(LocalEditsFixture, "edits are overdue in the order in which they were sent",
                  "[replica]") {
-  const ClientSequence first = submit(), second = submit(), third = submit();
+  const ClientSequence first = add(), second = add(), third = add();
   edits.mark_sent(first, 100);
   edits.mark_sent(second, 200);
   edits.mark_sent(third, 300);
@@ -158,7 +158,7 @@ TEST_CASE_METHOD(LocalEditsFixture, "edits are overdue in the order in which the
   CHECK(edits.overdue(200) == Sequences{first, second});
   edits.confirm(first, {1, 1});
   CHECK(edits.overdue(300) == Sequences{second, third});
-  const ClientSequence unsent = submit();
+  const ClientSequence unsent = add();
   edits.mark_sent(second, 900);
   CHECK(edits.overdue(300).empty());
   CHECK(edits.unanswered() == Sequences{second, third, unsent});

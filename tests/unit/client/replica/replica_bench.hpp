@@ -35,8 +35,8 @@ struct ReplicaBench {
     static_cast<void>(replica.drain_changes());
   }
   void take(const Commit& commit) { REQUIRE(replica.receive(commit, kNow).has_value()); }
-  ClientSequence submit(const EditDescriptor& edit) {
-    const auto seq = replica.submit(edit, 500, 600);
+  ClientSequence predict(const EditDescriptor& edit) {
+    const auto seq = replica.predict(edit, 500, 600);
     REQUIRE(seq.has_value());
     return *seq;
   }

@@ -104,7 +104,7 @@ TEST_CASE_METHOD(ReplicaBench, "after a restored backup no edited chunk is trust
   load(kRight);
   take(world.commit(other(1), set({3, 4, 5}, 2)));
   replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
-  const ClientSequence seq = submit(set({20, 1, 1}, 3));
+  const ClientSequence seq = predict(set({20, 1, 1}, 3));
   take(world.commit(mine(seq), set({20, 1, 1}, 3)));
   replica.receive(Durable{world.epoch(), 2});
   REQUIRE(replica.confirmed(kHere) != nullptr);

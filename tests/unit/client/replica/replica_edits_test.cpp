@@ -12,7 +12,7 @@ TEST_CASE_METHOD(ReplicaBench,
   CHECK(replica.shown(kHere).get() == &replica.confirmed(kHere)->voxels);
   take(world.commit(other(1), set({3, 4, 5}, 2)));
   CHECK(replica.shown(kHere).get() == &replica.confirmed(kHere)->voxels);
-  submit(set({1, 1, 1}, 3));
+  predict(set({1, 1, 1}, 3));
   CHECK(replica.shown(kHere).get() != &replica.confirmed(kHere)->voxels);
   CHECK(material_at(replica.confirmed(kHere)->voxels, {1, 1, 1}) == kEmpty);
 }
@@ -21,7 +21,7 @@ TEST_CASE_METHOD(ReplicaBench,
                  "a local edit shows at once and is not meshed again when it is confirmed",
                  "[replica]") {
   load(kHere);
-  const ClientSequence seq = submit(set({3, 4, 5}, 2));
+  const ClientSequence seq = predict(set({3, 4, 5}, 2));
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
   ReplicaChanges changes = replica.drain_changes();
   REQUIRE(changes.edits.size() == 1);
@@ -44,7 +44,7 @@ TEST_CASE_METHOD(ReplicaBench,
                  "a local edit leaves when the durable watermark reaches it, and not before",
                  "[replica]") {
   load(kHere);
-  const ClientSequence seq = submit(set({3, 4, 5}, 2));
+  const ClientSequence seq = predict(set({3, 4, 5}, 2));
   take(world.commit(mine(seq), set({3, 4, 5}, 2)));
   CHECK(replica.local_edits().all().size() == 1);
   CHECK(replica.local_edits().pending_count() == 0);
@@ -58,7 +58,7 @@ TEST_CASE_METHOD(ReplicaBench,
 TEST_CASE_METHOD(ReplicaBench, "a watermark that overtakes the commit retires the local edit",
                  "[replica]") {
   load(kHere);
-  const ClientSequence seq = submit(set({3, 4, 5}, 2));
+  const ClientSequence seq = predict(set({3, 4, 5}, 2));
   const Commit commit = world.commit(mine(seq), set({3, 4, 5}, 2));
   replica.receive(Durable{world.epoch(), 1});
   CHECK(replica.local_edits().all().size() == 1);
@@ -68,8 +68,8 @@ TEST_CASE_METHOD(ReplicaBench, "a watermark that overtakes the commit retires th
 
 TEST_CASE_METHOD(ReplicaBench, "a reject removes its prediction and no other", "[replica]") {
   load(kHere);
-  const ClientSequence first = submit(set({3, 4, 5}, 2));
-  submit(box({3, 4, 5}, {5, 5, 6}, 6, {MaskKind::only_empty, kEmpty}));
+  const ClientSequence first = predict(set({3, 4, 5}, 2));
+  predict(box({3, 4, 5}, {5, 5, 6}, 6, {MaskKind::only_empty, kEmpty}));
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
   CHECK(replica.shown_at({4, 4, 5}) == Material{6});
   static_cast<void>(replica.drain_changes());
@@ -89,7 +89,7 @@ TEST_CASE_METHOD(ReplicaBench, "a reject removes its prediction and no other", "
 TEST_CASE_METHOD(ReplicaBench, "pending edits stay on top of commits that arrive in between",
                  "[replica]") {
   load(kHere);
-  const ClientSequence seq = submit(set({3, 4, 5}, 2));
+  const ClientSequence seq = predict(set({3, 4, 5}, 2));
   take(world.commit(other(1), set({3, 4, 5}, 7)));
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
   CHECK(material_at(replica.confirmed(kHere)->voxels, {3, 4, 5}) == Material{7});
@@ -104,7 +104,7 @@ TEST_CASE_METHOD(ReplicaBench, "pending edits stay on top of commits that arrive
 TEST_CASE_METHOD(ReplicaBench,
                  "a local edit in a chunk that has not arrived shows with its snapshot",
                  "[replica]") {
-  submit(set({3, 4, 5}, 2));
+  predict(set({3, 4, 5}, 2));
   CHECK_FALSE(replica.shown_at({3, 4, 5}).has_value());
   load(kHere);
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
@@ -116,7 +116,7 @@ TEST_CASE_METHOD(ReplicaBench,
                  "[replica]") {
   load(kHere);
   const EditDescriptor fill = box({4, 4, 4}, {6, 5, 5}, 3, {MaskKind::only_empty, kEmpty});
-  const ClientSequence seq = submit(fill);
+  const ClientSequence seq = predict(fill);
   const Commit own = world.commit(mine(seq), fill);
   const Commit dig = world.commit(other(1), set({5, 4, 4}, kEmpty));
   replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);  // contains both
@@ -134,12 +134,12 @@ TEST_CASE_METHOD(
   load(kHere);
   load(kRight);
   std::vector<std::pair<OperationId, EditDescriptor>> kept;
-  const ClientSequence first = submit(set({3, 4, 5}, 2));
+  const ClientSequence first = predict(set({3, 4, 5}, 2));
   kept.emplace_back(mine(first), set({3, 4, 5}, 2));
   take(world.commit(mine(first), set({3, 4, 5}, 2)));  // sequence 1, durable
-  const ClientSequence second = submit(set({20, 1, 1}, 3));
-  take(world.commit(mine(second), set({20, 1, 1}, 3)));     // sequence 2, lost in the crash
-  const ClientSequence third = submit(set({21, 1, 1}, 4));  // never answered
+  const ClientSequence second = predict(set({20, 1, 1}, 3));
+  take(world.commit(mine(second), set({20, 1, 1}, 3)));      // sequence 2, lost in the crash
+  const ClientSequence third = predict(set({21, 1, 1}, 4));  // never answered
   replica.receive(Durable{world.epoch(), 1});
 
   world.restart(kept);
@@ -165,7 +165,7 @@ TEST_CASE_METHOD(ReplicaBench,
                  "[replica]") {
   load(kHere);
   const EditDescriptor fill = box({4, 4, 4}, {6, 5, 5}, 3, {MaskKind::only_empty, kEmpty});
-  const ClientSequence seq = submit(fill);
+  const ClientSequence seq = predict(fill);
   static_cast<void>(world.commit(mine(seq), fill));  // applied, but the commit did not arrive
   static_cast<void>(world.commit(other(1), set({5, 4, 4}, kEmpty)));
   CHECK(replica.open(parameters(seq)) == std::vector{seq});  // to get the answer
@@ -190,7 +190,7 @@ TEST_CASE_METHOD(ReplicaBench,
                  "a prediction rejected while disconnected is removed by an equal snapshot",
                  "[replica]") {
   load(kHere);
-  const ClientSequence seq = submit(set({3, 4, 5}, 2));
+  const ClientSequence seq = predict(set({3, 4, 5}, 2));
   CHECK(replica.open(parameters(seq)) == std::vector{seq});
   replica.receive(chunks_of(world.snapshot(kHere.at)), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
@@ -203,7 +203,7 @@ TEST_CASE_METHOD(ReplicaBench,
 TEST_CASE_METHOD(ReplicaBench, "an edit that was resolved unseen makes its chunk be requested",
                  "[replica]") {
   load(kHere);
-  const ClientSequence seq = submit(set({3, 4, 5}, 2));
+  const ClientSequence seq = predict(set({3, 4, 5}, 2));
   static_cast<void>(world.commit(mine(seq), set({3, 4, 5}, 2)));
   replica.receive(Reject{seq, RejectReason::already_resolved, ""}, 2000);
   CHECK(replica.take_requests() == std::vector{kHere});
@@ -220,7 +220,7 @@ TEST_CASE_METHOD(
     "a prediction is removed when another server orders, and the reject was lost with the first one",
     "[replica]") {
   load(kHere);
-  const ClientSequence rejected = submit(set({3, 4, 5}, 2));
+  const ClientSequence rejected = predict(set({3, 4, 5}, 2));
   CHECK(replica.resume(rejected) == std::vector{rejected});
   replica.receive(Reject{rejected, RejectReason::already_resolved, ""}, 2000);
   CHECK(replica.take_requests() == std::vector{kHere});
@@ -233,12 +233,12 @@ TEST_CASE_METHOD(
 TEST_CASE_METHOD(ReplicaBench, "local edits beyond the bound are refused before anything is shown",
                  "[replica]") {
   Replica fresh;
-  CHECK_FALSE(fresh.submit(set({0, 0, 0}, 1), 0, 0).has_value());  // no world yet
+  CHECK_FALSE(fresh.predict(set({0, 0, 0}, 1), 0, 0).has_value());  // no world yet
   static_cast<void>(fresh.open({kEdge, kMe, kInstance, 1, 0, 0, 0}));
-  CHECK_FALSE(fresh.submit(box({0, 0, 0}, {0, 1, 1}, 1), 0, 0).has_value());
+  CHECK_FALSE(fresh.predict(box({0, 0, 0}, {0, 1, 1}, 1), 0, 0).has_value());
   for (std::size_t i = 0; i < kLocalEditsMax; ++i)
-    REQUIRE(fresh.submit(set({0, 0, 0}, 1), 0, 0).has_value());
-  CHECK_FALSE(fresh.submit(set({0, 0, 0}, 1), 0, 0).has_value());
+    REQUIRE(fresh.predict(set({0, 0, 0}, 1), 0, 0).has_value());
+  CHECK_FALSE(fresh.predict(set({0, 0, 0}, 1), 0, 0).has_value());
   CHECK(fresh.local_edits().all().size() == kLocalEditsMax);
 }
 
@@ -247,7 +247,7 @@ TEST_CASE_METHOD(
     "a stale snapshot after a reconnection removes predictions that were answered meanwhile",
     "[replica]") {
   load(kHere);
-  const ClientSequence seq = submit(set({3, 4, 5}, 2));
+  const ClientSequence seq = predict(set({3, 4, 5}, 2));
   static_cast<void>(replica.open(parameters(seq)));  // rejected, but the answer was lost
   const ChunkSnapshot overtaken = world.snapshot(kHere.at);
   take(world.commit(other(1), set({1, 1, 1}, 2)));
@@ -260,7 +260,7 @@ TEST_CASE_METHOD(ReplicaBench,
                  "a prediction whose edit is gone does not survive a restart that lost the reject",
                  "[replica]") {
   load(kHere);
-  const ClientSequence seq = submit(set({3, 4, 5}, 2));
+  const ClientSequence seq = predict(set({3, 4, 5}, 2));
   static_cast<void>(replica.open(parameters(seq)));
   replica.receive(Reject{seq, RejectReason::already_resolved, "", 0},
                   2000);  // the server has lost the outcome
@@ -277,9 +277,9 @@ TEST_CASE_METHOD(ReplicaBench, "an edit beyond the world's heights is refused be
   low.heights = {-16, 8};
   static_cast<void>(replica.open(low));
   load(kHere);
-  CHECK(replica.submit(set({1, 7, 1}, 2), 0, 0).has_value());
-  CHECK_FALSE(replica.submit(set({1, 8, 1}, 2), 0, 0).has_value());
-  CHECK_FALSE(replica.submit({FillSphere{{4, 4, 4}, 4}, {}, 2}, 0, 0).has_value());
+  CHECK(replica.predict(set({1, 7, 1}, 2), 0, 0).has_value());
+  CHECK_FALSE(replica.predict(set({1, 8, 1}, 2), 0, 0).has_value());
+  CHECK_FALSE(replica.predict({FillSphere{{4, 4, 4}, 4}, {}, 2}, 0, 0).has_value());
   CHECK(replica.shown_at({4, 4, 4}) == kEmpty);
   CHECK(replica.local_edits().all().size() == 1);
 }
@@ -291,8 +291,8 @@ TEST_CASE_METHOD(ReplicaBench,
   small.edit_volume_max = 8;
   static_cast<void>(replica.open(small));
   load(kHere);
-  CHECK(replica.submit({FillBox{{{1, 1, 1}, {3, 3, 3}}}, {}, 2}, 0, 0).has_value());
-  const auto refused = replica.submit({FillBox{{{4, 1, 1}, {7, 4, 2}}}, {}, 2}, 0, 0);
+  CHECK(replica.predict({FillBox{{{1, 1, 1}, {3, 3, 3}}}, {}, 2}, 0, 0).has_value());
+  const auto refused = replica.predict({FillBox{{{4, 1, 1}, {7, 4, 2}}}, {}, 2}, 0, 0);
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error().code == ErrorCode::limit_exceeded);
   CHECK(replica.shown_at({4, 1, 1}) == kEmpty);
@@ -317,7 +317,7 @@ TEST_CASE_METHOD(ReplicaBench, "the memory of edits that wait counts until they 
                  "[replica]") {
   load(kHere);
   const std::size_t loaded = replica.chunk_bytes();
-  const ClientSequence seq = submit(box({0, 0, 0}, {9, 9, 9}, 2));
+  const ClientSequence seq = predict(box({0, 0, 0}, {9, 9, 9}, 2));
   CHECK(replica.chunk_bytes() > loaded);  // the shown runs are no longer the confirmed ones
   replica.receive(Reject{seq, RejectReason::busy, "", 0}, 700);
   CHECK(replica.chunk_bytes() == loaded);

@@ -336,11 +336,11 @@ TEST_CASE_METHOD(ReplicaBench, "an unavailable chunk shows nothing, and edits of
   REQUIRE(changes.chunks.size() == 1);
   CHECK(changes.chunks[0].removed);
 
-  CHECK_FALSE(replica.submit(set({3, 3, 3}, 2), 0, 0).has_value());
-  CHECK_FALSE(replica.submit(box({14, 0, 0}, {18, 1, 1}, 2), 0, 0).has_value());  // partly
+  CHECK_FALSE(replica.predict(set({3, 3, 3}, 2), 0, 0).has_value());
+  CHECK_FALSE(replica.predict(box({14, 0, 0}, {18, 1, 1}, 2), 0, 0).has_value());  // partly
   CHECK(replica.local_edits().all().empty());
   CHECK(replica.shown_at({17, 0, 0}) == kEmpty);
-  submit(set({17, 0, 0}, 2));
+  predict(set({17, 0, 0}, 2));
   for (ClientSequence i = 2; i < 10; ++i) take(world.commit(other(i), set({2, 1, 1}, 2)));
   CHECK(replica.counters().chunk_edits_buffered == 1);
   CHECK(replica.take_requests().empty());
@@ -349,7 +349,7 @@ TEST_CASE_METHOD(ReplicaBench, "an unavailable chunk shows nothing, and edits of
   CHECK_FALSE(replica.unavailable(kHere));
   CHECK(replica.unavailable_count() == 0);
   require_in_step(kHere);
-  submit(set({3, 3, 3}, 2));
+  predict(set({3, 3, 3}, 2));
 }
 
 TEST_CASE_METHOD(ReplicaBench,

@@ -59,7 +59,7 @@ TEST_CASE_METHOD(PlannerBench,
   load_all();
   drain();
   const bool meshed = GENERATE(false, true);
-  const auto seq = replica.submit({SetVoxel{{15, 6, 7}}, {}, 2}, 0, 0);
+  const auto seq = replica.predict({SetVoxel{{15, 6, 7}}, {}, 2}, 0, 0);
   REQUIRE(seq);
   pass_changes();
   if (meshed) drain();

@@ -177,7 +177,7 @@ TEST_CASE_METHOD(PlannerBench, "a chunk with an edit of this client comes before
   load_all();
   drain();
   commit({5, 5, 5}, 2);  // at the eye
-  REQUIRE(replica.submit({SetVoxel{{-10, 5, 5}}, {}, 2}, 0, 0).has_value());
+  REQUIRE(replica.predict({SetVoxel{{-10, 5, 5}}, {}, 2}, 0, 0).has_value());
   pass_changes();
   auto first = planner.next();
   auto second = planner.next();

@@ -97,8 +97,8 @@ struct FakeScriptHost final : ScriptHost {
   TimeUs edit_wait_us(const EditDescriptor& /*edit*/, TimeUs now_us) override {
     return std::max<TimeUs>(0, budget_from_us - now_us);
   }
-  Result<void, std::string> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
-                                   ActionPart part) override {
+  Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
+                                    ActionPart part) override {
     edits.push_back({edit, due_us, now_us, part});
     if (!takes) return failure("the past cannot be edited");
     return {};

@@ -32,13 +32,13 @@ TEST_CASE_METHOD(MaterialSession, "an edit with a new material is predicted as s
                  "[session][materials]") {
   open_with(kFeatureMaterials);
   CHECK((server.hello.features & kFeatureMaterials) != 0);
-  CHECK_FALSE(session.submit(set({1, 1, 1}, kFirst), now, now).has_value());
+  CHECK_FALSE(session.offer(set({1, 1, 1}, kFirst), now, now).has_value());
   receive(MaterialsAdded{kFirst, kLime});
   CHECK(session.is_open());
   CHECK(session.welcome()->materials.find("lime") == kFirst);
   CHECK(session.welcome()->materials[kFirst].look == kLook);
-  CHECK(session.submit(set({1, 1, 1}, kFirst), now, now).has_value());
-  CHECK_FALSE(session.submit(set({1, 1, 1}, kFirst + 1), now, now).has_value());
+  CHECK(session.offer(set({1, 1, 1}, kFirst), now, now).has_value());
+  CHECK_FALSE(session.offer(set({1, 1, 1}, kFirst + 1), now, now).has_value());
   pong();
   session.tick(now);
   CHECK(take<EditRequest>(sent()).size() == 1);
@@ -74,9 +74,9 @@ TEST_CASE_METHOD(MaterialSession, "another connection takes the table of its wel
   session.disconnected();
   open_with(kFeatureMaterials);  // a server that lost the record
   CHECK(session.welcome()->materials == default_material_table());
-  CHECK_FALSE(session.submit(set({1, 1, 1}, kFirst), now, now).has_value());
+  CHECK_FALSE(session.offer(set({1, 1, 1}, kFirst), now, now).has_value());
   receive(MaterialsAdded{kFirst, kLime});
-  CHECK(session.submit(set({1, 1, 1}, kFirst), now, now).has_value());
+  CHECK(session.offer(set({1, 1, 1}, kFirst), now, now).has_value());
 }
 
 }  // namespace runstone::test

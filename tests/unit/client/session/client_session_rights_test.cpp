@@ -27,7 +27,7 @@ struct RightsSession : SessionBench {
     static_cast<void>(sent());
   }
   std::string refusal(const EditDescriptor& edit) {
-    const auto seq = session.submit(edit, now, now);
+    const auto seq = session.offer(edit, now, now);
     return seq ? "" : session.refusal_text(edit, seq.error());
   }
 };

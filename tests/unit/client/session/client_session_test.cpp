@@ -79,10 +79,10 @@ TEST_CASE_METHOD(SessionBench,
   receive(welcome);
   receive(SessionAccepted{6, 0});
   REQUIRE(session.is_open());
-  CHECK(session.submit(set({0, 3, 0}, 1), now, now).has_value());
-  CHECK_FALSE(session.submit(set({0, 4, 0}, 1), now, now).has_value());
-  CHECK(session.submit({FillBox{{{0, 0, 0}, {3, 3, 3}}}, {}, 1}, now, now).has_value());
-  CHECK_FALSE(session.submit({FillBox{{{0, 0, 0}, {4, 3, 3}}}, {}, 1}, now, now).has_value());
+  CHECK(session.offer(set({0, 3, 0}, 1), now, now).has_value());
+  CHECK_FALSE(session.offer(set({0, 4, 0}, 1), now, now).has_value());
+  CHECK(session.offer({FillBox{{{0, 0, 0}, {3, 3, 3}}}, {}, 1}, now, now).has_value());
+  CHECK_FALSE(session.offer({FillBox{{{0, 0, 0}, {4, 3, 3}}}, {}, 1}, now, now).has_value());
 }
 
 TEST_CASE_METHOD(SessionBench, "a welcome with a feature that hello did not offer is rejected",
@@ -161,7 +161,7 @@ TEST_CASE_METHOD(SessionBench,
                  "edits wait for the clock offset and carry the server's time of the click",
                  "[session]") {
   static_cast<void>(open());
-  const auto seq = session.submit(set({1, 2, 3}, 4), now - 300, now);
+  const auto seq = session.offer(set({1, 2, 3}, 4), now - 300, now);
   REQUIRE(seq.has_value());
   auto out = sent();
   CHECK(take<EditRequest>(out).empty());
@@ -174,7 +174,7 @@ TEST_CASE_METHOD(SessionBench,
   CHECK(edits[0].submitted_us == now - 300 + kClockLead);
   CHECK(edits[0].edit == set({1, 2, 3}, 4));
   // From now on edits are sent at once.
-  REQUIRE(session.submit(set({1, 2, 3}, 5), now, now).has_value());
+  REQUIRE(session.offer(set({1, 2, 3}, 5), now, now).has_value());
   out = sent();
   CHECK(take<EditRequest>(out).size() == 1);
 }
@@ -183,7 +183,7 @@ TEST_CASE_METHOD(SessionBench,
                  "without a pong edits are sent after kOffsetWaitUsMax, with an unknown time",
                  "[session]") {
   static_cast<void>(open());
-  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  REQUIRE(session.offer(set({1, 2, 3}, 4), now, now).has_value());
   now += kOffsetWaitUsMax;
   session.tick(now);
   auto out = sent();
@@ -195,24 +195,24 @@ TEST_CASE_METHOD(SessionBench,
 TEST_CASE_METHOD(SessionBench, "an unknown material is refused before it is shown", "[session]") {
   static_cast<void>(open());
   const auto last = static_cast<Material>(default_material_table().size());
-  CHECK_FALSE(session.submit(set({1, 2, 3}, last), now, now).has_value());
+  CHECK_FALSE(session.offer(set({1, 2, 3}, last), now, now).has_value());
   // The same in the mask and in a clipboard.
   const auto masked = [](Material material) {
     return EditDescriptor{SetVoxel{{1, 2, 3}}, {MaskKind::only_material, material}, 1};
   };
-  CHECK_FALSE(session.submit(masked(last), now, now).has_value());
+  CHECK_FALSE(session.offer(masked(last), now, now).has_value());
   const auto paste = [](Material material) {
     ClipboardBuilder cells({2, 1, 1});
     cells.append(1, Material{1});
     cells.append(1, material);
     return EditDescriptor{Paste{{1, 2, 3}, *cells.finish(), {}}, {}, kEmpty};
   };
-  CHECK_FALSE(session.submit(paste(last), now, now).has_value());
-  CHECK_FALSE(session.submit({Paste{}, {}, kEmpty}, now, now).has_value());  // without a clipboard
+  CHECK_FALSE(session.offer(paste(last), now, now).has_value());
+  CHECK_FALSE(session.offer({Paste{}, {}, kEmpty}, now, now).has_value());  // without a clipboard
   CHECK(session.replica().local_edits().all().empty());
   const auto known = static_cast<Material>(last - 1);
-  CHECK(session.submit(masked(known), now, now).has_value());
-  CHECK(session.submit(paste(known), now, now).has_value());
+  CHECK(session.offer(masked(known), now, now).has_value());
+  CHECK(session.offer(paste(known), now, now).has_value());
 }
 
 TEST_CASE_METHOD(SessionBench,
@@ -220,10 +220,10 @@ TEST_CASE_METHOD(SessionBench,
                  "[session]") {
   static_cast<void>(open());
   pong();
-  for (int i = 0; i < 3; ++i) REQUIRE(session.submit(set({i, 2, 3}, 4), now, now).has_value());
+  for (int i = 0; i < 3; ++i) REQUIRE(session.offer(set({i, 2, 3}, 4), now, now).has_value());
   static_cast<void>(sent());
   session.disconnected();
-  REQUIRE(session.submit(set({9, 2, 3}, 4), now, now).has_value());  // while disconnected
+  REQUIRE(session.offer(set({9, 2, 3}, 4), now, now).has_value());  // while disconnected
   CHECK(sent().empty());
   server.resolved = 1;
   auto out = open();
@@ -253,7 +253,7 @@ TEST_CASE_METHOD(SessionBench, "another world at the same address starts with an
                  "[session]") {
   static_cast<void>(open());
   receive(chunks_of(server.world.snapshot({0, 0, 0})));
-  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  REQUIRE(session.offer(set({1, 2, 3}, 4), now, now).has_value());
   session.disconnected();
   server.world_id = {9};
   auto out = open();
@@ -279,7 +279,7 @@ TEST_CASE_METHOD(SessionBench,
                  "[session]") {
   static_cast<void>(open());
   pong();
-  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  REQUIRE(session.offer(set({1, 2, 3}, 4), now, now).has_value());
   auto out = sent();
   REQUIRE(take<EditRequest>(out).size() == 1);
   receive(Reject{1, RejectReason::bad_edit, "unknown edit kind (at byte 0)", 0});
@@ -306,7 +306,7 @@ TEST_CASE_METHOD(
   static_cast<void>(open());
   pong();
   const EditDescriptor edit = set({1, 2, 3}, 4);
-  REQUIRE(session.submit(edit, now, now).has_value());
+  REQUIRE(session.offer(edit, now, now).has_value());
   receive(server.world.commit(session.operation(1), edit));
   REQUIRE(session.replica().local_edits().find(1)->state == LocalEditState::confirmed);
   session.disconnected();
@@ -345,7 +345,7 @@ TEST_CASE_METHOD(SessionBench,
   static_cast<void>(open());
   session.disconnected();
   now += 1'000;
-  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  REQUIRE(session.offer(set({1, 2, 3}, 4), now, now).has_value());
   now += 1'000;
   static_cast<void>(open());
   pong();
@@ -379,7 +379,7 @@ TEST_CASE_METHOD(SessionBench, "an edit of this connection that is rejected busy
   static_cast<void>(open());
   pong();
   now += 1'000;
-  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  REQUIRE(session.offer(set({1, 2, 3}, 4), now, now).has_value());
   static_cast<void>(sent());
   receive(Reject{1, RejectReason::busy, "", 0});
   now += 2 * LostEdits::kAgainUs;
@@ -394,7 +394,7 @@ TEST_CASE_METHOD(SessionBench, "an edit without an answer is sent again once per
                  "[session]") {
   static_cast<void>(open());
   pong();
-  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  REQUIRE(session.offer(set({1, 2, 3}, 4), now, now).has_value());
   static_cast<void>(sent());
   now += kAnswerUsMax - 1;
   pong();

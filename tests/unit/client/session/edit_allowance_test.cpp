@@ -42,8 +42,8 @@ TEST_CASE_METHOD(SessionBench, "an edit beyond the budget is refused before it i
                  "[session]") {
   server.edit_budget = {1, 2};
   open();
-  for (int i = 0; i < 2; ++i) REQUIRE(session.submit(kClick, now, now).has_value());
-  const auto refused = session.submit(kClick, now, now);
+  for (int i = 0; i < 2; ++i) REQUIRE(session.offer(kClick, now, now).has_value());
+  const auto refused = session.offer(kClick, now, now);
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error().code == ErrorCode::limit_exceeded);
   CHECK(session.edit_wait_us(kClick, now) > 0);

@@ -12,7 +12,7 @@ const EditDescriptor kOfAction{SetVoxel{{1, 2, 3}}, {}, 4};
 TEST_CASE("edits that are submitted again stay in their action", "[client_session]") {
   LocalEdits edits;
   const auto add = [&edits](ClientSequence action) {
-    return edits.submit(kOfAction, {}, 1, action).value();
+    return edits.add(kOfAction, {}, 1, action).value();
   };
   const ClientSequence first = add(kBeginsAction), alone = 4;
   static_cast<void>(add(first));
@@ -26,7 +26,7 @@ TEST_CASE("edits that are submitted again stay in their action", "[client_sessio
   ClientSequence next = 100;
   while (lost.due(20 + LostEdits::kAgainUs) != nullptr) {
     actions.push_back(lost.action());
-    lost.submitted(next++);
+    lost.offered(next++);
   }
   CHECK(actions == std::vector<ClientSequence>{kBeginsAction, 100, 100, 0, kBeginsAction});
 }

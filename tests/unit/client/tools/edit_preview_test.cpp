@@ -141,7 +141,7 @@ TEST_CASE("a preview shows exactly the voxels that the edit changes", "[tools][p
     const auto edits = tool.is_drawn() ? bench.box.release(bench.replica, last)
                                        : bench.box.press(bench.replica, last, button);
     const std::vector<Material> before = read_all(bench);
-    if (edits) bench.submit(*edits);
+    if (edits) bench.predict(*edits);
     const std::vector<Material> after = read_all(bench);
     if (after != before) ++changed;
     check_ghosts(bench.box.preview(), before, after);
@@ -158,7 +158,7 @@ TEST_CASE("a preview follows changes of the chunks below it", "[tools]") {
   finish_preview(bench, aim);
   CHECK(bench.box.preview().placed_voxels() == 1);
   CHECK_FALSE(bench.box.step_preview(bench.replica, aim, 64));
-  bench.submit({{SetVoxel{{3, 0, 3}}, {}, 2}});  // another edit sets the same voxel
+  bench.predict({{SetVoxel{{3, 0, 3}}, {}, 2}});  // another edit sets the same voxel
   CHECK(bench.box.step_preview(bench.replica, aim, 64));
   CHECK(bench.box.preview().placed_voxels() == 0);
   CHECK(bench.box.preview().ghosts().empty());

@@ -35,8 +35,8 @@ TEST_CASE("a mirrored edit changes the mirrored voxels", "[tools][property]") {
         ToolBench plain, other;
         plain.show_flat();
         other.show_flat();
-        plain.submit({edit});
-        other.submit({mirrored(edit, axis, centre2)});
+        plain.predict({edit});
+        other.predict({mirrored(edit, axis, centre2)});
         for (VoxelPos p{-kHalf, 0, 0}; p.x < kHalf; ++p.x) {
           for (p.y = -6; p.y < 8; ++p.y) {
             for (p.z = -kHalf; p.z < kHalf; ++p.z) {
@@ -72,10 +72,10 @@ TEST_CASE("merged edits have the effect of the edits one after another", "[tools
     ToolBench plain, merged;
     plain.show_flat();
     merged.show_flat();
-    plain.submit(edits);
+    plain.predict(edits);
     const auto one = merge_edits(edits);
     REQUIRE(one.size() == 1);
-    merged.submit(one);
+    merged.predict(one);
     for (VoxelPos p{-kHalf, 0, 0}; p.x < kHalf; ++p.x) {
       for (p.y = -8; p.y < 12; ++p.y) {
         for (p.z = -kHalf; p.z < kHalf; ++p.z) {

@@ -48,8 +48,8 @@ class ToolBench {
     aim.hit = RayHit{voxel, replica.shown_at(voxel).value_or(kEmpty), face, 5};
     return aim;
   }
-  void submit(const std::vector<EditDescriptor>& edits) {
-    for (const EditDescriptor& edit : edits) REQUIRE(replica.submit(edit, 0, 0));
+  void predict(const std::vector<EditDescriptor>& edits) {
+    for (const EditDescriptor& edit : edits) REQUIRE(replica.predict(edit, 0, 0));
   }
   Material at(VoxelPos voxel) const { return replica.shown_at(voxel).value_or(kEmpty); }
 

@@ -15,7 +15,7 @@ struct FlatBench : ToolBench {
   std::size_t press(VoxelPos voxel, ToolButton button = ToolButton::place, Material held = 2) {
     const auto edits = box.press(replica, aim_at(voxel, Direction::pos_y, held), button);
     REQUIRE(edits);
-    submit(*edits);
+    predict(*edits);
     return edits->size();
   }
   std::string refusal(VoxelPos voxel, ToolButton button) {
@@ -94,8 +94,8 @@ TEST_CASE_METHOD(FlatBench, "a stroke is one edit along the places of the held b
 
 TEST_CASE_METHOD(FlatBench, "fill changes the connected surface of one material, up to its bound",
                  "[tools]") {
-  submit({{FillBox{{{0, -1, 0}, {8, 0, 8}}}, {}, 3}});  // a square of another material
-  submit({{FillBox{{{4, 0, 0}, {8, 1, 8}}}, {}, 3}});   // its half is one voxel higher
+  predict({{FillBox{{{0, -1, 0}, {8, 0, 8}}}, {}, 3}});  // a square of another material
+  predict({{FillBox{{{4, 0, 0}, {8, 1, 8}}}, {}, 3}});   // its half is one voxel higher
   REQUIRE(box.choose("fill"));
   CHECK(press({1, -1, 1}) == 1);
   CHECK(at({0, -1, 7}) == 2);
@@ -111,7 +111,7 @@ TEST_CASE_METHOD(FlatBench, "fill changes the connected surface of one material,
 
 TEST_CASE_METHOD(FlatBench, "replace changes one material in a sphere, a cube or the selection",
                  "[tools]") {
-  submit({{FillBox{{{0, -3, 0}, {8, 0, 8}}}, {}, 3}});
+  predict({{FillBox{{{0, -3, 0}, {8, 0, 8}}}, {}, 3}});
   REQUIRE(box.choose("replace"));
   REQUIRE(box.set_parameter("where", 1));
   REQUIRE(box.set_parameter("radius", 2));
@@ -140,7 +140,7 @@ TEST_CASE_METHOD(FlatBench, "paint changes the surface in a sphere and keeps air
 }
 
 TEST_CASE_METHOD(FlatBench, "extrude pushes a flat face out and in by its depth", "[tools]") {
-  submit({{FillBox{{{0, 0, 0}, {3, 1, 2}}}, {}, 3}});
+  predict({{FillBox{{{0, 0, 0}, {3, 1, 2}}}, {}, 3}});
   REQUIRE(box.choose("extrude"));
   REQUIRE(box.set_parameter("depth", 4));
   press({1, 0, 1});
@@ -157,7 +157,7 @@ TEST_CASE_METHOD(FlatBench, "extrude pushes a flat face out and in by its depth"
 
 TEST_CASE_METHOD(FlatBench, "a selection is copied, cut, pasted, turned, stacked and moved",
                  "[tools]") {
-  submit({{SetVoxel{{0, 0, 0}}, {}, 2}, {SetVoxel{{2, 0, 0}}, {}, 3}});
+  predict({{SetVoxel{{0, 0, 0}}, {}, 2}, {SetVoxel{{2, 0, 0}}, {}, 3}});
   CHECK(box.copy(replica, true).error() == "nothing is selected");
   REQUIRE(box.choose("select"));
   press({0, 0, 0});
@@ -165,7 +165,7 @@ TEST_CASE_METHOD(FlatBench, "a selection is copied, cut, pasted, turned, stacked
   REQUIRE(box.selection() == VoxelBox{{0, 0, 0}, {3, 1, 1}});
   const auto cut = box.cut(replica, true);
   REQUIRE(cut);
-  submit(*cut);
+  predict(*cut);
   CHECK(at({0, 0, 0}) == kEmpty);
 
   REQUIRE(box.choose("paste"));
@@ -184,18 +184,18 @@ TEST_CASE_METHOD(FlatBench, "a selection is copied, cut, pasted, turned, stacked
   const auto stack = box.stack(replica, Direction::pos_y, 3);
   REQUIRE(stack);
   CHECK(stack->size() == 1);  // one record
-  submit(*stack);
+  predict(*stack);
   CHECK(at({9, 3, 10}) == 2);
   const auto moved_voxels = box.move(replica, Direction::pos_z, 2);
   REQUIRE(moved_voxels);
   CHECK(moved_voxels->size() == 1);
-  submit(*moved_voxels);
+  predict(*moved_voxels);
   CHECK(at({9, 0, 10}) == kEmpty);
   CHECK(at({9, 0, 12}) == 2);
   CHECK(box.selection() == VoxelBox{{9, 0, 12}, {12, 1, 13}});
   const auto filled = box.fill(1);
   REQUIRE(filled);
-  submit(*filled);
+  predict(*filled);
   CHECK(at({10, 0, 12}) == 1);
   CHECK(box.stack(replica, Direction::pos_y, 65).error() == "a stack has 1 to 64 copies");
 }
@@ -206,12 +206,12 @@ TEST_CASE_METHOD(FlatBench, "a selection that moves onto a part of itself keeps 
     for (std::size_t i = 0; i < voxels.size(); ++i)
       CHECK(at({static_cast<std::int32_t>(i), 0, 0}) == voxels[i]);
   };
-  submit(
+  predict(
       {{SetVoxel{{1, 0, 0}}, {}, 2}, {SetVoxel{{3, 0, 0}}, {}, 3}, {SetVoxel{{6, 0, 0}}, {}, 1}});
   box.select(VoxelBox{{1, 0, 0}, {5, 1, 1}});
-  submit(*box.move(replica, Direction::pos_x, 2));
+  predict(*box.move(replica, Direction::pos_x, 2));
   row({0, 0, 0, 2, 0, 3, 1});  // where the selection has air, the world stays
-  submit(*box.move(replica, Direction::neg_x, 1));
+  predict(*box.move(replica, Direction::neg_x, 1));
   row({0, 0, 2, 0, 3, 1, 0});
   CHECK(box.selection() == VoxelBox{{2, 0, 0}, {6, 1, 1}});
   CHECK(box.move(replica, Direction::pos_x, 0).error() ==
@@ -247,7 +247,7 @@ TEST_CASE_METHOD(FlatBench, "the clipboard keeps its materials by name from worl
     return out;
   };
   CHECK(box.set_materials(table({"stone", "sand", "ice"})).empty());
-  submit({{SetVoxel{{0, 0, 0}}, {}, 2}, {SetVoxel{{2, 0, 0}}, {}, 3}});
+  predict({{SetVoxel{{0, 0, 0}}, {}, 2}, {SetVoxel{{2, 0, 0}}, {}, 3}});
   box.select(VoxelBox{{0, 0, 0}, {3, 1, 1}});
   REQUIRE(box.copy(replica, true));
   CHECK(box.set_materials(table({"clay", "stone", "sand", "ice"})).empty());

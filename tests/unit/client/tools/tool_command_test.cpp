@@ -57,14 +57,14 @@ TEST_CASE_METHOD(CommandBench, "a typed place of a tool that works on a face nee
   edits(ToolChoice{"extrude"});
   edits(ParameterChange{"voxels", 1});
   type({{3, -1, 3}});
-  submit({apply()});
+  predict({apply()});
   CHECK(at({3, 0, 3}) == 1);
   type({{3, 5, 3}});
   CHECK(run(TypedApply{}).error() == "there is only air at that place");
   type({{1000, 0, 0}});
   CHECK(run(TypedApply{}).error() == "that place is not loaded");
   type({{3, 0, 3}}, ToolButton::place, Direction::pos_x);
-  submit({apply()});
+  predict({apply()});
   CHECK(at({4, 0, 3}) == 1);
 }
 
@@ -101,7 +101,7 @@ TEST_CASE_METHOD(CommandBench, "the preview shows typed places, and the aim agai
   while (!box.step_preview(replica, nowhere, 1'000)) continue;
   CHECK(box.preview().placed_voxels() == 8);
   CHECK(box.preview_refusal().empty());
-  submit({apply()});
+  predict({apply()});
   while (!box.step_preview(replica, nowhere, 1'000)) continue;
   CHECK(box.preview().placed_voxels() == 0);  // it would set what is there
   edits(PlacesChange{});

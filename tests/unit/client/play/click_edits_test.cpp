@@ -1,4 +1,4 @@
-#include "client/play/held_button.hpp"
+#include "client/play/click_edits.hpp"
 
 #include <catch2/catch.hpp>
 

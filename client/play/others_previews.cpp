@@ -1,4 +1,4 @@
-#include "client/app/others_previews.hpp"
+#include "client/play/others_previews.hpp"
 
 #include "client/display/player_body.hpp"
 #include "common/mesh/visibility.hpp"

@@ -1,6 +1,8 @@
-#include "client/play/tool_actions.hpp"
+#include "client/play/player_actions.hpp"
 
+#include <array>
 #include <cstddef>
+#include <cstdio>
 #include <utility>
 
 namespace runstone {
@@ -76,12 +78,12 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
     case Action::copy:
       return words(box.copy(replica, true), "copied");
     case Action::cut:
-      return words(tool.submit(box.cut(replica, true), now_us), "cut");
+      return words(tool.propose(box.cut(replica, true), now_us), "cut");
     case Action::paste:
       if (!box.clipboard().content) return KeyAnswer(failure("nothing was copied"));
       return choose_tool(tool, "paste");
     case Action::clear_selection:
-      return words(tool.submit(box.fill(kEmpty), now_us), "cleared");
+      return words(tool.propose(box.fill(kEmpty), now_us), "cleared");
     case Action::rotate:
       box.rotate(1);
       return KeyAnswer(std::string("the clipboard is turned"));
@@ -95,6 +97,24 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
     default:
       return std::nullopt;
   }
+}
+
+std::optional<std::string> act_on_wheel(const WindowInput& input, EditTool& tool, Player& player,
+                                        Hotbar& hotbar) {
+  if (input.scroll == 0) return std::nullopt;
+  if (input.resizes) {
+    tool.box().change_size(input.scroll);
+    return std::nullopt;
+  }
+  if (input.fast && !player.is_walking()) {
+    player.change_flying_speed(input.scroll);
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "flying speed: %g voxels a second",
+                  player.flying_speed());
+    return std::string(text.data());
+  }
+  hotbar.scroll(input.scroll);
+  return std::nullopt;
 }
 
 }  // namespace runstone

@@ -1,4 +1,4 @@
-#include "client/app/others_previews.hpp"
+#include "client/play/others_previews.hpp"
 
 #include "client/display/player_body.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
@@ -57,7 +57,7 @@ TEST_CASE_METHOD(OthersBench, "the previews of others are ghosts in the colours 
 TEST_CASE_METHOD(OthersBench, "a preview of another player follows the world", "[client_app]") {
   const Shared shared = {{7, box_of(3)}};
   settle(shared);
-  submit(shared.at(7).edits);
+  predict(shared.at(7).edits);
   CHECK(settle(shared) == 1);
   CHECK(ghosts().empty());
 }

@@ -1,18 +1,18 @@
-#include "client/play/wheel_actions.hpp"
+#include "client/play/player_actions.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "common/materials/palette.hpp"
 #include "tests/unit/client/session/session_bench.hpp"
 
-namespace runstone::test::wheel_actions_test {
+namespace runstone::test::player_actions_test {
 
 using session_bench::SessionBench;
 
 TEST_CASE_METHOD(SessionBench, "the wheel chooses a slot, resizes the tool or changes the speed",
                  "[client]") {
   Player player;
-  PlayerHotbar bar(player);
+  Hotbar bar(player);
   bar.fill(default_material_table());
   LatencyRecorder recorder;
   ToolBox box;
@@ -24,7 +24,7 @@ TEST_CASE_METHOD(SessionBench, "the wheel chooses a slot, resizes the tool or ch
   CHECK_FALSE(act_on_wheel(input, tool, player, bar));
   input.scroll = -1;
   CHECK_FALSE(act_on_wheel(input, tool, player, bar));
-  CHECK(bar.slots().slot() == 1);
+  CHECK(bar.slot() == 1);
 
   input.scroll = 1;
   input.resizes = true;
@@ -36,7 +36,7 @@ TEST_CASE_METHOD(SessionBench, "the wheel chooses a slot, resizes the tool or ch
   CHECK(act_on_wheel(input, tool, player, bar) == "flying speed: 24 voxels a second");
   player.set_walking(true);
   CHECK_FALSE(act_on_wheel(input, tool, player, bar));
-  CHECK(bar.slots().slot() == 0);
+  CHECK(bar.slot() == 0);
 }
 
-}  // namespace runstone::test::wheel_actions_test
+}  // namespace runstone::test::player_actions_test

@@ -1,0 +1,239 @@
+#include "client/play/play.hpp"
+
+#include <algorithm>
+
+#include "client/play/player_actions.hpp"
+#include "client/play/time_travel.hpp"
+#include "common/core/text.hpp"
+
+namespace runstone {
+namespace {
+
+/// A longer time between two turns moves the player as if it were this long, in seconds.
+constexpr double kSecondsMax = 0.1;
+
+}  // namespace
+
+Play::Play(ClientSession& session, ToolBox& tools, DrawQueue* draw_queue, PlayLog& log,
+           const PlayConfig& config, std::function<void()> wake)
+    : session_(session),
+      log_(log),
+      driver_(config.driver),
+      walks_(config.walks),
+      started_us_(config.started_us),
+      pipeline_(session.replica(), draw_queue, config.is_watched, config.workers, std::move(wake)),
+      tool_(session, player_, pipeline_.recorder(), tools,
+            [this](const std::string& why) { log_.on_edit_refused(why); }),
+      motion_(session.replica(), player_),
+      clicks_(tool_),
+      hotbar_(player_),
+      chat_(session),
+      view_(session, player_, config.wishes.radii, config.wishes.far_levels),
+      limits_(config.wishes, session.replica(), pipeline_, view_),
+      panels_(session, tools),
+      scene_(session, player_, tool_, view_, panels_, others_),
+      server_notices_(session),
+      input_us_(config.started_us) {
+  input_.set_keys(config.keys);
+}
+
+void Play::begin_turn(bool is_opened, const ShownPanels& shown, TimeUs now_us) {
+  if (is_opened) open_world(now_us);
+  take_new_materials();
+  take_changes(now_us);
+  view_.update_completeness(now_us);
+  if (panels_.step(shown, now_us)) pipeline_.moved();
+  limit_memory(now_us);
+}
+
+void Play::open_world(TimeUs now_us) {
+  if (!opened_us_) {
+    opened_us_ = now_us;
+    if (walks_) player_.set_walking(true);
+  }
+  const Welcome& welcome = *session_.welcome();
+  player_.enter(welcome.world_id, welcome.spawn);
+  if (std::exchange(world_, welcome.world_id) != welcome.world_id) hotbar_.fill(welcome.materials);
+  set_materials(welcome.materials);
+  limits_.open_world(welcome.view_radius_max);
+}
+
+void Play::take_new_materials() {
+  if (!session_.is_open()) return;
+  const MaterialTable& materials = session_.welcome()->materials;
+  const std::size_t known = pipeline_.materials().size();
+  if (materials.size() <= known) return;
+  set_materials(materials);
+  log_.on_new_materials(materials.size() - known);
+}
+
+void Play::set_materials(const MaterialTable& materials) {
+  pipeline_.set_materials(materials);
+  motion_.set_materials(materials);
+  panels_.set_materials(materials);
+  others_.set_materials(materials);
+  const std::string lost = tool_.box().set_materials(materials);
+  if (!lost.empty()) notify(with_unseen_replaced(lost), NoticeKind::warning);
+}
+
+void Play::limit_memory(TimeUs now_us) {
+  if (const auto change = limits_.limit_view(now_us)) {
+    log_.on_view_limited(*change);
+    take_changes(now_us);
+  }
+  limits_.limit_meshes();
+  if (const auto change = limits_.limit_far(now_us)) {
+    log_.on_view_limited(*change);
+    take_changes(now_us);
+  }
+}
+
+void Play::take_changes(TimeUs now_us) {
+  const ReplicaChanges changes = session_.replica().drain_changes();
+  pipeline_.take(changes, session_.clock(), now_us);
+  panels_.take(changes);
+  const std::vector<PlayerNotice> state = server_notices_.take_state();
+  log_.on_changes(changes, state);
+  notices_.insert(notices_.end(), state.begin(), state.end());
+  for (const RejectedEdit& reject : changes.rejects) notices_.push_back(notice_of(reject));
+}
+
+RoutedInput Play::handle_input(const UiFocus& focus, const PlaySettings& settings, TimeUs now_us) {
+  const double seconds = static_cast<double>(now_us - std::exchange(input_us_, now_us)) / 1e6;
+  RoutedInput routed = input_.route(focus);
+  const WindowInput& input = routed.player;
+  if (driver_ == Driver::person) move(input, std::min(seconds, kSecondsMax), settings.look);
+  for (const std::string& why : clicks_.step(input, driver_ != Driver::script, now_us))
+    notify(why, NoticeKind::warning);
+  if (input.pick_clicks != 0) {
+    if (const auto hit = tool_.pick()) hotbar_.hold(hit->material);
+  }
+  if (const auto line = act_on_wheel(input, tool_, player_, hotbar_)) notify(*line);
+  if (!input.actions.empty() || input.scroll != 0) pipeline_.moved();
+  return routed;
+}
+
+void Play::move(const WindowInput& input, double seconds, const LookSettings& look) {
+  const bool was_waiting = player_.is_waiting_for_ground();
+  motion_.step(input, seconds, look);
+  if (player_.take_fallen_out())
+    notify("you fell out of the world: you are at its spawn, and fly", NoticeKind::warning);
+  if (was_waiting != player_.is_waiting_for_ground()) pipeline_.moved();
+}
+
+bool Play::act(Action action, TimeUs now_us) {
+  if (hotbar_.act(action)) return true;
+  if (const auto done = act_on_tool(tool_, action, now_us)) {
+    notify(*done ? **done : done->error(), *done ? NoticeKind::information : NoticeKind::warning);
+    return true;
+  }
+  switch (action) {
+    case Action::walk_or_fly:
+      player_.set_walking(!player_.is_walking());
+      return true;
+    case Action::undo:
+      chat_.send("/undo");  // the answer is shown
+      return true;
+    case Action::redo:
+      chat_.send("/redo");
+      return true;
+    case Action::earlier:
+      step_in_time(session_, -1);
+      return true;
+    case Action::later:
+      step_in_time(session_, 1);
+      return true;
+    case Action::live:
+      show_after(session_, kSequenceShownMax);
+      return true;
+    default:
+      return false;
+  }
+}
+
+void Play::carry_out(const UiAction& action, TimeUs now_us) {
+  if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
+  if (const auto* held = std::get_if<HoldMaterial>(&action)) hotbar_.hold(held->material);
+  if (const auto* chosen = std::get_if<SetInspection>(&action)) pipeline_.inspect(chosen->modes);
+  if (const auto* moment = std::get_if<ShowMoment>(&action))
+    show_after(session_, moment->is_live ? kSequenceShownMax : moment->seq);
+  // If a rollback cannot be ordered, its window says why.
+  if (const auto* order = std::get_if<RollbackOrder>(&action)) static_cast<void>(carry_out(*order));
+  if (const auto* command = std::get_if<ToolCommand>(&action)) {
+    if (const auto done = tool_.carry_out(*command, now_us); !done)
+      notify(done.error(), NoticeKind::warning);
+  }
+}
+
+void Play::follow(TimeUs now_us) {
+  if (view_.follow(now_us)) {
+    pipeline_.view_changed();
+    take_changes(now_us);
+  }
+  if (!session_.replica().opened()) return;
+  pipeline_.joined(session_.view(), started_us_);
+  pipeline_.set_eye(player_.chunk(session_.replica().chunk_edge()));
+}
+
+void Play::step_previews(const PlaySettings& settings, TimeUs now_us) {
+  static const std::vector<EditDescriptor> kNothing;
+  if (tool_.step_preview()) pipeline_.moved();
+  const bool is_on = tool_.box().is_preview_shown();
+  const bool is_shared = is_on && settings.shares_previews && tool_.has_preview();
+  session_.share_preview(is_shared ? tool_.box().preview().edits() : kNothing, now_us);
+  const Replica& replica = session_.replica();
+  const bool is_shown = is_on && settings.shows_previews && replica.opened() && !replica.past();
+  const bool has_changed =
+      is_shown ? others_.step(replica, session_.others_previews()) : others_.clear();
+  if (has_changed) pipeline_.moved();
+}
+
+void Play::keep_pace(bool has_focus, bool is_fading, TimeUs now_us) {
+  const bool is_moving = panels_.take_moved(now_us) || is_fading;
+  pace_.step(pipeline_, has_focus, player_.pose(), is_moving, now_us);
+}
+
+FrameOrder Play::frame(const FrameChoice& choice, TimeUs now_us) {
+  pace_.drew(now_us);
+  FrameOrder out;
+  out.camera = scene_.camera(choice.field_of_view);
+  out.width = choice.size[0];
+  out.height = choice.size[1];
+  out.contents = scene_.contents(choice.outlines_aim, choice.shows_ground);
+  return out;
+}
+
+std::string Play::state_text() const {
+  if (const auto& past = session_.replica().past()) return moment_text(past);
+  if (player_.is_waiting_for_ground()) return "the ground here has not arrived yet";
+  return limits_.text();
+}
+
+void Play::fill(HudState& state, const ShownPanels& shown) const {
+  state.materials = &pipeline_.materials();
+  state.slots = hotbar_.slots();
+  state.slot = hotbar_.slot();
+  state.is_captured = input_.is_captured();
+  if (const auto sight = tool_.pick()) {
+    state.aimed_at = sight->material;
+    state.sight = sight->voxel;
+  }
+  state.tools = &tool_.box();
+  state.has_preview = tool_.has_preview();
+  panels_.fill(state, shown, player_.pose());
+}
+
+bool Play::has_ground(TimeUs wait_us, TimeUs now_us) const {
+  if (!opened_us_) return false;
+  return (session_.is_open() && pipeline_.meshed_count() >= kGroundChunks) || view_.is_complete() ||
+         now_us - *opened_us_ > wait_us;
+}
+
+void Play::add_to(ClientReport& report, TimeUs now_us) const {
+  report.seconds = static_cast<double>(now_us - started_us_) / 1e6;
+  report.edits_refused = tool_.refused();
+  limits_.add_to(report, session_.view(), scene_.reach());
+  pipeline_.add_to(report);
+}
+
+}  // namespace runstone

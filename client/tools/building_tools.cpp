@@ -1,0 +1,272 @@
+#include "client/tools/building_tools.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/tools/cell_list.hpp"
+#include "client/tools/shown_voxels.hpp"
+#include "client/tools/surface_flood.hpp"
+
+namespace runstone {
+namespace {
+
+/// Sets or removes one voxel.
+class VoxelTool final : public Tool {
+ public:
+  VoxelTool() : Tool("voxel", "one voxel; hold the button for more", {}) {}
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits VoxelTool::plan(const ToolInput& input) const {
+  return std::vector{EditDescriptor{SetVoxel{input.target}, {}, material_of(input)}};
+}
+
+/// Fills or clears the box between two corners.
+class BoxTool final : public Tool {
+ public:
+  BoxTool() : Tool("box", "the box between two clicks", {mask_parameter()}) {}
+  std::size_t points_before() const override { return 1; }
+  std::string_view place_name(std::size_t) const override { return "corner"; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits BoxTool::plan(const ToolInput& input) const {
+  const VoxelPos first = input.points.empty() ? input.target : input.points.front();
+  return std::vector{
+      EditDescriptor{FillBox{box_between(first, input.target)}, mask(), material_of(input)}};
+}
+
+/// Fills or clears a sphere. Its radius is the parameter; with radius 0 the first click chooses the
+/// centre, and the second one a voxel of the surface.
+class SphereTool final : public Tool {
+ public:
+  SphereTool()
+      : Tool("sphere", "a ball; with radius 0 a second click gives its size",
+             {{"radius", "voxels", 0, 64, 4, {}}, mask_parameter()}) {}
+  std::size_t points_before() const override { return value("radius") == 0 ? 1 : 0; }
+  std::string_view place_name(std::size_t i) const override {
+    return i == 0 ? "centre" : "place on the surface";
+  }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits SphereTool::plan(const ToolInput& input) const {
+  VoxelPos centre = input.target;
+  std::int32_t radius = value("radius");
+  if (radius == 0 && !input.points.empty()) {
+    centre = input.points.front();
+    const auto square = [](std::int32_t a, std::int32_t b) {
+      const double d = static_cast<double>(a) - b;
+      return d * d;
+    };
+    const double distance =
+        std::sqrt(square(input.target.x, centre.x) + square(input.target.y, centre.y) +
+                  square(input.target.z, centre.z));
+    radius = static_cast<std::int32_t>(
+        std::lround(std::min(distance, static_cast<double>(kEditRadiusMax))));
+  }
+  return std::vector{EditDescriptor{FillSphere{centre, static_cast<std::uint16_t>(radius)}, mask(),
+                                    material_of(input)}};
+}
+
+/// Draws a line as thick as a sphere of its radius along the places over which the player moves the
+/// aim while the button is held. The whole line is one edit.
+class StrokeTool final : public Tool {
+ public:
+  StrokeTool()
+      : Tool("stroke", "a line, as long as the button is held",
+             {{"radius", "voxels", 1, 32, 2, {}}, mask_parameter()}) {}
+  bool is_drawn() const override { return true; }
+  std::string_view place_name(std::size_t) const override { return "place"; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits StrokeTool::plan(const ToolInput& input) const {
+  const auto radius = static_cast<std::uint16_t>(value("radius"));
+  if (input.points.size() < 2) {
+    const VoxelPos centre = input.points.empty() ? input.target : input.points.front();
+    return std::vector{EditDescriptor{FillSphere{centre, radius}, mask(), material_of(input)}};
+  }
+  FillStroke stroke{{input.points.begin(), input.points.end()}, radius};
+  return std::vector{EditDescriptor{std::move(stroke), mask(), material_of(input)}};
+}
+
+/// Replaces or removes the connected surface of one material on the side that the player looks at.
+class FillTool final : public Tool {
+ public:
+  FillTool()
+      : Tool("fill", "the connected surface of one material",
+             {{"voxels", "voxels", 1, 16384, 4096, {}}}) {}
+  bool chooses_solid() const override { return true; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits FillTool::plan(const ToolInput& input) const {
+  SurfaceFlood flood;
+  flood.face = *input.aim.hit->face;
+  flood.follows_steps = true;
+  flood.voxels_max = static_cast<std::size_t>(value("voxels"));
+  std::vector<Cell> cells;
+  for (const VoxelPos at : flood_surface(input.replica, input.target, flood))
+    cells.push_back({at, material_of(input)});
+  return paste_of(std::move(cells), {});
+}
+
+/// Replaces the material that the player looks at, in a sphere or a cube around it or in the
+/// selection.
+class ReplaceTool final : public Tool {
+ public:
+  ReplaceTool()
+      : Tool("replace", "the material in sight by the one in the hand",
+             {{"where", "", 0, 2, 0, {"sphere", "cube", "selection"}},
+              {"radius", "voxels", 1, 64, 8, {}}}) {}
+  bool chooses_solid() const override { return true; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits ReplaceTool::plan(const ToolInput& input) const {
+  const Mask mask{MaskKind::only_material, input.aim.hit->material};
+  const Material material = material_of(input);
+  if (material == mask.material) return failure("you hold the material that you look at");
+  const std::int32_t radius = value("radius");
+  switch (value("where")) {
+    case 1: {
+      const VoxelPos c = input.target;
+      const VoxelBox cube = box_between({c.x - radius, c.y - radius, c.z - radius},
+                                        {c.x + radius, c.y + radius, c.z + radius});
+      return std::vector{EditDescriptor{FillBox{cube}, mask, material}};
+    }
+    case 2:
+      if (!input.selection) return failure("nothing is selected");
+      return std::vector{EditDescriptor{FillBox{*input.selection}, mask, material}};
+    default:
+      return std::vector{EditDescriptor{
+          FillSphere{input.target, static_cast<std::uint16_t>(radius)}, mask, material}};
+  }
+}
+
+/// Returns true if a voxel beside this one is empty.
+bool is_exposed(ShownVoxels& voxels, VoxelPos at) {
+  for (int d = 0; d < kDirectionCount; ++d) {
+    if (voxels.at(moved(at, static_cast<Direction>(d), 1)) == std::optional<Material>(kEmpty))
+      return true;
+  }
+  return false;
+}
+
+/// Changes the material of the surface voxels in a sphere. Empty voxels stay empty.
+class PaintTool final : public Tool {
+ public:
+  PaintTool()
+      : Tool("paint", "the surface around the aim, not the air",
+             {{"radius", "voxels", 0, 12, 3, {}}}) {}
+  bool chooses_solid() const override { return true; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits PaintTool::plan(const ToolInput& input) const {
+  if (input.button == ToolButton::clear) return failure("paint with the right button");
+  const std::int32_t radius = value("radius");
+  ShownVoxels voxels(input.replica);
+  std::vector<Cell> cells;
+  for (std::int32_t z = -radius; z <= radius; ++z) {
+    for (std::int32_t y = -radius; y <= radius; ++y) {
+      for (std::int32_t x = -radius; x <= radius; ++x) {
+        if (x * x + y * y + z * z > radius * radius + radius) continue;
+        const VoxelPos at{input.target.x + x, input.target.y + y, input.target.z + z};
+        const auto material = voxels.at(at);
+        if (!material || *material == kEmpty || *material == input.aim.held) continue;
+        if (is_exposed(voxels, at)) cells.push_back({at, input.aim.held});
+      }
+    }
+  }
+  // Another player may clear a voxel before the edit is ordered: then the voxel stays empty.
+  return paste_of(std::move(cells), {MaskKind::only_solid, kEmpty});
+}
+
+/// Bounds the work while the player moves the aim.
+constexpr std::size_t kCellsMax = 65'536;
+
+/// Moves the connected flat face that the player looks at outward or inward.
+class ExtrudeTool final : public Tool {
+ public:
+  ExtrudeTool()
+      : Tool("extrude", "pushes a flat face out, or in",
+             {{"depth", "voxels", 1, 64, 1, {}},
+              {"voxels", "voxels", 1, 16384, 4096, {}},
+              {"material", "", 0, 1, 0, {"any", "same"}}}) {}
+  bool chooses_solid() const override { return true; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits ExtrudeTool::plan(const ToolInput& input) const {
+  const Direction face = *input.aim.hit->face;
+  const std::int32_t depth = value("depth");
+  SurfaceFlood flood;
+  flood.face = face;
+  flood.same_material = value("material") == 1;
+  flood.voxels_max = static_cast<std::size_t>(value("voxels"));
+  const bool is_outward = input.button == ToolButton::place;
+  const std::vector<VoxelPos> surface = flood_surface(input.replica, input.target, flood);
+  if (surface.size() * static_cast<std::size_t>(depth) > kCellsMax)
+    return failure("the change has more than 65,536 voxels");
+  ShownVoxels voxels(input.replica);
+  std::vector<Cell> cells;
+  for (const VoxelPos at : surface) {
+    const Material material = is_outward ? voxels.at(at).value_or(kEmpty) : kEmpty;
+    for (std::int32_t i = 0; i < depth; ++i)
+      cells.push_back({moved(at, face, is_outward ? i + 1 : -i), material});
+  }
+  const Mask mask = is_outward ? Mask{MaskKind::only_empty, kEmpty} : Mask{};
+  return paste_of(std::move(cells), mask);
+}
+
+/// Chooses the box between two voxels as the selection.
+class SelectTool final : public Tool {
+ public:
+  SelectTool() : Tool("select", "two corners choose a box", {}) {}
+  std::size_t points_before() const override { return 1; }
+  bool chooses_solid() const override { return true; }
+  bool selects() const override { return true; }
+  std::string_view place_name(std::size_t) const override { return "corner"; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits SelectTool::plan(const ToolInput&) const { return std::vector<EditDescriptor>{}; }
+
+/// Pastes the clipboard at the place that the player looks at. The place is the middle of the
+/// lowest layer.
+class PasteTool final : public Tool {
+ public:
+  PasteTool() : Tool("paste", "puts the clipboard down", {mask_parameter()}) {}
+  std::string_view place_name(std::size_t) const override { return "middle of the lowest layer"; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits PasteTool::plan(const ToolInput& input) const {
+  if (!input.clipboard.content) return failure("nothing was copied");
+  if (input.button == ToolButton::clear) return failure("paste with the right button");
+  const Extent sides = input.clipboard.orientation.rotated(input.clipboard.content->extent());
+  const VoxelPos at{input.target.x - sides.x / 2, input.target.y, input.target.z - sides.z / 2};
+  return std::vector{EditDescriptor{Paste{at, input.clipboard.content, input.clipboard.orientation},
+                                    mask(), kEmpty}};
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<Tool>> make_tools() {
+  std::vector<std::unique_ptr<Tool>> out;
+  out.push_back(std::make_unique<VoxelTool>());
+  out.push_back(std::make_unique<BoxTool>());
+  out.push_back(std::make_unique<SphereTool>());
+  out.push_back(std::make_unique<StrokeTool>());
+  out.push_back(std::make_unique<FillTool>());
+  out.push_back(std::make_unique<ReplaceTool>());
+  out.push_back(std::make_unique<PaintTool>());
+  out.push_back(std::make_unique<ExtrudeTool>());
+  out.push_back(std::make_unique<SelectTool>());
+  out.push_back(std::make_unique<PasteTool>());
+  return out;
+}
+
+}  // namespace runstone

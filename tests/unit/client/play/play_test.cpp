@@ -1,0 +1,199 @@
+// The turns of a player, without a network, a window and threads.
+#include "client/play/play.hpp"
+
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "client/display/player_body.hpp"
+#include "tests/unit/client/session/session_bench.hpp"
+
+namespace runstone::test::play_test {
+
+using namespace session_bench;
+
+namespace {
+
+struct RecordedLog final : PlayLog {
+  void on_edit_refused(const std::string& why) override { refused.push_back(why); }
+  void on_changes(const ReplicaChanges& changes, std::span<const PlayerNotice> state) override {
+    rejects += changes.rejects.size();
+    states += state.size();
+  }
+  void on_new_materials(std::size_t count) override { new_materials += count; }
+
+  std::vector<std::string> refused;
+  std::size_t rejects = 0, states = 0, new_materials = 0;
+};
+
+/// A player in a world of solid ground below height 0.
+struct PlayBench : SessionBench {
+  PlayBench() {
+    server.features = kFeaturePreviews | kFeatureCommands | kFeatureChat;
+    static_cast<void>(open());
+    turn(true);
+  }
+  static PlayConfig config() {
+    PlayConfig out;
+    out.wishes = {256, {1, 1}, 0};
+    out.is_watched = false;
+    return out;
+  }
+  /// Makes a turn as the programs do. Returns the input that was not the player's.
+  RoutedInput turn(bool is_opened = false) {
+    now += 20'000;
+    play.begin_turn(is_opened, {}, now);
+    const RoutedInput routed = play.handle_input({}, settings, now);
+    for (const Action action : routed.player.actions) static_cast<void>(play.act(action, now));
+    play.take_changes(now);
+    play.follow(now);
+    session.tick(now);
+    play.take_changes(now);
+    play.step_previews(settings, now);
+    return routed;
+  }
+  void show_ground() {
+    for (const std::int32_t y : {-1, 0}) receive(chunks_of(server.world.snapshot({0, y, 0})));
+    play.player().move_to({8.5, 3.5, 8.5});
+    play.player().look(0, -std::numbers::pi / 2);
+    turn();
+  }
+  /// Returns the colours of the ghosts of other players in a frame.
+  std::vector<std::array<std::uint8_t, 3>> tints() {
+    std::vector<std::array<std::uint8_t, 3>> out;
+    for (const GhostChunk& ghost : play.frame({}, now).contents.ghosts) {
+      if (ghost.tint) out.push_back(*ghost.tint);
+    }
+    return out;
+  }
+  std::vector<std::string> notices() {
+    std::vector<std::string> out;
+    for (const PlayerNotice& notice : play.take_notices()) out.push_back(notice.text);
+    return out;
+  }
+
+  RecordedLog log;
+  ToolBox tools;
+  PlaySettings settings;
+  Play play{session, tools, nullptr, log, config()};
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(PlayBench, "a world that opens has its materials in every part", "[client]") {
+  CHECK(play.was_opened());
+  CHECK(play.pipeline().materials().size() == default_material_table().size());
+  CHECK(play.hotbar().slots()[0] != kEmpty);
+  CHECK(play.player().held() == play.hotbar().slots()[0]);
+  CHECK(play.player().eye() == server.welcome.spawn);
+  CHECK(session.view().centre == play.player().chunk(kEdge));
+  CHECK_FALSE(play.has_ground(1'000'000, now));
+  CHECK(play.has_ground(1'000'000, now + 2'000'000));
+}
+
+TEST_CASE_METHOD(PlayBench, "after a lost connection the player has the same place and hotbar",
+                 "[client]") {
+  play.player().move_to({3, 4, 5});
+  play.hotbar().choose(4);
+  session.disconnected();
+  static_cast<void>(open());
+  turn(true);
+  CHECK(play.player().eye() == WorldPos{3, 4, 5});
+  CHECK(play.hotbar().slot() == 4);
+  session.disconnected();
+  server.world_id = {9};
+  static_cast<void>(open());
+  turn(true);
+  CHECK(play.player().eye() == server.welcome.spawn);
+  CHECK(play.hotbar().slot() == 0);
+}
+
+TEST_CASE_METHOD(PlayBench, "a click edits the ground, and a key of a tool changes the tool",
+                 "[client]") {
+  show_ground();
+  play.input().capture();
+  play.input().push({ButtonEvent{MouseButton::left, true}, ButtonEvent{MouseButton::left, false}});
+  turn();
+  REQUIRE(session.replica().local_edits().all().size() == 1);
+  CHECK(session.replica().shown_at({8, -1, 8}) == kEmpty);
+  CHECK(play.act(Action::next_tool, now));
+  CHECK(notices() == std::vector<std::string>{"tool: box"});
+  HudState state;
+  play.fill(state, {});
+  CHECK(state.is_captured);
+  CHECK(state.sight == VoxelPos{8, -2, 8});
+  CHECK(state.slots == play.hotbar().slots());
+}
+
+TEST_CASE_METHOD(PlayBench, "a play leaves the actions of the interface to its program",
+                 "[client]") {
+  for (const Action action : {Action::chat, Action::palette, Action::map, Action::timeline,
+                              Action::screenshot, Action::ground, Action::release, Action::help})
+    CHECK_FALSE(play.act(action, now));
+  CHECK(play.act(Action::walk_or_fly, now));
+  CHECK(play.player().is_walking());
+  turn();
+  CHECK(play.state_text() == "the ground here has not arrived yet");
+  CHECK(play.act(Action::hold_slot_3, now));
+  CHECK(play.hotbar().slot() == 2);
+  CHECK(play.act(Action::undo, now));
+  const auto commands = take<CommandRequest>(sent());
+  REQUIRE(commands.size() == 1);
+  CHECK(commands[0].text == "undo");
+  CHECK(play.act(Action::redo, now));  // the command before is still running
+  const auto lines = play.chat().take_lines();
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0].tone == ChatTone::refused);
+}
+
+TEST_CASE_METHOD(PlayBench, "what the server refuses is a notice, and the log gets it",
+                 "[client]") {
+  show_ground();
+  REQUIRE(play.tool().press(ToolButton::clear, now));
+  const ClientSequence seq = session.replica().local_edits().all().begin()->first;
+  Reject reject;
+  reject.client_seq = seq;
+  reject.reason = RejectReason::bad_edit;
+  receive(reject);
+  turn();
+  CHECK(log.rejects == 1);
+  CHECK(notices() == std::vector<std::string>{notice_of({0, reject.reason, ""}).text});
+  play.carry_out(ToolCommand{SelectionCommand{SelectionCommand::Kind::clear}}, now);
+  CHECK(notices() == std::vector<std::string>{"nothing is selected"});
+}
+
+TEST_CASE_METHOD(PlayBench, "players see the previews of one another", "[client][preview]") {
+  show_ground();
+  receive(PlayerList{{{8, "ben", keys(3).public_key}}, false, {}});
+  receive(PlayerPreview{8, {{FillBox{{{3, -1, 3}, {5, 1, 5}}}, {}, 2}}});
+  for (int i = 0; i < 5; ++i) turn();
+  REQUIRE_FALSE(tints().empty());
+  CHECK(tints()[0] == player_colour(8));
+  settings.shows_previews = false;
+  turn();
+  CHECK(tints().empty());
+  settings.shows_previews = true;
+  for (int i = 0; i < 5; ++i) turn();
+  CHECK_FALSE(tints().empty());
+  CHECK(play.act(Action::preview, now));  // hides all previews
+  turn();
+  CHECK(tints().empty());
+}
+
+TEST_CASE_METHOD(PlayBench, "the preview of the player's next click is shared",
+                 "[client][preview]") {
+  show_ground();
+  static_cast<void>(sent());
+  turn();
+  CHECK(take<PreviewShare>(sent()).empty());  // the plain voxel tool has no preview
+  REQUIRE(tools.choose("box"));
+  settings.shares_previews = false;
+  turn();
+  CHECK(take<PreviewShare>(sent()).empty());
+  settings.shares_previews = true;
+  turn();
+  const auto shared = take<PreviewShare>(sent());
+  REQUIRE(shared.size() == 1);
+  CHECK(shared[0].edits == tools.preview().edits());
+}
+
+}  // namespace runstone::test::play_test
