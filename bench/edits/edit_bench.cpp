@@ -111,7 +111,7 @@ Result<void, std::string> measure_replay(EditBenchResult& result, std::size_t ed
                                          unsigned repetitions) {
   const test::TempFolder folder;
   const auto timing = time_replay(edits, repetitions, folder.path());
-  if (!timing) return Unexpected<std::string>{timing.error()};
+  if (!timing) return failure(timing.error());
   const auto row = [&](const char* what, const std::vector<double>& rates) {
     std::vector<double> us;
     for (const double rate : rates) us.push_back(static_cast<double>(edits) / rate * 1e6);
@@ -147,7 +147,7 @@ Result<EditBenchResult, std::string> run_edit_bench(const BenchOptions& options,
   progress.flush();
   const unsigned replays = std::max(1U, options.repetitions / 10);
   const auto replayed = measure_replay(result, options.edits, replays);
-  if (!replayed) return Unexpected<std::string>{replayed.error()};
+  if (!replayed) return failure(replayed.error());
   fmt::print(progress, "replay\n");
   return result;
 }

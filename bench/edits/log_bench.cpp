@@ -40,7 +40,7 @@ double bytes_of(const std::string& folder) {
 Result<void, std::string> reopen(std::unique_ptr<Store>& store, const std::string& folder) {
   store.reset();
   auto opened = open_sqlite_world(folder, StoreAccess::read_write, {"", false});
-  if (!opened) return failure(opened.error());
+  if (!opened) return failure(opened.error().message());
   store = *std::move(opened);
   return {};
 }
@@ -51,7 +51,7 @@ struct Sampled {
 
 Result<Sampled, std::string> fill(Store& store, std::uint64_t edits, unsigned samples,
                                   double& append_us) {
-  if (auto raised = store.raise_epoch(); !raised) return failure(raised.error());
+  if (auto raised = store.raise_epoch(); !raised) return failure(raised.error().message());
   test::BuilderSession session(7);
   Sampled sampled;
   std::vector<EditRecord> batch;
@@ -61,7 +61,8 @@ Result<Sampled, std::string> fill(Store& store, std::uint64_t edits, unsigned sa
     if (i % std::max<std::uint64_t>(1, edits / samples) == 0)
       sampled.records.push_back(batch.back());
     if (batch.size() < 64 && i + 1 < edits) continue;
-    if (auto appended = store.append({}, batch); !appended) return failure(appended.error());
+    if (auto appended = store.append({}, batch); !appended)
+      return failure(appended.error().message());
     batch.clear();
   }
   append_us = ms_since(start) * 1000 / static_cast<double>(edits);
@@ -129,7 +130,7 @@ Result<std::vector<LogQuestion>, std::string> ask(Store& store,
         found.push_back(answer);
         return true;
       });
-      if (!queried) return failure(queried.error());
+      if (!queried) return failure(queried.error().message());
       times.push_back(ms_since(start));
       all += found.size();
     }
@@ -147,21 +148,21 @@ Result<LogMoments, std::string> visit(const std::string& folder, const Generator
   for (unsigned i = 0; i < moments; ++i) {
     const Sequence at = 1 + rng.next() % edits;
     auto reader = open_sqlite_world(folder, StoreAccess::read_only, {"", false});
-    if (!reader) return failure(reader.error());
+    if (!reader) return failure(reader.error().message());
     result.keyframes = (*reader)->keyframes()->size();
     ChunkCoord centre;
     const auto last = (*reader)->read_log(at, at, [&](const EditRecord& record) {
       centre = chunk_of(bounding_box(record.edit).min, (*reader)->meta().chunk_edge);
       return true;
     });
-    if (!last) return failure(last.error());
+    if (!last) return failure(last.error().message());
     const auto start = Clock::now();
     auto world = WorldAt::open(**reader, generator, at);
-    if (!world) return failure(world.error());
+    if (!world) return failure(world.error().message());
     open_ms.push_back(ms_since(start));
     const auto make = [&](const ChunkKey& key) -> Result<void, std::string> {
       const auto chunk = world->chunk(key);
-      if (!chunk) return failure(chunk.error());
+      if (!chunk) return failure(chunk.error().message());
       return {};
     };
     const auto viewing = Clock::now();
@@ -170,7 +171,7 @@ Result<LogMoments, std::string> visit(const std::string& folder, const Generator
         for (std::int32_t z = -kViewRadius; z <= kViewRadius; ++z) {
           if (x * x + y * y + z * z > kViewRadius * kViewRadius) continue;
           if (auto made = make({0, {centre.x + x, centre.y + y, centre.z + z}}); !made)
-            return Unexpected<std::string>{made.error()};
+            return failure(made.error());
         }
       }
     }
@@ -178,7 +179,7 @@ Result<LogMoments, std::string> visit(const std::string& folder, const Generator
     const auto making = Clock::now();
     const auto edited = world->edited();
     for (const ChunkKey& key : edited) {
-      if (auto made = make(key); !made) return Unexpected<std::string>{made.error()};
+      if (auto made = make(key); !made) return failure(made.error());
     }
     all_ms.push_back(open_ms.back() + ms_since(making));
     result.edits_read += static_cast<double>(at - world->stored_at());
@@ -199,7 +200,7 @@ Result<LogMoments, std::string> visit(const std::string& folder, const Generator
 Result<LogPreview, std::string> preview(Store& store, const Generator& generator, AuthorId author,
                                         unsigned repetitions) {
   const auto range = store.log_range();
-  if (!range) return failure(range.error());
+  if (!range) return failure(range.error().message());
   SelectionFilter filter;
   filter.authors = {author};
   filter.from_us = range->last.time_us - 60 * kMinute;
@@ -208,7 +209,7 @@ Result<LogPreview, std::string> preview(Store& store, const Generator& generator
   for (unsigned i = 0; i < repetitions; ++i) {
     const auto selecting = Clock::now();
     const auto selection = select_edits(store, filter);
-    if (!selection) return failure(selection.error());
+    if (!selection) return failure(selection.error().message());
     select_ms.push_back(ms_since(selecting));
     result.edits = selection->edits;
     result.chunks = selection->chunks.size();
@@ -217,7 +218,7 @@ Result<LogPreview, std::string> preview(Store& store, const Generator& generator
     RestorePlanner planner(store, generator);
     for (const auto& [key, edits] : selection->chunks) {
       const auto plan = planner.plan(key, edits, std::nullopt, range->last.version.seq);
-      if (!plan) return failure(plan.error());
+      if (!plan) return failure(plan.error().message());
       result.voxels += plan->voxels;
     }
     plan_ms.push_back(ms_since(planning));
@@ -239,28 +240,27 @@ Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::os
   meta.generator.name = "terrain";
   meta.materials = default_material_table();
   const auto generator = make_generator(meta.generator, meta.materials);
-  if (!generator) return Unexpected<std::string>{generator.error().what};
+  if (!generator) return failure(generator.error().what);
   auto created = create_sqlite_world(folder.path(), meta, {"", false});
-  if (!created) return failure(created.error());
+  if (!created) return failure(created.error().message());
   auto store = *std::move(created);
   const auto sampled = fill(*store, options.edits, options.repetitions, bench.append_us);
-  if (!sampled) return Unexpected<std::string>{sampled.error()};
-  if (auto opened = reopen(store, folder.path()); !opened)
-    return Unexpected<std::string>{opened.error()};
+  if (!sampled) return failure(sampled.error());
+  if (auto opened = reopen(store, folder.path()); !opened) return failure(opened.error());
   const double plain = bytes_of(folder.path());
   bench.bytes = plain / static_cast<double>(options.edits);
   fmt::print(progress, "the log is there\n");
 
   auto questions = ask(*store, sampled->records);
-  if (!questions) return Unexpected<std::string>{questions.error()};
+  if (!questions) return failure(questions.error());
   bench.questions = *std::move(questions);
   const auto visit_moments = [&]() -> Result<void, std::string> {
     auto moments = visit(folder.path(), **generator, options.repetitions, options.edits);
-    if (!moments) return Unexpected<std::string>{moments.error()};
+    if (!moments) return failure(moments.error());
     bench.moments.push_back(*std::move(moments));
     return {};
   };
-  if (auto visited = visit_moments(); !visited) return Unexpected<std::string>{visited.error()};
+  if (auto visited = visit_moments(); !visited) return failure(visited.error());
   fmt::print(progress, "moments without keyframes are done\n");
 
   KeyframeMaker maker(*store, **generator, {});
@@ -270,16 +270,15 @@ Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::os
         bench.keyframe_chunks += chunks.size();
         return store->save_keyframe(chunks, keyframe);
       });
-  if (!made) return failure(made.error());
+  if (!made) return failure(made.error().message());
   bench.keyframes_seconds = ms_since(start) / 1000;
-  if (auto opened = reopen(store, folder.path()); !opened)
-    return Unexpected<std::string>{opened.error()};
+  if (auto opened = reopen(store, folder.path()); !opened) return failure(opened.error());
   bench.keyframe_bytes = (bytes_of(folder.path()) - plain) / static_cast<double>(options.edits);
-  if (auto visited = visit_moments(); !visited) return Unexpected<std::string>{visited.error()};
+  if (auto visited = visit_moments(); !visited) return failure(visited.error());
   fmt::print(progress, "moments with keyframes are done\n");
   const auto previewed =
       preview(*store, **generator, sampled->records.back().op.author, options.repetitions);
-  if (!previewed) return Unexpected<std::string>{previewed.error()};
+  if (!previewed) return failure(previewed.error());
   bench.preview = *previewed;
   return bench;
 }

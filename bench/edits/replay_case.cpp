@@ -126,13 +126,13 @@ Result<std::unique_ptr<Store>, std::string> write_world(const std::string& folde
                                                         const WorldMeta& meta,
                                                         const std::vector<EditRecord>& records) {
   auto store = create_sqlite_world(folder, meta, {"", false});
-  if (!store) return Unexpected<std::string>{store.error().message()};
+  if (!store) return failure(store.error().message());
   const auto raised = (*store)->raise_epoch();
-  if (!raised) return Unexpected<std::string>{raised.error().message()};
+  if (!raised) return failure(raised.error().message());
   for (std::size_t first = 0; first < records.size(); first += kGroup) {
     const std::size_t count = std::min(kGroup, records.size() - first);
     const auto written = (*store)->append({}, std::span(records).subspan(first, count));
-    if (!written) return Unexpected<std::string>{written.error().message()};
+    if (!written) return failure(written.error().message());
   }
   return *std::move(store);
 }
@@ -146,14 +146,14 @@ Result<ReplayTiming, std::string> time_replay(std::size_t edits, unsigned repeti
   meta.generator = {"terrain", 1, kSeed, ""};
   meta.materials = default_material_table();
   const auto generator = make_generator(meta.generator, meta.materials);
-  if (!generator) return Unexpected<std::string>{generator.error().what};
+  if (!generator) return failure(generator.error().what);
   const VisibilityTable visibility(visibilities(meta.materials));
 
   test::BuilderSession session(kSeed);
   std::vector<EditRecord> records;
   while (records.size() < edits) records.push_back(session.next());
   const auto store = write_world(folder, meta, records);
-  if (!store) return Unexpected<std::string>{store.error()};
+  if (!store) return failure(store.error());
 
   ReplayTiming timing;
   timing.edits = edits;
@@ -164,7 +164,7 @@ Result<ReplayTiming, std::string> time_replay(std::size_t edits, unsigned repeti
     Replayer replayer(**store, **generator);
     const std::uint64_t start = now_ns();
     const auto report = replayer.run(kSequenceMax);
-    if (!report) return Unexpected<std::string>{report.error().message()};
+    if (!report) return failure(report.error().message());
     timing.from_log.push_back(per_second(edits, start));
     timing.chunks = report->digests.size();
 

@@ -117,7 +117,7 @@ Result<FramesWorld, std::string> frames_world(const std::string& name, const std
   }
   RUNSTONE_ASSERT(name == "luanti");
   const auto world = luanti_world(luanti);
-  if (!world) return Unexpected<std::string>{world.error()};
+  if (!world) return failure(world.error());
   return luanti_block(*world);
 }
 

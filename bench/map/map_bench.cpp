@@ -56,7 +56,7 @@ struct DrawnWorld {
   /// Opens the world.
   Result<void, std::string> open() {
     const auto opened = world.refresh(1, 0);
-    if (!opened) return failure(opened.error());
+    if (!opened) return failure(opened.error().message());
     return {};
   }
   StoreResult<Picture> draw(const MapMoment& moment, const MapPlace& place) {
@@ -84,7 +84,7 @@ Result<MapTimes, std::string> time_tiles(const char* what, unsigned count, Drawn
     const StoreResult<Picture> picture = draw(place, rng);
     cpu_times.push_back(cpu_ms_since(cpu_start));
     times.push_back(ms_since(start));
-    if (!picture) return failure(picture.error());
+    if (!picture) return failure(picture.error().message());
     out.bytes += static_cast<double>((*picture)->size()) / count;
   }
   out.median_ms = median(times);
@@ -98,7 +98,7 @@ Result<void, std::string> draw_stored(const BenchOptions& options, MapResult& re
   const test::TempFolder temp;
   const std::string folder = temp / "world";
   const auto chunks = make_stored_world(folder, options.edits);
-  if (!chunks) return Unexpected<std::string>{chunks.error()};
+  if (!chunks) return failure(chunks.error());
   result.chunks = *chunks;
   fmt::print(progress, "the world of stored chunks is there\n");
   DrawnWorld drawn(folder);
@@ -106,20 +106,20 @@ Result<void, std::string> draw_stored(const BenchOptions& options, MapResult& re
   auto present = time_tiles(
       kPresent, options.repetitions, drawn,
       [&](const MapPlace& place, SplitMix64&) { return drawn.draw(drawn.world.present(), place); });
-  if (!present) return Unexpected<std::string>{present.error()};
+  if (!present) return failure(present.error());
   result.times.push_back(*std::move(present));
   const auto reader = open_world(folder, StoreAccess::read_only);
-  if (!reader) return failure(reader.error());
+  if (!reader) return failure(reader.error().message());
   const auto generator = make_generator((*reader)->meta().generator, (*reader)->meta().materials);
-  if (!generator) return Unexpected<std::string>{generator.error().what};
+  if (!generator) return failure(generator.error().what);
   auto past = time_tiles(kPast, options.repetitions, drawn,
                          [&](const MapPlace& place, SplitMix64& rng) -> StoreResult<Picture> {
                            const Sequence at = 1 + rng.next() % (options.edits / 10);
                            const auto moment = MapMoment::open(folder, **generator, at);
-                           if (!moment) return Unexpected<StoreError>{moment.error()};
+                           if (!moment) return failure(moment.error());
                            return drawn.draw(**moment, place);
                          });
-  if (!past) return Unexpected<std::string>{past.error()};
+  if (!past) return failure(past.error());
   result.times.push_back(*std::move(past));
   return {};
 }
@@ -140,13 +140,13 @@ Result<void, std::string> draw_luanti(const BenchOptions& options, MapResult& re
   const test::TempFolder temp;
   const std::string folder = temp / "world";
   const auto bounds = make_luanti_world(folder, options.luanti);
-  if (!bounds) return Unexpected<std::string>{bounds.error()};
+  if (!bounds) return failure(bounds.error());
   fmt::print(progress, "the Luanti world is there\n");
   std::vector<double> times, cpu_times;
   for (unsigned i = 0; i < options.repetitions; ++i) {
     // A server that runs the world holds these files open.
     const auto server = open_world(folder, StoreAccess::read_write);
-    if (!server) return failure(server.error());
+    if (!server) return failure(server.error().message());
     const Files before = files_in(folder);
     const auto start = Clock::now();
     const std::int64_t cpu_start = thread_cpu_ns();
@@ -156,7 +156,7 @@ Result<void, std::string> draw_luanti(const BenchOptions& options, MapResult& re
     for (std::uint8_t zoom = 0; zoom <= kMapZoomMax; ++zoom) {
       for (const MapPlace& place : places_of(*bounds, zoom)) {
         const auto picture = drawn.draw(drawn.world.present(), place);
-        if (!picture) return failure(picture.error());
+        if (!picture) return failure(picture.error().message());
         ++result.whole_tiles;
       }
     }
@@ -192,10 +192,8 @@ Result<MapResult, std::string> run_map_bench(const BenchOptions& options, std::o
   result.machine = this_machine();
   result.repetitions = options.repetitions;
   result.edits = options.edits;
-  if (auto drawn = draw_stored(options, result, progress); !drawn)
-    return Unexpected<std::string>{drawn.error()};
-  if (auto drawn = draw_luanti(options, result, progress); !drawn)
-    return Unexpected<std::string>{drawn.error()};
+  if (auto drawn = draw_stored(options, result, progress); !drawn) return failure(drawn.error());
+  if (auto drawn = draw_luanti(options, result, progress); !drawn) return failure(drawn.error());
   return result;
 }
 

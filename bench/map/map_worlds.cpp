@@ -31,7 +31,7 @@ class BaseWriter {
   Result<void, std::string> flush() {
     const auto saved = store_.save_base(chunks_);
     chunks_.clear();
-    if (!saved) return failure(saved.error());
+    if (!saved) return failure(saved.error().message());
     return {};
   }
   std::uint64_t count() const { return count_; }
@@ -51,26 +51,26 @@ Result<std::uint64_t, std::string> store_terrain(Store& store, const Generator& 
         const ChunkKey key{0, {x, y, z}};
         auto voxels =
             in_cheapest_order(generator.generate(origin_of(key.at, kEdge), Extent::cube(kEdge)));
-        if (auto added = base.add(key, std::move(voxels)); !added)
-          return Unexpected<std::string>{added.error()};
+        if (auto added = base.add(key, std::move(voxels)); !added) return failure(added.error());
       }
     }
   }
-  if (auto flushed = base.flush(); !flushed) return Unexpected<std::string>{flushed.error()};
+  if (auto flushed = base.flush(); !flushed) return failure(flushed.error());
   return base.count();
 }
 
 Result<void, std::string> log_a_year(Store& store, std::uint64_t edits) {
   constexpr TimeUs kYear = TimeUs{365} * 24 * 3600 * 1'000'000;
   constexpr TimeUs kBegin = 1'700'000'000'000'000;
-  if (auto raised = store.raise_epoch(); !raised) return failure(raised.error());
+  if (auto raised = store.raise_epoch(); !raised) return failure(raised.error().message());
   test::BuilderSession session(7);
   std::vector<EditRecord> batch;
   for (std::uint64_t i = 0; i < edits; ++i) {
     batch.push_back(session.next());
     batch.back().time_us = kBegin + kYear / static_cast<TimeUs>(edits) * static_cast<TimeUs>(i);
     if (batch.size() < 64 && i + 1 < edits) continue;
-    if (auto appended = store.append({}, batch); !appended) return failure(appended.error());
+    if (auto appended = store.append({}, batch); !appended)
+      return failure(appended.error().message());
     batch.clear();
   }
   return {};
@@ -85,20 +85,19 @@ Result<std::uint64_t, std::string> make_stored_world(const std::string& folder,
   meta.generator.name = "terrain";
   meta.materials = default_material_table();
   const auto generator = make_generator(meta.generator, meta.materials);
-  if (!generator) return Unexpected<std::string>{generator.error().what};
+  if (!generator) return failure(generator.error().what);
   auto created = create_sqlite_world(folder, meta, {"", false});
-  if (!created) return failure(created.error());
+  if (!created) return failure(created.error().message());
   Store& store = **created;
   const auto chunks = store_terrain(store, **generator);
   if (!chunks) return chunks;
-  if (auto logged = log_a_year(store, edits); !logged)
-    return Unexpected<std::string>{logged.error()};
+  if (auto logged = log_a_year(store, edits); !logged) return failure(logged.error());
   const auto made =
       KeyframeMaker(store, **generator, {})
           .make_due([&](const KeyframeMaker::Chunks& all, const std::optional<Keyframe>& keyframe) {
             return store.save_keyframe(all, keyframe);
           });
-  if (!made) return failure(made.error());
+  if (!made) return failure(made.error().message());
   return chunks;
 }
 
@@ -129,7 +128,7 @@ Result<VoxelBox, std::string> make_luanti_world(const std::string& folder,
   };
   const auto report = import_luanti(luanti, {kEdge, false}, sink);
   if (!report) return failure(why.empty() ? report.error().message() : why);
-  if (auto flushed = base->flush(); !flushed) return Unexpected<std::string>{flushed.error()};
+  if (auto flushed = base->flush(); !flushed) return failure(flushed.error());
   return report->bounds;
 }
 

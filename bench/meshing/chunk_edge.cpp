@@ -107,8 +107,7 @@ Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions
                                                               std::ostream& progress) {
   for (const unsigned edge : options.edges) {
     if (kRegionUnit % static_cast<std::int32_t>(edge) != 0) {
-      return Unexpected<std::string>{
-          fmt::format("edge {}: 8, 16, 32 and 64 divide a region", edge)};
+      return failure(fmt::format("edge {}: 8, 16, 32 and 64 divide a region", edge));
     }
   }
   std::vector<std::string> names = options.worlds;
@@ -117,7 +116,7 @@ Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions
     names.assign(all.begin(), all.end());
   }
   const auto worlds = MeasuredWorlds::open(names, options.luanti);
-  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  if (!worlds) return failure(worlds.error());
   std::vector<ChunkEdgeRow> out;
   for (std::size_t w = 0; w < worlds->size(); ++w) {
     measure(*worlds->voxels(w), options.edges, out);

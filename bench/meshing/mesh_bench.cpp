@@ -96,7 +96,7 @@ void measure_volume(const BenchOptions& options, const Volume& volume,
 Result<MeshResult, std::string> run_mesh_bench(const BenchOptions& options,
                                                std::ostream& progress) {
   const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
-  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  if (!worlds) return failure(worlds.error());
   MeshResult result;
   result.machine = this_machine();
   result.repetitions = options.repetitions;

@@ -19,7 +19,7 @@ void mesh_counted(std::span<MesherCase> mesher_cases, unsigned times) {
 
 Result<void, std::string> run_mesh_once(const BenchOptions& options, std::ostream& out) {
   const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
-  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  if (!worlds) return failure(worlds.error());
   const std::string& mesher = options.meshers.front();
   for (std::size_t w = 0; w < worlds->size(); ++w) {
     for (const unsigned edge : options.edges) {
@@ -35,8 +35,7 @@ Result<void, std::string> run_mesh_once(const BenchOptions& options, std::ostrea
         runs += volume.scene.chunk.runs.size();
       }
       if (mesher_cases.empty()) {
-        return Unexpected<std::string>{
-            fmt::format("{} edge {}: nothing for {}", world.name, edge, mesher)};
+        return failure(fmt::format("{} edge {}: nothing for {}", world.name, edge, mesher));
       }
       mesh_counted(mesher_cases, options.repetitions);
       for (const MesherCase& mesher_case : mesher_cases) quads += mesher_case.quads();

@@ -56,14 +56,14 @@ class AttackRun {
 
   Result<AttackResult, std::string> run() {
     auto server = start_attacked_server(testbed_, link_, {});
-    if (!server) return Unexpected<std::string>{server.error()};
+    if (!server) return failure(server.error());
     server_ = *std::move(server);
     out_.name = attack_.name;
     out_.is_hostile = attack_.is_hostile;
     for (const AttackPhase phase : kAttackPhases) {
-      if (const auto done = play(phase); !done) return Unexpected<std::string>{done.error()};
+      if (const auto done = play(phase); !done) return failure(done.error());
     }
-    if (const auto ended = stop(); !ended) return Unexpected<std::string>{ended.error()};
+    if (const auto ended = stop(); !ended) return failure(ended.error());
     out_.logged = reasons_in(server_.program->log());
     return out_;
   }
@@ -81,7 +81,7 @@ class AttackRun {
                               .seconds = seconds,
                               .edits_per_second = kAttackedEditsPerSecond,
                               .has_replicas = false});
-    if (!fleet) return Unexpected<std::string>{fleet.error()};
+    if (!fleet) return failure(fleet.error());
     const double cores_before = server_.program->core_seconds();
     const double bots_before = fleet->bots().core_seconds();
     std::optional<RunningAttack> attack;
@@ -89,7 +89,7 @@ class AttackRun {
     std::unique_ptr<EchoProbe> echo;
     if (phase == during) {
       auto started = EchoProbe::start(link_, kEchoesPerSecond);
-      if (!started) return Unexpected<std::string>{started.error()};
+      if (!started) return failure(started.error());
       echo = *std::move(started);
       written_before_kb_ = written_kb(server_);
       attack.emplace(attack_.play, plan(seconds, options_.seed));
@@ -99,7 +99,7 @@ class AttackRun {
     for (double waited = 0; waited < seconds; waited += kLookSeconds) {
       const double now_mb = look();
       phase_mb = phase == during ? std::max(phase_mb, now_mb) : now_mb;
-      if (!pause_for(kLookSeconds)) return Unexpected<std::string>{"interrupted"};
+      if (!pause_for(kLookSeconds)) return failure("interrupted");
     }
     out_.server_cores[phase] = (server_.program->core_seconds() - cores_before) / seconds;
     if (phase == during) {
@@ -112,7 +112,7 @@ class AttackRun {
       out_.attacker_cores = out_.outcome.core_seconds / seconds;
     }
     const auto seen = fleet->finish(testbed_);
-    if (!seen) return Unexpected<std::string>{seen.error()};
+    if (!seen) return failure(seen.error());
     out_.seen[phase] = *seen;
     return {};
   }
@@ -123,12 +123,12 @@ class AttackRun {
                          plan(options_.attack_seconds + kSecondAttackMax, options_.seed + 1));
     for (double waited = 0; waited < options_.attack_seconds; waited += kLookSeconds) {
       look();
-      if (!pause_for(kLookSeconds)) return Unexpected<std::string>{"interrupted"};
+      if (!pause_for(kLookSeconds)) return failure("interrupted");
     }
     const auto seconds = stop_attacked_server(testbed_, server_, [this] { look(); });
     attack.stop();
     attack.finish();
-    if (!seconds) return Unexpected<std::string>{seconds.error()};
+    if (!seconds) return failure(seconds.error());
     out_.stop_s = *seconds;
     return {};
   }
@@ -161,14 +161,13 @@ bool is_wanted(const Attack& attack, const NetOptions& options) {
 
 Done measure_attacks(Testbed& testbed, NetFindings& findings) {
   auto link = testbed.make_link(test::link_profiles().front());
-  if (!link) return Unexpected<std::string>{link.error()};
+  if (!link) return failure(link.error());
   const NetOptions& options = testbed.options();
   std::vector<AttackResult> results;
   for (const Attack& attack : all_attacks()) {
     if (!is_wanted(attack, options)) continue;
     auto result = AttackRun(testbed, **link, attack).run();
-    if (!result)
-      return Unexpected<std::string>{fmt::format("attack {}: {}", attack.name, result.error())};
+    if (!result) return failure(fmt::format("attack {}: {}", attack.name, result.error()));
     results.push_back(*std::move(result));
     fmt::print(testbed.progress(), "attack {}\n", attack.name);
     testbed.progress().flush();

@@ -203,7 +203,7 @@ Result<void> AttackClient::take(MessageKind kind, ByteView body) {
   if (frame_class == FrameClass::chunks || (frame_class == FrameClass::edits && has_session_))
     return {};
   auto message = decode_message(Sender::server, kind, body, chunk_edge_);
-  if (!message) return Unexpected<Error>{message.error()};
+  if (!message) return failure(message.error());
   if (auto* welcome = std::get_if<Welcome>(&*message)) {
     chunk_edge_ = welcome->chunk_edge;
     welcome_ = std::move(*welcome);

@@ -34,8 +34,7 @@ Result<double, std::string> stop_attacked_server(Testbed& testbed, TestbedServer
   });
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  if (const auto ended = testbed.finish(*server.program, 0); !ended)
-    return Unexpected<std::string>{ended.error()};
+  if (const auto ended = testbed.finish(*server.program, 0); !ended) return failure(ended.error());
   return seconds;
 }
 

@@ -86,7 +86,7 @@ Result<std::unique_ptr<Child>, std::string> Child::start(Place& place,
   arguments.push_back(nullptr);
   const std::string name = std::filesystem::path(words[0]).filename();
   if (::access(words[0].c_str(), X_OK) != 0) {
-    return Unexpected<std::string>{"cannot run " + words[0] + ": " + std::strerror(errno)};
+    return failure("cannot run " + words[0] + ": " + std::strerror(errno));
   }
   pid_t pid = -1;
   int why = 0;
@@ -95,7 +95,7 @@ Result<std::unique_ptr<Child>, std::string> Child::start(Place& place,
     why = errno;
     if (pid == 0) become(arguments.data(), log.c_str());
   });
-  if (pid < 0) return Unexpected<std::string>{"cannot start " + name + ": " + std::strerror(why)};
+  if (pid < 0) return failure("cannot start " + name + ": " + std::strerror(why));
   return std::unique_ptr<Child>(new Child(pid, name, std::move(log)));
 }
 

@@ -132,13 +132,13 @@ EchoProbe::~EchoProbe() {
 Result<std::unique_ptr<EchoProbe>, std::string> EchoProbe::start(TestbedLink& link, double rate) {
   asio::error_code error;
   auto parts = std::make_unique<Parts>(link, rate, error);
-  if (error) return Unexpected<std::string>{"the echo cannot listen: " + error.message()};
+  if (error) return failure("the echo cannot listen: " + error.message());
   const auto port = link.entrance(parts->server.port());
-  if (!port) return Unexpected<std::string>{port.error()};
+  if (!port) return failure(port.error());
   link.client_side().run([&] { parts->socket.open(tcp::v4(), error); });
   if (!error) parts->socket.connect({asio::ip::make_address(link.server_address()), *port}, error);
   if (!error) parts->socket.set_option(tcp::no_delay(true), error);
-  if (error) return Unexpected<std::string>{"the echo cannot connect: " + error.message()};
+  if (error) return failure("the echo cannot connect: " + error.message());
   parts->begin();
   return std::unique_ptr<EchoProbe>(new EchoProbe(std::move(parts)));
 }

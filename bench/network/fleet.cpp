@@ -64,26 +64,26 @@ Result<Fleet, std::string> Fleet::join(Testbed& testbed, TestbedLink& link,
                                     "--report",     out.report_};
   if (!plan.has_replicas) words.insert(words.end(), {"--replicas", "0"});
   auto bots = testbed.start_client(link, "runstone-bot", std::move(words));
-  if (!bots) return Unexpected<std::string>{bots.error()};
+  if (!bots) return failure(bots.error());
   out.bots_ = *std::move(bots);
   for (; out.joined_s_ < kPatience && !out.bots_->wait(kFleetPollSeconds);
        out.joined_s_ += kFleetPollSeconds) {
     if (output_has(out.bots_->log(), "see the world")) return out;
-    if (interrupted()) return Unexpected<std::string>{"interrupted"};
+    if (interrupted()) return failure("interrupted");
   }
-  return Unexpected<std::string>{out.bots_->explain("did not join")};
+  return failure(out.bots_->explain("did not join"));
 }
 
 Result<FleetReport, std::string> Fleet::finish(Testbed& testbed) {
   const auto ended = testbed.finish(*bots_, 2 * kPatience);
   const auto report = read_report(report_);
-  if (!report) return Unexpected<std::string>{ended ? report.error() : ended.error()};
+  if (!report) return failure(ended ? report.error() : ended.error());
   FleetReport out = fleet_report(*report);
   // In one place, every bot sees every edit that was not rejected.
   if (plan_.sites == 1 && !out.local_only)
     out.never = (out.due - out.rejected) * plan_.clients - out.samples;
   const bool broke_rules = out.violations != 0 || out.drifted != 0;
-  if (!ended && !broke_rules) return Unexpected<std::string>{ended.error()};
+  if (!ended && !broke_rules) return failure(ended.error());
   return out;
 }
 

@@ -33,7 +33,7 @@ struct FleetResult {
 };
 
 Result<FleetResult, std::string> run_fleet(Testbed& testbed, unsigned clients, unsigned levels) {
-  const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
+  const auto failed = [](const auto& what) { return failure(what.error()); };
   const double seconds = testbed.options().fleet_seconds;
   auto link = testbed.make_link(test::link_profiles().front());
   if (!link) return failed(link);
@@ -55,7 +55,7 @@ Result<FleetResult, std::string> run_fleet(Testbed& testbed, unsigned clients, u
   out.joined_s = fleet->joined_s();
   const double server_before = server->program->core_seconds(),
                bots_before = fleet->bots().core_seconds();
-  if (!pause_for(seconds)) return Unexpected<std::string>{"interrupted"};
+  if (!pause_for(seconds)) return failure("interrupted");
   out.server_cores = (server->program->core_seconds() - server_before) / seconds;
   out.bot_cores = (fleet->bots().core_seconds() - bots_before) / seconds;
   out.server_mb = static_cast<double>(server->program->resident_bytes()) / 1e6;
@@ -158,8 +158,7 @@ Done measure_fleets(Testbed& testbed, NetFindings& findings) {
   for (const unsigned clients : testbed.options().clients) {
     for (const unsigned levels : testbed.options().fleet_levels) {
       const auto result = run_fleet(testbed, clients, levels);
-      if (!result)
-        return Unexpected<std::string>{fmt::format("fleet of {}: {}", clients, result.error())};
+      if (!result) return failure(fmt::format("fleet of {}: {}", clients, result.error()));
       add_figures(*result, findings.figures);
       write_row(*result, rows);
       results.push_back(*result);

@@ -41,14 +41,14 @@ Result<Gateway, std::string> start_both(Testbed& testbed, TestbedLink& link,
       link, testbed.fresh("world"),
       without_player_limits({"--generator", "terrain", "--seed", "7", "--sessions-max", sockets,
                              "--handshakes-per-address", sockets, "--gateway-socket", socket}));
-  if (!server) return Unexpected<std::string>{server.error()};
+  if (!server) return failure(server.error());
   std::vector<std::string> flags = {
       "--sockets-max", sockets, "--sockets-per-address", sockets, "--connections-per-second", "0"};
   if (!testbed.options().insecure) {
     flags.insert(flags.end(), {"--tls-certificate", pem.chain_file(), "--tls-key", pem.key_file()});
   }
   auto web = testbed.start_gateway(link, socket, flags);
-  if (!web) return Unexpected<std::string>{web.error()};
+  if (!web) return failure(web.error());
   Gateway out{*std::move(server), *std::move(web), {}};
   out.url = (testbed.options().insecure ? "ws://" : "wss://") + out.web.address + "/play";
   return out;
@@ -120,16 +120,16 @@ bool sees_its_view(Player& player) {
 
 Done measure_round_trips(Testbed& testbed, const test::PemFiles& pem, NetFindings& findings) {
   auto link = testbed.make_link(test::link_profiles().front());
-  if (!link) return Unexpected<std::string>{link.error()};
+  if (!link) return failure(link.error());
   auto both = start_both(testbed, **link, pem, 4);
-  if (!both) return Unexpected<std::string>{both.error()};
+  if (!both) return failure(both.error());
   const bool is_encrypted = !testbed.options().insecure;
   test::RawClient direct(
       both->server.port, INADDR_LOOPBACK,
       is_encrypted ? test::RawClient::Encryption::tls : test::RawClient::Encryption::none);
   test::WebPlayer browser(both->web.port, INADDR_LOOPBACK, is_encrypted);
   if (!direct.join(1) || !browser.join(2) || !sees_its_view(direct) || !sees_its_view(browser))
-    return Unexpected<std::string>{"gateway: the probes cannot join"};
+    return failure("gateway: the probes cannot join");
   std::string rows;
   double added_most_ms = 0;
   for (const RoundTrip& kind : kRoundTrips) {
@@ -140,7 +140,7 @@ Done measure_round_trips(Testbed& testbed, const test::PemFiles& pem, NetFinding
       for (const std::size_t turn : {0U, 1U}) {
         due_us += kFrameEveryUs;
         if (!pause_for(static_cast<double>(std::max<TimeUs>(due_us - steady_now_us(), 0)) / 1e6))
-          return Unexpected<std::string>{"interrupted"};
+          return failure("interrupted");
         // An edit of one player is sent to the other one, too. It is read before the next frame.
         while (direct.next(1)) {
         }
@@ -150,7 +150,7 @@ Done measure_round_trips(Testbed& testbed, const test::PemFiles& pem, NetFinding
         const std::uint64_t number = 2 * i + turn;
         const auto ms =
             way == 0 ? round_trip(direct, kind, number) : round_trip(browser, kind, number);
-        if (!ms) return Unexpected<std::string>{"gateway: a frame has no answer"};
+        if (!ms) return failure("gateway: a frame has no answer");
         times[way].push_back(*ms);
       }
     }
@@ -195,7 +195,7 @@ struct FleetRun {
 
 Result<FleetRun, std::string> run_fleet_by(Testbed& testbed, const test::PemFiles& pem,
                                            bool is_web) {
-  const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
+  const auto failed = [](const auto& what) { return failure(what.error()); };
   const NetOptions& options = testbed.options();
   auto link = testbed.make_link(test::link_profiles().front());
   if (!link) return failed(link);
@@ -211,7 +211,7 @@ Result<FleetRun, std::string> run_fleet_by(Testbed& testbed, const test::PemFile
   FleetRun out;
   const std::array<double*, 3> cores = {&out.server_cores, &out.gateway_cores, &out.bot_cores};
   for (std::size_t i = 0; i < programs.size(); ++i) *cores[i] -= programs[i]->core_seconds();
-  if (!pause_for(options.fleet_seconds)) return Unexpected<std::string>{"interrupted"};
+  if (!pause_for(options.fleet_seconds)) return failure("interrupted");
   for (std::size_t i = 0; i < programs.size(); ++i) {
     *cores[i] = (*cores[i] + programs[i]->core_seconds()) / options.fleet_seconds;
   }
@@ -232,8 +232,7 @@ Done measure_web_fleets(Testbed& testbed, const test::PemFiles& pem, NetFindings
     for (const std::size_t turn : {0U, 1U}) {
       const std::size_t way = (run + turn) % 2;
       const auto result = run_fleet_by(testbed, pem, way == 1);
-      if (!result)
-        return Unexpected<std::string>{fmt::format("fleet by {}: {}", kWays[way], result.error())};
+      if (!result) return failure(fmt::format("fleet by {}: {}", kWays[way], result.error()));
       const FleetReport& seen = result->seen;
       p99_ms[way].push_back(seen.p99_ms);
       broken[way] += seen.disconnects + seen.violations + seen.drifted;

@@ -36,7 +36,7 @@ struct HorizonJoin {
 
 Result<HorizonJoin, std::string> horizon_once(Testbed& testbed, TestbedLink& link,
                                               unsigned levels) {
-  const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
+  const auto failed = [](const auto& what) { return failure(what.error()); };
   auto server = testbed.start_server(link, testbed.fresh("world"), {"--generator", "terrain"});
   if (!server) return failed(server);
   const std::string script = testbed.fresh("script.txt"),
@@ -55,8 +55,7 @@ Result<HorizonJoin, std::string> horizon_once(Testbed& testbed, TestbedLink& lin
   const auto report = read_report(report_file);
   if (!report) return failed(report);
   const nlohmann::json& far = (*report)["far_ground"];
-  if (levels > 0 && far["all_ms"].is_null())
-    return Unexpected<std::string>{"a join never saw its horizon"};
+  if (levels > 0 && far["all_ms"].is_null()) return failure("a join never saw its horizon");
   return HorizonJoin{number_in((*report)["join"]["near"]["most_ms"]),
                      number_in(far["coarse_ms"]),
                      number_in(far["all_ms"]),
@@ -71,9 +70,9 @@ Result<std::vector<HorizonJoin>, std::string> horizons_of(Testbed& testbed,
   std::vector<HorizonJoin> out;
   for (unsigned i = 0; i < testbed.options().repetitions; ++i) {
     auto link = testbed.make_link(profile);
-    if (!link) return Unexpected<std::string>{link.error()};
+    if (!link) return failure(link.error());
     const auto join = horizon_once(testbed, **link, levels);
-    if (!join) return Unexpected<std::string>{join.error()};
+    if (!join) return failure(join.error());
     out.push_back(*join);
   }
   return out;
@@ -125,8 +124,8 @@ Done measure_horizon(Testbed& testbed, NetFindings& findings) {
       const unsigned reach = views.reach(levels);
       const auto joins = horizons_of(testbed, profile, levels);
       if (!joins)
-        return Unexpected<std::string>{
-            fmt::format("horizon, {}, {} levels: {}", profile.name, levels, joins.error())};
+        return failure(
+            fmt::format("horizon, {}, {} levels: {}", profile.name, levels, joins.error()));
       const auto middle = [&](double HorizonJoin::* what) { return median_of(*joins, what); };
       fmt::format_to(into, "| {} ({}) | {} | {} |", profile.name, link, reach,
                      number_text(middle(&HorizonJoin::near_ms)));

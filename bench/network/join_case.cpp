@@ -39,17 +39,16 @@ Result<Join, std::string> join_once(Testbed& testbed, TestbedLink& link, const s
       {"--connect", address, "--name", "newcomer", "--no-render", "--view",
        fmt::to_string(kViewRadius), "--view-vertical", fmt::to_string(kViewRadiusV), "--script",
        script, "--report", report_file});
-  if (!client) return Unexpected<std::string>{client.error()};
+  if (!client) return failure(client.error());
   if (const auto ended = testbed.finish(**client, 2 * kWaitSeconds); !ended) {
-    return Unexpected<std::string>{ended.error()};
+    return failure(ended.error());
   }
   const auto report = read_report(report_file);
-  if (!report) return Unexpected<std::string>{report.error()};
+  if (!report) return failure(report.error());
   Join out{};
   for (std::size_t i = 0; i < kBytes; ++i) {
     const nlohmann::json& time = (*report)["join"][kParts[i].part][kParts[i].time];
-    if (time.is_null())
-      return Unexpected<std::string>{fmt::format("a join never had its {}", kParts[i].title)};
+    if (time.is_null()) return failure(fmt::format("a join never had its {}", kParts[i].title));
     out[i] = number_in(time);
   }
   out[kBytes] = number_in((*report)["net"]["bytes_received"]);
@@ -59,7 +58,7 @@ Result<Join, std::string> join_once(Testbed& testbed, TestbedLink& link, const s
 /// Measures all joins of one profile, except the one that warms the server.
 Result<std::vector<Join>, std::string> joins_of(Testbed& testbed, const test::LinkProfile& profile,
                                                 const std::string& world) {
-  const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
+  const auto failed = [](const auto& what) { return failure(what.error()); };
   auto link = testbed.make_link(profile);
   if (!link) return failed(link);
   auto server = testbed.start_server(**link, world, {});
@@ -80,7 +79,7 @@ Result<std::vector<Join>, std::string> joins_of(Testbed& testbed, const test::Li
 
 Done measure_joins(Testbed& testbed, NetFindings& findings) {
   const auto world = testbed.imported_world();
-  if (!world) return Unexpected<std::string>{world.error()};
+  if (!world) return failure(world.error());
   std::string& table = findings.tables;
   const auto into = std::back_inserter(table);
   fmt::format_to(
@@ -91,8 +90,7 @@ Done measure_joins(Testbed& testbed, NetFindings& findings) {
   fmt::format_to(into, "\n|---|---|---|---|---|---|---|\n");
   for (const test::LinkProfile& profile : testbed.profiles()) {
     const auto joins = joins_of(testbed, profile, *world);
-    if (!joins)
-      return Unexpected<std::string>{fmt::format("join, {}: {}", profile.name, joins.error())};
+    if (!joins) return failure(fmt::format("join, {}: {}", profile.name, joins.error()));
     const char* link = name_of(profile.passes_all() ? LinkKind::loopback : testbed.kind());
     fmt::format_to(into, "| {} ({}) |", profile.name, link);
     for (std::size_t i = 0; i < kParts.size(); ++i) {

@@ -126,7 +126,7 @@ std::string script_of(const Testbed& testbed, const Load& load, unsigned client)
 
 Result<CaseResult, std::string> run_case(Testbed& testbed, const test::LinkProfile& profile,
                                          const Load& load) {
-  const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
+  const auto failed = [](const auto& what) { return failure(what.error()); };
   auto link = testbed.make_link(profile);
   if (!link) return failed(link);
   auto server =
@@ -337,8 +337,7 @@ Done measure_latency(Testbed& testbed, NetFindings& findings) {
     for (const Load& load : kLoads) {
       auto result = run_case(testbed, profile, load);
       if (!result) {
-        return Unexpected<std::string>{
-            fmt::format("latency, {} {}: {}", profile.name, load.name, result.error())};
+        return failure(fmt::format("latency, {} {}: {}", profile.name, load.name, result.error()));
       }
       // The terrain during the edits is all terrain without that of the join, which is what the
       // idle case receives.

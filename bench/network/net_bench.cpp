@@ -52,7 +52,7 @@ Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ost
   NetResult out;
   out.machine = this_machine();
   const std::string why = why_no_namespaces();
-  if (options.link == "namespaces" && !why.empty()) return Unexpected<std::string>{why};
+  if (options.link == "namespaces" && !why.empty()) return failure(why);
   const bool real = options.link != "shaper" && why.empty();
   out.link = real ? "real packets between two network namespaces, "
                     "joined by a forwarder of ours over TUN devices"
@@ -66,7 +66,7 @@ Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ost
     const auto& wanted = options.experiments;
     if (std::find(wanted.begin(), wanted.end(), experiment.name) == wanted.end()) continue;
     if (const auto done = experiment.measure(testbed, out.findings); !done)
-      return Unexpected<std::string>{done.error()};
+      return failure(done.error());
   }
   return out;
 }

@@ -40,7 +40,7 @@ Result<std::unique_ptr<Place>, std::string> Place::make_namespace() {
   auto place = here();
   std::string why;
   place->run([&] { why = enter_new_namespace(); });  // of that one thread
-  if (!why.empty()) return Unexpected<std::string>{why};
+  if (!why.empty()) return failure(why);
   return place;
 }
 

@@ -214,7 +214,7 @@ Result<std::unique_ptr<Shaper>, std::string> Shaper::start(const test::LinkProfi
   then([&] { acceptor.set_option(tcp::socket::receive_buffer_size(kSocketBytes), error); });
   then([&] { acceptor.bind({asio::ip::address_v4::loopback(), 0}, error); });
   then([&] { acceptor.listen(asio::socket_base::max_listen_connections, error); });
-  if (error) return Unexpected<std::string>{"cannot listen on loopback: " + error.message()};
+  if (error) return failure("cannot listen on loopback: " + error.message());
   parts->accept();
   parts->thread = std::thread([it = parts.get()] { it->io.run(); });
   return std::unique_ptr<Shaper>(new Shaper(std::move(parts)));

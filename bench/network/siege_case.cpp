@@ -57,18 +57,18 @@ class SiegeRun {
 
   Result<SiegeResult, std::string> run() {
     auto server = start_attacked_server(testbed_, link_, siege_flags(options_.siege_bots));
-    if (!server) return Unexpected<std::string>{server.error()};
+    if (!server) return failure(server.error());
     server_ = *std::move(server);
     began_ = SteadyClock::now();
     for (std::size_t i = 0; i < windows_; ++i) {
       const Attack* attack = attack_of(i);
       if (const auto done = play(i, attack); !done) {
-        return Unexpected<std::string>{fmt::format(
-            "window {} ({}): {}", i, attack == nullptr ? kQuiet : attack->name, done.error())};
+        return failure(fmt::format("window {} ({}): {}", i,
+                                   attack == nullptr ? kQuiet : attack->name, done.error()));
       }
     }
     const auto stop_s = stop_attacked_server(testbed_, server_, [this] { look(); });
-    if (!stop_s) return Unexpected<std::string>{stop_s.error()};
+    if (!stop_s) return failure(stop_s.error());
     out_.stop_s = *stop_s;
     out_.errors = errors_in(server_.program->log());
     return out_;
@@ -87,7 +87,7 @@ class SiegeRun {
     auto fleet = Fleet::join(
         testbed_, link_, server_.address,
         {.clients = options_.siege_bots, .seconds = kSiegeWindowSeconds, .has_replicas = false});
-    if (!fleet) return Unexpected<std::string>{fleet.error()};
+    if (!fleet) return failure(fleet.error());
     SiegeWindow window;
     window.attack = attack == nullptr ? kQuiet : attack->name;
     window.from_s = seconds();
@@ -96,13 +96,13 @@ class SiegeRun {
     if (attack != nullptr) running.emplace(attack->play, plan(index));
     while (seconds() < window.from_s + kSiegeWindowSeconds) {
       window.resident_mb = std::max(window.resident_mb, look());
-      if (!pause_for(kLookSeconds)) return Unexpected<std::string>{"interrupted"};
+      if (!pause_for(kLookSeconds)) return failure("interrupted");
     }
     window.to_s = seconds();
     window.disk_kb_s = (written_kb(server_) - written_before_kb) / (window.to_s - window.from_s);
     if (running) running->finish();
     const auto seen = fleet->finish(testbed_);
-    if (!seen) return Unexpected<std::string>{seen.error()};
+    if (!seen) return failure(seen.error());
     window.seen = *seen;
     fmt::print(testbed_.progress(), "siege: window {} of {}, {}: p99 {} ms, {} MB\n", index + 1,
                windows_, window.attack, number_text(seen->p99_ms), number_text(window.resident_mb));
@@ -148,9 +148,9 @@ class SiegeRun {
 Done measure_siege(Testbed& testbed, NetFindings& findings) {
   const NetOptions& options = testbed.options();
   auto link = testbed.make_link(test::link_profiles().front());
-  if (!link) return Unexpected<std::string>{link.error()};
+  if (!link) return failure(link.error());
   const auto result = SiegeRun(testbed, **link).run();
-  if (!result) return Unexpected<std::string>{"siege, " + result.error()};
+  if (!result) return failure("siege, " + result.error());
   add_siege_figures(*result, findings.figures);
   add_siege_targets(*result, options, findings.targets);
   findings.tables += siege_table(*result, options);

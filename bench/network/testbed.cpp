@@ -19,8 +19,6 @@ namespace {
 constexpr double kStartSeconds = 60;
 constexpr double kImportSeconds = 300;
 
-Unexpected<std::string> failure(std::string what) { return {std::move(what)}; }
-
 std::string program_file(const std::string& name) {
   return sibling_program("",
                          name == "runstone-client" ? "RUNSTONE_CLIENT"

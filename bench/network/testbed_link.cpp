@@ -30,7 +30,7 @@ Result<std::unique_ptr<TestbedLink>, std::string> TestbedLink::make(
   std::unique_ptr<TestbedLink> link(new TestbedLink(kind, profile, seed));
   if (kind == LinkKind::namespaces) {
     auto tun = TunLink::make(profile, seed);
-    if (!tun) return Unexpected<std::string>{tun.error()};
+    if (!tun) return failure(tun.error());
     link->tun_ = *std::move(tun);
   } else {
     link->here_ = Place::here();
@@ -41,7 +41,7 @@ Result<std::unique_ptr<TestbedLink>, std::string> TestbedLink::make(
 Result<std::uint16_t, std::string> TestbedLink::entrance(std::uint16_t server_port) {
   if (kind_ != LinkKind::shaper) return server_port;
   auto shaper = Shaper::start(profile_, seed_++, server_port);
-  if (!shaper) return Unexpected<std::string>{shaper.error()};
+  if (!shaper) return failure(shaper.error());
   shapers_.push_back(*std::move(shaper));
   return shapers_.back()->port();
 }

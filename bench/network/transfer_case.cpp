@@ -92,7 +92,7 @@ Done listen(TestbedLink& link, Source& source) {
                             tcp::endpoint(asio::ip::make_address(link.server_address()), 0));
   });
   const auto port = link.entrance(source.acceptor->local_endpoint().port());
-  if (!port) return Unexpected<std::string>{port.error()};
+  if (!port) return failure(port.error());
   source.entrance = *port;
   return {};
 }
@@ -126,7 +126,7 @@ Result<Received, std::string> receive_once(TestbedLink& link, Source& source,
   if (!error)
     socket.connect({asio::ip::make_address(link.server_address()), source.entrance}, error);
   if (!error) socket.set_option(tcp::no_delay(true), error);
-  if (error) return Unexpected<std::string>{"cannot connect: " + error.message()};
+  if (error) return failure("cannot connect: " + error.message());
   std::thread sender([&] { serve_once(*source.acceptor, bytes); });
   SceneReceiver receiver(scene, transfer);
   Received out;
@@ -146,10 +146,9 @@ Result<Received, std::string> receive_once(TestbedLink& link, Source& source,
   asio::error_code ignored;
   socket.close(ignored);
   sender.join();
-  if (error) return Unexpected<std::string>{"a transfer broke off: " + error.message()};
-  if (!fed) return Unexpected<std::string>{fed.error()};
-  if (!receiver.complete())
-    return Unexpected<std::string>{scene.name + " did not become a whole picture"};
+  if (error) return failure("a transfer broke off: " + error.message());
+  if (!fed) return failure(fed.error());
+  if (!receiver.complete()) return failure(scene.name + " did not become a whole picture");
   return out;
 }
 
@@ -160,20 +159,18 @@ Result<Cell, std::string> measure_cell(Testbed& testbed, TestbedLink& link,
                                        std::uint64_t& faces) {
   const Bytes bytes = encode_scene(scene, transfer);
   Source source;
-  if (const auto listens = listen(link, source); !listens)
-    return Unexpected<std::string>{listens.error()};
+  if (const auto listens = listen(link, source); !listens) return failure(listens.error());
   std::array<std::vector<double>, 4> samples;
   Cell out;
   const std::uint64_t start = now_ns();
   while (out.repetitions < testbed.options().repetitions &&
          (out.repetitions == 0 || static_cast<double>(now_ns() - start) < kSecondsPerCell * 1e9)) {
     const auto once = receive_once(link, source, scene, transfer, bytes);
-    if (!once) return Unexpected<std::string>{once.error()};
-    if (interrupted()) return Unexpected<std::string>{"interrupted"};
+    if (!once) return failure(once.error());
+    if (interrupted()) return failure("interrupted");
     if (faces == 0) faces = once->times.faces;
     if (once->times.faces != faces) {
-      return Unexpected<std::string>{
-          fmt::format("{} as {} is another picture", scene.name, name_of(transfer))};
+      return failure(fmt::format("{} as {} is another picture", scene.name, name_of(transfer)));
     }
     ++out.repetitions;
     out.quads = once->times.quads;
@@ -196,7 +193,7 @@ Result<Cell, std::string> measure_cell(Testbed& testbed, TestbedLink& link,
 Result<std::vector<TransferScene>, std::string> scenes_of(const NetOptions& options) {
   std::vector<TransferScene> out;
   const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
-  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  if (!worlds) return failure(worlds.error());
   for (std::size_t w = 0; w < worlds->size(); ++w) {
     if (const VoxelWorld* world = worlds->voxels(w)) {
       out.push_back(scene_of(*world));
@@ -306,19 +303,17 @@ void add_figures(const Cell& cell, std::vector<Figure>& figures) {
 
 Done measure_transfers(Testbed& testbed, NetFindings& findings) {
   const auto scenes = scenes_of(testbed.options());
-  if (!scenes) return Unexpected<std::string>{scenes.error()};
+  if (!scenes) return failure(scenes.error());
   std::vector<std::array<Cell, kTransfers.size()>> cells;
   for (const test::LinkProfile& profile : testbed.profiles()) {
     for (const TransferScene& scene : *scenes) {
       auto link = testbed.make_link(profile);
-      if (!link) return Unexpected<std::string>{link.error()};
+      if (!link) return failure(link.error());
       auto& row = cells.emplace_back();
       std::uint64_t faces = 0;
       for (const Transfer transfer : kTransfers) {
         auto cell = measure_cell(testbed, **link, scene, transfer, faces);
-        if (!cell)
-          return Unexpected<std::string>{
-              fmt::format("transfer, {}: {}", profile.name, cell.error())};
+        if (!cell) return failure(fmt::format("transfer, {}: {}", profile.name, cell.error()));
         cell->profile = profile.name;
         cell->link = name_of((*link)->kind());
         add_figures(*cell, findings.figures);

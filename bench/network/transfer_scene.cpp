@@ -87,7 +87,7 @@ class DenseReader {
       std::memcpy(&header, buffer_.data() + at, sizeof header);
       const std::size_t whole = volume() * sizeof(Material);
       if (header.body_bytes > ZSTD_compressBound(whole))
-        return Unexpected<std::string>{"a dense chunk is too large"};
+        return failure("a dense chunk is too large");
       if (buffer_.size() - at - sizeof header < header.body_bytes) break;
       const std::uint8_t* const body = buffer_.data() + at + sizeof header;
       const std::uint64_t start = now_ns();
@@ -98,8 +98,7 @@ class DenseReader {
       } else if (got == whole) {
         std::memcpy(voxels_.data(), body, whole);
       }
-      if (got != whole)
-        return Unexpected<std::string>{"a dense chunk has not the size of its voxels"};
+      if (got != whole) return failure("a dense chunk has not the size of its voxels");
       take(header.at, std::span<const Material>(voxels_));
       unpack_ns += now_ns() - start;
       at += sizeof header + header.body_bytes;
@@ -197,7 +196,7 @@ struct SceneReceiver::Parts {
       const std::uint64_t start = now_ns();
       auto message =
           decode_message(Sender::server, kind, body, static_cast<std::uint16_t>(scene.edge));
-      if (!message) return Unexpected<Error>{message.error()};
+      if (!message) return failure(message.error());
       std::vector<ChunkCoord> came;
       for (ChunkAnswer& answer : std::get<Chunks>(*message).chunks) {
         auto& snapshot = std::get<ChunkSnapshot>(answer);
@@ -209,7 +208,7 @@ struct SceneReceiver::Parts {
       for (const ChunkCoord& at : came) arrived(at);
       return {};
     });
-    if (!fed) return Unexpected<std::string>{fed.error().what};
+    if (!fed) return failure(fed.error().what);
     return {};
   }
 

@@ -241,16 +241,16 @@ Result<std::unique_ptr<TunLink>, std::string> TunLink::make(const test::LinkProf
   auto forwarder = std::make_unique<Forwarder>(profile, seed);
   for (const Side side : {kServer, kClient}) {
     auto place = Place::make_namespace();
-    if (!place) return Unexpected<std::string>{place.error()};
+    if (!place) return failure(place.error());
     std::string why;
     (*place)->run([&] {
       forwarder->tuns[side] = open_tun(side == kServer ? kServerAddress : kClientAddress, why);
     });
-    if (!why.empty()) return Unexpected<std::string>{why};
+    if (!why.empty()) return failure(why);
     forwarder->places[side] = *std::move(place);
   }
   forwarder->stopped = Descriptor(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
-  if (!forwarder->stopped) return Unexpected<std::string>{failed("cannot make an event")};
+  if (!forwarder->stopped) return failure(failed("cannot make an event"));
   forwarder->start();
   return std::unique_ptr<TunLink>(new TunLink(std::move(forwarder)));
 }

@@ -41,12 +41,11 @@ Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options
                                                      std::ostream& progress) {
   for (const unsigned edge : options.edges) {
     if (!std::has_single_bit(edge)) {
-      return Unexpected<std::string>{
-          fmt::format("edge {}: trees and Morton codes want a power of two", edge)};
+      return failure(fmt::format("edge {}: trees and Morton codes want a power of two", edge));
     }
   }
   const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
-  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  if (!worlds) return failure(worlds.error());
   StorageResult result;
   result.machine = this_machine();
   result.repetitions = options.repetitions;

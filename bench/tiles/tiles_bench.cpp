@@ -321,7 +321,7 @@ std::vector<Target> TilesResult::targets() const {
 Result<TilesResult, std::string> run_tiles_bench(const BenchOptions& options,
                                                  std::ostream& progress) {
   const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
-  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  if (!worlds) return failure(worlds.error());
   TilesResult out;
   out.machine = this_machine();
   out.repetitions = options.repetitions;

@@ -150,7 +150,7 @@ Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options,
     const auto& wanted = options.worlds;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;
     const auto world = byte_world(name, options.luanti);
-    if (!world) return Unexpected<std::string>{world.error()};
+    if (!world) return failure(world.error());
     add_rows(*world, options.repetitions, out.rows, progress);
     fmt::print(progress, "{}\n", name);
     progress.flush();

@@ -226,7 +226,7 @@ std::vector<Target> QuadsResult::targets() const {
 Result<QuadsResult, std::string> run_bytes_to_quads(const BenchOptions& options,
                                                     std::ostream& progress) {
   const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
-  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  if (!worlds) return failure(worlds.error());
   QuadsResult out;
   out.machine = this_machine();
   out.repetitions = options.repetitions;

@@ -63,7 +63,7 @@ Result<void> read_nodes(ByteReader& in, LuantiNodes& out) {
   if (in.u8() != 2 || in.u8() != 2)
     in.reject(ErrorCode::bad_value, "ids or parameters of another width");
   const ByteView planes = in.bytes(4 * kLuantiNodes);
-  if (!in.ok()) return Unexpected<Error>{in.error()};
+  if (!in.ok()) return failure(in.error());
   for (std::size_t i = 0; i < kLuantiNodes; ++i) {
     out.id[i] = static_cast<std::uint16_t>(planes[2 * i] << 8 | planes[2 * i + 1]);
   }
@@ -98,7 +98,7 @@ void encode_luanti_block(const LuantiNodes& nodes, Bytes& out) {
 
 Result<void> decode_luanti_wire(ByteView block, LuantiNodes& out) {
   const auto stream = decompress(block, luanti_scratch());
-  if (!stream) return Unexpected<Error>{stream.error()};
+  if (!stream) return failure(stream.error());
   if (stream->bytes + 1 != block.size() || block.back() != kNetworkVersion) {
     return fail(ErrorCode::trailing_bytes, "block does not end as it should");
   }
@@ -110,7 +110,7 @@ Result<void> decode_luanti_wire(ByteView block, LuantiNodes& out) {
 Result<void> decode_luanti_row(ByteView row, LuantiNodes& out) {
   if (row.empty() || row[0] != 29) return fail(ErrorCode::bad_version, "row is not of version 29");
   const auto stream = decompress(row.subspan(1), luanti_scratch());
-  if (!stream) return Unexpected<Error>{stream.error()};
+  if (!stream) return failure(stream.error());
   ByteReader in(stream->plain);
   in.bytes(1 + 2 + 4);
   in.u8();

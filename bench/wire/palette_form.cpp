@@ -87,7 +87,7 @@ Result<void> read_section(ByteReader& in, Scratch& s, PaletteSection& out) {
   }
   const auto longs = static_cast<std::size_t>(in.varint_max(1024, "longs of a section"));
   const ByteView words = in.bytes(8 * longs);
-  if (!in.ok()) return Unexpected<Error>{in.error()};
+  if (!in.ok()) return failure(in.error());
   if (bits == 0) {
     out.fill(s.names[0]);
     return {};

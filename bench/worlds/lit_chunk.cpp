@@ -65,7 +65,7 @@ std::vector<LitChunk> each_chunk(const VoxelBox& box, Make&& make) {
 
 Result<std::vector<LitChunk>, std::string> noise_terrain() {
   const auto made = make_generator({"terrain", 1, 7, ""}, default_material_table());
-  if (!made) return Unexpected<std::string>{made.error().what};
+  if (!made) return failure(made.error().what);
   const Generator& generator = **made;
   return each_chunk(kTerrainBox, [&](VoxelPos origin) {
     return sunlit(generator.generate(origin, Extent::cube(kByteEdge)), origin,
@@ -123,12 +123,12 @@ std::optional<BlockPlace> place_of(const ChunkCoord& block, const VoxelBox& box)
 
 Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
   const auto world = luanti_world(folder, PlantsKept::yes);
-  if (!world) return Unexpected<std::string>{world.error()};
+  if (!world) return failure(world.error());
   const VoxelBox box = *world->bounds;
   std::vector<LitChunk> out = each_chunk(
       box, [&](VoxelPos origin) { return unlit(chunk_of_world(*world, origin, kByteEdge)); });
   auto map = LuantiMap::open(folder + "/map.sqlite");
-  if (!map) return Unexpected<std::string>{map.error()};
+  if (!map) return failure(map.error());
   LuantiNodes nodes;
   std::optional<std::string> damaged;
   const auto trouble = map->each_row([&](std::int64_t pos, ByteView data) {
@@ -147,8 +147,8 @@ Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
       }
     }
   });
-  if (trouble) return Unexpected<std::string>{*trouble};
-  if (damaged) return Unexpected<std::string>{*damaged};
+  if (trouble) return failure(*trouble);
+  if (damaged) return failure(*damaged);
   return out;
 }
 
@@ -157,7 +157,7 @@ Result<std::vector<LitChunk>, std::string> chunks_of(const std::string& name,
   if (name == "noise_terrain") return noise_terrain();
   if (name == "luanti") return luanti(folder);
   const auto worlds = MeasuredWorlds::open({name}, folder);
-  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  if (!worlds) return failure(worlds.error());
   return name == "scenarios" ? scenarios(*worlds) : seeded(*worlds->voxels(0));
 }
 
@@ -173,7 +173,7 @@ std::vector<std::string> byte_world_names() {
 Result<ByteWorld, std::string> byte_world(const std::string& name,
                                           const std::string& luanti_folder) {
   auto chunks = chunks_of(name, luanti_folder);
-  if (!chunks) return Unexpected<std::string>{chunks.error()};
+  if (!chunks) return failure(chunks.error());
   return ByteWorld{name, std::move(*chunks)};
 }
 

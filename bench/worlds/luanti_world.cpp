@@ -58,13 +58,13 @@ Result<VoxelWorld, std::string> luanti_world(const std::string& folder, PlantsKe
                               {}};
   const auto report =
       import_luanti(folder, {.edge = kEdge, .keep_all = plants == PlantsKept::yes}, sink);
-  if (!report) return Unexpected<std::string>{report.error().message()};
+  if (!report) return failure(report.error().message());
   DenseBox dense{report->bounds, {}};
   const VoxelBox& box = dense.box;
-  if (box.empty()) return Unexpected<std::string>{folder + ": no blocks"};
+  if (box.empty()) return failure(folder + ": no blocks");
   const std::int64_t volume = std::int64_t{box.max.x - box.min.x} * (box.max.y - box.min.y);
   if (volume > kVoxelsMax / (box.max.z - box.min.z)) {
-    return Unexpected<std::string>{folder + ": more than 2^28 voxels"};
+    return failure(folder + ": more than 2^28 voxels");
   }
   dense.voxels.resize(static_cast<std::size_t>(volume) *
                       static_cast<std::size_t>(box.max.z - box.min.z));

@@ -60,7 +60,7 @@ Result<MeasuredWorlds, std::string> MeasuredWorlds::open(const std::vector<std::
   }
   if (wanted("luanti")) {
     auto world = luanti_world(luanti_folder);
-    if (!world) return Unexpected<std::string>{world.error()};
+    if (!world) return failure(world.error());
     out.worlds_.push_back(std::move(*world));
   }
   for (const VoxelWorld& world : out.worlds_) out.names_.push_back(world.name);

@@ -34,7 +34,7 @@ Result<FlightPath, TextError> FlightPath::parse(std::string_view text, std::stri
   std::istringstream lines{std::string(text)};
   std::uint32_t number = 0;
   const auto fail = [&](std::uint32_t line, const char* what) {
-    return Unexpected<TextError>{TextError{std::string(file), line, {}, what}};
+    return failure(TextError{std::string(file), line, {}, what});
   };
   for (std::string line; std::getline(lines, line);) {
     ++number;

@@ -16,8 +16,6 @@ namespace {
 
 using Done = Result<void, std::string>;
 
-Unexpected<std::string> key_failure(std::string why) { return {std::move(why)}; }
-
 void print(const KeySeed& seed, std::ostream& out) {
   const PublicKey key = key_pair_of(seed).public_key;
   out << "public key  " << to_hex(key) << "\nfingerprint " << key_fingerprint(key) << "\n";
@@ -37,17 +35,17 @@ Result<std::string, std::string> new_passphrase(const KeyCommand& command) {
   auto passphrase = is_asked ? ask_new_passphrase("passphrase for the exported key: ")
                              : read_passphrase(command.passphrase_file);
   if (passphrase && passphrase->size() < kPassphraseBytesMin)
-    return key_failure("the passphrase has fewer than " + std::to_string(kPassphraseBytesMin) +
-                       " bytes: take some words");
+    return failure("the passphrase has fewer than " + std::to_string(kPassphraseBytesMin) +
+                   " bytes: take some words");
   return passphrase;
 }
 
 Done export_key(const KeyCommand& command, std::ostream& out, SealCost cost) {
   const KeySeed seed = load_key_seed(command.key_file);
   const auto passphrase = new_passphrase(command);
-  if (!passphrase) return key_failure(passphrase.error());
+  if (!passphrase) return failure(passphrase.error());
   const auto line = seal_key(seed, *passphrase, cost);
-  if (!line) return key_failure(line.error());
+  if (!line) return failure(line.error());
   if (command.file.empty()) {
     out << *line << "\n";
     return {};
@@ -62,14 +60,14 @@ Done import_key(const KeyCommand& command, std::istream& in, std::ostream& out) 
   if (!command.file.empty()) file.open(command.file);
   const std::string line = first_line(command.file.empty() ? in : file);
   if (line.empty())
-    return key_failure((command.file.empty() ? "standard input" : command.file) +
-                       ": cannot be read, or its first line is empty");
+    return failure((command.file.empty() ? "standard input" : command.file) +
+                   ": cannot be read, or its first line is empty");
   const auto passphrase = command.passphrase_file.empty()
                               ? ask_passphrase("passphrase of the exported key: ")
                               : read_passphrase(command.passphrase_file);
-  if (!passphrase) return key_failure(passphrase.error());
+  if (!passphrase) return failure(passphrase.error());
   const auto seed = open_sealed_key(line, *passphrase);
-  if (!seed) return key_failure(seed.error());
+  if (!seed) return failure(seed.error());
   save_new_key(command.key_file, *seed);
   print(*seed, out);
   return {};
@@ -81,7 +79,7 @@ Done receive(KeyCommand command, std::istream& in, std::ostream& out) {
     command.code = first_line(in);
   }
   const auto seed = receive_key(command, out);
-  if (!seed) return key_failure(seed.error());
+  if (!seed) return failure(seed.error());
   print(*seed, out);
   return {};
 }
@@ -105,7 +103,7 @@ Done run_key_program(const KeyCommand& command, std::istream& in, std::ostream& 
         return receive(command, in, out);
     }
   } catch (const std::exception& error) {
-    return key_failure(error.what());
+    return failure(error.what());
   }
   return {};
 }

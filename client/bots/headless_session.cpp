@@ -33,7 +33,7 @@ Result<bool> HeadlessSession::receive_bytes(MessageKind kind, ByteView body,
   walked_due_us_.clear();
   walked_local_due_us_.clear();
   const auto walked = walk_.read(body, chunk_edge, on_walked_);
-  if (!walked) return Unexpected<Error>{walked.error()};
+  if (!walked) return failure(walked.error());
   connection_.note_message(received_us);
   ++counts_.commits;
   const TimeUs verified_us = clock_now_();
@@ -149,7 +149,7 @@ void HeadlessSession::tick(TimeUs now_us) {
 
 Result<ClientSequence> HeadlessSession::offer(const EditDescriptor& edit, TimeUs submitted_us,
                                               TimeUs now_us) {
-  if (const auto valid = validate(edit); !valid) return Unexpected<Error>{valid.error()};
+  if (const auto valid = validate(edit); !valid) return failure(valid.error());
   if (!welcome()) return fail(ErrorCode::bad_value, "no world is open");
   const auto seq = local_edits_.add(edit, {}, submitted_us);
   if (!seq) return seq;

@@ -79,20 +79,18 @@ Result<std::unique_ptr<ChunkCache>, std::string> ChunkCache::open(const std::str
                                                                   std::uint64_t bytes_max) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error)
-    return Unexpected<std::string>{"chunk cache " + folder + " cannot be made: " + error.message()};
+  if (error) return failure("chunk cache " + folder + " cannot be made: " + error.message());
   auto lock = FileLock::take(folder + "/cache.lock");
   if (!lock && lock.error().is_held) {
-    return Unexpected<std::string>{"chunk cache " + folder + " is in use by another client"};
+    return failure("chunk cache " + folder + " is in use by another client");
   }
   if (!lock) {
-    return Unexpected<std::string>{"chunk cache " + folder +
-                                   " cannot be written: " + lock.error().what};
+    return failure("chunk cache " + folder + " cannot be written: " + lock.error().what);
   }
   std::unique_ptr<ChunkCache> cache(
       new ChunkCache(folder + "/cache.sqlite", bytes_max, *std::move(lock)));
   cache->open_database();
-  if (cache->has_ended_) return Unexpected<std::string>{cache->warning_};
+  if (cache->has_ended_) return failure(cache->warning_);
   return cache;
 }
 

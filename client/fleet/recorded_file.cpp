@@ -8,7 +8,7 @@ namespace runstone {
 
 Result<RecordedLog, std::string> read_recorded_file(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) return Unexpected<std::string>{file + ": cannot be read: " + std::strerror(errno)};
+  if (!in) return failure(file + ": cannot be read: " + std::strerror(errno));
   auto log = read_recorded_log(
       [&in](std::uint64_t position, std::span<std::uint8_t> out) -> std::optional<std::size_t> {
         in.clear();  // an earlier read may have met the end
@@ -17,7 +17,7 @@ Result<RecordedLog, std::string> read_recorded_file(const std::string& file) {
         if (in.bad()) return std::nullopt;
         return static_cast<std::size_t>(in.gcount());
       });
-  if (!log) return Unexpected<std::string>{file + ": " + log.error()};
+  if (!log) return failure(file + ": " + log.error());
   return log;
 }
 

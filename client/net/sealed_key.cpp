@@ -19,8 +19,6 @@ constexpr std::size_t kSealedBytes =
 constexpr int kBase64 = sodium_base64_VARIANT_ORIGINAL;
 using SealKey = std::array<std::uint8_t, crypto_aead_xchacha20poly1305_ietf_KEYBYTES>;
 
-Unexpected<std::string> refused(std::string why) { return {std::move(why)}; }
-
 /// Makes the key of a passphrase. Returns false if there is too little memory.
 bool make_seal_key(SealKey& key, const std::string& passphrase, const std::uint8_t* salt,
                    SealCost cost) {
@@ -42,7 +40,7 @@ constexpr const char* kNoMemory = "there is too little memory for the passphrase
 
 Result<std::string, std::string> seal_key(const KeySeed& seed, const std::string& passphrase,
                                           SealCost cost) {
-  if (sodium_init() < 0) return refused("libsodium cannot start");
+  if (sodium_init() < 0) return failure("libsodium cannot start");
   Bytes bytes;
   ByteWriter writer(bytes);
   writer.u8(kVersion);
@@ -52,7 +50,7 @@ Result<std::string, std::string> seal_key(const KeySeed& seed, const std::string
   randombytes_buf(random.data(), random.size());
   writer.bytes(random);
   SealKey key{};
-  if (!make_seal_key(key, passphrase, random.data(), cost)) return refused(kNoMemory);
+  if (!make_seal_key(key, passphrase, random.data(), cost)) return failure(kNoMemory);
   bytes.resize(kHeaderBytes + kSealedBytes);
   crypto_aead_xchacha20poly1305_ietf_encrypt(
       bytes.data() + kHeaderBytes, nullptr, seed.data(), seed.size(), bytes.data(), kHeaderBytes,
@@ -65,10 +63,10 @@ Result<std::string, std::string> seal_key(const KeySeed& seed, const std::string
 }
 
 Result<KeySeed, std::string> open_sealed_key(std::string_view line, const std::string& passphrase) {
-  if (sodium_init() < 0) return refused("libsodium cannot start");
+  if (sodium_init() < 0) return failure("libsodium cannot start");
   const std::string_view text = trimmed(line);
   if (!text.starts_with(kPrefix))
-    return refused("this is no exported key of version 1: it begins with \"runstone-key-1:\"");
+    return failure("this is no exported key of version 1: it begins with \"runstone-key-1:\"");
   const std::string_view base64 = text.substr(kPrefix.size());
   std::array<std::uint8_t, kHeaderBytes + kSealedBytes> bytes{};
   std::size_t size = 0;
@@ -76,7 +74,7 @@ Result<KeySeed, std::string> open_sealed_key(std::string_view line, const std::s
   if (sodium_base642bin(bytes.data(), bytes.size(), base64.data(), base64.size(), nullptr, &size,
                         &end, kBase64) != 0 ||
       size != bytes.size() || end != base64.data() + base64.size())
-    return refused("the exported key is damaged: it was cut, or characters were changed");
+    return failure("the exported key is damaged: it was cut, or characters were changed");
   ByteReader reader(bytes);
   const std::uint8_t version = reader.u8();
   SealCost cost;
@@ -85,16 +83,16 @@ Result<KeySeed, std::string> open_sealed_key(std::string_view line, const std::s
   if (version != kVersion || cost.operations == 0 || cost.operations > kSealOperationsMax ||
       cost.memory_kib < crypto_pwhash_argon2id_MEMLIMIT_MIN >> 10 ||
       cost.memory_kib > kSealMemoryKibMax)
-    return refused("the exported key is damaged, or asks for too much memory or time");
+    return failure("the exported key is damaged, or asks for too much memory or time");
   const std::uint8_t* const salt = bytes.data() + 9;
   SealKey key{};
-  if (!make_seal_key(key, passphrase, salt, cost)) return refused(kNoMemory);
+  if (!make_seal_key(key, passphrase, salt, cost)) return failure(kNoMemory);
   KeySeed seed{};
   const int opened = crypto_aead_xchacha20poly1305_ietf_decrypt(
       seed.data(), nullptr, nullptr, bytes.data() + kHeaderBytes, kSealedBytes, bytes.data(),
       kHeaderBytes, salt + crypto_pwhash_argon2id_SALTBYTES, key.data());
   sodium_memzero(key.data(), key.size());
-  if (opened != 0) return refused("the passphrase is wrong, or the exported key is damaged");
+  if (opened != 0) return failure("the passphrase is wrong, or the exported key is damaged");
   return seed;
 }
 

@@ -132,7 +132,7 @@ Result<void, std::string> EditTool::propose(const EditDescriptor& edit, TimeUs d
   }
   std::string why = session_.refusal_text(edit, seq.error());
   if (on_refused_) on_refused_(why);
-  return Unexpected<std::string>{std::move(why)};
+  return failure(std::move(why));
 }
 
 }  // namespace runstone

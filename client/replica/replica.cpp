@@ -117,7 +117,7 @@ void Replica::show_moment(const std::optional<PastMoment>& past) {
 
 Result<ClientSequence> Replica::predict(const EditDescriptor& edit, TimeUs submitted_us,
                                         TimeUs now_us, ClientSequence action) {
-  if (const auto ok = check(edit); !ok) return Unexpected<Error>{ok.error()};
+  if (const auto ok = check(edit); !ok) return failure(ok.error());
   std::vector<ChunkKey> keys;
   for (const ChunkCoord at : touched_chunks(edit, parameters_->chunk_edge)) {
     keys.push_back({0, at});
@@ -142,7 +142,7 @@ Result<ClientSequence> Replica::predict(const EditDescriptor& edit, TimeUs submi
 Result<void> Replica::check(const EditDescriptor& edit) const {
   if (!parameters_) return fail(ErrorCode::bad_value, "no world is open");
   if (past_.is_past()) return fail(ErrorCode::bad_value, "the past cannot be edited");
-  if (const auto ok = validate(edit); !ok) return Unexpected<Error>{ok.error()};
+  if (const auto ok = validate(edit); !ok) return failure(ok.error());
   switch (check_edit(edit, parameters_->edit_limits()).value_or(RejectReason{})) {
     case RejectReason::unknown_material:
       return fail(ErrorCode::not_found, "material is not in the world's table");

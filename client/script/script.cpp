@@ -249,7 +249,7 @@ Result<Script, TextError> parse_script(std::string_view text, std::string_view f
   std::vector<std::size_t> open;  // indices of repeats that have no end yet
   std::uint32_t number_of_line = 0;
   const auto error = [&](std::uint32_t line, std::string what) {
-    return Unexpected<TextError>{TextError{std::string(file), line, "", std::move(what)}};
+    return failure(TextError{std::string(file), line, "", std::move(what)});
   };
   while (!text.empty()) {
     ++number_of_line;

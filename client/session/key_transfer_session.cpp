@@ -64,7 +64,7 @@ void KeyTransferSession::disconnected(const std::string& why) {
 }
 
 void KeyTransferSession::fail(std::string why) {
-  outcome_ = Result<Answer, std::string>(Unexpected<std::string>{std::move(why)});
+  outcome_ = Result<Answer, std::string>(failure(std::move(why)));
 }
 
 }  // namespace runstone

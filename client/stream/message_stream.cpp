@@ -14,14 +14,14 @@ Result<void> MessageStream::receive(ByteView bytes, TimeUs received_us) {
         std::exchange(frames_before_[static_cast<std::size_t>(frame_class)],
                       reader_.frames(frame_class));
     const auto taken = sink_.on_bytes(kind, body, chunk_edge_, received_us);
-    if (!taken) return Unexpected<Error>{taken.error()};
+    if (!taken) return failure(taken.error());
     if (*taken) {
       stats_.received.add(kind, body.size(), frames);
       return {};
     }
     const std::int64_t start_ns = clock_();
     auto message = decode_message(Sender::server, kind, body, chunk_edge_);
-    if (!message) return Unexpected<Error>{message.error()};
+    if (!message) return failure(message.error());
     const std::int64_t end_ns = clock_();
     stats_.received.add(kind, body.size(), frames);
     if (const auto* welcome = std::get_if<Welcome>(&*message)) {

@@ -60,7 +60,7 @@ ByteView ByteReader::bytes(std::size_t count) {
 
 Result<void> ByteReader::finish() {
   if (!failed_ && !at_end()) reject(ErrorCode::trailing_bytes, "bytes left over");
-  if (failed_) return Unexpected<Error>{error_};
+  if (failed_) return failure(error_);
   return {};
 }
 

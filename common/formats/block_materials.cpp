@@ -32,7 +32,7 @@ Result<MaterialTable> BlockMaterials::make_table() {
       continue;
     }
     const auto added = table.add(std::move(info));
-    if (!added) return Unexpected<Error>{added.error()};
+    if (!added) return failure(added.error());
     id = *added;
   }
   return table;

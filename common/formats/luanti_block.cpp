@@ -154,7 +154,7 @@ Result<ForeignPiece> decode_luanti_block(ByteView data) {
   if (data[0] != kVersion)
     return fail(ErrorCode::bad_version, "luanti block: serialisation version is not 29");
   const auto plain = decompress(data.subspan(1));
-  if (!plain) return Unexpected<Error>{plain.error()};
+  if (!plain) return failure(plain.error());
 
   ByteReader in(*plain);
   in.bytes(1 + 2 + 4);  // flags, lighting, timestamp
@@ -169,7 +169,7 @@ Result<ForeignPiece> decode_luanti_block(ByteView data) {
   const ByteView plane = in.bytes(kNodeCount * kNodeIdBytes);
   in.bytes(kNodeCount);  // param1: the light
   const ByteView param2 = in.bytes(kNodeCount);
-  if (!in.ok()) return Unexpected<Error>{in.error()};
+  if (!in.ok()) return failure(in.error());
 
   RunBuilder runs(Extent::cube(kLuantiBlockEdge), AxisOrder::xyz);
   std::uint32_t first = 0;  // node at which the current stretch of one id and param2 began
@@ -193,7 +193,7 @@ Result<ForeignPiece> decode_luanti_block(ByteView data) {
 
 Result<void> read_luanti_block(ByteView data, const PieceSink& sink) {
   auto piece = decode_luanti_block(data);
-  if (!piece) return Unexpected<Error>{piece.error()};
+  if (!piece) return failure(piece.error());
   return sink(std::move(*piece));
 }
 

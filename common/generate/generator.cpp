@@ -22,16 +22,16 @@ Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin,
   }
   if (pin.name == "flat") {
     const auto parameters = parse_flat_parameters(pin.parameters);
-    if (!parameters) return Unexpected<Error>{parameters.error()};
+    if (!parameters) return failure(parameters.error());
     return FlatGenerator::make(*parameters, materials);
   }
   if (pin.name == "scenario") {
     const auto parameters = parse_scenario_parameters(pin.parameters);
-    if (!parameters) return Unexpected<Error>{parameters.error()};
+    if (!parameters) return failure(parameters.error());
     return ScenarioWorld::make(*parameters, materials);
   }
   const auto parameters = parse_terrain_parameters(pin.parameters);
-  if (!parameters) return Unexpected<Error>{parameters.error()};
+  if (!parameters) return failure(parameters.error());
   return TerrainGenerator::make(pin.seed, *parameters, materials);
 }
 

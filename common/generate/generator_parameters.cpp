@@ -102,7 +102,7 @@ Result<P> parse(std::string_view text) {
   P out;
   FieldReader reader{table, 0, std::nullopt};
   each_field(out, P{}, reader);
-  if (reader.error) return Unexpected<Error>{*reader.error};
+  if (reader.error) return failure(*reader.error);
   if (reader.known != table.size())
     return fail(ErrorCode::bad_value, "unknown generator parameter");
   return out;

@@ -37,7 +37,7 @@ Result<std::unique_ptr<Generator>> TerrainGenerator::make(std::uint64_t seed,
   const auto rock = named(materials, parameters.rock);
   const auto peak = named(materials, parameters.peak);
   for (const auto* found : {&water, &beach, &rock, &peak}) {
-    if (!*found) return Unexpected<Error>{found->error()};
+    if (!*found) return failure(found->error());
   }
   out->water_ = *water;
   out->beach_ = *beach;

@@ -30,9 +30,9 @@ Result<Material, std::string> find_material(const MaterialTable& table, std::str
     if (matches <= kNamesListed) names += (matches == 1 ? "" : ", ") + full;
   }
   if (matches == 1) return *found;
-  if (matches == 0) return Unexpected<std::string>{"the world has no material " + quoted};
+  if (matches == 0) return failure("the world has no material " + quoted);
   if (matches > kNamesListed) names += ", …";
-  return Unexpected<std::string>{quoted + " is ambiguous: " + names};
+  return failure(quoted + " is ambiguous: " + names);
 }
 
 }  // namespace runstone

@@ -43,7 +43,7 @@ Result<Material> MaterialTable::add(MaterialInfo info) {
   if (const auto sound =
           validate_material(info.name, info.colour, info.visibility, info.body, info.look);
       !sound)
-    return Unexpected<Error>{sound.error()};
+    return failure(sound.error());
   if (info.generation) {
     if (const char* what = broken_rule(info.generation->surface))
       return fail(ErrorCode::bad_value, what);

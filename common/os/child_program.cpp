@@ -75,7 +75,7 @@ Result<pid_t, int> start_program(ChildProgram program) {
   pid_t pid = -1;
   const int wrong = ::posix_spawnp(&pid, arguments[0], &settings.files, &settings.attributes,
                                    arguments.data(), environ);
-  if (wrong != 0) return Unexpected<int>{wrong};
+  if (wrong != 0) return failure(wrong);
   return pid;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using Parsed = Result<HostPort, std::string>;
 
-Parsed wrong_form() { return Unexpected<std::string>{"expected HOST, HOST:PORT or [V6]:PORT"}; }
+Parsed wrong_form() { return failure("expected HOST, HOST:PORT or [V6]:PORT"); }
 
 /// Returns true if the text, up to a zone such as "%eth0", has only characters of an IPv6 address.
 bool may_be_v6(std::string_view text) {
@@ -31,8 +31,7 @@ Parsed with_port(std::string_view host, std::optional<std::string_view> port, Po
   const char* const end = begin + port->size();
   const auto [rest, error] = std::from_chars(begin, end, out.port);
   if (error != std::errc() || rest != end || out.port < ports.lowest) {
-    return Unexpected<std::string>{"the port is not a number from " + std::to_string(ports.lowest) +
-                                   " to 65535"};
+    return failure("the port is not a number from " + std::to_string(ports.lowest) + " to 65535");
   }
   return out;
 }
@@ -74,7 +73,7 @@ Result<std::vector<HostPort>, std::string> parse_host_ports(std::string_view tex
   for (bool goes_on = true; goes_on;) {
     const std::size_t comma = text.find(',');
     auto address = parse_host_port(text.substr(0, comma), default_port);
-    if (!address) return Unexpected<std::string>{address.error()};
+    if (!address) return failure(address.error());
     out.push_back(*std::move(address));
     goes_on = comma != std::string_view::npos;
     if (goes_on) text.remove_prefix(comma + 1);

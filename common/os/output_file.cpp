@@ -37,9 +37,7 @@ std::string output_refusal(const std::string& file) {
 }
 
 Written write_output_file(const std::string& file, std::string_view bytes) {
-  const auto fail = [&](const std::string& why) {
-    return Written(Unexpected<std::string>{file + ": " + why});
-  };
+  const auto fail = [&](const std::string& why) { return Written(failure(file + ": " + why)); };
   if (const std::string refusal = output_refusal(file); !refusal.empty()) return fail(refusal);
   // A device or a pipe is written in place.
   std::error_code error;

@@ -48,9 +48,9 @@ class Terminal {
 Result<std::string, std::string> ask_passphrase(const std::string& prompt) {
   const Terminal terminal;
   if (!terminal.is_hidden() || !terminal.print(prompt))
-    return Unexpected<std::string>{"there is no terminal to ask for the passphrase"};
+    return failure("there is no terminal to ask for the passphrase");
   std::string line;
-  if (!terminal.read_line(line)) return Unexpected<std::string>{"no passphrase was typed"};
+  if (!terminal.read_line(line)) return failure("no passphrase was typed");
   return line;
 }
 
@@ -59,7 +59,7 @@ Result<std::string, std::string> ask_new_passphrase(const std::string& prompt) {
   if (!first) return first;
   const auto second = ask_passphrase("again: ");
   if (!second) return second;
-  if (*first != *second) return Unexpected<std::string>{"the two lines differ"};
+  if (*first != *second) return failure("the two lines differ");
   return first;
 }
 
@@ -67,7 +67,7 @@ Result<std::string, std::string> read_passphrase(const std::string& file) {
   std::ifstream in(file);
   std::string line;
   if (!std::getline(in, line) || line.empty())
-    return Unexpected<std::string>{file + ": cannot be read, or its first line is empty"};
+    return failure(file + ": cannot be read, or its first line is empty");
   return line;
 }
 

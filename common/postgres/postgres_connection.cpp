@@ -30,7 +30,7 @@ std::string connection_message(PGconn* handle) {
 void ClearResult::operator()(PGresult* result) const { PQclear(result); }
 void PostgresConnection::Finish::operator()(PGconn* handle) const { PQfinish(handle); }
 
-Unexpected<Error> PostgresConnection::failure(const PGresult* result) const {
+Unexpected<Error> PostgresConnection::result_failure(const PGresult* result) const {
   const char* message =
       result == nullptr ? nullptr : PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
   if (message == nullptr) return {Error{Error::Kind::io, name_, connection_message(handle_.get())}};
@@ -45,18 +45,18 @@ bool PostgresConnection::is_connected() const { return PQstatus(handle_.get()) =
 
 Result<void> PostgresConnection::take(const PGresult* result) {
   const ExecStatusType status = PQresultStatus(result);
-  if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK) return failure(result);
+  if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK) return result_failure(result);
   if (status == PGRES_COMMAND_OK)
     changes_ = std::strtoll(PQcmdTuples(const_cast<PGresult*>(result)), nullptr, 10);
   return {};
 }
 
 Result<void> PostgresConnection::drain(PostgresResult* last) {
-  if (unreported_) return Unexpected<Error>{*std::exchange(unreported_, std::nullopt)};
+  if (unreported_) return failure(*std::exchange(unreported_, std::nullopt));
   if (sent_ == 0) return {};
   sent_ = 0;
   Result<void> done;
-  if (PQpipelineSync(handle_.get()) != 1) return failure(nullptr);
+  if (PQpipelineSync(handle_.get()) != 1) return result_failure(nullptr);
   while (PQstatus(handle_.get()) == CONNECTION_OK) {
     PostgresResult result(PQgetResult(handle_.get()));
     if (!result) continue;  // it comes after the results of each statement
@@ -65,8 +65,8 @@ Result<void> PostgresConnection::drain(PostgresResult* last) {
     if (!taken && done) done = std::move(taken);
     if (last != nullptr) *last = std::move(result);
   }
-  if (PQstatus(handle_.get()) != CONNECTION_OK && done) done = failure(nullptr);
-  if (PQexitPipelineMode(handle_.get()) != 1 && done) done = failure(nullptr);
+  if (PQstatus(handle_.get()) != CONNECTION_OK && done) done = result_failure(nullptr);
+  if (PQexitPipelineMode(handle_.get()) != 1 && done) done = result_failure(nullptr);
   return done;
 }
 
@@ -79,12 +79,12 @@ Result<void> PostgresConnection::run(const char* sql) {
 Result<Statement> PostgresConnection::prepare(std::string_view sql) {
   auto found = prepared_.find(sql);
   if (found == prepared_.end()) {
-    if (auto drained = drain(); !drained) return Unexpected<Error>{drained.error()};
+    if (auto drained = drain(); !drained) return failure(drained.error());
     PostgresText text = postgres_text(sql);
     PreparedText prepared{"s" + std::to_string(prepared_.size()), std::move(text.slots)};
     const PostgresResult result(
         PQprepare(handle_.get(), prepared.name.c_str(), text.text.c_str(), 0, nullptr));
-    if (auto taken = take(result.get()); !taken) return Unexpected<Error>{taken.error()};
+    if (auto taken = take(result.get()); !taken) return failure(taken.error());
     found = prepared_.emplace(sql, std::move(prepared)).first;
   }
   return Statement(std::make_unique<PostgresStatement>(*this, found->second));
@@ -101,7 +101,7 @@ std::int64_t PostgresConnection::changes() {
 Result<void> PostgresConnection::begin_write() {
   // PostgreSQL would only warn, and the end of the inner transaction would commit the outer one.
   if (is_writing_ || reads_ > 0)
-    return Unexpected<Error>{{Error::Kind::bad_statement, name_, "a transaction is open already"}};
+    return failure(Error{Error::Kind::bad_statement, name_, "a transaction is open already"});
   // At other levels, PostgreSQL refuses to read a row that was changed after the begin, such as a lease
   // that was renewed. The database may have another level as its default.
   auto begun = run("BEGIN ISOLATION LEVEL READ COMMITTED");
@@ -116,7 +116,7 @@ Result<void> PostgresConnection::commit() {
   is_writing_ = false;
   // The commit of a transaction in which a statement has failed is a rollback.
   if (std::string_view(PQcmdStatus(result.get())) != "COMMIT")
-    return Unexpected<Error>{{Error::Kind::io, name_, "the transaction was rolled back"}};
+    return failure(Error{Error::Kind::io, name_, "the transaction was rolled back"});
   return {};
 }
 
@@ -145,22 +145,22 @@ Result<PostgresResult> PostgresConnection::execute(const PreparedText& statement
                                                    const PostgresValues& values) {
   PostgresResult result;
   if (sent_ > 0) {
-    if (auto queued = enqueue(statement, values); !queued) return Unexpected<Error>{queued.error()};
-    if (auto drained = drain(&result); !drained) return Unexpected<Error>{drained.error()};
+    if (auto queued = enqueue(statement, values); !queued) return failure(queued.error());
+    if (auto drained = drain(&result); !drained) return failure(drained.error());
     return result;
   }
   const std::vector<int> formats(values.data.size(), 1);
   result.reset(PQexecPrepared(handle_.get(), statement.name.c_str(),
                               static_cast<int>(values.data.size()), values.data.data(),
                               values.sizes.data(), formats.data(), 1));
-  if (auto taken = take(result.get()); !taken) return Unexpected<Error>{taken.error()};
+  if (auto taken = take(result.get()); !taken) return failure(taken.error());
   return result;
 }
 
 Result<void> PostgresConnection::send(const PreparedText& statement, const PostgresValues& values) {
   if (!is_writing_) {
     const auto result = execute(statement, values);
-    if (!result) return Unexpected<Error>{result.error()};
+    if (!result) return failure(result.error());
     return {};
   }
   if (sent_ >= kSentMax) {
@@ -171,13 +171,13 @@ Result<void> PostgresConnection::send(const PreparedText& statement, const Postg
 
 Result<void> PostgresConnection::enqueue(const PreparedText& statement,
                                          const PostgresValues& values) {
-  if (sent_ == 0 && PQenterPipelineMode(handle_.get()) != 1) return failure(nullptr);
+  if (sent_ == 0 && PQenterPipelineMode(handle_.get()) != 1) return result_failure(nullptr);
   ++sent_;
   const std::vector<int> formats(values.data.size(), 1);
   if (PQsendQueryPrepared(handle_.get(), statement.name.c_str(),
                           static_cast<int>(values.data.size()), values.data.data(),
                           values.sizes.data(), formats.data(), 1) != 1) {
-    return failure(nullptr);
+    return result_failure(nullptr);
   }
   return {};
 }

@@ -70,7 +70,7 @@ class PostgresConnection final : public Connection {
   /// to the result of the last one.
   Result<void> drain(PostgresResult* last = nullptr);
   /// Returns the error of a result, or of the connection if the result is null.
-  Unexpected<Error> failure(const pg_result* result) const;
+  Unexpected<Error> result_failure(const pg_result* result) const;
   /// Keeps the number of rows that a statement has changed. Fails with the error of its result.
   Result<void> take(const pg_result* result);
 

@@ -22,13 +22,13 @@ void ignore_notice(void*, const PGresult*) {}
 /// data.
 Result<void> set_up(Database& database, PostgresMode mode) {
   const auto encoding = database.text("SELECT current_setting('server_encoding')");
-  if (!encoding) return Unexpected<Error>{encoding.error()};
+  if (!encoding) return failure(encoding.error());
   if (*encoding != "UTF8") {
-    return Unexpected<Error>{{Error::Kind::io, database.file(),
-                              "the encoding of the database is " + *encoding + ", not UTF8"}};
+    return failure(Error{Error::Kind::io, database.file(),
+                         "the encoding of the database is " + *encoding + ", not UTF8"});
   }
   const auto commits = database.text("SELECT current_setting('synchronous_commit')");
-  if (!commits) return Unexpected<Error>{commits.error()};
+  if (!commits) return failure(commits.error());
   if (*commits == "off") {
     if (auto set = database.run("SET synchronous_commit = on"); !set) return set;
   }
@@ -98,17 +98,17 @@ Result<Database> open_postgres(const std::string& url, PostgresMode mode) {
   if (PQconninfoOption* const options = PQconninfoParse(url.c_str(), nullptr)) {
     PQconninfoFree(options);
   } else {
-    return Unexpected<Error>{
-        {Error::Kind::io, name, "is no address like postgresql://USER@HOST:PORT/DATABASE"}};
+    return failure(
+        Error{Error::Kind::io, name, "is no address like postgresql://USER@HOST:PORT/DATABASE"});
   }
   PGconn* const handle = PQconnectdbParams(kKeys.data(), values.data(), 1);
-  if (handle == nullptr) return Unexpected<Error>{{Error::Kind::io, name, "out of memory"}};
+  if (handle == nullptr) return failure(Error{Error::Kind::io, name, "out of memory"});
   Database database(std::make_unique<PostgresConnection>(name, handle));
   if (PQstatus(handle) != CONNECTION_OK) {
-    return Unexpected<Error>{{Error::Kind::io, name, connection_message(handle)}};
+    return failure(Error{Error::Kind::io, name, connection_message(handle)});
   }
   PQsetNoticeReceiver(handle, &ignore_notice, nullptr);
-  if (auto ready = set_up(database, mode); !ready) return Unexpected<Error>{ready.error()};
+  if (auto ready = set_up(database, mode); !ready) return failure(ready.error());
   return database;
 }
 

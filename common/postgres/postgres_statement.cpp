@@ -69,7 +69,7 @@ Result<bool> PostgresStatement::step() {
   if (has_bad_bind_) return bad_bind();
   if (!result_) {
     auto result = connection_.execute(text_, values());
-    if (!result) return Unexpected<Error>{result.error()};
+    if (!result) return failure(result.error());
     result_ = *std::move(result);
     row_ = -1;
   }

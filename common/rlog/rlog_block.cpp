@@ -80,7 +80,7 @@ Result<RlogBlock> read_header(ByteView in, std::uint64_t checksum_before) {
     return fail(ErrorCode::unknown_kind, "unknown kind of block");
   }
   block.kind = static_cast<RlogKind>(kind);
-  if (const auto bounds = check_bounds(block); !bounds) return Unexpected<Error>{bounds.error()};
+  if (const auto bounds = check_bounds(block); !bounds) return failure(bounds.error());
   return block;
 }
 

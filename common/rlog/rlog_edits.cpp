@@ -111,11 +111,11 @@ Result<RlogEditsReader> RlogEditsReader::open(ByteView payload, const RlogBlock&
     out.begins_[i] = r.offset();
     out.columns_.emplace_back(r.bytes(lengths[i]));
   }
-  if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+  if (const auto done = r.finish(); !done) return failure(done.error());
   return out;
 }
 
-Unexpected<Error> RlogEditsReader::failure(std::size_t column) const {
+Unexpected<Error> RlogEditsReader::column_failure(std::size_t column) const {
   const Error& error = columns_[column].error();
   return fail(error.code, error.what, begins_[column] + error.offset);
 }
@@ -149,11 +149,11 @@ Result<EditRecord> RlogEditsReader::next() {
   const std::uint64_t length =
       at(kLength).varint_max(kRecordDescriptorBytesMax, "descriptor too long");
   for (std::size_t i = 0; i < kDescriptor; ++i) {
-    if (!columns_[i].ok()) return failure(i);
+    if (!columns_[i].ok()) return column_failure(i);
   }
   const std::size_t descriptor_at = at(kDescriptor).offset();
   const ByteView descriptor = at(kDescriptor).bytes(static_cast<std::size_t>(length));
-  if (!at(kDescriptor).ok()) return failure(kDescriptor);
+  if (!at(kDescriptor).ok()) return column_failure(kDescriptor);
   auto edit = decode_descriptor(descriptor);
   if (!edit) {
     return fail(edit.error().code, edit.error().what,
@@ -166,8 +166,7 @@ Result<EditRecord> RlogEditsReader::next() {
   record.cause = static_cast<Cause>(cause);
   record.edit = *std::move(edit);
   record.subject = back == 0 ? 0 : seq_ - back;
-  if (const auto numbers = validate_fields(record); !numbers)
-    return Unexpected<Error>{numbers.error()};
+  if (const auto numbers = validate_fields(record); !numbers) return failure(numbers.error());
   clients_seen_ = std::max(clients_seen_, static_cast<std::size_t>(client) + 1);
   last = record.op.seq;
   epoch_ = record.version.epoch;
@@ -179,7 +178,7 @@ Result<EditRecord> RlogEditsReader::next() {
 Result<void> RlogEditsReader::finish() {
   RUNSTONE_ASSERT(seq_ == block_.first + block_.count);
   for (std::size_t i = 0; i < kRlogColumns; ++i) {
-    if (!columns_[i].finish()) return failure(i);
+    if (!columns_[i].finish()) return column_failure(i);
   }
   if (clients_seen_ != clients_.size())
     return fail(ErrorCode::not_canonical, "a client is named for no edit");

@@ -57,7 +57,7 @@ class RlogEditsReader {
  private:
   RlogEditsReader(const RlogBlock& block, Epoch epoch)
       : block_(block), seq_(block.first), epoch_(epoch), time_us_(block.first_us) {}
-  Unexpected<Error> failure(std::size_t column) const;
+  Unexpected<Error> column_failure(std::size_t column) const;
 
   RlogBlock block_;
   std::vector<std::pair<RlogClient, ClientSequence>> clients_;

@@ -15,7 +15,7 @@ Error unreadable() { return {ErrorCode::io_failed, "cannot be read", 0}; }
 
 RlogResult<RlogReader> RlogReader::open(RlogSource source) {
   RlogReader reader(std::move(source));
-  if (const auto head = reader.read_head(); !head) return Unexpected<RlogError>{head.error()};
+  if (const auto head = reader.read_head(); !head) return failure(head.error());
   return reader;
 }
 
@@ -23,13 +23,13 @@ RlogResult<RlogBlock> RlogReader::read_any_header() {
   const Sequence seq = std::max<Sequence>(next_, 1);
   std::array<std::uint8_t, kRlogHeaderBytes> bytes{};
   const auto got = source_(position_, bytes);
-  if (!got) return failure(unreadable(), seq, position_);
+  if (!got) return failure_at(unreadable(), seq, position_);
   if (*got == 0)
-    return failure({ErrorCode::truncated, "file ends without its end block", 0}, seq, position_);
+    return failure_at({ErrorCode::truncated, "file ends without its end block", 0}, seq, position_);
   const auto block = read_header(ByteView(bytes).first(*got), checksum_);
-  if (!block) return failure(block.error(), seq, position_);
+  if (!block) return failure_at(block.error(), seq, position_);
   const auto bad = [&](const char* what) {
-    return failure({ErrorCode::broken_invariant, what, 0}, seq, position_);
+    return failure_at({ErrorCode::broken_invariant, what, 0}, seq, position_);
   };
   if (block->position != position_) return bad("block stands at another place than it says");
   if (next_ != 0 && block->first != next_) return bad("block does not continue the sequence");
@@ -45,44 +45,44 @@ RlogResult<void> RlogReader::read_payload(const RlogBlock& block) {
   stored_.resize(block.stored_bytes);
   const std::uint64_t at = block.position + kRlogHeaderBytes;
   const auto got = source_(at, stored_);
-  if (!got) return failure(unreadable(), block.first, block.position);
+  if (!got) return failure_at(unreadable(), block.first, block.position);
   if (*got < stored_.size()) {
-    return failure({ErrorCode::truncated, "file ends inside a block", 0}, block.first,
-                   block.position);
+    return failure_at({ErrorCode::truncated, "file ends inside a block", 0}, block.first,
+                      block.position);
   }
   if (rlog_payload_checksum(stored_) != block.payload_checksum) {
-    return failure({ErrorCode::bad_checksum, "checksum of the block is wrong", 0}, block.first,
-                   block.position);
+    return failure_at({ErrorCode::bad_checksum, "checksum of the block is wrong", 0}, block.first,
+                      block.position);
   }
   const auto unpacked = unpack_rlog_payload(stored_, block.raw_bytes, raw_);
-  if (!unpacked) return failure(unpacked.error(), block.first, block.position);
+  if (!unpacked) return failure_at(unpacked.error(), block.first, block.position);
   return {};
 }
 
 RlogResult<void> RlogReader::read_head() {
   std::array<std::uint8_t, kRlogFileHeadBytes> head{};
   const auto got = source_(0, head);
-  if (!got) return failure(unreadable(), 1, 0);
+  if (!got) return failure_at(unreadable(), 1, 0);
   if (!std::equal(kRlogMark.begin(), kRlogMark.end(), head.begin())) {
-    return failure({ErrorCode::bad_value, "is not an .rlog file", 0}, 1, 0);
+    return failure_at({ErrorCode::bad_value, "is not an .rlog file", 0}, 1, 0);
   }
   if (*got < head.size())
-    return failure({ErrorCode::truncated, "file ends inside its mark", 0}, 1, 0);
+    return failure_at({ErrorCode::truncated, "file ends inside its mark", 0}, 1, 0);
   if (ByteReader(ByteView(head).subspan(kRlogMark.size())).u32() != kRlogVersion) {
-    return failure(
+    return failure_at(
         {ErrorCode::bad_version, "is an .rlog of another version than this program knows", 0}, 1,
         0);
   }
   position_ = head.size();
   const auto first = read_any_header();
-  if (!first) return Unexpected<RlogError>{first.error()};
+  if (!first) return failure(first.error());
   if (first->kind != RlogKind::world) {
-    return failure({ErrorCode::broken_invariant, "the first block is not the world", 0}, 1,
-                   position_);
+    return failure_at({ErrorCode::broken_invariant, "the first block is not the world", 0}, 1,
+                      position_);
   }
   if (const auto read = read_payload(*first); !read) return read;
   auto world = decode_rlog_world(raw_);
-  if (!world) return failure(world.error(), first->first, position_);
+  if (!world) return failure_at(world.error(), first->first, position_);
   world_ = *std::move(world);
   world_.head.seq = first->first - 1;
   world_.head_us = first->first_us;
@@ -99,7 +99,7 @@ RlogResult<void> RlogReader::read_head() {
     if (const auto read = read_payload(*block); !read) return read;
     const AuthorId before = players_.empty() ? 0 : players_.back().author;
     if (const auto players = decode_rlog_players(raw_, block->count, before, players_); !players) {
-      return failure(players.error(), next_, position_);
+      return failure_at(players.error(), next_, position_);
     }
   }
 }
@@ -107,20 +107,20 @@ RlogResult<void> RlogReader::read_head() {
 RlogResult<std::optional<RlogBlock>> RlogReader::next_block() {
   current_.reset();
   const auto header = read_any_header();
-  if (!header) return Unexpected<RlogError>{header.error()};
+  if (!header) return failure(header.error());
   if (header->kind == RlogKind::end) {
     std::array<std::uint8_t, 1> more{};
     const std::uint64_t behind = position_ + kRlogHeaderBytes;
     const auto got = source_(behind, more);
-    if (!got) return failure(unreadable(), next_, behind);
+    if (!got) return failure_at(unreadable(), next_, behind);
     if (*got != 0)
-      return failure({ErrorCode::trailing_bytes, "something follows the end block", 0}, next_,
-                     behind);
+      return failure_at({ErrorCode::trailing_bytes, "something follows the end block", 0}, next_,
+                        behind);
     return std::optional<RlogBlock>{};
   }
   if (header->kind != RlogKind::edits) {
-    return failure({ErrorCode::broken_invariant, "world or players stand among the edits", 0},
-                   next_, position_);
+    return failure_at({ErrorCode::broken_invariant, "world or players stand among the edits", 0},
+                      next_, position_);
   }
   current_ = *header;
   position_ += kRlogHeaderBytes + header->stored_bytes;
@@ -133,16 +133,17 @@ RlogResult<std::optional<RlogBlock>> RlogReader::next_block() {
 RlogResult<bool> RlogReader::read_block(const std::function<bool(const EditRecord&)>& each) {
   RUNSTONE_ASSERT(current_.has_value());
   const RlogBlock block = *current_;
-  if (const auto read = read_payload(block); !read) return Unexpected<RlogError>{read.error()};
+  if (const auto read = read_payload(block); !read) return failure(read.error());
   auto edits = RlogEditsReader::open(raw_, block, epoch_);
-  if (!edits) return failure(edits.error(), block.first, block.position);
+  if (!edits) return failure_at(edits.error(), block.first, block.position);
   for (std::uint32_t i = 0; i < block.count; ++i) {
     const auto record = edits->next();
-    if (!record) return failure(record.error(), block.first + i, block.position);
+    if (!record) return failure_at(record.error(), block.first + i, block.position);
     epoch_ = record->version.epoch;
     if (!each(*record)) return false;
   }
-  if (const auto done = edits->finish(); !done) return failure(done.error(), next_, block.position);
+  if (const auto done = edits->finish(); !done)
+    return failure_at(done.error(), next_, block.position);
   return true;
 }
 
@@ -150,13 +151,13 @@ RlogResult<void> RlogReader::read(const RlogFrom& from,
                                   const std::function<bool(const EditRecord&)>& each) {
   for (;;) {
     const auto block = next_block();
-    if (!block) return Unexpected<RlogError>{block.error()};
+    if (!block) return failure(block.error());
     if (!block->has_value()) return {};
     if (next_ <= from.seq || last_us_ < from.time_us) continue;
     const auto read = read_block([&](const EditRecord& record) {
       return record.version.seq < from.seq || record.time_us < from.time_us || each(record);
     });
-    if (!read) return Unexpected<RlogError>{read.error()};
+    if (!read) return failure(read.error());
     if (!*read) return {};
   }
 }

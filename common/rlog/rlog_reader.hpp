@@ -52,7 +52,7 @@ class RlogReader {
   RlogResult<void> read_head();
   RlogResult<RlogBlock> read_any_header();
   RlogResult<void> read_payload(const RlogBlock& block);
-  Unexpected<RlogError> failure(const Error& error, Sequence seq, std::uint64_t position) const {
+  Unexpected<RlogError> failure_at(const Error& error, Sequence seq, std::uint64_t position) const {
     return {{error, seq, position}};
   }
 

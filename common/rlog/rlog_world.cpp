@@ -72,7 +72,7 @@ Result<RlogWorld> decode_rlog_world(ByteView in) {
   world.has_base = has_base == 1;
   world.head.epoch = static_cast<Epoch>(r.varint_max(kRlogU32Max, "epoch exceeds 32 bits"));
   world.materials = read_text(r, kRlogRawBytesMax);
-  if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+  if (const auto done = r.finish(); !done) return failure(done.error());
   return world;
 }
 

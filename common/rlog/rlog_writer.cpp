@@ -19,13 +19,13 @@ RlogWriter::RlogWriter(RlogSink sink, RlogOptions options)
   RUNSTONE_ASSERT(options.edits_per_block >= 1 && options.edits_per_block <= kRlogCountMax);
 }
 
-Unexpected<RlogError> RlogWriter::failure(ErrorCode code, const char* what, Sequence seq) const {
+Unexpected<RlogError> RlogWriter::failure_at(ErrorCode code, const char* what, Sequence seq) const {
   return {{Error{code, what, 0}, seq, position_}};
 }
 
 RlogResult<void> RlogWriter::write_block(RlogBlock block, ByteView raw) {
   if (raw.size() > kRlogRawBytesMax) {
-    return failure(ErrorCode::limit_exceeded, "is longer than a block may be", block.first);
+    return failure_at(ErrorCode::limit_exceeded, "is longer than a block may be", block.first);
   }
   pack_rlog_payload(raw, options_.zstd_level, packed_);
   block.raw_bytes = static_cast<std::uint32_t>(raw.size());
@@ -35,7 +35,7 @@ RlogResult<void> RlogWriter::write_block(RlogBlock block, ByteView raw) {
   bytes_.clear();
   write_header(block, checksum_, bytes_);
   bytes_.insert(bytes_.end(), packed_.begin(), packed_.end());
-  if (!sink_(bytes_)) return failure(ErrorCode::io_failed, "cannot be written", block.first);
+  if (!sink_(bytes_)) return failure_at(ErrorCode::io_failed, "cannot be written", block.first);
   checksum_ = block.header_checksum;
   position_ += bytes_.size();
   return {};
@@ -48,7 +48,7 @@ RlogResult<void> RlogWriter::begin(const RlogWorld& world, std::span<const RlogP
   last_us_ = world.head_us;
   Bytes head(kRlogMark.begin(), kRlogMark.end());
   ByteWriter(head).u32(kRlogVersion);
-  if (!sink_(head)) return failure(ErrorCode::io_failed, "cannot be written", next_);
+  if (!sink_(head)) return failure_at(ErrorCode::io_failed, "cannot be written", next_);
   position_ = head.size();
   RlogBlock block;
   block.kind = RlogKind::world;
@@ -71,7 +71,7 @@ RlogResult<void> RlogWriter::begin(const RlogWorld& world, std::span<const RlogP
 
 RlogResult<void> RlogWriter::add(const EditRecord& record) {
   const auto bad = [&](const char* what) {
-    return failure(ErrorCode::bad_value, what, record.version.seq);
+    return failure_at(ErrorCode::bad_value, what, record.version.seq);
   };
   if (const auto numbers = validate_fields(record); !numbers) return bad(numbers.error().what);
   if (record.log != 0) return bad("belongs to another log");
@@ -99,7 +99,7 @@ RlogResult<void> RlogWriter::write_edits() {
 RlogResult<void> RlogWriter::finish() {
   if (auto written = write_edits(); !written) return written;
   if (next_ > kSequenceMax)
-    return failure(ErrorCode::limit_exceeded, "is the last edit there can be", next_ - 1);
+    return failure_at(ErrorCode::limit_exceeded, "is the last edit there can be", next_ - 1);
   RlogBlock block;
   block.kind = RlogKind::end;
   block.first = next_;

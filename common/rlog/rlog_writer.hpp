@@ -40,7 +40,7 @@ class RlogWriter {
  private:
   RlogResult<void> write_block(RlogBlock block, ByteView raw);
   RlogResult<void> write_edits();
-  Unexpected<RlogError> failure(ErrorCode code, const char* what, Sequence seq) const;
+  Unexpected<RlogError> failure_at(ErrorCode code, const char* what, Sequence seq) const;
 
   RlogSink sink_;
   RlogOptions options_;

@@ -3,8 +3,7 @@
 namespace runstone::sql {
 
 Result<Transaction> Transaction::begin(Database& database) {
-  if (const auto begun = database.connection().begin_write(); !begun)
-    return Unexpected<Error>{begun.error()};
+  if (const auto begun = database.connection().begin_write(); !begun) return failure(begun.error());
   return Transaction(database);
 }
 

@@ -10,12 +10,13 @@ void OnlineCopy::Finish::operator()(sqlite3_backup* handle) const { sqlite3_back
 
 Result<OnlineCopy> OnlineCopy::begin(Database& from, Database& to) {
   if (sqlite3_txn_state(sqlite_handle(from), "main") == SQLITE_TXN_NONE) {
-    return Unexpected<Error>{
-        {Error::Kind::bad_statement, from.file(), "has no read transaction to copy"}};
+    return failure(
+        Error{Error::Kind::bad_statement, from.file(), "has no read transaction to copy"});
   }
   sqlite3_backup* handle =
       sqlite3_backup_init(sqlite_handle(to), "main", sqlite_handle(from), "main");
-  if (handle == nullptr) return failure(sqlite_handle(to), sqlite3_errcode(sqlite_handle(to)));
+  if (handle == nullptr)
+    return sqlite_failure(sqlite_handle(to), sqlite3_errcode(sqlite_handle(to)));
   return OnlineCopy(handle, to);
 }
 
@@ -25,7 +26,7 @@ Result<bool> OnlineCopy::step(int pages) {
   if (code == SQLITE_DONE) return false;
   // SQLite reports the message with the connection of the copy only when the copy is finished.
   handle_.reset();
-  return failure(sqlite_handle(*to_), code);
+  return sqlite_failure(sqlite_handle(*to_), code);
 }
 
 std::uint64_t OnlineCopy::pages_left() const {

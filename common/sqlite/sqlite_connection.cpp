@@ -34,10 +34,10 @@ std::string uri_of(const std::string& file) {
 Result<bool> file_exists(const std::string& file, const std::string& vfs) {
   sqlite3_vfs* system = sqlite3_vfs_find(vfs.empty() ? nullptr : vfs.c_str());
   if (system == nullptr)
-    return Unexpected<Error>{{Error::Kind::io, file, "no SQLite VFS is called " + vfs}};
+    return failure(Error{Error::Kind::io, file, "no SQLite VFS is called " + vfs});
   int there = 0;
   if (system->xAccess(system, file.c_str(), SQLITE_ACCESS_EXISTS, &there) != SQLITE_OK)
-    return Unexpected<Error>{{Error::Kind::io, file, "cannot be looked up"}};
+    return failure(Error{Error::Kind::io, file, "cannot be looked up"});
   return there != 0;
 }
 
@@ -66,7 +66,7 @@ Result<Database> open_sqlite(const std::string& file, SqliteMode mode, const std
       sqlite3_open_v2(uri.c_str(), &handle, flags, vfs.empty() ? nullptr : vfs.c_str());
   Database database(std::make_unique<SqliteConnection>(file, handle));
   if (code != SQLITE_OK) {
-    auto error = failure(handle, code);
+    auto error = sqlite_failure(handle, code);
     error.error.file = file;
     return error;
   }
@@ -76,7 +76,7 @@ Result<Database> open_sqlite(const std::string& file, SqliteMode mode, const std
 
 Result<void> SqliteConnection::run(const char* sql) {
   const int code = sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr);
-  if (code != SQLITE_OK) return failure(handle_.get(), code);
+  if (code != SQLITE_OK) return sqlite_failure(handle_.get(), code);
   return {};
 }
 
@@ -84,7 +84,7 @@ Result<Statement> SqliteConnection::prepare(std::string_view sql) {
   sqlite3_stmt* statement = nullptr;
   const int code = sqlite3_prepare_v3(handle_.get(), sql.data(), static_cast<int>(sql.size()),
                                       SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
-  if (code != SQLITE_OK) return failure(handle_.get(), code);
+  if (code != SQLITE_OK) return sqlite_failure(handle_.get(), code);
   return Statement(std::make_unique<SqliteStatement>(statement));
 }
 

@@ -15,7 +15,7 @@ namespace runstone::sql {
 
 /// Returns the error of the last call on a connection. `code` is the result of that call. A null
 /// handle means that there was no memory for a connection.
-Unexpected<Error> failure(sqlite3* handle, int code);
+Unexpected<Error> sqlite_failure(sqlite3* handle, int code);
 
 class SqliteStatement final : public StatementHandle {
  public:

@@ -38,7 +38,7 @@ Error::Kind kind_of_code(int code, int system) {
 
 }  // namespace
 
-Unexpected<Error> failure(sqlite3* handle, int code) {
+Unexpected<Error> sqlite_failure(sqlite3* handle, int code) {
   if (handle == nullptr) return {Error{Error::Kind::io, "", "out of memory"}};
   const char* name = sqlite3_db_filename(handle, "main");
   std::string what = sqlite3_errmsg(handle);

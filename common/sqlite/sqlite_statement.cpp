@@ -31,14 +31,14 @@ Result<bool> SqliteStatement::step() {
   const int code = bind_error_ != SQLITE_OK ? bind_error_ : sqlite3_step(handle_.get());
   if (code == SQLITE_ROW) return true;
   if (code == SQLITE_DONE) return false;
-  return failure(sqlite3_db_handle(handle_.get()), code);
+  return sqlite_failure(sqlite3_db_handle(handle_.get()), code);
 }
 
 Result<void> SqliteStatement::run() {
   Result<void> done;
   for (;;) {
     const auto row = step();
-    if (!row) done = Unexpected<Error>{row.error()};
+    if (!row) done = failure(row.error());
     if (!row || !*row) break;
   }
   reset();

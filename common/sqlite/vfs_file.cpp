@@ -41,7 +41,7 @@ VfsFile::~VfsFile() = default;
 Result<VfsFile> VfsFile::open(const std::string& file, Mode mode, const std::string& vfs) {
   sqlite3_vfs* system = sqlite3_vfs_find(vfs.empty() ? nullptr : vfs.c_str());
   if (system == nullptr)
-    return Unexpected<Error>{{Error::Kind::io, file, "no SQLite VFS is called " + vfs}};
+    return failure(Error{Error::Kind::io, file, "no SQLite VFS is called " + vfs});
   // A VFS must be told the type of each file. SQLite has no type for a file such as this one. We name
   // the type of super-journals, because a VFS takes no lock for them, and syncs the name of a new one
   // together with its first sync.

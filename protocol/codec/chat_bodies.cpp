@@ -37,7 +37,7 @@ Result<Message> BodyReader::read(const wire::ChatLines& t) const {
   m.lines.resize(*count);
   for (std::uint32_t i = 0; i < *count; ++i) {
     if (const auto ok = take_chat_line(*t.lines()->Get(i), m.lines[i]); !ok)
-      return Unexpected<Error>{ok.error()};
+      return failure(ok.error());
   }
   return m;
 }

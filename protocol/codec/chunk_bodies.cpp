@@ -29,14 +29,14 @@ Result<Message> BodyReader::read(const wire::View& t) const {
 
 Result<Message> BodyReader::read(const wire::ChunkRequest& t) const {
   auto keys = decode_keys(view_of(t.chunks()), kChunkRequestKeysMax, key_edge());
-  if (!keys) return Unexpected<Error>{keys.error()};
+  if (!keys) return failure(keys.error());
   return Message{ChunkRequest{*std::move(keys)}};
 }
 
 Result<Message> BodyReader::read(const wire::CachedChunks& t) const {
   if (t.level() > kTileLevelMax) return bad(kNoLevel);
   auto chunks = decode_cached_chunks(view_of(t.chunks()), t.level(), key_edge());
-  if (!chunks) return Unexpected<Error>{chunks.error()};
+  if (!chunks) return failure(chunks.error());
   return Message{CachedChunks{*std::move(chunks)}};
 }
 
@@ -44,7 +44,7 @@ Result<Message> BodyReader::read(const wire::Chunks& t) const {
   if (t.view() == 0) return bad(kNoView);
   if (t.level() > kTileLevelMax) return bad(kNoLevel);
   auto chunks = decode_answers(view_of(t.chunks()), t.level(), key_edge(), chunk_edge);
-  if (!chunks) return Unexpected<Error>{chunks.error()};
+  if (!chunks) return failure(chunks.error());
   return Message{Chunks{t.view(), *std::move(chunks)}};
 }
 
@@ -52,7 +52,7 @@ Result<Message> BodyReader::read(const wire::UniformChunks& t) const {
   if (t.view() == 0) return bad(kNoView);
   if (t.level() > kTileLevelMax) return bad(kNoLevel);
   auto chunks = decode_uniform(view_of(t.chunks()), t.level(), key_edge());
-  if (!chunks) return Unexpected<Error>{chunks.error()};
+  if (!chunks) return failure(chunks.error());
   return Message{UniformChunks{t.view(), *std::move(chunks)}};
 }
 
@@ -60,7 +60,7 @@ Result<Message> BodyReader::read(const wire::ChunksNotModified& t) const {
   if (t.view() == 0) return bad(kNoView);
   if (t.level() > kTileLevelMax) return bad(kNoLevel);
   auto chunks = decode_unmodified(view_of(t.chunks()), t.level(), key_edge());
-  if (!chunks) return Unexpected<Error>{chunks.error()};
+  if (!chunks) return failure(chunks.error());
   return Message{ChunksNotModified{t.view(), *std::move(chunks)}};
 }
 
@@ -68,7 +68,7 @@ Result<Message> BodyReader::read(const wire::ChunkUnavailable& t) const {
   if (t.view() == 0) return bad(kNoView);
   if (t.reason() == 0) return bad("unavailable reason is 0");
   auto keys = decode_keys(view_of(t.chunks()), kUnavailableKeysMax, key_edge());
-  if (!keys) return Unexpected<Error>{keys.error()};
+  if (!keys) return failure(keys.error());
   // Readers accept reasons that they do not know.
   return Message{
       ChunkUnavailable{t.view(), *std::move(keys), static_cast<UnavailableReason>(t.reason())}};
@@ -111,7 +111,7 @@ Result<Message> BodyReader::read(const wire::ViewState& t) const {
 
 Result<Message> BodyReader::read(const wire::DigestCheck& t) const {
   auto entries = decode_digest_checks(view_of(t.chunks()), key_edge());
-  if (!entries) return Unexpected<Error>{entries.error()};
+  if (!entries) return failure(entries.error());
   return Message{DigestCheck{*std::move(entries)}};
 }
 

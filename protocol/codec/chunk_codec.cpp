@@ -106,7 +106,7 @@ Head read_head(ByteReader& r, ChunkEncoding encoding, const Extent* expected) {
 }
 
 Result<RunChunk> validated(RunChunk chunk) {
-  if (const auto valid = validate(chunk); !valid) return Unexpected<Error>{valid.error()};
+  if (const auto valid = validate(chunk); !valid) return failure(valid.error());
   return chunk;
 }
 
@@ -116,7 +116,7 @@ Result<RunChunk> decode_raw(ByteReader& r, const Extent* expected) {
   const std::size_t count = r.u32();
   const bool narrow = head.extent.volume() <= kNarrowVolumeMax;
   const ByteView runs = r.bytes(count * (narrow ? 4 : 6));
-  if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+  if (const auto done = r.finish(); !done) return failure(done.error());
   if (count == 0) return fail(ErrorCode::broken_invariant, "chunk has no runs");
   if (narrow) {
     std::vector<PackedRun> packed(count);
@@ -164,13 +164,13 @@ Result<RunChunk> packed_chunk(const Head& head, Result<RunList> runs, std::size_
 Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
   const Head head = read_head(r, ChunkEncoding::packed, expected);
   // Before the axis order is used.
-  if (!r.ok()) return Unexpected<Error>{r.error()};
+  if (!r.ok()) return failure(r.error());
   PackedShape shape;
   shape.side = ordered(head.extent, head.order).f;
   shape.volume = head.extent.volume();
   shape.runs = static_cast<std::size_t>(r.varint_max(shape.volume, "more runs than voxels"));
   const std::vector<Material> palette = read_palette(r, shape.runs);
-  if (!r.ok()) return Unexpected<Error>{r.error()};
+  if (!r.ok()) return failure(r.error());
   shape.materials = palette.size();
   const std::size_t body_at = r.offset();
   return packed_chunk(head, unpack(r.bytes(r.left()), head.zstd, shape, palette), body_at);
@@ -180,10 +180,10 @@ Result<RunChunk> decode_coded(ByteReader& r, const Extent* expected) {
   const Head head = read_head(r, ChunkEncoding::coded, expected);
   const std::vector<Material> palette = read_palette(r, head.extent.volume());
   if (r.ok() && palette.size() == 1) {
-    if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+    if (const auto done = r.finish(); !done) return failure(done.error());
     return uniform_chunk(head.extent, palette[0], head.order);
   }
-  if (!r.ok()) return Unexpected<Error>{r.error()};
+  if (!r.ok()) return failure(r.error());
   const std::size_t body_at = r.offset();
   auto runs = decode_runs(r.bytes(r.left()), palette, ordered(head.extent, head.order));
   if (!runs) return fail(runs.error().code, runs.error().what, body_at);
@@ -193,7 +193,7 @@ Result<RunChunk> decode_coded(ByteReader& r, const Extent* expected) {
 Result<RunChunk> decode(ByteView in, const Extent* expected) {
   ByteReader r(in);
   const std::uint8_t encoding = r.u8();
-  if (!r.ok()) return Unexpected<Error>{r.error()};
+  if (!r.ok()) return failure(r.error());
   if (encoding == static_cast<std::uint8_t>(ChunkEncoding::raw)) return decode_raw(r, expected);
   if (encoding == static_cast<std::uint8_t>(ChunkEncoding::packed))
     return decode_packed(r, expected);

@@ -286,8 +286,8 @@ Result<RunList> decode_runs(ByteView body, std::span<const Material> palette,
   Scratch& s = scratch();
   keep_scratch_small(s);
   RunCoder coder(RangeDecoder(body), Unknown{}, s, extent, palette.size());
-  if (const auto coded = coder.run(); !coded) return Unexpected<Error>{coded.error()};
-  if (const auto done = coder.finish(); !done) return Unexpected<Error>{done.error()};
+  if (const auto coded = coder.run(); !coded) return failure(coded.error());
+  if (const auto done = coder.finish(); !done) return failure(done.error());
   s.used.assign(palette.size(), 0);
   for (const IndexRun& run : s.runs) s.used[run.index] = 1;
   if (std::find(s.used.begin(), s.used.end(), 0) != s.used.end()) {

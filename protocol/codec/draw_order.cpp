@@ -60,7 +60,7 @@ Result<DrawOrder> decode_world(ByteReader& r) {
   const std::uint8_t version = r.u8();
   const std::int32_t edge = r.u8();
   const ByteView toml = r.bytes(r.left());
-  if (!r.ok()) return Unexpected<Error>{r.error()};
+  if (!r.ok()) return failure(r.error());
   if (version != kDrawVersion) {
     return fail(ErrorCode::bad_version,
                 "draw order: the orders are of another version of Runstone");
@@ -76,9 +76,9 @@ Result<DrawOrder> decode_world(ByteReader& r) {
 Result<DrawOrder> decode_chunk_order(ByteReader& r, std::int32_t edge) {
   const ChunkKey key = read_key(r, edge);
   const ByteView bytes = r.bytes(r.left());
-  if (!r.ok()) return Unexpected<Error>{r.error()};
+  if (!r.ok()) return failure(r.error());
   auto voxels = decode_chunk(bytes, Extent::cube(static_cast<unsigned>(edge)));
-  if (!voxels) return Unexpected<Error>{voxels.error()};
+  if (!voxels) return failure(voxels.error());
   return DrawOrder{DrawChunk{key, *std::move(voxels)}};
 }
 
@@ -89,8 +89,8 @@ Result<DrawOrder> decode_picture(ByteReader& r) {
   picture.size.width = r.u16();
   picture.size.height = r.u16();
   picture.file = text_of(r.bytes(r.left()));
-  if (!r.ok()) return Unexpected<Error>{r.error()};
-  if (const auto sound = validate(picture); !sound) return Unexpected<Error>{sound.error()};
+  if (!r.ok()) return failure(r.error());
+  if (const auto sound = validate(picture); !sound) return failure(sound.error());
   return DrawOrder{std::move(picture)};
 }
 
@@ -171,17 +171,17 @@ void append_draw_end(Bytes& out) {
 }
 
 Result<void> DrawOrderReader::feed(ByteView bytes, const OnOrder& on_order) {
-  if (broken_) return Unexpected<Error>{*broken_};
+  if (broken_) return failure(*broken_);
   auto result = advance(bytes, on_order);
   if (!result) broken_ = result.error();
   return result;
 }
 
 Result<void> DrawOrderReader::finish() {
-  if (broken_) return Unexpected<Error>{*broken_};
+  if (broken_) return failure(*broken_);
   if (ended_) return {};
   broken_ = Error{ErrorCode::truncated, "draw order: the orders break off", frame_at_};
-  return Unexpected<Error>{*broken_};
+  return failure(*broken_);
 }
 
 Result<void> DrawOrderReader::advance(ByteView bytes, const OnOrder& on_order) {
@@ -243,11 +243,11 @@ Result<DrawOrder> DrawOrderReader::decode() const {
       return decode_picture(r);
     case Kind::forget: {
       const ChunkKey key = read_key(r, edge_);
-      if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+      if (const auto done = r.finish(); !done) return failure(done.error());
       return DrawOrder{DrawForget{key}};
     }
     case Kind::end:
-      if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+      if (const auto done = r.finish(); !done) return failure(done.error());
       return DrawOrder{DrawEnd{}};
   }
   return fail(ErrorCode::unknown_kind, "draw order: unknown kind");

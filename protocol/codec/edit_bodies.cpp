@@ -32,7 +32,7 @@ Result<Message> BodyReader::read(const wire::Commit& t) const {
     m.edits.push_back(std::move(edit));
     return {};
   });
-  if (!ok) return Unexpected<Error>{ok.error()};
+  if (!ok) return failure(ok.error());
   return Message{std::move(m)};
 }
 

@@ -51,7 +51,7 @@ void FrameWriter::append(const EncodedMessage& message, Bytes& out) {
 }
 
 Result<void> FrameReader::feed(ByteView bytes, const OnMessage& on_message) {
-  if (broken_) return Unexpected<Error>{*broken_};
+  if (broken_) return failure(*broken_);
   auto result = advance(bytes, on_message);
   if (!result) broken_ = result.error();
   return result;

@@ -64,7 +64,7 @@ Result<std::vector<Entry>> entries_of(ByteView bytes, std::size_t count_max, Tak
   do {
     if (out.size() == count_max) in.reject(ErrorCode::limit_exceeded, "list has too many entries");
     Entry entry = take(in);
-    if (!in.ok()) return Unexpected<Error>{in.error()};
+    if (!in.ok()) return failure(in.error());
     out.push_back(std::move(entry));
   } while (!in.at_end());
   return out;

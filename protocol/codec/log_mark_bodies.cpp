@@ -43,8 +43,7 @@ Result<Message> BodyReader::read(const wire::LogMarks& t) const {
   if (!m.refusal.empty() && *count + *author_count != 0) return bad("refused log marks are given");
   m.marks.resize(*count);
   for (std::uint32_t i = 0; i < *count; ++i) {
-    if (const auto ok = take_mark(*t.marks()->Get(i), m.marks[i]); !ok)
-      return Unexpected<Error>{ok.error()};
+    if (const auto ok = take_mark(*t.marks()->Get(i), m.marks[i]); !ok) return failure(ok.error());
     if (i > 0 && m.marks[i].seq <= m.marks[i - 1].seq) return bad("log marks do not ascend");
   }
   m.authors.resize(*author_count);

@@ -13,8 +13,7 @@ Result<Message> BodyReader::read(const wire::MaterialsAdded& t) const {
     if (!take_material(*t.rows()->Get(i), m.rows[i])) return bad("bad row in materials_added");
   }
   // An empty table checks the rows as far as they do not depend on the world's other rows.
-  if (const auto sound = MaterialTable{}.check_rows(m.rows); !sound)
-    return Unexpected<Error>{sound.error()};
+  if (const auto sound = MaterialTable{}.check_rows(m.rows); !sound) return failure(sound.error());
   return m;
 }
 

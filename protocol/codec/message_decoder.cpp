@@ -30,7 +30,7 @@ using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);
 template <std::size_t kKind>
 Result<Message> read_body(ByteView bytes, const BodyReader& reader) {
   const auto body = open_body<std::tuple_element_t<kKind, Bodies>>(bytes);
-  if (!body) return Unexpected<Error>{body.error()};
+  if (!body) return failure(body.error());
   return reader.read(**body);
 }
 

@@ -24,7 +24,7 @@ Result<void> OrderedEditReader::next(OrderedEdit& edit, std::vector<ChunkCoord>&
                                                        "commit time is out of range");
   take_descriptor(edit);
   take_previous(edit);
-  if (!in_.ok()) return Unexpected<Error>{in_.error()};
+  if (!in_.ok()) return failure(in_.error());
   touched.clear();
   if (chunk_edge_ != 0) {
     // The bound comes before the list: a hostile box may touch millions of chunks. Servers reject

@@ -251,7 +251,7 @@ Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape,
   PackScratch& s = pack_scratch();
   if (zstd) {
     const auto unpacked = decompress(body, shape, s);
-    if (!unpacked) return Unexpected<Error>{unpacked.error()};
+    if (!unpacked) return failure(unpacked.error());
     body = *unpacked;
   } else if (!shape.plausible(body.size())) {
     return fail(ErrorCode::bad_value, "body size does not fit the run count");

@@ -16,9 +16,9 @@ Result<std::vector<EditDescriptor>> read_list(ByteView bytes) {
     if (edits.size() == kPreviewEditsMax) return bad("preview: too many edits");
     const std::uint64_t length = in.varint_max(kPreviewBytesMax, "preview: an edit is too long");
     const ByteView descriptor = in.bytes(static_cast<std::size_t>(length));
-    if (!in.ok()) return Unexpected<Error>{in.error()};
+    if (!in.ok()) return failure(in.error());
     auto edit = decode_voxel_edit(descriptor);
-    if (!edit) return Unexpected<Error>{edit.error()};
+    if (!edit) return failure(edit.error());
     edits.push_back(*std::move(edit));
   }
   return edits;
@@ -54,13 +54,13 @@ bool may_be_shared(const std::vector<EditDescriptor>& edits, std::int32_t chunk_
 
 Result<Message> BodyReader::read(const wire::PreviewShare& t) const {
   auto edits = read_list(view_of(t.edits()));
-  if (!edits) return Unexpected<Error>{edits.error()};
+  if (!edits) return failure(edits.error());
   return Message{PreviewShare{*std::move(edits)}};
 }
 
 Result<Message> BodyReader::read(const wire::PlayerPreview& t) const {
   auto edits = read_list(view_of(t.edits()));
-  if (!edits) return Unexpected<Error>{edits.error()};
+  if (!edits) return failure(edits.error());
   return Message{PlayerPreview{t.author(), *std::move(edits)}};
 }
 

@@ -68,7 +68,7 @@ Result<ProxyHeader> read_proxy_header(ByteView header) {
   if (header.size() < kProxyPrefixBytes)
     return fail(ErrorCode::truncated, "the PROXY header is cut", header.size());
   const auto bytes = proxy_header_bytes(header.first(kProxyPrefixBytes));
-  if (!bytes) return Unexpected<Error>{bytes.error()};
+  if (!bytes) return failure(bytes.error());
   if (header.size() < *bytes)
     return fail(ErrorCode::truncated, "the PROXY header is cut", header.size());
   if (header.size() > *bytes)
@@ -83,8 +83,7 @@ Result<ProxyHeader> read_proxy_header(ByteView header) {
   const std::size_t tlvs_at = kProxyPrefixBytes + 2 * address_bytes + kPortsBytes;
   if (header.size() < tlvs_at)
     return fail(ErrorCode::truncated, "the addresses of the PROXY header are cut", header.size());
-  if (const auto skipped = skip_tlvs(header, tlvs_at); !skipped)
-    return Unexpected<Error>{skipped.error()};
+  if (const auto skipped = skip_tlvs(header, tlvs_at); !skipped) return failure(skipped.error());
   PeerEndpoint client = peer_endpoint_v4(0, 0);
   const ByteView address = header.subspan(kProxyPrefixBytes, address_bytes);
   std::copy_backward(address.begin(), address.end(), client.address.end());

@@ -20,7 +20,7 @@ Result<RunList> read_runs(std::uint32_t volume, std::size_t count, Read&& read) 
     const auto put = [out = narrow.data()](std::size_t i, std::uint32_t end, Material material) {
       out[i] = {static_cast<std::uint16_t>(end), material};
     };
-    if (const Result<void> done = read(put); !done) return Unexpected<Error>{done.error()};
+    if (const Result<void> done = read(put); !done) return failure(done.error());
     return RunList::of_narrow(std::move(narrow));
   }
   std::vector<std::uint32_t> ends(count);
@@ -30,7 +30,7 @@ Result<RunList> read_runs(std::uint32_t volume, std::size_t count, Read&& read) 
     e[i] = end;
     m[i] = material;
   };
-  if (const Result<void> done = read(put); !done) return Unexpected<Error>{done.error()};
+  if (const Result<void> done = read(put); !done) return failure(done.error());
   return RunList::of_wide(std::move(ends), std::move(materials));
 }
 

@@ -20,7 +20,7 @@ Result<Message> BodyReader::read(const wire::RestorePreview& t) const {
     bytes += view_of(t.edits()->Get(i)->edit()).size();
     if (bytes > kRestorePreviewBytesMax) return bad("restore preview is too long");
     auto edit = decode_voxel_edit(view_of(t.edits()->Get(i)->edit()));
-    if (!edit) return Unexpected<Error>{edit.error()};
+    if (!edit) return failure(edit.error());
     m.edits.push_back(*std::move(edit));
   }
   return m;

@@ -66,7 +66,7 @@ Result<Message> BodyReader::read(const wire::ProtectedGround& t) const {
   m.boxes.resize(*count);
   for (std::uint32_t i = 0; i < *count; ++i) {
     if (const auto ok = take_ground_box(*t.boxes()->Get(i), m.boxes[i]); !ok)
-      return Unexpected<Error>{ok.error()};
+      return failure(ok.error());
     if (i > 0 && m.boxes[i].seq <= m.boxes[i - 1].seq)
       return bad("protected ground: boxes do not ascend");
   }

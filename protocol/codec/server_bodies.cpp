@@ -28,7 +28,7 @@ Result<void> take_name(const wire::LogName& t, LogName& name) {
 
 Result<void> take_record(const wire::LogRecordBytes& t, LogPartRecord& part) {
   auto record = decode_record(view_of(t.record()));
-  if (!record) return Unexpected<Error>{record.error()};
+  if (!record) return failure(record.error());
   part.record = *std::move(record);
   part.submitted_us = t.submitted_us();
   if (!is_time(part.submitted_us)) return bad("log_part: a time is out of range");
@@ -94,7 +94,7 @@ Result<Message> BodyReader::read(const wire::LogPart& t) const {
   if (taken) taken = take_all(t.names(), kLogPartRowsMax, m.names, take_name);
   if (taken) taken = take_all(t.records(), kLogPartRecordsMax, m.records, take_record);
   if (taken) taken = check_order(m);
-  if (!taken) return Unexpected<Error>{taken.error()};
+  if (!taken) return failure(taken.error());
   return Message{std::move(m)};
 }
 

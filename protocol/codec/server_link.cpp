@@ -23,16 +23,15 @@ Result<ServerLink, std::string> parse_server_link(std::string_view text) {
   const std::size_t address_ends = std::min(rest.find_first_of("/#"), rest.size());
   const std::size_t hash = rest.find('#');
   ServerLink link{std::string(rest.substr(0, address_ends)), ""};
-  if (link.address.empty()) return Unexpected<std::string>{"the link names no server"};
+  if (link.address.empty()) return failure("the link names no server");
   const std::string_view path =
       rest.substr(address_ends, std::min(hash, rest.size()) - address_ends);
-  if (path != "" && path != "/")
-    return Unexpected<std::string>{"a link is runstone://HOST:PORT/#INVITE"};
+  if (path != "" && path != "/") return failure("a link is runstone://HOST:PORT/#INVITE");
   if (hash == std::string_view::npos) return link;
   link.ticket = rest.substr(hash + 1);
   if (link.ticket.empty() || link.ticket.size() > kTicketBytesMax ||
       !is_printable_utf8(link.ticket))
-    return Unexpected<std::string>{"the text after # in the link is not an invite"};
+    return failure("the text after # in the link is not an invite");
   return link;
 }
 

@@ -16,7 +16,7 @@ Result<void> take_materials(const wire::Welcome& t, MaterialTable& table) {
       info.look.reset();  // air is not drawn, and a look is never a reason to refuse a row
       if (info != table[kEmpty]) return bad("row 0 of welcome.materials is not air");
     } else if (const auto id = table.add(std::move(info)); !id) {
-      return Unexpected<Error>{id.error()};
+      return failure(id.error());
     }
   }
   return {};
@@ -73,7 +73,7 @@ Result<Message> BodyReader::read(const wire::Welcome& t) const {
   if (m.tile_levels_max > kTileLevelMax) return bad("welcome.tile_levels_max exceeds 8");
   if (t.password_salt() != nullptr && !take_exact(t.password_salt(), m.password_salt.emplace()))
     return bad("welcome.password_salt is not 16 bytes");
-  if (const auto ok = take_materials(t, m.materials); !ok) return Unexpected<Error>{ok.error()};
+  if (const auto ok = take_materials(t, m.materials); !ok) return failure(ok.error());
   return m;
 }
 

@@ -58,7 +58,7 @@ Result<std::vector<UniformChunk>> decode_uniform(ByteView bytes, std::uint8_t le
       chunks.push_back(chunk);
     }
   }
-  if (!in.ok()) return Unexpected<Error>{in.error()};
+  if (!in.ok()) return failure(in.error());
   if (chunks.empty()) return fail(ErrorCode::bad_value, "list of uniform chunks is empty");
   return chunks;
 }

@@ -27,13 +27,12 @@ std::string AuthorNames::with_key(AuthorId author) const {
 Result<AuthorId, std::string> AuthorNames::find(const std::string& name) const {
   const auto found = authors_.find(name);
   if (found == authors_.end()) {
-    return Unexpected<std::string>{"nobody of that name has ever built (players lists them)"};
+    return failure("nobody of that name has ever built (players lists them)");
   }
   if (found->second.size() == 1) return *found->second.begin();
   std::string list;
   for (const AuthorId author : found->second) list += (list.empty() ? " " : ", ") + of(author);
-  return Unexpected<std::string>{"several players have or had that name:" + list +
-                                 " (give # and a number)"};
+  return failure("several players have or had that name:" + list + " (give # and a number)");
 }
 
 bool AuthorNames::is_in_use(const std::string& name, AuthorId author) const {

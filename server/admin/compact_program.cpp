@@ -37,7 +37,7 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
   if (!opened) return compaction_failure(opened.error());
   Store& store = **opened;
   const auto generator = generator_of(store);
-  if (!generator) return Unexpected<std::string>{generator.error()};
+  if (!generator) return failure(generator.error());
   const auto range = store.log_range();
   if (!range) return compaction_failure(range.error());
   const TimeUs cut_us = now_us - static_cast<TimeUs>(request.keep_days) * kDayUs;
@@ -79,11 +79,11 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
       << range->last.version.seq - at << " edits stay\n";
   if (!request.shrink) return {};
   if (const auto shrunk = store.shrink(); !shrunk) {
-    return Unexpected<std::string>{
+    return failure(
         shrunk.error().message() +
         ". The world is compacted and sound, but its file keeps the free space, "
         "which new edits will use; to give it back, make room for a second copy of the world and "
-        "run VACUUM"};
+        "run VACUUM");
   }
   if (is_database(request.world)) return {};
   out << "file        " << before << " bytes before, " << bytes_of(store.file()) << " now\n";

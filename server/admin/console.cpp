@@ -19,7 +19,7 @@ Result<std::shared_ptr<Console>, std::string> Console::open(asio::io_context& lo
   auto console = std::make_shared<Console>(loop, std::move(handler), std::move(on_failure), out);
   asio::error_code error;
   console->input_.assign(::dup(descriptor), error);
-  if (error) return Unexpected<std::string>{"console: standard input: " + error.message()};
+  if (error) return failure("console: standard input: " + error.message());
   console->read();
   return console;
 }

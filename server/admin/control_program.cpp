@@ -73,17 +73,16 @@ Result<bool, std::string> control_server(const ControlRequest& request, std::ost
   if (!completed) return failure(completed.error());
   std::string line = *std::move(completed);
   if (!is_printable_utf8(line))
-    return Unexpected<std::string>{"control: the command is not one line of UTF-8 text"};
+    return failure("control: the command is not one line of UTF-8 text");
   line += '\n';
   const auto path = control_path(request.world);
-  if (!path) return Unexpected<std::string>{path.error()};
+  if (!path) return failure(path.error());
   asio::io_context io;
   asio::local::stream_protocol::socket socket(io);
   asio::error_code error;
   socket.connect(asio::local::stream_protocol::endpoint(*path), error);
   if (error) {
-    return Unexpected<std::string>{*path + ": " + error.message() +
-                                   ": no server of this user runs that world"};
+    return failure(*path + ": " + error.message() + ": no server of this user runs that world");
   }
   asio::write(socket, asio::buffer(line), error);
   std::string in;
@@ -96,7 +95,7 @@ Result<bool, std::string> control_server(const ControlRequest& request, std::ost
     if (answer == "=error") return false;
     out << (answer.starts_with('|') ? answer.substr(1) : answer) << std::endl;
   }
-  return Unexpected<std::string>{*path + ": the server ended before its answer was complete"};
+  return failure(*path + ": the server ended before its answer was complete");
 }
 
 }  // namespace runstone

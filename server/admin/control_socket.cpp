@@ -154,9 +154,8 @@ struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
 Result<std::string, std::string> control_path(const std::string& world) {
   const std::string path = (std::filesystem::path(world) / kControlSocketName).string();
   if (path.size() <= kPathBytesMax) return path;
-  return Unexpected<std::string>{path + ": a socket's path has at most " +
-                                 std::to_string(kPathBytesMax) +
-                                 " bytes: use a shorter or a relative path to the world"};
+  return failure(path + ": a socket's path has at most " + std::to_string(kPathBytesMax) +
+                 " bytes: use a shorter or a relative path to the world");
 }
 
 ControlSocket::ControlSocket(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -173,7 +172,7 @@ Result<std::unique_ptr<ControlSocket>, std::string> ControlSocket::listen(asio::
                                                                           const std::string& world,
                                                                           Handler handler) {
   auto path = control_path(world);
-  if (!path) return Unexpected<std::string>{path.error()};
+  if (!path) return failure(path.error());
   return listen_at(io, *path, false, std::move(handler));
 }
 
@@ -191,7 +190,7 @@ Result<std::unique_ptr<ControlSocket>, std::string> ControlSocket::listen_at(
     error = asio::error_code(errno, asio::error::get_system_category());
   }
   if (!error) parts->acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) return Unexpected<std::string>{path + ": " + error.message()};
+  if (error) return failure(path + ": " + error.message());
   parts->accept();
   return std::unique_ptr<ControlSocket>(new ControlSocket(std::move(parts)));
 }

@@ -17,8 +17,7 @@ Result<std::vector<std::string>, std::string> parse_reserved_names(std::string_v
     while (name.ends_with(' ')) name.remove_suffix(1);
     if (name.empty()) continue;
     if (!is_plain_name(name)) {
-      return Unexpected<std::string>{
-          "a reserved name has no quotes, backslashes or invisible characters"};
+      return failure("a reserved name has no quotes, backslashes or invisible characters");
     }
     names.emplace_back(name);
   }

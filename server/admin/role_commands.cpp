@@ -210,7 +210,7 @@ StoreResult<std::vector<RightsRecord>> read_rights_records(LogReader& reader) {
       records.push_back({*change, {record.version.seq, record.op.author, record.time_us}});
     return true;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   return records;
 }
 

@@ -70,9 +70,9 @@ bool take_filter(WordReader& reader, CommandFilter& filter) {
 
 StoreResult<AuthorNames> read_author_names(WorldReader& reader) {
   const auto rows = reader.players();
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failure(rows.error());
   const auto used = reader.player_names();
-  if (!used) return Unexpected<StoreError>{used.error()};
+  if (!used) return failure(used.error());
   return AuthorNames(*rows, *used);
 }
 

@@ -18,8 +18,7 @@ std::filesystem::path canonical(const std::string& folder) {
 Result<void, std::string> allow_new_world(const std::string& place, bool create) {
   if (create || has_world(place)) return {};
   if (canonical(place) == canonical(ServerConfig{}.world)) return {};
-  return Unexpected<std::string>{place_name(place) +
-                                 ": holds no world; --create makes a new one there"};
+  return failure(place_name(place) + ": holds no world; --create makes a new one there");
 }
 
 }  // namespace runstone

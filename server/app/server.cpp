@@ -178,7 +178,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
                                                            std::function<void()> on_failure,
                                                            OperatorActions actions,
                                                            bool accept_losses) {
-  if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
+  if (sodium_init() < 0) return failure("libsodium cannot start");
   // A start that fails must neither make a new world nor raise the epoch, so the address and the
   // certificate are checked first.
   if (const auto can = can_start(config); !can) return failure(can.error());
@@ -191,7 +191,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
     local_lock = *std::move(taken);
   }
   auto world = open_or_create_world(world_place(config), creation, accept_losses, lease_of(config));
-  if (!world) return Unexpected<std::string>{world.error()};
+  if (!world) return failure(world.error());
   if (accept_losses) log_losses(world->losses);
   auto parts = std::make_unique<Parts>();
   parts->config = config;
@@ -228,7 +228,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
 Result<std::unique_ptr<Server>, std::string> Server::follow(const ServerConfig& config,
                                                             std::function<void()> on_failure,
                                                             OperatorActions actions) {
-  if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
+  if (sodium_init() < 0) return failure("libsodium cannot start");
   if (const auto can = can_start(config); !can) return failure(can.error());
   const auto certificate = configured_certificate(config);
   if (!certificate) return failure(certificate.error());

@@ -50,10 +50,10 @@ Result<ServerConfig, std::string> read_config(const ServerOptions& options) {
   ServerConfig config;
   if (!options.config_file.empty()) {
     std::ifstream in(options.config_file, std::ios::binary);
-    if (!in) return Unexpected<std::string>{options.config_file + ": cannot be read"};
+    if (!in) return failure(options.config_file + ": cannot be read");
     const std::string toml((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
     const auto read = read_config_toml(config, toml, options.config_file);
-    if (!read) return Unexpected<std::string>{read.error().message()};
+    if (!read) return failure(read.error().message());
   }
   const auto look_up = [](const std::string& name) -> std::optional<std::string> {
     const char* text = std::getenv(name.c_str());
@@ -61,10 +61,10 @@ Result<ServerConfig, std::string> read_config(const ServerOptions& options) {
     return text;
   };
   const auto environment = read_config_environment(config, look_up);
-  if (!environment) return Unexpected<std::string>{environment.error()};
+  if (!environment) return failure(environment.error());
   for (const auto& [field, text] : options.settings) {
     const auto set = set_config(config, field, text);
-    if (!set) return Unexpected<std::string>{flag_name(field) + ": " + set.error()};
+    if (!set) return failure(flag_name(field) + ": " + set.error());
   }
   return config;
 }

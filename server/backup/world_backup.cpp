@@ -81,17 +81,17 @@ Result<std::vector<std::string>, std::string> copy_configuration(const fs::path&
 StoreResult<void> verify(const std::string& folder, TimeUs now_us, WorldBackup& backup) {
   // This fails if the copied mark is ahead of the copied log: then the source has lost edits.
   auto store = open_world(folder, StoreAccess::read_write);
-  if (!store) return Unexpected<StoreError>{store.error()};
+  if (!store) return failure(store.error());
   const auto range = (*store)->log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failure(range.error());
   if (range->last.version.seq != backup.moment.seq) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::corrupt, (*store)->file(), "edit_log",
-         "ends at seq=" + std::to_string(range->last.version.seq) +
-             ", and the copied moment is seq=" + std::to_string(backup.moment.seq)}};
+    return failure(
+        StoreError{StoreError::Kind::corrupt, (*store)->file(), "edit_log",
+                   "ends at seq=" + std::to_string(range->last.version.seq) +
+                       ", and the copied moment is seq=" + std::to_string(backup.moment.seq)});
   }
   const auto epoch = (*store)->begin_branch(now_us);
-  if (!epoch) return Unexpected<StoreError>{epoch.error()};
+  if (!epoch) return failure(epoch.error());
   if (auto sound = (*store)->check(); !sound) return sound;
   backup.world = (*store)->meta().world_id;
   backup.new_epoch = *epoch;

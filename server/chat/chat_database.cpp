@@ -42,7 +42,7 @@ sql::Result<void> make_private(const std::string& file) {
   }
   const std::string why = std::generic_category().message(errno);
   if (descriptor >= 0) ::close(descriptor);
-  return Unexpected<sql::Error>{{sql::Error::Kind::io, file, "cannot be written: " + why}};
+  return failure(sql::Error{sql::Error::Kind::io, file, "cannot be written: " + why});
 }
 
 /// Returns the line of a row, or nullopt if no line has these values.
@@ -75,32 +75,31 @@ bool is_damage(const sql::Error& error) {
 }
 
 sql::Result<ChatDatabase> ChatDatabase::open(const std::string& file, std::uint64_t lines_max) {
-  if (auto made = make_private(file); !made) return Unexpected<sql::Error>{made.error()};
+  if (auto made = make_private(file); !made) return failure(made.error());
   auto opened = sql::open_sqlite(file, sql::SqliteMode::create);
-  if (!opened) return Unexpected<sql::Error>{opened.error()};
+  if (!opened) return failure(opened.error());
   ChatDatabase database(*std::move(opened), lines_max);
-  if (auto ready = database.prepare(); !ready) return Unexpected<sql::Error>{ready.error()};
+  if (auto ready = database.prepare(); !ready) return failure(ready.error());
   return database;
 }
 
 sql::Result<void> ChatDatabase::prepare() {
   const auto layout = database_.integer("PRAGMA user_version");
-  if (!layout) return Unexpected<sql::Error>{layout.error()};
+  if (!layout) return failure(layout.error());
   if (auto set = database_.run(kPragmas); !set) return set;
   if (*layout == 0) {
     auto transaction = sql::Transaction::begin(database_);
-    if (!transaction) return Unexpected<sql::Error>{transaction.error()};
+    if (!transaction) return failure(transaction.error());
     if (auto made = database_.run(kSchema); !made) return made;
     const std::string mark = "PRAGMA user_version = " + std::to_string(kLayout);
     if (auto marked = database_.run(mark.c_str()); !marked) return marked;
     if (auto committed = transaction->commit(); !committed) return committed;
   } else if (*layout != kLayout) {
-    return Unexpected<sql::Error>{
-        {sql::Error::Kind::corrupt, database_.file(), "has another layout"}};
+    return failure(sql::Error{sql::Error::Kind::corrupt, database_.file(), "has another layout"});
   }
   const auto take = [this](const char* text, sql::Statement& into) -> sql::Result<void> {
     auto statement = database_.prepare(text);
-    if (!statement) return Unexpected<sql::Error>{statement.error()};
+    if (!statement) return failure(statement.error());
     into = *std::move(statement);
     return {};
   };
@@ -126,7 +125,7 @@ sql::Result<void> ChatDatabase::insert(const ChatEntry& entry) {
 
 sql::Result<void> ChatDatabase::append(std::span<const ChatEntry> entries) {
   auto transaction = sql::Transaction::begin(database_);
-  if (!transaction) return Unexpected<sql::Error>{transaction.error()};
+  if (!transaction) return failure(transaction.error());
   for (const ChatEntry& entry : entries) {
     if (auto inserted = insert(entry); !inserted) return inserted;
   }
@@ -147,7 +146,7 @@ sql::Result<std::vector<ChatEntry>> ChatDatabase::search(const ChatQuery& query)
   std::vector<ChatEntry> found;
   while (found.size() < query.limit) {
     const auto row = newest_.step();
-    if (!row) return Unexpected<sql::Error>{row.error()};
+    if (!row) return failure(row.error());
     if (!*row) break;
     auto entry = entry_of(newest_);
     if (!entry || !is_written_by(*entry, query.by)) continue;

@@ -128,7 +128,7 @@ void ChatLog::carry_out(Work& work) {
     Found found = std::vector<ChatEntry>();
     const bool is_read = with_database([&](ChatDatabase& database) -> sql::Result<void> {
       auto entries = database.search(search.query);
-      if (!entries) return Unexpected<sql::Error>{entries.error()};
+      if (!entries) return failure(entries.error());
       found = *std::move(entries);
       return {};
     });

@@ -70,12 +70,12 @@ Result<void, std::string> PreviewPictures::draw_both(WorldReader& reader,
                                                      const ShouldContinue& wanted) {
   std::error_code wrong;
   std::filesystem::create_directories(folder_, wrong);
-  if (wrong) return Unexpected<std::string>{folder_ + ": cannot be made: " + wrong.message()};
+  if (wrong) return failure(folder_ + ": cannot be made: " + wrong.message());
   auto child =
       DrawChild::start({.program = "", .answer_limit = kAnswerMax, .should_continue = wanted});
-  if (!child) return Unexpected<std::string>{child.error()};
+  if (!child) return failure(child.error());
   const auto materials = reader.materials();
-  if (!materials) return Unexpected<std::string>{materials.error().message()};
+  if (!materials) return failure(materials.error().message());
   if (auto sent = child->world(edge_, *materials); !sent) return sent;
 
   std::set<ChunkKey> changed, around;
@@ -91,13 +91,13 @@ Result<void, std::string> PreviewPictures::draw_both(WorldReader& reader,
     }
   }
   const auto last = reader.last_sequence();
-  if (!last) return Unexpected<std::string>{last.error().message()};
+  if (!last) return failure(last.error().message());
   auto world = WorldAt::open(reader, generator, *last,
                              [&](Sequence, Sequence) { return !wanted || wanted(); });
-  if (!world) return Unexpected<std::string>{world.error().message()};
+  if (!world) return failure(world.error().message());
   for (const ChunkKey& key : around) {
     const auto chunk = world->chunk(key);
-    if (!chunk) return Unexpected<std::string>{chunk.error().message()};
+    if (!chunk) return failure(chunk.error().message());
     if (auto sent = child->chunk(key, chunk->voxels); !sent) return sent;
   }
   const DrawCamera camera = oblique_camera(*area_, kSize);
@@ -107,7 +107,7 @@ Result<void, std::string> PreviewPictures::draw_both(WorldReader& reader,
       if (auto sent = child->chunk(chunk.key, chunk.*state); !sent) return sent;
     }
     const auto drawn = child->draw(camera, kSize, folder_ + "/" + name + "-" + which + ".png");
-    if (!drawn) return Unexpected<std::string>{drawn.error()};
+    if (!drawn) return failure(drawn.error());
     return {};
   };
   if (auto drawn = picture("before", &ChangedChunk::now); !drawn) return drawn;

@@ -26,7 +26,7 @@ StoreResult<Chunk> base_chunk_in_any_order(ChunkReader& reader, const Generator&
                                            const ChunkKey& key) {
   RUNSTONE_ASSERT(key.lod == 0);
   auto stored = reader.load_base(key);
-  if (!stored) return Unexpected<StoreError>{stored.error()};
+  if (!stored) return failure(stored.error());
   if (!stored->has_value()) return generated_chunk(generator, key, reader.meta().chunk_edge);
   return **std::move(stored);
 }

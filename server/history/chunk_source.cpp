@@ -18,7 +18,7 @@ StoreResult<std::unique_ptr<WorldReader>> ChunkSource::borrow() {
     }
   }
   auto opened = open_world(place_, StoreAccess::read_only);
-  if (!opened) return Unexpected<StoreError>{opened.error()};
+  if (!opened) return failure(opened.error());
   return *std::move(opened);
 }
 
@@ -30,7 +30,7 @@ void ChunkSource::give_back(std::unique_ptr<WorldReader> reader) {
 
 StoreResult<void> ChunkSource::with_reader(const std::function<void(WorldReader&)>& use) {
   auto reader = borrow();
-  if (!reader) return Unexpected<StoreError>{reader.error()};
+  if (!reader) return failure(reader.error());
   use(**reader);
   give_back(*std::move(reader));
   return {};
@@ -38,7 +38,7 @@ StoreResult<void> ChunkSource::with_reader(const std::function<void(WorldReader&
 
 StoreResult<Chunk> ChunkSource::load(const ChunkKey& key) {
   auto reader = borrow();
-  if (!reader) return Unexpected<StoreError>{reader.error()};
+  if (!reader) return failure(reader.error());
   auto chunk = load(**reader, key);
   give_back(*std::move(reader));
   return chunk;
@@ -46,7 +46,7 @@ StoreResult<Chunk> ChunkSource::load(const ChunkKey& key) {
 
 StoreResult<Chunk> ChunkSource::load(ChunkReader& reader, const ChunkKey& key) const {
   auto stored = reader.load_snapshot(key);
-  if (!stored) return Unexpected<StoreError>{stored.error()};
+  if (!stored) return failure(stored.error());
   if (!stored->has_value()) return base_chunk(reader, generator_, key);
   Chunk chunk = **std::move(stored);
   chunk.voxels = in_cheapest_order(std::move(chunk.voxels));

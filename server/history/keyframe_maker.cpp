@@ -14,10 +14,10 @@ constexpr std::size_t kSliceChunks = 32;  // in one transaction; small, because 
 
 StoreResult<Sequence> KeyframeMaker::next_due(const Progress& progress) {
   const auto range = reader_.log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failure(range.error());
   if (!read_) {
     const auto keyframes = reader_.keyframes();
-    if (!keyframes) return Unexpected<StoreError>{keyframes.error()};
+    if (!keyframes) return failure(keyframes.error());
     read_ = keyframes->empty() ? range->first - 1 : keyframes->back().at.version.seq;
   }
   const std::int32_t edge = reader_.meta().chunk_edge;
@@ -33,10 +33,10 @@ StoreResult<Sequence> KeyframeMaker::next_due(const Progress& progress) {
     if (progress && *read_ % WorldAt::kProgressEdits == 0) is_cancelled = !progress(*read_, last);
     return due == 0 && !is_cancelled;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   if (is_cancelled) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::cancelled, reader_.file(), "edit_log", "was not read to the end"}};
+    return failure(StoreError{StoreError::Kind::cancelled, reader_.file(), "edit_log",
+                              "was not read to the end"});
   }
   return due;
 }
@@ -47,7 +47,7 @@ StoreResult<void> KeyframeMaker::make_due(const Save& save, const Progress& prog
     const auto due = next_due(progress);
     StoreResult<void> made;
     if (!due) {
-      made = Unexpected<StoreError>{due.error()};
+      made = failure(due.error());
     } else if (*due == 0) {
       return {};
     } else {
@@ -64,7 +64,7 @@ StoreResult<void> KeyframeMaker::make_due(const Save& save, const Progress& prog
 
 StoreResult<void> KeyframeMaker::make_at(Sequence at, const Save& save, const Progress& progress) {
   auto world = WorldAt::open(reader_, generator_, at, progress);
-  if (!world) return Unexpected<StoreError>{world.error()};
+  if (!world) return failure(world.error());
   Keyframe keyframe = world->untouched();
   Chunks slice;
   for (const ChunkKey& key : world->touched()) {
@@ -72,13 +72,13 @@ StoreResult<void> KeyframeMaker::make_at(Sequence at, const Save& save, const Pr
       if (auto saved = save(std::exchange(slice, {}), std::nullopt); !saved) return saved;
     }
     auto chunk = world->chunk(key);
-    if (!chunk) return Unexpected<StoreError>{chunk.error()};
+    if (!chunk) return failure(chunk.error());
     ++keyframe.chunks;
     keyframe.world_digest = keyframe.world_digest + world_digest_term(key, chunk->digest);
     slice.emplace_back(key, std::make_shared<const Chunk>(*std::move(chunk)));
     if (progress && !progress(at, at)) {
-      return Unexpected<StoreError>{{StoreError::Kind::cancelled, reader_.file(),
-                                     "keyframe seq=" + std::to_string(at), "was not finished"}};
+      return failure(StoreError{StoreError::Kind::cancelled, reader_.file(),
+                                "keyframe seq=" + std::to_string(at), "was not finished"});
     }
   }
   if (auto saved = save(std::move(slice), keyframe); !saved) return saved;

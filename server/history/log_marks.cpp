@@ -6,7 +6,7 @@ namespace runstone {
 
 StoreResult<FoundLogMarks> read_log_marks(LogReader& reader, const LogMarksRequest& request) {
   const auto range = reader.log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failure(range.error());
   FoundLogMarks out;
   out.first = std::max<Sequence>(1, range->first);
   const Sequence first = std::max(request.first, range->first);
@@ -24,7 +24,7 @@ StoreResult<FoundLogMarks> read_log_marks(LogReader& reader, const LogMarksReque
                            kind_of(record.edit)});
       return true;
     });
-    if (!read) return Unexpected<StoreError>{read.error()};
+    if (!read) return failure(read.error());
   }
   return out;
 }

@@ -13,7 +13,7 @@ constexpr std::size_t kEditOverheadBytes = 8;  // about: of the edit's sequence 
 /// copy of that version then is a state of this chunk.
 StoreResult<bool> is_in_log(LogReader& store, const Version& version, const VoxelBox& box) {
   const auto range = store.log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failure(range.error());
   // Version 0 is the base, as long as no edit was compacted into it.
   if (version.seq == 0) return range->first == 1;
   if (version.seq < range->first || version.seq > range->last.version.seq) return false;
@@ -22,7 +22,7 @@ StoreResult<bool> is_in_log(LogReader& store, const Version& version, const Voxe
     is_here = record.version == version && touches(record.edit, box);
     return false;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   return is_here;
 }
 
@@ -36,7 +36,7 @@ StoreResult<std::optional<ChunkEdits>> missing_edits(LogReader& store, const Chu
   if (last - from.seq > kUpdateStretchMax) return out;
   const VoxelBox box = box_of(key.at, static_cast<std::int32_t>(chunk.voxels.extent.x));
   const auto is_here = is_in_log(store, from, box);
-  if (!is_here) return Unexpected<StoreError>{is_here.error()};
+  if (!is_here) return failure(is_here.error());
   if (!*is_here) return out;
   ChunkEdits update{key, from.seq, chunk.version, chunk.digest, {}};
   std::size_t bytes = 0, looks = 0;
@@ -53,7 +53,7 @@ StoreResult<std::optional<ChunkEdits>> missing_edits(LogReader& store, const Chu
     if (serves) update.edits.push_back({record.version.seq, record.edit});
     return serves;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   if (serves && !update.edits.empty() && update.edits.back().seq == last) out = std::move(update);
   return out;
 }

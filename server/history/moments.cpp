@@ -25,7 +25,7 @@ StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
   if (moment->world != nullptr) return moment;
   const auto failed = [&](const StoreError& error) {
     forget(at);
-    return Unexpected<StoreError>{error};
+    return failure(error);
   };
   auto reader = open_world(place_, StoreAccess::read_only);
   if (!reader) return failed(reader.error());
@@ -51,24 +51,24 @@ void Moments::forget(Sequence at) {
 
 StoreResult<LogEnd> Moments::open(Sequence at) {
   const auto moment = find(at);
-  if (!moment) return Unexpected<StoreError>{moment.error()};
+  if (!moment) return failure(moment.error());
   return (*moment)->world->end();
 }
 
 StoreResult<LogEnd> Moments::open_at_time(TimeUs utc_us) {
   const auto reader = open_world(place_, StoreAccess::read_only);
-  if (!reader) return Unexpected<StoreError>{reader.error()};
+  if (!reader) return failure(reader.error());
   const auto seq = (*reader)->sequence_at(utc_us);
-  if (!seq) return Unexpected<StoreError>{seq.error()};
+  if (!seq) return failure(seq.error());
   return open(*seq);
 }
 
 StoreResult<Chunk> Moments::chunk(Sequence at, const ChunkKey& key) {
   const auto moment = find(at);
-  if (!moment) return Unexpected<StoreError>{moment.error()};
+  if (!moment) return failure(moment.error());
   const std::lock_guard lock((*moment)->mutex);
   if (is_cancelled_.load())
-    return Unexpected<StoreError>{{StoreError::Kind::cancelled, {}, {}, "the server stops"}};
+    return failure(StoreError{StoreError::Kind::cancelled, {}, {}, "the server stops"});
   return (*moment)->world->chunk(key);
 }
 

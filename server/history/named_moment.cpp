@@ -11,10 +11,10 @@ namespace runstone {
 
 Result<NamedMoment, std::string> parse_moment(std::string_view text) {
   const auto wrong = [&] {
-    return Unexpected<std::string>{
+    return failure(
         "\"" + std::string(text) +
         "\" is no moment: write a sequence (9120), a time in UTC (2026-11-21T23:05:00Z) or a time "
-        "before the end of the log (-2h30m)"};
+        "before the end of the log (-2h30m)");
   };
   if (text.starts_with('-')) {
     const auto duration = parse_duration(text.substr(1));
@@ -34,10 +34,10 @@ Result<NamedMoment, std::string> parse_moment(std::string_view text) {
 
 StoreResult<Sequence> sequence_of(LogReader& reader, const NamedMoment& moment) {
   const auto range = reader.log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failure(range.error());
   const auto refuse = [&](std::string what) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::bad_request, reader.file(), "edit_log", std::move(what)}};
+    return failure(
+        StoreError{StoreError::Kind::bad_request, reader.file(), "edit_log", std::move(what)});
   };
   if (const auto* sequence = std::get_if<Sequence>(&moment)) {
     if (*sequence + 1 < range->first) {

@@ -26,14 +26,14 @@ StoreResult<WorldAt> WorldAt::open(WorldReader& reader, const Generator& generat
                                    const Progress& progress) {
   WorldAt world(reader, generator);
   const auto moment = reader.stored_moment(at);
-  if (!moment) return Unexpected<StoreError>{moment.error()};
+  if (!moment) return failure(moment.error());
   world.end_ = moment->at;
   world.stored_at_ = moment->at.version.seq;
   for (const StoredChunk& chunk : moment->chunks) {
     world.chunks_.emplace_hint(world.chunks_.end(), chunk.key, Edited{chunk, {}});
   }
   if (const auto advanced = world.advance(at, progress); !advanced)
-    return Unexpected<StoreError>{advanced.error()};
+    return failure(advanced.error());
   return world;
 }
 
@@ -45,7 +45,7 @@ StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress,
                   " to seq=" + std::to_string(at));
   }
   const auto last = reader_->last_sequence();
-  if (!last) return Unexpected<StoreError>{last.error()};
+  if (!last) return failure(last.error());
   if (at > *last) {
     return refuse("ends at seq=" + std::to_string(*last) + ", before seq=" + std::to_string(at));
   }
@@ -63,10 +63,10 @@ StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress,
   });
   StoreResult<void> outcome;
   if (!read) {
-    outcome = Unexpected<StoreError>{read.error()};
+    outcome = failure(read.error());
   } else if (is_cancelled) {
-    outcome = Unexpected<StoreError>{
-        {StoreError::Kind::cancelled, reader_->file(), "edit_log", "was not read to the end"}};
+    outcome = failure(StoreError{StoreError::Kind::cancelled, reader_->file(), "edit_log",
+                                 "was not read to the end"});
   } else if (edits_.size() - known != at - from) {
     outcome = refuse(kCompacted);
   }
@@ -124,7 +124,7 @@ StoreResult<Chunk> WorldAt::start_of(const ChunkKey& key, const Edited* edited,
     return chunk;
   }
   auto stored = reader.load_stored(*edited->stored);
-  if (!stored) return Unexpected<StoreError>{stored.error()};
+  if (!stored) return failure(stored.error());
   if (!stored->has_value()) return refuse(kCompacted);
   return **std::move(stored);
 }
@@ -155,7 +155,7 @@ StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key) {
 StoreResult<RunChunk> WorldAt::voxels(const ChunkKey& key, WorldReader& reader,
                                       ReplayScratch& scratch) const {
   auto chunk = replayed(key, reader, scratch);
-  if (!chunk) return Unexpected<StoreError>{chunk.error()};
+  if (!chunk) return failure(chunk.error());
   return std::move(chunk->voxels);
 }
 

@@ -43,8 +43,8 @@ StoreResult<Between> read_between(WorldReader& reader, Sequence from, Sequence t
       is_cancelled = !progress(record.version.seq, to);
     return !is_cancelled;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
-  if (is_cancelled) return Unexpected<StoreError>{cancelled(reader)};
+  if (!read) return failure(read.error());
+  if (is_cancelled) return failure(cancelled(reader));
   return between;
 }
 
@@ -104,17 +104,17 @@ class ChunkDiff {
 StoreResult<WorldDiff> diff_world(WorldReader& reader, const Generator& generator, Sequence from,
                                   Sequence to, const WorldAt::Progress& progress) {
   const auto last = reader.last_sequence();
-  if (!last) return Unexpected<StoreError>{last.error()};
+  if (!last) return failure(last.error());
   if (from > to || to > *last) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::bad_request, reader.file(), "edit_log",
-         from > to ? "seq=" + std::to_string(from) + " is behind seq=" + std::to_string(to)
-                   : "ends at seq=" + std::to_string(*last)}};
+    return failure(StoreError{
+        StoreError::Kind::bad_request, reader.file(), "edit_log",
+        from > to ? "seq=" + std::to_string(from) + " is behind seq=" + std::to_string(to)
+                  : "ends at seq=" + std::to_string(*last)});
   }
   auto world = WorldAt::open(reader, generator, from, progress);
-  if (!world) return Unexpected<StoreError>{world.error()};
+  if (!world) return failure(world.error());
   const auto between = read_between(reader, from, to, progress);
-  if (!between) return Unexpected<StoreError>{between.error()};
+  if (!between) return failure(between.error());
 
   WorldDiff diff;
   diff.from = from;
@@ -127,19 +127,19 @@ StoreResult<WorldDiff> diff_world(WorldReader& reader, const Generator& generato
   for (const auto& [at, touching] : between->chunks) {
     const ChunkKey key{0, at};
     auto start = world->chunk(key);
-    if (!start) return Unexpected<StoreError>{start.error()};
+    if (!start) return failure(start.error());
     ChunkDiff chunk(std::move(start->voxels), origin_of(at, reader.meta().chunk_edge));
     for (const std::uint32_t index : touching) {
       if (!chunk.add(between->edits[index], scratch, result)) {
-        return Unexpected<StoreError>{
-            {StoreError::Kind::bad_request, reader.file(), "chunk=" + text_of(key),
-             "was written by more than 65535 authors between these moments"}};
+        return failure(StoreError{StoreError::Kind::bad_request, reader.file(),
+                                  "chunk=" + text_of(key),
+                                  "was written by more than 65535 authors between these moments"});
       }
     }
     const std::uint64_t changed = chunk.count(voxels);
     diff.voxels += changed;
     if (changed > 0) diff.chunks.push_back({key, touching.size(), changed});
-    if (progress && !progress(to, to)) return Unexpected<StoreError>{cancelled(reader)};
+    if (progress && !progress(to, to)) return failure(cancelled(reader));
   }
   for (const auto& [author, count] : edits) diff.authors.push_back({author, count, voxels[author]});
   std::sort(diff.chunks.begin(), diff.chunks.end(), [](const auto& a, const auto& b) {

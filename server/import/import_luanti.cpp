@@ -180,7 +180,7 @@ Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,
   const Format* format = format_of_file(file);
   RUNSTONE_ASSERT(format != nullptr);
   auto map = LuantiMap::open(file);
-  if (!map) return Unexpected<ImportError>{{file, map.error()}};
+  if (!map) return failure(ImportError{file, map.error()});
   return Importer(file, std::move(map).value(), *format, options, sink).run();
 }
 

@@ -19,12 +19,11 @@ constexpr const char* kFindByCoordinates =
 
 Result<LuantiMap, std::string> LuantiMap::open(const std::string& file) {
   auto database = sql::open_sqlite(file, sql::SqliteMode::read);
-  if (!database) return Unexpected<std::string>{database.error().what};
+  if (!database) return failure(database.error().what);
   // The transaction ends with the connection.
-  if (const auto begun = database->run("BEGIN"); !begun)
-    return Unexpected<std::string>{begun.error().what};
+  if (const auto begun = database->run("BEGIN"); !begun) return failure(begun.error().what);
   const auto no_map = [](const sql::Error& error) {
-    return Unexpected<std::string>{"not a Luanti map: " + error.what};
+    return failure("not a Luanti map: " + error.what);
   };
   const auto count = database->integer("SELECT count(*) FROM blocks");
   if (!count) return no_map(count.error());

@@ -61,7 +61,7 @@ StoreResult<std::shared_ptr<const MapTops>> MapDrawer::tops(const MapMoment& mom
   for (const std::int32_t y : heights(moment, key)) {
     if (finder.is_complete()) break;
     const auto voxels = voxels_.at(moment, {key.level, {key.x, y, key.z}});
-    if (!voxels) return Unexpected<StoreError>{voxels.error()};
+    if (!voxels) return failure(voxels.error());
     finder.visit({voxels->get(), y * edge});
   }
   auto made = std::make_shared<const MapTops>(finder.take());
@@ -87,7 +87,7 @@ StoreResult<std::shared_ptr<const std::string>> MapDrawer::draw(const MapMoment&
       Tops here;
       if (key.x >= -limit && key.z >= -limit) {
         auto found = tops(moment, key);
-        if (!found) return Unexpected<StoreError>{found.error()};
+        if (!found) return failure(found.error());
         here = *std::move(found);
       }
       if (x >= 0) {

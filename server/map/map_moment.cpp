@@ -12,7 +12,7 @@ StoreResult<std::unique_ptr<MapMoment>> MapMoment::open(const std::string& place
                                                         const Generator& generator, Sequence at,
                                                         const WorldAt::Progress& progress) {
   auto reader = open_world(place, StoreAccess::read_only);
-  if (!reader) return Unexpected<StoreError>{reader.error()};
+  if (!reader) return failure(reader.error());
   std::unique_ptr<MapMoment> out(new MapMoment(*std::move(reader)));
   bool is_too_far = false;
   const auto bounded = [&](Sequence read, Sequence last) {
@@ -21,14 +21,14 @@ StoreResult<std::unique_ptr<MapMoment>> MapMoment::open(const std::string& place
   };
   auto world = WorldAt::open(*out->reader_, generator, at, bounded);
   if (is_too_far) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::bad_request, out->reader_->file(), "keyframe",
-         "none is near enough to seq=" + std::to_string(at) + " yet: the moment cannot be shown"}};
+    return failure(StoreError{
+        StoreError::Kind::bad_request, out->reader_->file(), "keyframe",
+        "none is near enough to seq=" + std::to_string(at) + " yet: the moment cannot be shown"});
   }
-  if (!world) return Unexpected<StoreError>{world.error()};
+  if (!world) return failure(world.error());
   out->world_ = std::make_unique<WorldAt>(*std::move(world));
   const auto base = out->reader_->base_chunks();
-  if (!base) return Unexpected<StoreError>{base.error()};
+  if (!base) return failure(base.error());
   for (const StoredChunk& chunk : *base) {
     if (chunk.key.lod == 0) out->ground_.add(chunk.key.at, out->world_->version(chunk.key));
   }
@@ -40,12 +40,12 @@ StoreResult<std::unique_ptr<MapMoment>> MapMoment::open(const std::string& place
 StoreResult<void> MapMoment::advance(Sequence at, const EachRecord& each,
                                      const WorldAt::Progress& progress) {
   const auto end = reader_->edit_at(world_->at());
-  if (!end) return Unexpected<StoreError>{end.error()};
+  if (!end) return failure(end.error());
   // The log has no record of edit 0.
   const bool is_same = world_->at() == 0 || (*end && (*end)->version == world_->end().version);
   if (!is_same) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::bad_request, reader_->file(), "edit_log", "is another one than before"}};
+    return failure(StoreError{StoreError::Kind::bad_request, reader_->file(), "edit_log",
+                              "is another one than before"});
   }
   std::vector<ChunkCoord> chunks;
   return world_->advance(at, progress, [&](const EditRecord& record) {

@@ -22,7 +22,7 @@ StoreResult<MapRights> read_map_rights(LogReader& reader, TimeUs now_us) {
       state.apply(*change, {record.version.seq, record.op.author, record.time_us});
     return true;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   return rights_of_strangers(state, now_us);
 }
 

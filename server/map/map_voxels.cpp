@@ -20,8 +20,8 @@ std::size_t bytes_of(const RunChunk& voxels) {
 
 StoreResult<MapVoxels::Voxels> MapVoxels::at(const MapMoment& moment, const ChunkKey& key) {
   if (!should_continue_()) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::cancelled, reader_.file(), "", "the map was stopped"}};
+    return failure(
+        StoreError{StoreError::Kind::cancelled, reader_.file(), "", "the map was stopped"});
   }
   if (key.lod == 0) return chunk(moment, key);
   const std::optional<Version> version = moment.ground().version(key);
@@ -50,21 +50,20 @@ StoreResult<MapVoxels::Voxels> MapVoxels::chunk(const MapMoment& moment, const C
   const std::uint16_t edge = moment.meta().chunk_edge;
   if (!moment.ground().version(key))
     return shared(generator_.generate(origin_of(key.at, edge), Extent::cube(edge)));
-  if (auto begun = reads_.next(); !begun) return Unexpected<StoreError>{begun.error()};
+  if (auto begun = reads_.next(); !begun) return failure(begun.error());
   auto voxels = moment.voxels(key, reader_, replay_);
   if (voxels) return shared(*std::move(voxels));
-  if (voxels.error().kind != StoreError::Kind::corrupt)
-    return Unexpected<StoreError>{voxels.error()};
+  if (voxels.error().kind != StoreError::Kind::corrupt) return failure(voxels.error());
   return shared(uniform_chunk(Extent::cube(edge), kEmpty));
 }
 
 StoreResult<MapVoxels::Voxels> MapVoxels::stored(const ChunkKey& key, const Version& version) {
-  if (auto begun = reads_.next(); !begun) return Unexpected<StoreError>{begun.error()};
+  if (auto begun = reads_.next(); !begun) return failure(begun.error());
   auto row = reader_.load_tile(key);
   if (!row) {
     // A damaged tile is made of its chunks again.
     if (row.error().kind == StoreError::Kind::corrupt) return Voxels();
-    return Unexpected<StoreError>{row.error()};
+    return failure(row.error());
   }
   if (!row->has_value() || (*row)->version != version) return Voxels();
   return shared(std::move((*row)->voxels));

@@ -26,8 +26,8 @@ StoreResult<MapWorld::FileId> MapWorld::file_id() const {
   const std::string file = place_ + "/world.sqlite";
   struct stat about{};
   if (::stat(file.c_str(), &about) != 0) {
-    return Unexpected<StoreError>{{StoreError::Kind::io, file, "",
-                                   "cannot be read: " + std::generic_category().message(errno)}};
+    return failure(StoreError{StoreError::Kind::io, file, "",
+                              "cannot be read: " + std::generic_category().message(errno)});
   }
   return FileId{static_cast<std::uint64_t>(about.st_dev), static_cast<std::uint64_t>(about.st_ino)};
 }
@@ -35,13 +35,13 @@ StoreResult<MapWorld::FileId> MapWorld::file_id() const {
 StoreResult<void> MapWorld::refresh(TimeUs steady_us, TimeUs utc_us,
                                     const WorldAt::Progress& progress) {
   if ((world_ != nullptr || failed_) && steady_us - refreshed_us_ < kAgeUsMax) {
-    if (failed_) return Unexpected<StoreError>{*failed_};
+    if (failed_) return failure(*failed_);
     return {};
   }
   const auto file = file_id();
   StoreResult<void> done;
   if (!file) {
-    done = Unexpected<StoreError>{file.error()};
+    done = failure(file.error());
   } else if (world_ != nullptr && world_->file == *file) {
     done = follow(utc_us, progress);
     // The log may have been compacted or replaced. Then the world is opened anew.
@@ -66,23 +66,23 @@ StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us,
   world_ = std::make_unique<Opened>();
   world_->file = file;
   auto reader = open_world(place_, StoreAccess::read_only);
-  if (!reader) return Unexpected<StoreError>{reader.error()};
+  if (!reader) return failure(reader.error());
   world_->reader = *std::move(reader);
   world_->reader->set_row_check(RowCheck::bytes);
   auto generator = generator_of(*world_->reader);
   if (!generator) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::not_a_world, world_->reader->file(), "meta", generator.error()}};
+    return failure(StoreError{StoreError::Kind::not_a_world, world_->reader->file(), "meta",
+                              generator.error()});
   }
   world_->generator = *std::move(generator);
   // Rights, names and materials are read after the present was opened, so they are at least as new.
   const auto last = world_->reader->last_sequence();
-  if (!last) return Unexpected<StoreError>{last.error()};
+  if (!last) return failure(last.error());
   if (auto opened = open_present(*last, progress); !opened) return opened;
   if (auto read = read_materials(); !read) return read;
   if (auto read = read_names(); !read) return read;
   auto rights = read_map_rights(*world_->reader, utc_us);
-  if (!rights) return Unexpected<StoreError>{rights.error()};
+  if (!rights) return failure(rights.error());
   world_->rights = *std::move(rights);
   world_->changes.begin(world_->present->at());
   return {};
@@ -90,7 +90,7 @@ StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us,
 
 StoreResult<void> MapWorld::open_present(Sequence at, const WorldAt::Progress& progress) {
   auto present = MapMoment::open(place_, *world_->generator, at, progress);
-  if (!present) return Unexpected<StoreError>{present.error()};
+  if (!present) return failure(present.error());
   world_->present = *std::move(present);
   world_->reopen_at = world_->present->edits_kept() + kReopenEdits;
   return {};
@@ -99,7 +99,7 @@ StoreResult<void> MapWorld::open_present(Sequence at, const WorldAt::Progress& p
 StoreResult<void> MapWorld::follow(TimeUs utc_us, const WorldAt::Progress& progress) {
   Opened& world = *world_;
   const auto last = world.reader->last_sequence();
-  if (!last) return Unexpected<StoreError>{last.error()};
+  if (!last) return failure(last.error());
   if (*last == world.present->at()) return {};
   if (*last > world.present->at() + kReopenEdits) {
     // A newer keyframe is nearer than so many edits.
@@ -128,7 +128,7 @@ StoreResult<void> MapWorld::follow(TimeUs utc_us, const WorldAt::Progress& progr
   }
   if (has_rights) {
     auto rights = read_map_rights(*world.reader, utc_us);
-    if (!rights) return Unexpected<StoreError>{rights.error()};
+    if (!rights) return failure(rights.error());
     world.rights = *std::move(rights);
   }
   if (world.present->edits_kept() >= world.reopen_at) return open_present(*last, progress);
@@ -137,7 +137,7 @@ StoreResult<void> MapWorld::follow(TimeUs utc_us, const WorldAt::Progress& progr
 
 StoreResult<void> MapWorld::read_materials() {
   auto table = world_->reader->materials();
-  if (!table) return Unexpected<StoreError>{table.error()};
+  if (!table) return failure(table.error());
   world_->visibility = VisibilityTable(visibilities(*table));
   world_->map_materials = map_materials(*table);
   world_->materials = *std::move(table);
@@ -146,7 +146,7 @@ StoreResult<void> MapWorld::read_materials() {
 
 StoreResult<void> MapWorld::read_names() {
   const auto players = world_->reader->players();
-  if (!players) return Unexpected<StoreError>{players.error()};
+  if (!players) return failure(players.error());
   world_->names.clear();
   for (const PlayerRow& player : *players) world_->names[player.author] = player.name;
   world_->names[0] = "the server";
@@ -172,7 +172,7 @@ StoreResult<MapMoment*> MapWorld::past(Sequence at, const WorldAt::Progress& pro
   }
   if (moment == nullptr) {
     auto opened = MapMoment::open(place_, *world_->generator, at, progress);
-    if (!opened) return Unexpected<StoreError>{opened.error()};
+    if (!opened) return failure(opened.error());
     moment = *std::move(opened);
   }
   past_.emplace_front(at, std::move(moment));
@@ -195,7 +195,7 @@ StoreResult<ColumnTop> MapWorld::top(const MapMoment& moment, std::int32_t x, st
   const ColumnKey key{0, floor_div(x, edge), floor_div(z, edge)};
   const auto tops =
       MapDrawer(*world_->generator, world_->map_materials, voxels, caches_).tops(moment, key);
-  if (!tops) return Unexpected<StoreError>{tops.error()};
+  if (!tops) return failure(tops.error());
   return (*tops)->at(x - key.x * edge, z - key.z * edge);
 }
 

@@ -24,7 +24,7 @@ Budget connection_budget(std::uint64_t per_second) {
 
 Result<void, std::string> bind_to(asio::ip::tcp::acceptor& acceptor, const std::string& address) {
   const auto cannot_listen = [&](const std::string& why) {
-    return Unexpected<std::string>{"cannot listen on \"" + address + "\": " + why};
+    return failure("cannot listen on \"" + address + "\": " + why);
   };
   const auto parsed = parse_listen_address(address, kDefaultPort);
   if (!parsed) return cannot_listen(parsed.error());
@@ -85,7 +85,7 @@ Result<void, std::string> Listener::listen(const std::string& address) {
   if (const auto bound = bind_to(acceptor_, address); !bound) return bound;
   asio::error_code error;
   port_ = acceptor_.local_endpoint(error).port();
-  if (error) return Unexpected<std::string>{"cannot listen on " + address + ": " + error.message()};
+  if (error) return failure("cannot listen on " + address + ": " + error.message());
   return {};
 }
 

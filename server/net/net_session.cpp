@@ -309,7 +309,7 @@ Result<void> NetSession::decode(MessageKind kind, ByteView body) {
   auto message = decode_message(sender_, kind, body, chunk_edge_);
   if (!message) {
     broken_rule_ = GoodbyeReason::malformed_message;
-    return Unexpected<Error>{message.error()};
+    return failure(message.error());
   }
   decoded_.push_back({*std::move(message), body.size()});
   return {};

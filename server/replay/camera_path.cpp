@@ -74,7 +74,7 @@ Result<CameraPath, TextError> CameraPath::parse(std::string_view text, std::stri
   CameraPath path;
   std::uint32_t line_number = 0;
   const auto wrong = [&](std::string what) {
-    return Unexpected<TextError>{{std::string(file), line_number, "", std::move(what)}};
+    return failure(TextError{std::string(file), line_number, "", std::move(what)});
   };
   while (!text.empty()) {
     ++line_number;

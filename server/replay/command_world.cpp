@@ -14,11 +14,11 @@ namespace runstone {
 Result<CommandWorld, std::string> open_for_reading(const std::string& place,
                                                    const std::optional<NamedMoment>& end) {
   auto store = open_world(place, StoreAccess::read_only);
-  if (!store) return Unexpected<std::string>{store.error().message()};
+  if (!store) return failure(store.error().message());
   auto generator = generator_of(**store);
-  if (!generator) return Unexpected<std::string>{generator.error()};
+  if (!generator) return failure(generator.error());
   const auto last = end_of_replay(**store, end);
-  if (!last) return Unexpected<std::string>{last.error()};
+  if (!last) return failure(last.error());
   return CommandWorld{*std::move(store), *std::move(generator), *last};
 }
 
@@ -26,7 +26,7 @@ Result<Sequence, std::string> end_of_replay(Store& store,
                                             const std::optional<NamedMoment>& moment) {
   if (!moment) return std::numeric_limits<Sequence>::max();
   const auto at = sequence_of(store, *moment);
-  if (!at) return Unexpected<std::string>{at.error().message()};
+  if (!at) return failure(at.error().message());
   return *at;
 }
 

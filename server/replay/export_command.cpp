@@ -18,18 +18,18 @@ void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
 
 Result<int, std::string> run_export(const ExportOptions& options, std::ostream& out) {
   const auto store = open_world(options.common.world, StoreAccess::read_only);
-  if (!store) return Unexpected<std::string>{store.error().message()};
+  if (!store) return failure(store.error().message());
   const auto at = end_of_replay(**store, options.at);
-  if (!at) return Unexpected<std::string>{at.error()};
+  if (!at) return failure(at.error());
   const auto done = export_rlog(**store, options.file, *at);
-  if (!done) return Unexpected<std::string>{done.error()};
+  if (!done) return failure(done.error());
   print_world(out, **store);
   row(out, "edits") << done->edits << ", sequences " << done->first << " to " << done->last << '\n';
   row(out, "written") << options.file << ", " << done->bytes << " bytes\n";
   const nlohmann::ordered_json json = {
       {"edits", done->edits}, {"first", done->first}, {"last", done->last}, {"bytes", done->bytes}};
   const auto written = write_report(options.common.json, json.dump(1));
-  if (!written) return Unexpected<std::string>{written.error()};
+  if (!written) return failure(written.error());
   return kReplayEqual;
 }
 

@@ -16,7 +16,7 @@ void declare_import(SubcommandOptions& command_line, ImportOptions& options) {
 
 Result<int, std::string> run_import(const ImportOptions& options, std::ostream& out) {
   const auto done = import_rlog(options.common.world, options.file);
-  if (!done) return Unexpected<std::string>{done.error()};
+  if (!done) return failure(done.error());
   row(out, "world") << place_name(options.common.world) << (done->made_world ? ", made\n" : "\n");
   row(out, "edits") << done->added << " added, " << done->known << " known, " << done->compacted
                     << " compacted\n";
@@ -28,8 +28,8 @@ Result<int, std::string> run_import(const ImportOptions& options, std::ostream& 
       {"made_world", done->made_world}, {"added", done->added}, {"known", done->known},
       {"compacted", done->compacted},   {"last", done->last},   {"stopped", done->stopped}};
   const auto written = write_report(options.common.json, json.dump(1));
-  if (!done->stopped.empty()) return Unexpected<std::string>{done->stopped};
-  if (!written) return Unexpected<std::string>{written.error()};
+  if (!done->stopped.empty()) return failure(done->stopped);
+  if (!written) return failure(written.error());
   return kReplayEqual;
 }
 

@@ -19,15 +19,12 @@ void declare_keyframes(SubcommandOptions& command_line, KeyframesOptions& option
 }
 
 Result<int, std::string> run_keyframes(const KeyframesOptions& options, std::ostream& out) {
-  const auto failure = [](const StoreError& error) {
-    return Unexpected<std::string>{error.message()};
-  };
   auto store = open_world(options.common.world, StoreAccess::read_write);
-  if (!store) return failure(store.error());
+  if (!store) return failure(store.error().message());
   const auto generator = generator_of(**store);
-  if (!generator) return Unexpected<std::string>{generator.error()};
+  if (!generator) return failure(generator.error());
   const auto before = (*store)->keyframes();
-  if (!before) return failure(before.error());
+  if (!before) return failure(before.error().message());
   KeyframeMaker maker(**store, **generator, KeyframePolicy{options.keyframe_edits});
   std::uint64_t chunks_written = 0;
   {
@@ -41,7 +38,7 @@ Result<int, std::string> run_keyframes(const KeyframesOptions& options, std::ost
           line.show(done, last);
           return true;
         });
-    if (!made) return failure(made.error());
+    if (!made) return failure(made.error().message());
   }
   row(out, "keyframes") << maker.made() << " made of " << chunks_written << " chunks, "
                         << before->size() << " there before\n";
@@ -49,7 +46,7 @@ Result<int, std::string> run_keyframes(const KeyframesOptions& options, std::ost
                                        {"chunks", chunks_written},
                                        {"keyframes", before->size() + maker.made()}};
   const auto written = write_report(options.common.json, json.dump(1));
-  if (!written) return Unexpected<std::string>{written.error()};
+  if (!written) return failure(written.error());
   return kReplayEqual;
 }
 

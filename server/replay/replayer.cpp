@@ -60,7 +60,7 @@ StoreResult<void> Replayer::compare(const ChunkKey& key, ReplayedChunk& rebuilt)
       snapshot != snapshots_.end() && snapshot->second == version) {
     rebuilt.flush(scratch_);
     const auto stored = store_.load_snapshot(key);
-    if (!stored) return Unexpected<StoreError>{stored.error()};
+    if (!stored) return failure(stored.error());
     // A running server may have replaced the snapshot. Then there is none to compare at this
     // version.
     if (stored->has_value() && (*stored)->version == version) {
@@ -89,7 +89,7 @@ StoreResult<void> Replayer::replay_edit(const EditRecord& record) {
     auto found = chunks_.find(key);
     if (found == chunks_.end()) {
       auto base = base_chunk(store_, generator_, key);
-      if (!base) return Unexpected<StoreError>{base.error()};
+      if (!base) return failure(base.error());
       found = chunks_.emplace(key, ReplayedChunk(*std::move(base), origin_of(at, edge_))).first;
       if (auto compared = compare(key, found->second); !compared) return compared;
     }
@@ -103,7 +103,7 @@ StoreResult<void> Replayer::replay_edit(const EditRecord& record) {
 
 StoreResult<void> Replayer::expect_snapshots() {
   const auto keys = store_.snapshot_keys();
-  if (!keys) return Unexpected<StoreError>{keys.error()};
+  if (!keys) return failure(keys.error());
   for (const auto& [key, version] : *keys) snapshots_.emplace(key, version);
   return {};
 }
@@ -115,7 +115,7 @@ StoreResult<void> Replayer::compare_rest() {
       continue;
     }
     const auto stored = store_.load_snapshot(key);
-    if (!stored) return Unexpected<StoreError>{stored.error()};
+    if (!stored) return failure(stored.error());
     const Digest digest = stored->has_value() ? (*stored)->digest : Digest{};
     if (auto compared = compare_left_over(key, {"snapshot", version, digest}); !compared)
       return compared;
@@ -141,38 +141,36 @@ StoreResult<void> Replayer::compare_left_over(const ChunkKey& key, const Expecte
     return {};
   }
   const auto base = base_chunk(store_, generator_, key);
-  if (!base) return Unexpected<StoreError>{base.error()};
+  if (!base) return failure(base.error());
   check(key, expected, *base);
   return {};
 }
 
 StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
   const auto range = store_.log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failure(range.error());
   report_.seq = std::min(at, range->last.version.seq);
   if (report_.seq + 1 < range->first) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::bad_request, store_.file(), "edit_log",
-         "begins at seq=" + std::to_string(range->first) +
-             ": what lies before is in the base and cannot be taken apart"}};
+    return failure(StoreError{StoreError::Kind::bad_request, store_.file(), "edit_log",
+                              "begins at seq=" + std::to_string(range->first) +
+                                  ": what lies before is in the base and cannot be taken apart"});
   }
-  if (const auto expected = expect_snapshots(); !expected)
-    return Unexpected<StoreError>{expected.error()};
+  if (const auto expected = expect_snapshots(); !expected) return failure(expected.error());
 
   if (range->first > 1) {
     // Chunks whose edits were all compacted into the base belong to the world too.
     const auto base = store_.base_chunks();
-    if (!base) return Unexpected<StoreError>{base.error()};
+    if (!base) return failure(base.error());
     for (const StoredChunk& stored : *base) {
       if (stored.version == Version{}) continue;
       auto chunk = base_chunk(store_, generator_, stored.key);
-      if (!chunk) return Unexpected<StoreError>{chunk.error()};
+      if (!chunk) return failure(chunk.error());
       const auto found = chunks_
                              .emplace(stored.key, ReplayedChunk(*std::move(chunk),
                                                                 origin_of(stored.key.at, edge_)))
                              .first;
       if (auto compared = compare(stored.key, found->second); !compared)
-        return Unexpected<StoreError>{compared.error()};
+        return failure(compared.error());
     }
   }
 
@@ -183,8 +181,8 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
       progress(record.version.seq, report_.seq);
     return replayed.has_value();
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
-  if (!replayed) return Unexpected<StoreError>{replayed.error()};
+  if (!read) return failure(read.error());
+  if (!replayed) return failure(replayed.error());
 
   for (auto& [key, rebuilt] : chunks_) {
     rebuilt.flush(scratch_);
@@ -194,8 +192,7 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
     report_.digests.push_back({key, chunk.version, chunk.digest});
     report_.world_digest = report_.world_digest + world_digest_term(key, chunk.digest);
   }
-  if (const auto compared = compare_rest(); !compared)
-    return Unexpected<StoreError>{compared.error()};
+  if (const auto compared = compare_rest(); !compared) return failure(compared.error());
   report_.voxels_changed = scratch_.voxels_changed;
   report_.stack_depths = scratch_.depths;
   return std::move(report_);

@@ -22,9 +22,9 @@ constexpr std::size_t kCacheBytes = std::size_t{128} << 20;
 /// checkpoint is contained in snapshots.
 StoreResult<void> find_unsaved(WorldReader& store, TileLedger& ledger) {
   const auto checkpoint = store.checkpoint();
-  if (!checkpoint) return Unexpected<StoreError>{checkpoint.error()};
+  if (!checkpoint) return failure(checkpoint.error());
   const auto keys = store.snapshot_keys();
-  if (!keys) return Unexpected<StoreError>{keys.error()};
+  if (!keys) return failure(keys.error());
   const std::map<ChunkKey, Version> snapshots(keys->begin(), keys->end());
   return store.read_log(*checkpoint + 1, kSequenceMax, [&](const EditRecord& record) {
     if (!changes_voxels(record.cause)) return true;
@@ -50,7 +50,7 @@ std::string text_of(const ChunkKey& key, const Chunk& stored, const Chunk& made)
 StoreResult<TileReport> check_tiles(const std::string& place, WorldReader& store,
                                     const Generator& generator, const TileProgress& progress) {
   using Row = StoreResult<std::optional<Chunk>>;
-  const auto fail_with = [](const StoreError& error) { return Unexpected<StoreError>{error}; };
+  const auto fail_with = [](const StoreError& error) { return failure(error); };
   TileReport report;
   const auto differs = [&](const std::string& what) {
     if (report.differences++ == 0) report.first = what;

@@ -25,12 +25,11 @@ StoreResult<TimelapseWorld> TimelapseWorld::open(WorldReader& reader, const Gene
                                                  std::span<const ChunkCoord> eyes) {
   RUNSTONE_ASSERT(from <= to);
   auto start = WorldAt::open(reader, generator, from);
-  if (!start) return Unexpected<StoreError>{start.error()};
+  if (!start) return failure(start.error());
   TimelapseWorld world(reader, generator, *std::move(start));
   world.at_ = from;
-  if (const auto found = world.find_edits(to); !found) return Unexpected<StoreError>{found.error()};
-  if (const auto set = world.set_stage(radius, eyes); !set)
-    return Unexpected<StoreError>{set.error()};
+  if (const auto found = world.find_edits(to); !found) return failure(found.error());
+  if (const auto set = world.set_stage(radius, eyes); !set) return failure(set.error());
   return world;
 }
 
@@ -79,7 +78,7 @@ StoreResult<void> TimelapseWorld::set_stage(std::uint32_t radius,
   // No generator knows where the ground of an imported world is, so all chunks above and below the
   // edits are drawn.
   const auto has_base = reader_->has_base();
-  if (!has_base) return Unexpected<StoreError>{has_base.error()};
+  if (!has_base) return failure(has_base.error());
   for (const auto& [x, z] : columns) {
     for (std::int32_t y = y_min - r; *has_base && y <= y_max + r; ++y) add_to_stage({x, y, z});
   }
@@ -137,7 +136,7 @@ VoxelBox TimelapseWorld::stage() const {
 StoreResult<void> TimelapseWorld::begin(const Each& each) {
   for (const ChunkKey& key : stage_) {
     auto chunk = start_.chunk(key);
-    if (!chunk) return Unexpected<StoreError>{chunk.error()};
+    if (!chunk) return failure(chunk.error());
     if (!is_empty(chunk->voxels) && !each(key, chunk->voxels)) return {};
     if (edited_chunks_.contains(key))
       replayed_.emplace(key, ReplayedChunk(*std::move(chunk), origin_of(key.at, edge_)));
@@ -159,8 +158,8 @@ StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
   });
   if (!read) return read;
   if (read_to != seq) {
-    return Unexpected<StoreError>{{StoreError::Kind::bad_request, reader_->file(), "edit_log",
-                                   "was compacted while it was read; begin again"}};
+    return failure(StoreError{StoreError::Kind::bad_request, reader_->file(), "edit_log",
+                              "was compacted while it was read; begin again"});
   }
   at_ = seq;
   for (const ChunkKey& key : touched) {

@@ -25,20 +25,18 @@ std::vector<std::string> words_of_command(std::uint32_t fps) {
 }  // namespace
 
 Result<void, std::string> make_video(const std::string& folder, std::uint32_t fps) {
-  const auto failure = [](std::string why) {
-    return Unexpected<std::string>{"ffmpeg " + std::move(why)};
-  };
+  const auto video_failure = [](std::string why) { return failure("ffmpeg " + std::move(why)); };
   const auto pid = start_program({words_of_command(fps), -1, -1, folder});
   if (!pid) {
-    return failure(pid.error() == ENOENT
-                       ? "is not installed"
-                       : std::string("cannot be started: ") + std::strerror(pid.error()));
+    return video_failure(pid.error() == ENOENT
+                             ? "is not installed"
+                             : std::string("cannot be started: ") + std::strerror(pid.error()));
   }
   int status = 0;
   while (::waitpid(*pid, &status, 0) < 0) {
-    if (errno != EINTR) return failure("is no longer a child process");
+    if (errno != EINTR) return video_failure("is no longer a child process");
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return failure(how_it_ended(status));
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return video_failure(how_it_ended(status));
   return {};
 }
 

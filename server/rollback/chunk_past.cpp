@@ -12,9 +12,9 @@ namespace {
 StoreResult<Chunk> stored_form(WorldReader& reader, const Generator& generator, const ChunkKey& key,
                                Sequence at) {
   auto newest = reader.load_kept(key, at);
-  if (!newest) return Unexpected<StoreError>{newest.error()};
+  if (!newest) return failure(newest.error());
   auto snapshot = reader.load_snapshot(key);
-  if (!snapshot) return Unexpected<StoreError>{snapshot.error()};
+  if (!snapshot) return failure(snapshot.error());
   const bool is_old_enough = snapshot->has_value() && (*snapshot)->version.seq <= at;
   if (is_old_enough && (!newest->has_value() || (*newest)->version < (*snapshot)->version))
     newest = snapshot;
@@ -25,9 +25,9 @@ StoreResult<Chunk> stored_form(WorldReader& reader, const Generator& generator, 
   }
   auto chunk = base_chunk(reader, generator, key);
   if (chunk && chunk->version.seq > at) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::bad_request, reader.file(), "base chunk=" + text_of(key),
-         "the log before sequence " + std::to_string(chunk->version.seq) + " was compacted"}};
+    return failure(StoreError{
+        StoreError::Kind::bad_request, reader.file(), "base chunk=" + text_of(key),
+        "the log before sequence " + std::to_string(chunk->version.seq) + " was compacted"});
   }
   return chunk;
 }
@@ -49,7 +49,7 @@ StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, C
   const auto read = logs.visit(key, first, at, [&](const EditRecord& record) {
     replayed.add(record.edit, record.version, scratch);
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   replayed.flush(scratch);
   return std::move(replayed.chunk());
 }

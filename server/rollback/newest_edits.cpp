@@ -9,7 +9,7 @@ namespace runstone {
 StoreResult<std::vector<EditRecord>> newest_edits(LogReader& reader, const SelectionFilter& filter,
                                                   std::size_t count_max) {
   const auto range = reader.log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failure(range.error());
   const std::set<AuthorId> authors(filter.authors.begin(), filter.authors.end());
   std::deque<EditRecord> found;
   Sequence last = std::min(filter.last, range->last.version.seq);
@@ -30,7 +30,7 @@ StoreResult<std::vector<EditRecord>> newest_edits(LogReader& reader, const Selec
       if (window.size() + found.size() > count_max) window.pop_front();
       return true;
     });
-    if (!read) return Unexpected<StoreError>{read.error()};
+    if (!read) return failure(read.error());
     found.insert(found.begin(), window.begin(), window.end());
     last = query.first - 1;
   }

@@ -59,7 +59,7 @@ StoreResult<std::vector<PlayerEdit>> player_edits(WorldReader& reader, AuthorId 
       window_touches += window.back().chunks.size();
       return !is_too_much();
     });
-    if (!read) return Unexpected<StoreError>{read.error()};
+    if (!read) return failure(read.error());
     if (!is_wanted) return cancelled(reader);
     if (is_too_much() && first < last) {
       width = (last - first + 1) / 2;
@@ -118,7 +118,7 @@ StoreResult<PlayerActionSearch> next_player_change(WorldReader& reader, const Ge
                                                    const ShouldContinue& should_continue) {
   RUNSTONE_ASSERT(cause == Cause::undo || cause == Cause::redo);
   const auto edited = player_edits(reader, author, end, should_continue);
-  if (!edited) return Unexpected<StoreError>{edited.error()};
+  if (!edited) return failure(edited.error());
   std::vector<PlayerRecord> records;
   records.reserve(edited->size());
   for (const PlayerEdit& edit : *edited) records.push_back(edit.record);
@@ -136,7 +136,7 @@ StoreResult<PlayerActionSearch> next_player_change(WorldReader& reader, const Ge
                 : selection_of(*edited, actions.to_redo(action), actions.redo_core(action), edge);
     for (const auto& [key, edits] : selection.chunks) {
       const auto plan = planner.plan(key, edits, std::nullopt, end);
-      if (!plan) return Unexpected<StoreError>{plan.error()};
+      if (!plan) return failure(plan.error());
       if (plan->voxels > 0)
         return PlayerActionSearch{PlayerChange{action, std::move(selection)}, false};
     }

@@ -32,7 +32,7 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
                                               const std::optional<VoxelBox>& box, Sequence end) {
   if (should_continue_ && !should_continue_()) return cancelled(reader_);
   auto before = chunk_past(reader_, generator_, logs_, key, selected.front() - 1, scratch_);
-  if (!before) return Unexpected<StoreError>{before.error()};
+  if (!before) return failure(before.error());
   const std::int32_t edge = reader_.meta().chunk_edge;
   const VoxelPos origin = origin_of(key.at, edge);
   RestorePlan plan;
@@ -51,7 +51,7 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
     restore.add(record.edit, is_selected, scratch_.apply);
     plan.version = record.version;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   restore.flush(scratch_.apply);
   plan.now = restore.now();
   plan.restored = restore.restored();

@@ -20,11 +20,10 @@ StoreResult<RollbackGroup> rollback_group(LogReader& reader, Sequence id) {
     group.time_us = record.time_us;
     return true;
   });
-  if (!first) return Unexpected<StoreError>{first.error()};
+  if (!first) return failure(first.error());
   if (!begins) {
-    return Unexpected<StoreError>{{StoreError::Kind::bad_request, reader.file(),
-                                   "edit_log seq=" + std::to_string(id),
-                                   "no rollback begins there"}};
+    return failure(StoreError{StoreError::Kind::bad_request, reader.file(),
+                              "edit_log seq=" + std::to_string(id), "no rollback begins there"});
   }
   LogQuery query;
   query.author = group.op.author;
@@ -34,7 +33,7 @@ StoreResult<RollbackGroup> rollback_group(LogReader& reader, Sequence id) {
     if (record.op.instance == group.op.instance) group.edits.push_back(record.version.seq);
     return true;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   return group;
 }
 
@@ -55,7 +54,7 @@ StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::
     group_of[record.version.seq] = instance;
     return true;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   query.cause = Cause::undo;
   std::optional<OperationId> undo;
   Sequence undo_id = 0;
@@ -70,7 +69,7 @@ StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::
     }
     return true;
   });
-  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!read) return failure(read.error());
   std::vector<RollbackGroup> out;
   out.reserve(by_instance.size());
   for (auto& [instance, group] : by_instance) out.push_back(std::move(group));

@@ -268,7 +268,7 @@ void RollbackService::undo_rollback(const std::string& id, AuthorId author, cons
         [found, seq, should_continue = should_continue()](WorldReader& reader, const Generator&) {
           const auto group = rollback_group(reader, seq);
           *found = group ? select_edits(reader, group->edits, should_continue)
-                         : StoreResult<Selection>(Unexpected<StoreError>{group.error()});
+                         : StoreResult<Selection>(failure(group.error()));
         },
         [this, found, seq, author, reply](const std::string& error) {
           if (!error.empty()) return refuse(reply, "rollback undo: " + error);

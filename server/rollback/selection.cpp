@@ -100,7 +100,7 @@ StoreResult<Selection> select_edits(LogReader& reader, const SelectionFilter& fi
     query.author = author;
     if (done && has_room && is_wanted) done = run();
   }
-  if (!done) return Unexpected<StoreError>{done.error()};
+  if (!done) return failure(done.error());
   if (!is_wanted) return cancelled(reader);
   if (!has_room) return collector.too_large();
   return collector.finish();
@@ -116,7 +116,7 @@ StoreResult<Selection> select_edits(LogReader& reader, const std::vector<Sequenc
       has_room = has_room && collector.take(record);
       return true;
     });
-    if (!read) return Unexpected<StoreError>{read.error()};
+    if (!read) return failure(read.error());
     if (!has_room) return collector.too_large();
   }
   return collector.finish();

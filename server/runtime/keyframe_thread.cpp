@@ -74,8 +74,8 @@ StoreResult<void> KeyframeThread::save(KeyframeMaker::Chunks chunks,
         answer->arrived.notify_one();
       });
   if (!taken)
-    return Unexpected<StoreError>{
-        {StoreError::Kind::cancelled, place_, "keyframe", "the log writer has ended"}};
+    return failure(
+        StoreError{StoreError::Kind::cancelled, place_, "keyframe", "the log writer has ended"});
   std::unique_lock lock(answer->mutex);
   answer->arrived.wait(lock, [&] { return answer->result.has_value(); });
   return *answer->result;

@@ -27,7 +27,7 @@ Result<void, std::string> is_prefix(Store& store, const std::vector<LogPart>& pa
   // Records before those of `parts` are durable, and durable ones do not change.
   if (common.seq == 0 || common.seq > end) return {};
   const auto there = store.edit_at(common.seq);
-  if (!there) return failure(there.error());
+  if (!there) return failure(there.error().message());
   if (*there && (*there)->version == common) return {};
   return failure("the log has other edits than this server: " + std::string(kStartAgain));
 }
@@ -57,7 +57,7 @@ StoreResult<void> write_rest(Store& store, const LogPart& part, Sequence end) {
 Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   WorldStart start;
   const auto range = store.log_range();
-  if (!range) return failure(range.error());
+  if (!range) return failure(range.error().message());
   start.log.last = range->last.version.seq;
   start.log.last_epoch = range->last.version.epoch;
   start.log.last_time_us = range->last.time_us;
@@ -65,30 +65,30 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   // row, so a damaged time would spread to them.
   const auto last_row =
       store.read_log(start.log.last, start.log.last, [](const EditRecord&) { return true; });
-  if (!last_row) return failure(last_row.error());
+  if (!last_row) return failure(last_row.error().message());
   const auto checkpoint = store.checkpoint();
-  if (!checkpoint) return failure(checkpoint.error());
+  if (!checkpoint) return failure(checkpoint.error().message());
   start.checkpoint = *checkpoint;
   auto snapshots = store.snapshot_keys();
-  if (!snapshots) return failure(snapshots.error());
+  if (!snapshots) return failure(snapshots.error().message());
   start.snapshots = *std::move(snapshots);
   auto players = store.players();
-  if (!players) return failure(players.error());
+  if (!players) return failure(players.error().message());
   start.players = *std::move(players);
   start.author_max = store.author_max();
   // A write of a player reads the player's names. A damaged one would end the log writer.
-  if (const auto names = store.player_names(); !names) return failure(names.error());
+  if (const auto names = store.player_names(); !names) return failure(names.error().message());
   auto claims = store.name_claims();
-  if (!claims) return failure(claims.error());
+  if (!claims) return failure(claims.error().message());
   start.name_claims = *std::move(claims);
   const auto rights = store.read_rights([&](const EditRecord& record) {
     if (const RightsChange* change = rights_change_of(record.edit))
       start.rights.push_back({*change, {record.version.seq, record.op.author, record.time_us}});
     return true;
   });
-  if (!rights) return failure(rights.error());
+  if (!rights) return failure(rights.error().message());
   auto watermarks = store.high_waters();
-  if (!watermarks) return failure(watermarks.error());
+  if (!watermarks) return failure(watermarks.error().message());
   start.resolved = *std::move(watermarks);
   return start;
 }
@@ -102,14 +102,14 @@ Result<std::uint64_t, std::string> replay_log(LogReader& store, const WorldStart
         ++replayed;
         return true;
       });
-  if (!read) return failure(read.error());
+  if (!read) return failure(read.error().message());
   return replayed;
 }
 
 Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<LogPart>& parts,
                                                Version last) {
   const auto end = store.last_sequence();
-  if (!end) return failure(end.error());
+  if (!end) return failure(end.error().message());
   if (const auto same = is_prefix(store, parts, last, *end); !same) return failure(same.error());
   for (const LogPart& part : parts) {
     if (const auto written = write_rest(store, part, *end); !written)
@@ -117,10 +117,10 @@ Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<L
   }
   Takeover out;
   const auto epoch = store.raise_epoch();
-  if (!epoch) return failure(epoch.error());
+  if (!epoch) return failure(epoch.error().message());
   out.epoch = *epoch;
   const auto checkpoint = store.checkpoint();
-  if (!checkpoint) return failure(checkpoint.error());
+  if (!checkpoint) return failure(checkpoint.error().message());
   out.checkpoint = *checkpoint;
   out.author_max = store.author_max();
   auto read = read_missed_log(store, std::max<Sequence>(1, last.seq), SIZE_MAX);
@@ -134,18 +134,18 @@ Result<ReadLog, std::string> read_missed_log(WorldReader& store, Sequence first,
   ReadLog read;
   // The rows of players come before the records that name them, so they are read later.
   const auto range = store.log_range();
-  if (!range) return failure(range.error());
+  if (!range) return failure(range.error().message());
   read.last = range->last.version.seq;
   const auto done = store.read_log(first, read.last, [&](const EditRecord& record) {
     read.records.push_back(record);
     return read.records.size() < records_max;
   });
-  if (!done) return failure(done.error());
+  if (!done) return failure(done.error().message());
   auto players = store.players();
-  if (!players) return failure(players.error());
+  if (!players) return failure(players.error().message());
   read.players = *std::move(players);
   auto claims = store.name_claims();
-  if (!claims) return failure(claims.error());
+  if (!claims) return failure(claims.error().message());
   read.names = *std::move(claims);
   return read;
 }

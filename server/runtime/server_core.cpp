@@ -111,7 +111,7 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
   if (chat_log_) start.chat = newest_chat(*chat_log_);
 
   auto materials = store_.materials();
-  if (!materials) return failure(materials.error());
+  if (!materials) return failure(materials.error().message());
   WorldConfig world_config = world_config_of(config_, store_.meta(), port());
   world_config.materials = *std::move(materials);
   world_ = std::make_unique<WorldServer>(

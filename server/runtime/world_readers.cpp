@@ -17,7 +17,7 @@ WorldReaders::OpenedHistoryResult open(Moments& moments, const HistoryRequest& r
   if (end.error().kind != StoreError::Kind::bad_request &&
       end.error().kind != StoreError::Kind::cancelled)
     logger("store").error("{}", end.error().message());
-  return Unexpected<std::string>{end.error().what};
+  return failure(end.error().what);
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ void WorldReaders::load_history_chunk(Sequence at, const ChunkKey& key,
     if (loaded) {
       chunk = std::make_shared<const Chunk>(*std::move(loaded));
     } else {
-      chunk = Unexpected<std::string>{loaded.error().message()};
+      chunk = failure(loaded.error().message());
     }
     strand_.post([then, chunk = std::move(chunk)]() mutable { then(std::move(chunk)); });
   });
@@ -61,7 +61,7 @@ void WorldReaders::load_history_chunk(Sequence at, const ChunkKey& key,
 void WorldReaders::read_log_marks(const LogMarksRequest& request,
                                   std::function<void(FoundLogMarksResult)> then) {
   asio::post(*history_readers_, [this, request, then = std::move(then)] {
-    FoundLogMarksResult found = Unexpected<std::string>{"the log cannot be read now"};
+    FoundLogMarksResult found = failure("the log cannot be read now");
     const auto read = chunks_.with_reader([&](WorldReader& reader) {
       auto marks = runstone::read_log_marks(reader, request);
       if (marks) {

@@ -59,7 +59,7 @@ class SettingsTable {
   Result<void, TextError> read_toml(Config& config, std::string_view toml, std::string_view file,
                                     std::string_view sections = {}) const {
     auto values = read_toml_settings(toml, file);
-    if (!values) return Unexpected<TextError>{values.error()};
+    if (!values) return failure(values.error());
     std::erase_if(*values, [&](const TomlSetting& value) {
       return !sections.empty() && value.key == sections;
     });
@@ -76,7 +76,7 @@ class SettingsTable {
         wrong = can_be(value, setting->type) ? setting->set(read, value.text)
                                              : type_rule(setting->type) + ": " + setting->help;
       }
-      if (wrong) return Unexpected<TextError>{{std::string(file), value.line, value.key, *wrong}};
+      if (wrong) return failure(TextError{std::string(file), value.line, value.key, *wrong});
     }
     config = std::move(read);
     return {};

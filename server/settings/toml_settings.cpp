@@ -12,8 +12,8 @@ Result<toml::table, TextError> parse_toml(std::string_view toml, std::string_vie
   try {
     return toml::parse(toml, file);
   } catch (const toml::parse_error& error) {
-    return Unexpected<TextError>{
-        {std::string(file), error.source().begin.line, "", std::string(error.description())}};
+    return failure(TextError{std::string(file), error.source().begin.line, "",
+                             std::string(error.description())});
   }
 }
 
@@ -41,7 +41,7 @@ std::vector<TomlSetting> settings_in(const toml::table& table) {
 Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view toml,
                                                                std::string_view file) {
   const auto table = parse_toml(toml, file);
-  if (!table) return Unexpected<TextError>{table.error()};
+  if (!table) return failure(table.error());
   return settings_in(*table);
 }
 
@@ -49,13 +49,13 @@ Result<std::vector<TomlSection>, TextError> read_toml_sections(std::string_view 
                                                                std::string_view file,
                                                                std::string_view kind) {
   const auto table = parse_toml(toml, file);
-  if (!table) return Unexpected<TextError>{table.error()};
+  if (!table) return failure(table.error());
   std::vector<TomlSection> out;
   const toml::node* const found = table->get(kind);
   if (found == nullptr) return out;
   const auto wrong = [&](const toml::node& node, const std::string& key) {
-    return Unexpected<TextError>{{std::string(file), node.source().begin.line, key,
-                                  "must be a section: [" + std::string(kind) + ".NAME]"}};
+    return failure(TextError{std::string(file), node.source().begin.line, key,
+                             "must be a section: [" + std::string(kind) + ".NAME]"});
   };
   if (!found->is_table()) return wrong(*found, std::string(kind));
   for (const auto& [key, node] : *found->as_table()) {

@@ -23,7 +23,7 @@ std::int64_t checksum_of(std::string_view table, const ChunkRow& row) {
 
 Result<Chunk, std::string> chunk_of(std::string_view table, const ChunkRow& row,
                                     std::uint16_t chunk_edge, RowCheck check) {
-  const auto wrong = [](std::string what) { return Unexpected<std::string>{std::move(what)}; };
+  const auto wrong = [](std::string what) { return failure(std::move(what)); };
   if (row.checksum != checksum_of(table, row)) return wrong("checksum is wrong");
   auto voxels = decode_chunk(row.data);
   if (!voxels) return wrong(std::string("does not decode: ") + voxels.error().what);

@@ -43,8 +43,8 @@ StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
                     *std::move(version), *std::move(save));
 }
 
-Unexpected<StoreError> ChunkTable::failure(StoreError::Kind kind, const ChunkKey& key,
-                                           std::string what) const {
+Unexpected<StoreError> ChunkTable::chunk_failure(StoreError::Kind kind, const ChunkKey& key,
+                                                 std::string what) const {
   return {{kind, file_, table_ + " chunk=" + text_of(key), std::move(what)}};
 }
 
@@ -58,7 +58,7 @@ StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, std::uin
   auto chunk = chunk_of(
       table_, {key, version_at(load_, 0), digest_at(load_, 2), load_.integer(4), load_.blob(5)},
       chunk_edge, check);
-  if (!chunk) return failure(StoreError::Kind::corrupt, key, chunk.error());
+  if (!chunk) return chunk_failure(StoreError::Kind::corrupt, key, chunk.error());
   return std::optional<Chunk>(*std::move(chunk));
 }
 
@@ -77,10 +77,10 @@ StoreResult<std::vector<StoredChunk>> ChunkTable::rows(const RowFold& expected) 
         {key_at(rows_, 0), version_at(rows_, 4), digest_at(rows_, 6), kind_ == Kind::base});
   }
   if (fold != expected) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::corrupt, file_, table_,
-         "rows vanished, appeared or changed their key or version: " + std::to_string(fold.count) +
-             " rows, meta counts " + std::to_string(expected.count)}};
+    return failure(StoreError{
+        StoreError::Kind::corrupt, file_, table_,
+        "rows vanished, appeared or changed their key or version: " + std::to_string(fold.count) +
+            " rows, meta counts " + std::to_string(expected.count)});
   }
   return rows;
 }
@@ -88,7 +88,7 @@ StoreResult<std::vector<StoredChunk>> ChunkTable::rows(const RowFold& expected) 
 StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk,
                                    std::uint16_t chunk_edge, RowFold& fold) {
   if (const std::string what = unfit(chunk, chunk_edge); !what.empty())
-    return failure(StoreError::Kind::bad_request, key, what);
+    return chunk_failure(StoreError::Kind::bad_request, key, what);
   std::optional<Version> stored;
   {
     const sql::ResetAtEnd reset_at_end(version_);
@@ -98,10 +98,10 @@ StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk,
     if (*found) stored = version_at(version_, 0);
   }
   if (stored && kind_ == Kind::base && chunk.version == *stored) {
-    return failure(StoreError::Kind::bad_request, key, "is there already");
+    return chunk_failure(StoreError::Kind::bad_request, key, "is there already");
   }
   if (stored && chunk.version < *stored) {
-    return failure(StoreError::Kind::bad_request, key, "is older than the stored version");
+    return chunk_failure(StoreError::Kind::bad_request, key, "is older than the stored version");
   }
   const Bytes data = encode_chunk(chunk.voxels, ChunkEncoding::packed);
   bind_key(save_, key);

@@ -46,8 +46,8 @@ class ChunkTable {
         rows_(std::move(rows)),
         version_(std::move(version)),
         save_(std::move(save)) {}
-  Unexpected<StoreError> failure(StoreError::Kind kind, const ChunkKey& key,
-                                 std::string what) const;
+  Unexpected<StoreError> chunk_failure(StoreError::Kind kind, const ChunkKey& key,
+                                       std::string what) const;
 
   Kind kind_;
   std::string file_, table_, fold_key_;

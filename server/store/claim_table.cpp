@@ -35,9 +35,8 @@ StoreResult<NameClaim> ClaimTable::claim_of(const sql::Statement& row) const {
   const ByteView key = row.blob(2);
   if (row.integer(3) != claim_checksum(claim.folded, claim.name, key) ||
       key.size() != claim.key.size()) {
-    return Unexpected<StoreError>{{StoreError::Kind::corrupt, file_,
-                                   "name_claim folded=\"" + claim.folded + "\"",
-                                   "checksum is wrong"}};
+    return failure(StoreError{StoreError::Kind::corrupt, file_,
+                              "name_claim folded=\"" + claim.folded + "\"", "checksum is wrong"});
   }
   std::copy(key.begin(), key.end(), claim.key.begin());
   return claim;

@@ -202,9 +202,9 @@ StoreResult<sql::Database> open_tables(const std::string& place) {
   const auto format = database->integer("PRAGMA user_version");
   if (!format) return failed(format.error());
   if (*format < kFormatCopied) {
-    return Unexpected<StoreError>{{StoreError::Kind::bad_request, database->file(), "",
-                                   "is of world format " + std::to_string(*format) +
-                                       ": start a server on it once, which converts it"}};
+    return failure(StoreError{StoreError::Kind::bad_request, database->file(), "",
+                              "is of world format " + std::to_string(*format) +
+                                  ": start a server on it once, which converts it"});
   }
   return *std::move(database);
 }

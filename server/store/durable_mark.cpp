@@ -71,9 +71,9 @@ StoreResult<std::optional<DurableState>> DurableMark::read() {
     }
   }
   if (!newest_ && is_any_damaged) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::corrupt, file_, "",
-         "is damaged, so it is not known whether the log still has all of its edits"}};
+    return failure(
+        StoreError{StoreError::Kind::corrupt, file_, "",
+                   "is damaged, so it is not known whether the log still has all of its edits"});
   }
   return newest_;
 }

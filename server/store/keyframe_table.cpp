@@ -129,7 +129,7 @@ StoreResult<void> KeyframeTable::save(const ChunkKey& key, const Chunk& chunk,
                                       std::uint16_t chunk_edge) {
   const Sequence seq = chunk.version.seq;
   if (const std::string what = unfit(chunk, chunk_edge); !what.empty()) {
-    return Unexpected<StoreError>{{StoreError::Kind::bad_request, file_, place_of(key, seq), what}};
+    return failure(StoreError{StoreError::Kind::bad_request, file_, place_of(key, seq), what});
   }
   const auto stored = load(key, seq, chunk_edge, RowCheck::voxels);
   if (!stored) return failed(stored.error());

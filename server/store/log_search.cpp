@@ -22,8 +22,8 @@ StoreResult<TimeUs> LogSearch::time_of(Sequence seq) {
   const auto row = time_->bind(1, static_cast<std::int64_t>(seq)).step();
   if (!row) return failed(row.error());
   if (!*row) {
-    return Unexpected<StoreError>{{StoreError::Kind::corrupt, database_.file(),
-                                   "edit_log seq=" + std::to_string(seq), "is missing"}};
+    return failure(StoreError{StoreError::Kind::corrupt, database_.file(),
+                              "edit_log seq=" + std::to_string(seq), "is missing"});
   }
   return time_->integer(0);
 }

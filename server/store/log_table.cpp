@@ -111,8 +111,8 @@ StoreResult<LogTable> LogTable::open(sql::Database& database) {
       "(SELECT count(*) FROM (SELECT 1 FROM edit_log WHERE log > 0 LIMIT 1) AS above)");
   if (!misplaced_rows) return failed(misplaced_rows.error());
   if (*misplaced_rows != 0) {
-    return Unexpected<StoreError>{{StoreError::Kind::corrupt, database.file(), "edit_log",
-                                   "holds rows of a log other than 0"}};
+    return failure(StoreError{StoreError::Kind::corrupt, database.file(), "edit_log",
+                              "holds rows of a log other than 0"});
   }
   auto first = database.prepare("SELECT seq FROM edit_log WHERE log = 0 ORDER BY seq LIMIT 1");
   if (!first) return failed(first.error());

@@ -272,7 +272,7 @@ void LogWriter::end_optional_jobs(const StoreError& error, std::optional<Job>& j
       job_is_running_ = false;
     }
   }
-  for (const Job& one : ended) one.done(Unexpected<StoreError>{error});
+  for (const Job& one : ended) one.done(failure(error));
 }
 
 void LogWriter::fail(const StoreError& error, std::optional<Job>& job) {

@@ -129,7 +129,7 @@ Result<WorldMeta, std::string> meta_of(const MetaRows& rows) {
   ByteReader reader(spawn);
   for (double* coordinate : {&meta.spawn.x, &meta.spawn.y, &meta.spawn.z})
     *coordinate = reader.f64();
-  if (!in.bad_key().empty()) return Unexpected<std::string>{in.bad_key()};
+  if (!in.bad_key().empty()) return failure(in.bad_key());
   return meta;
 }
 

@@ -36,10 +36,10 @@ StoreResult<UsedName> NameTable::name_of(const sql::Statement& row) const {
   const std::string name(row.text(2));
   if (row.integer(3) != name_checksum(author, number, name) || author < 1 ||
       author > std::numeric_limits<AuthorId>::max()) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::corrupt, file_,
-         "player_name author=" + std::to_string(author) + " number=" + std::to_string(number),
-         "checksum is wrong"}};
+    return failure(StoreError{
+        StoreError::Kind::corrupt, file_,
+        "player_name author=" + std::to_string(author) + " number=" + std::to_string(number),
+        "checksum is wrong"});
   }
   return UsedName{static_cast<AuthorId>(author), name};
 }

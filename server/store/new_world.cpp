@@ -11,8 +11,8 @@ namespace runstone {
 
 StoreResult<void> check_new_meta(const WorldMeta& meta, const std::string& file) {
   if (const auto readable = meta_of(rows_of(meta)); !readable) {
-    return Unexpected<StoreError>{{StoreError::Kind::bad_request, file, "",
-                                   "a new world cannot have this " + readable.error()}};
+    return failure(StoreError{StoreError::Kind::bad_request, file, "",
+                              "a new world cannot have this " + readable.error()});
   }
   return {};
 }

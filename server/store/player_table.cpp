@@ -72,9 +72,8 @@ StoreResult<FoldedRows<PlayerRow>> PlayerTable::players() {
     row.name = players_.text(2);
     if (players_.integer(3) != checksum_of(author, key, row.name) || author < 1 ||
         author > std::numeric_limits<AuthorId>::max() || key.size() != row.key.size()) {
-      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file_,
-                                     "player author=" + std::to_string(author),
-                                     "checksum is wrong"}};
+      return failure(StoreError{StoreError::Kind::corrupt, file_,
+                                "player author=" + std::to_string(author), "checksum is wrong"});
     }
     row.author = static_cast<AuthorId>(author);
     std::copy(key.begin(), key.end(), row.key.begin());
@@ -104,11 +103,10 @@ StoreResult<HighWater> PlayerTable::mark_of(const sql::Statement& row) const {
   const std::int64_t last_us = row.integer(3);
   if (row.integer(4) != checksum_of(author, instance, resolved, last_us) || author < 0 ||
       author > std::numeric_limits<AuthorId>::max() || resolved < 0) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::corrupt, file_,
-         "player_instance author=" + std::to_string(author) +
-             " instance=" + std::to_string(static_cast<ClientInstance>(instance)),
-         "checksum is wrong"}};
+    return failure(StoreError{StoreError::Kind::corrupt, file_,
+                              "player_instance author=" + std::to_string(author) + " instance=" +
+                                  std::to_string(static_cast<ClientInstance>(instance)),
+                              "checksum is wrong"});
   }
   return HighWater{static_cast<AuthorId>(author), static_cast<ClientInstance>(instance),
                    static_cast<ClientSequence>(resolved), last_us};

@@ -100,8 +100,7 @@ StoreResult<Row> read_row(sql::Database& database, const char* text) {
   const auto is_there = row->step();
   if (!is_there) return failed(is_there.error());
   if (!*is_there) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::corrupt, database.file(), "lease", "has no row"}};
+    return failure(StoreError{StoreError::Kind::corrupt, database.file(), "lease", "has no row"});
   }
   return Row{std::string(row->text(0)), row->integer(1), row->integer(2), row->integer(3),
              std::string(row->text(4))};
@@ -134,8 +133,8 @@ StoreResult<void> make_table(sql::Database& writer) {
   const auto schema = writer.text("SELECT coalesce(current_schema(), '')");
   if (!schema) return failed(schema.error());
   if (schema->empty()) {
-    return Unexpected<StoreError>{{StoreError::Kind::not_a_world, writer.file(), "",
-                                   "the first schema of its search_path does not exist"}};
+    return failure(StoreError{StoreError::Kind::not_a_world, writer.file(), "",
+                              "the first schema of its search_path does not exist"});
   }
   // PostgreSQL can refuse this if another program makes the table at the same moment. The table is there
   // at the second try.
@@ -170,7 +169,7 @@ StoreResult<bool> take_lock(sql::Database& writer) {
     if (const auto ended = ask_lock(writer, kEndHolder, kWriterLock); !ended)
       return failed(ended.error());
   }
-  return Unexpected<StoreError>{lock_is_kept(writer, kWriterLock)};
+  return failure(lock_is_kept(writer, kWriterLock));
 }
 
 /// Adds the column of the address if the table lacks it. Requires the lock: no transaction of an earlier
@@ -211,8 +210,8 @@ StoreResult<std::unique_ptr<PostgresLease>> PostgresLease::take(const std::strin
     if (row->left_us > 0) {
       if (!first) first = *row;
       if (!own.waits || row->expires_us > first->expires_us || row->term != first->term) {
-        return Unexpected<StoreError>{{StoreError::Kind::locked, writer.file(), "",
-                                       "another program is writing this world: " + row->owner}};
+        return failure(StoreError{StoreError::Kind::locked, writer.file(), "",
+                                  "another program is writing this world: " + row->owner});
       }
       std::this_thread::sleep_for(std::min<std::chrono::microseconds>(
           kPause, std::chrono::microseconds(row->left_us + 1'000)));
@@ -221,8 +220,7 @@ StoreResult<std::unique_ptr<PostgresLease>> PostgresLease::take(const std::strin
     const auto is_taking = ask_lock(writer, kLock, kTakingLock);
     if (!is_taking) return failed(is_taking.error());
     if (*is_taking == 0) {
-      if (++tries > 2 * kTakingTries)
-        return Unexpected<StoreError>{lock_is_kept(writer, kTakingLock)};
+      if (++tries > 2 * kTakingTries) return failure(lock_is_kept(writer, kTakingLock));
       if (tries == kTakingTries) {
         const auto ended = ask_lock(writer, kEndHolder, kTakingLock);
         if (!ended) return failed(ended.error());
@@ -343,7 +341,7 @@ void PostgresLease::run() {
 StoreResult<void> PostgresLease::confirm(sql::Database& writer) {
   const auto row = read_row(writer, kConfirm);
   if (!row) return failed(row.error());
-  if (row->term != term_) return Unexpected<StoreError>{taken_by(writer, row->owner)};
+  if (row->term != term_) return failure(taken_by(writer, row->owner));
   if (row->left_us > 0) return {};
   // is_valid() does not follow, because the caller's transaction may still be rolled back.
   const auto renewed = renewed_term(writer, term_, terms_.length);
@@ -359,7 +357,7 @@ StoreResult<void> PostgresLease::publish(sql::Database& writer, const std::strin
   if (*term) return {};
   const auto row = read_row(writer, kRead);
   if (!row) return failed(row.error());
-  return Unexpected<StoreError>{taken_by(writer, row->owner)};
+  return failure(taken_by(writer, row->owner));
 }
 
 void PostgresLease::release(sql::Database& writer) {

@@ -27,9 +27,9 @@ StoreResult<FoldedRows<EditRecord>> RightsTable::records() {
                           static_cast<std::int64_t>(record_checksum(*record)) == all_.integer(2) &&
                           rights_change_of(record->edit) != nullptr;
     if (!is_sound) {
-      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file_,
-                                     "rights_record seq=" + std::to_string(seq),
-                                     "checksum or encoding is wrong"}};
+      return failure(StoreError{StoreError::Kind::corrupt, file_,
+                                "rights_record seq=" + std::to_string(seq),
+                                "checksum or encoding is wrong"});
     }
     out.rows.push_back(*std::move(record));
     add_row(out.fold, all_.integer(2));

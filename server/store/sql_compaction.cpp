@@ -36,8 +36,8 @@ StoreResult<void> SqlStore::complete_base(const StoredMoment& moment) {
     const auto chunk = load_stored(stored);
     if (!chunk) return failed(chunk.error());
     if (!chunk->has_value()) {
-      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(),
-                                     "keyframe_chunk chunk=" + text_of(stored.key), "is missing"}};
+      return failure(StoreError{StoreError::Kind::corrupt, file(),
+                                "keyframe_chunk chunk=" + text_of(stored.key), "is missing"});
     }
     if (!stored.is_base) {
       if (auto saved = base_.save(stored.key, **chunk, meta_.chunk_edge, *base_fold); !saved)

@@ -58,10 +58,10 @@ StoreResult<std::optional<Chunk>> SqlStore::load_stored(const StoredChunk& chunk
   if ((*loaded)->version != chunk.version)
     return std::optional<Chunk>();  // a compaction replaced it
   if ((*loaded)->digest == chunk.digest) return loaded;
-  return Unexpected<StoreError>{
-      {StoreError::Kind::corrupt, file(),
-       std::string(chunk.is_base ? "base" : "keyframe_chunk") + " chunk=" + text_of(chunk.key),
-       "has another digest than its moment"}};
+  return failure(StoreError{
+      StoreError::Kind::corrupt, file(),
+      std::string(chunk.is_base ? "base" : "keyframe_chunk") + " chunk=" + text_of(chunk.key),
+      "has another digest than its moment"});
 }
 
 StoreResult<std::optional<Chunk>> SqlStore::load_kept(const ChunkKey& key, Sequence at) {
@@ -82,8 +82,8 @@ StoreResult<void> SqlStore::check_keyframe(const Keyframe& keyframe, const LogRa
       what = "has another epoch or time than its edit";
   }
   if (what.empty()) return {};
-  return Unexpected<StoreError>{
-      {StoreError::Kind::corrupt, file(), "keyframe seq=" + std::to_string(seq), std::move(what)}};
+  return failure(StoreError{StoreError::Kind::corrupt, file(),
+                            "keyframe seq=" + std::to_string(seq), std::move(what)});
 }
 
 StoreResult<void> SqlStore::save_keyframe(ChunkSpan chunks,

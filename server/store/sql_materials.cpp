@@ -15,8 +15,8 @@ StoreResult<MaterialTable> SqlStore::materials(Sequence at) {
     if (!rows) return failed(rows.error());
     auto meta = meta_of(*rows);
     if (!meta) {
-      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "meta key=" + meta.error(),
-                                     "is missing or has an impossible value"}};
+      return failure(StoreError{StoreError::Kind::corrupt, file(), "meta key=" + meta.error(),
+                                "is missing or has an impossible value"});
     }
     MaterialTable table = std::move(meta->materials);
     StoreResult<void> appended;
@@ -37,9 +37,9 @@ StoreResult<void> SqlStore::append_materials(const EditRecord& record, MaterialT
   const AddedMaterials& added = *added_materials_of(record.edit);
   const auto appended = table.append(added.first, added.rows);
   if (appended) return {};
-  return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(),
-                                 "edit_log seq=" + std::to_string(record.version.seq),
-                                 appended.error().what}};
+  return failure(StoreError{StoreError::Kind::corrupt, file(),
+                            "edit_log seq=" + std::to_string(record.version.seq),
+                            appended.error().what});
 }
 
 StoreResult<void> SqlStore::check_continues_materials(std::span<const EditRecord> records) {

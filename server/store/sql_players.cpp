@@ -31,10 +31,10 @@ StoreResult<void> SqlStore::check_fold(const std::string& table, const RowFold& 
   const auto expected = meta_table_.fold(fold_key_of(table));
   if (!expected) return failed(expected.error());
   if (found == *expected) return {};
-  return Unexpected<StoreError>{
-      {StoreError::Kind::corrupt, file(), table,
-       "rows vanished, appeared or changed: " + std::to_string(found.count) +
-           " rows, meta counts " + std::to_string(expected->count) + more + ". " + kLossAdvice}};
+  return failure(StoreError{StoreError::Kind::corrupt, file(), table,
+                            "rows vanished, appeared or changed: " + std::to_string(found.count) +
+                                " rows, meta counts " + std::to_string(expected->count) + more +
+                                ". " + kLossAdvice});
 }
 
 StoreResult<void> SqlStore::check_players(const FoldedRows<PlayerRow>& players) {

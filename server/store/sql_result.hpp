@@ -7,9 +7,9 @@
 
 namespace runstone {
 
-/// Shortens `return Unexpected<StoreError>{...}`.
+/// Makes the error of the store that a function returns.
 Unexpected<StoreError> failed(const sql::Error& error);
-inline Unexpected<StoreError> failed(const StoreError& error) { return {error}; }
+inline Unexpected<StoreError> failed(const StoreError& error) { return failure(error); }
 
 inline StoreResult<void> store_result(const sql::Result<void>& result) {
   if (!result) return failed(result.error());

@@ -37,8 +37,8 @@ Unexpected<StoreError> SqlStore::refuse(std::string where, std::string what) con
 StoreResult<void> SqlStore::write(const std::function<StoreResult<void>()>& body) {
   if (access_ == StoreAccess::read_only) return refuse("", "is open for reading only");
   if (broken_) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::io, file(), "", "an earlier commit failed; open the world again"}};
+    return failure(StoreError{StoreError::Kind::io, file(), "",
+                              "an earlier commit failed; open the world again"});
   }
   auto transaction = sql::Transaction::begin(database());
   if (!transaction) return failed(transaction.error());
@@ -106,8 +106,8 @@ StoreResult<Sequence> SqlStore::checkpoint() {
   const std::string log = *checkpoint > last
                               ? "ends at seq=" + std::to_string(last) + ", before"
                               : "begins at seq=" + std::to_string(range->first) + ", behind";
-  return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "edit_log",
-                                 log + " the checkpoint seq=" + std::to_string(*checkpoint)}};
+  return failure(StoreError{StoreError::Kind::corrupt, file(), "edit_log",
+                            log + " the checkpoint seq=" + std::to_string(*checkpoint)});
 }
 
 StoreResult<LogEnd> SqlStore::log_head() { return meta_table_.log_head(); }

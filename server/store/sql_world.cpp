@@ -94,8 +94,8 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
   if (!rows) return failed(rows.error());
   auto meta = meta_of(*rows);
   if (!meta) {
-    return Unexpected<StoreError>{{StoreError::Kind::corrupt, file, "meta key=" + meta.error(),
-                                   "is missing or has an impossible value"}};
+    return failure(StoreError{StoreError::Kind::corrupt, file, "meta key=" + meta.error(),
+                              "is missing or has an impossible value"});
   }
   std::unique_ptr<SqlStore> store(
       new SqlStore(std::move(backend), access, *std::move(tables), *std::move(meta)));

@@ -184,8 +184,7 @@ StoreResult<void> SqliteBackend::check() {
   const auto verdict = database_.text("PRAGMA integrity_check(1)");
   if (!verdict) return failed(verdict.error());
   if (*verdict == "ok") return {};
-  return Unexpected<StoreError>{
-      {StoreError::Kind::corrupt, database_.file(), "database", *verdict}};
+  return failure(StoreError{StoreError::Kind::corrupt, database_.file(), "database", *verdict});
 }
 
 StoreResult<void> SqliteBackend::shrink() {

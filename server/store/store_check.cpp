@@ -24,10 +24,10 @@ StoreResult<void> SqlStore::check_chunks(ChunkTable& table) {
     const auto chunk = table.load(key, meta_.chunk_edge, RowCheck::voxels);
     if (!chunk) return failed(chunk.error());
     if (version > newest) {
-      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(),
-                                     table.name() + " chunk=" + text_of(key),
-                                     is_base ? "holds edits that are in the log as well"
-                                             : "is newer than the end of the log"}};
+      return failure(StoreError{StoreError::Kind::corrupt, file(),
+                                table.name() + " chunk=" + text_of(key),
+                                is_base ? "holds edits that are in the log as well"
+                                        : "is newer than the end of the log"});
     }
   }
   return {};
@@ -51,11 +51,11 @@ StoreResult<void> SqlStore::check_marks_cover_log() {
     return !uncovered.has_value();
   });
   if (!read || !uncovered) return read;
-  return Unexpected<StoreError>{
-      {StoreError::Kind::corrupt, file(),
-       "player_instance author=" + std::to_string(uncovered->author) +
-           " instance=" + std::to_string(uncovered->instance),
-       "is behind the log, which holds client edit " + std::to_string(uncovered->seq)}};
+  return failure(
+      StoreError{StoreError::Kind::corrupt, file(),
+                 "player_instance author=" + std::to_string(uncovered->author) +
+                     " instance=" + std::to_string(uncovered->instance),
+                 "is behind the log, which holds client edit " + std::to_string(uncovered->seq)});
 }
 
 StoreResult<void> SqlStore::check_segments_cover_log() {
@@ -79,8 +79,8 @@ StoreResult<void> SqlStore::check_segments_cover_log() {
     return uncovered == 0;
   });
   if (!read || uncovered == 0) return read;
-  return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "log_box",
-                                 "lacks edit_log seq=" + std::to_string(uncovered)}};
+  return failure(StoreError{StoreError::Kind::corrupt, file(), "log_box",
+                            "lacks edit_log seq=" + std::to_string(uncovered)});
 }
 
 StoreResult<void> SqlStore::check_keyframes() {
@@ -101,10 +101,10 @@ StoreResult<void> SqlStore::check_keyframes() {
       if (!loaded) return failed(loaded.error());
       if (!loaded->has_value() || row.version <= head->version ||
           row.version > range->last.version) {
-        return Unexpected<StoreError>{
-            {StoreError::Kind::corrupt, file(),
-             "keyframe_chunk chunk=" + text_of(row.key) + " seq=" + std::to_string(row.version.seq),
-             "has a version that is not within the log"}};
+        return failure(StoreError{
+            StoreError::Kind::corrupt, file(),
+            "keyframe_chunk chunk=" + text_of(row.key) + " seq=" + std::to_string(row.version.seq),
+            "has a version that is not within the log"});
       }
     }
     if (auto proved = keyframes_.prove(*keyframes, *start, *rows); !proved) return proved;

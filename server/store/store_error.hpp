@@ -27,9 +27,6 @@ struct StoreError {
   std::string message() const;
 };
 
-/// Shortens `return Unexpected<std::string>{error.message()}`.
-inline Unexpected<std::string> failure(const StoreError& error) { return failure(error.message()); }
-
 template <class T>
 using StoreResult = Result<T, StoreError>;
 

@@ -45,8 +45,8 @@ StoreResult<TileTable> TileTable::open(sql::Database& database) {
                     *std::move(remove_older), *std::move(clear)});
 }
 
-Unexpected<StoreError> TileTable::failure(StoreError::Kind kind, const ChunkKey& key,
-                                          std::string what) const {
+Unexpected<StoreError> TileTable::tile_failure(StoreError::Kind kind, const ChunkKey& key,
+                                               std::string what) const {
   return {{kind, file_, std::string(kTable) + " chunk=" + text_of(key), std::move(what)}};
 }
 
@@ -61,7 +61,7 @@ StoreResult<std::optional<Chunk>> TileTable::load(const ChunkKey& key, std::uint
       kTable,
       {key, version_at(s_.load, 0), digest_at(s_.load, 2), s_.load.integer(4), s_.load.blob(5)},
       chunk_edge, check);
-  if (!tile) return failure(StoreError::Kind::corrupt, key, tile.error());
+  if (!tile) return tile_failure(StoreError::Kind::corrupt, key, tile.error());
   return std::optional<Chunk>(*std::move(tile));
 }
 
@@ -91,9 +91,9 @@ StoreResult<std::vector<std::string>> TileTable::rows_of_no_tile() {
 StoreResult<void> TileTable::save(const ChunkKey& key, const Chunk& tile,
                                   std::uint16_t chunk_edge) {
   if (key.lod == 0 || key.lod > kTileLevelMax)
-    return failure(StoreError::Kind::bad_request, key, "is of no level of tiles");
+    return tile_failure(StoreError::Kind::bad_request, key, "is of no level of tiles");
   if (const std::string what = unfit(tile, chunk_edge); !what.empty())
-    return failure(StoreError::Kind::bad_request, key, what);
+    return tile_failure(StoreError::Kind::bad_request, key, what);
   if (const auto newest = newest_below_.find(key);
       newest != newest_below_.end() && tile.version < newest->second)
     return {};

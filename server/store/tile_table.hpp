@@ -50,8 +50,8 @@ class TileTable {
   };
   TileTable(std::string file, Statements statements)
       : file_(std::move(file)), s_(std::move(statements)) {}
-  Unexpected<StoreError> failure(StoreError::Kind kind, const ChunkKey& key,
-                                 std::string what) const;
+  Unexpected<StoreError> tile_failure(StoreError::Kind kind, const ChunkKey& key,
+                                      std::string what) const;
 
   std::string file_;
   Statements s_;

@@ -196,7 +196,7 @@ StoreResult<void> add_tables_of_format_4(sql::Database& database) {
 
 StoreResult<void> check_format(const std::string& file, std::uint32_t version) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
-    return Unexpected<StoreError>{{kind, file, "", std::move(what)}};
+    return failure(StoreError{kind, file, "", std::move(what)});
   };
   if (version > kWorldFormat) {
     return fail_as(StoreError::Kind::newer_version,
@@ -219,7 +219,7 @@ StoreResult<void> check_format(const std::string& file, std::uint32_t version) {
 
 StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
-    return Unexpected<StoreError>{{kind, file, "", std::move(what)}};
+    return failure(StoreError{kind, file, "", std::move(what)});
   };
   auto database = sql::open_sqlite(file, sql::SqliteMode::header, vfs);
   if (!database)

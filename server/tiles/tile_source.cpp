@@ -40,7 +40,7 @@ class TileSource::Making {
     auto found = coarse(key);
     if (!found) {
       auto stored = load(key, newest);
-      if (!stored) return Unexpected<StoreError>{stored.error()};
+      if (!stored) return failure(stored.error());
       found = *std::move(stored);
     }
     if (!found) {
@@ -85,9 +85,9 @@ class TileSource::Making {
     StoreResult<std::optional<Chunk>> row = std::optional<Chunk>();
     const auto read =
         source_.chunks_.with_reader([&](WorldReader& reader) { row = reader.load_tile(key); });
-    if (!read) return Unexpected<StoreError>{read.error()};
+    if (!read) return failure(read.error());
     if (!row) {
-      if (row.error().kind != StoreError::Kind::corrupt) return Unexpected<StoreError>{row.error()};
+      if (row.error().kind != StoreError::Kind::corrupt) return failure(row.error());
       source_.warn_once(key, row.error().message() + "; the tile is made again");
       return out;
     }
@@ -106,10 +106,10 @@ class TileSource::Making {
     for (unsigned i = 0; i < 8; ++i) {
       if (steps_ >= request_.steps_max) {
         has_stopped_ = true;
-        return Unexpected<StoreError>{{StoreError::Kind::cancelled, {}, {}, "stopped"}};
+        return failure(StoreError{StoreError::Kind::cancelled, {}, {}, "stopped"});
       }
       auto child = child_of(tile_child(key, i));
-      if (!child) return Unexpected<StoreError>{child.error()};
+      if (!child) return failure(child.error());
       children[i] = *std::move(child);
       is_approximate = is_approximate || children[i].is_approximate;
       is_damaged = is_damaged || children[i].is_damaged;
@@ -126,7 +126,7 @@ class TileSource::Making {
   StoreResult<Child> child_of(const ChunkKey& key) {
     if (key.lod == 0) return chunk_at(key);
     auto made = tile(key);
-    if (!made) return Unexpected<StoreError>{made.error()};
+    if (!made) return failure(made.error());
     return Child{made->tile, made->is_approximate, made->is_damaged};
   }
 
@@ -186,7 +186,7 @@ class TileSource::Making {
   }
 
   StoreResult<Child> damaged_chunk(const ChunkKey& key, const StoreError& error) {
-    if (error.kind != StoreError::Kind::corrupt) return Unexpected<StoreError>{error};
+    if (error.kind != StoreError::Kind::corrupt) return failure(error);
     source_.warn_once(key, error.message());
     return Child{nullptr, true, true};
   }
@@ -230,11 +230,11 @@ StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
                                                     const PastChunk& past_chunk) {
   RUNSTONE_ASSERT(!request.at || (past_chunk && request.past_made));
   RUNSTONE_ASSERT(request.key.lod >= 1 && request.key.lod <= kTileLevelMax);
-  if (auto found = find_ground(); !found) return Unexpected<StoreError>{found.error()};
+  if (auto found = find_ground(); !found) return failure(found.error());
   Making making(*this, request, visibility, past_chunk);
   auto tile = making.tile(request.key);
   if (making.has_stopped()) return making.take_on_the_way();
-  if (!tile) return Unexpected<StoreError>{tile.error()};
+  if (!tile) return failure(tile.error());
   add_veiled(*tile, visibility);
   std::vector<MadeTile> tiles = making.take_on_the_way();
   tiles.push_back(*std::move(tile));
@@ -273,7 +273,7 @@ StoreResult<void> TileSource::find_ground() {
     const auto snapshots = reader.snapshot_keys();
     const auto base = reader.base_chunks();
     if (!snapshots || !base) {
-      found = Unexpected<StoreError>{snapshots ? base.error() : snapshots.error()};
+      found = failure(snapshots ? base.error() : snapshots.error());
       return;
     }
     ledger_.stored(*snapshots);

@@ -67,11 +67,11 @@ Result<void, TextError> read_web_toml(WebConfig& config, std::string_view toml,
   WebConfig read = config;
   if (auto done = web_settings().read_toml(read, toml, file, kSectionKind); !done) return done;
   const auto sections = read_toml_sections(toml, file, kSectionKind);
-  if (!sections) return Unexpected<TextError>{sections.error()};
+  if (!sections) return failure(sections.error());
   for (const TomlSection& section : *sections) {
     const auto wrong = [&](const std::string& why) {
-      return Unexpected<TextError>{
-          {std::string(file), section.line, std::string(kSectionKind) + "." + section.name, why}};
+      return failure(TextError{std::string(file), section.line,
+                               std::string(kSectionKind) + "." + section.name, why});
     };
     if (!is_server_name(section.name))
       return wrong("the name of a server has 1 to 32 characters of a-z, 0-9 and '-'");

@@ -129,13 +129,13 @@ Result<ClientBenchResult, std::string> run_client_bench(const ClientBenchOptions
     out.own_edit = measure_own_edits(world, options);
     say("own edits");
     auto effects = measure_effects(options, progress);
-    if (!effects) return Unexpected<std::string>{effects.error()};
+    if (!effects) return failure(effects.error());
     out.effects = std::move(effects->rows);
     out.gl_renderer = effects->gl_renderer;
     out.gl_context = effects->gl_context;
     return out;
   } catch (const std::runtime_error& error) {  // the platform and the renderer throw
-    return Unexpected<std::string>{error.what()};
+    return failure(error.what());
   }
 }
 

@@ -122,7 +122,7 @@ Result<EffectsResult, std::string> measure_effects(const ClientBenchOptions& opt
   out.gl_context = context->name();
   for (const char* name : {"hills", "luanti"}) {
     const auto world = world_of(name, options.luanti);
-    if (!world) return Unexpected<std::string>{world.error()};
+    if (!world) return failure(world.error());
     measure(*world, options, context->loader(), out);
     fmt::print(progress, "effects, {}\n", name);
     progress.flush();

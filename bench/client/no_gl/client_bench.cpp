@@ -3,8 +3,7 @@
 namespace runstone::bench {
 
 Result<ClientBenchResult, std::string> run_client_bench(const ClientBenchOptions&, std::ostream&) {
-  return Unexpected<std::string>{
-      "this build has no client, so it cannot draw: build with RUNSTONE_CLIENT=ON"};
+  return failure("this build has no client, so it cannot draw: build with RUNSTONE_CLIENT=ON");
 }
 
 }  // namespace runstone::bench

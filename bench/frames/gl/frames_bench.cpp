@@ -324,7 +324,7 @@ Result<FramesResult, std::string> run_frames_bench(const FramesOptions& options,
     for (const std::string& name : names) {
       const std::uint64_t start = now_ns();
       const auto world = frames_world(name, options.luanti);
-      if (!world) return Unexpected<std::string>{world.error()};
+      if (!world) return failure(world.error());
       bench.measure(*world);
       fmt::print(progress, "{}: {} chunks, {:.1f} s\n", name, world->chunks.size(),
                  static_cast<double>(now_ns() - start) * 1e-9);
@@ -332,7 +332,7 @@ Result<FramesResult, std::string> run_frames_bench(const FramesOptions& options,
     }
     return bench.take_result();
   } catch (const std::runtime_error& error) {  // the platform and the renderer throw
-    return Unexpected<std::string>{error.what()};
+    return failure(error.what());
   }
 }
 

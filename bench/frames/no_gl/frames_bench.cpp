@@ -3,8 +3,7 @@
 namespace runstone::bench {
 
 Result<FramesResult, std::string> run_frames_bench(const FramesOptions&, std::ostream&) {
-  return Unexpected<std::string>{
-      "this build has no client, so it cannot draw: build with RUNSTONE_CLIENT=ON"};
+  return failure("this build has no client, so it cannot draw: build with RUNSTONE_CLIENT=ON");
 }
 
 }  // namespace runstone::bench

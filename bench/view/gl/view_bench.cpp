@@ -129,13 +129,12 @@ class ViewProgram {
 
 Result<ViewResult, std::string> run_view(const ViewOptions& options) {
   const auto world = view_world(options.world, options.luanti);
-  if (!world) return Unexpected<std::string>{world.error()};
+  if (!world) return failure(world.error());
   try {
     if (!options.out.empty()) {
       const auto context = make_headless_context();
       ViewProgram program(options, *world, context->loader());
-      if (!program.write(options.out))
-        return Unexpected<std::string>{"cannot write " + options.out};
+      if (!program.write(options.out)) return failure("cannot write " + options.out);
       return program.take_result();
     }
     Window window(options.width, options.height, "Runstone  " + options.world);
@@ -144,7 +143,7 @@ Result<ViewResult, std::string> run_view(const ViewOptions& options) {
     program.show(window, *context);
     return program.take_result();
   } catch (const std::runtime_error& error) {  // the platform and the renderer throw
-    return Unexpected<std::string>{error.what()};
+    return failure(error.what());
   }
 }
 

@@ -3,8 +3,7 @@
 namespace runstone::bench {
 
 Result<ViewResult, std::string> run_view(const ViewOptions&) {
-  return Unexpected<std::string>{
-      "this build has no client, so it cannot draw: build with RUNSTONE_CLIENT=ON"};
+  return failure("this build has no client, so it cannot draw: build with RUNSTONE_CLIENT=ON");
 }
 
 }  // namespace runstone::bench

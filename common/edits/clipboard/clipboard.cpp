@@ -61,7 +61,7 @@ Result<void> check_palette(const std::vector<Material>& palette) {
 Result<std::uint32_t> check_cells(const RunChunk& cells, std::size_t palette_size) {
   if (!cells.extent.valid_part())
     return fail(ErrorCode::bad_value, "clipboard side outside 1..128");
-  if (auto runs = validate_runs(cells); !runs) return Unexpected<Error>{runs.error()};
+  if (auto runs = validate_runs(cells); !runs) return failure(runs.error());
   std::vector<bool> used(palette_size + 1, false);
   std::uint32_t touched = 0;
   const auto check_runs = [&](const auto& runs) -> Result<void> {
@@ -76,7 +76,7 @@ Result<std::uint32_t> check_cells(const RunChunk& cells, std::size_t palette_siz
     }
     return {};
   };
-  if (auto runs = cells.runs.visit(check_runs); !runs) return Unexpected<Error>{runs.error()};
+  if (auto runs = cells.runs.visit(check_runs); !runs) return failure(runs.error());
   if (std::find(used.begin() + 1, used.end(), false) != used.end()) {
     return fail(ErrorCode::not_canonical, "clipboard palette has an unused material");
   }
@@ -140,10 +140,9 @@ CellBox box_of_touched(const RunChunk& cells) {
 
 Result<std::shared_ptr<const Clipboard>> Clipboard::of(std::vector<Material> palette,
                                                        RunChunk cells) {
-  if (const auto checked = check_palette(palette); !checked)
-    return Unexpected<Error>{checked.error()};
+  if (const auto checked = check_palette(palette); !checked) return failure(checked.error());
   const auto touched = check_cells(cells, palette.size());
-  if (!touched) return Unexpected<Error>{touched.error()};
+  if (!touched) return failure(touched.error());
   std::shared_ptr<Clipboard> made(new Clipboard(std::move(palette), std::move(cells)));
   made->touched_ = *touched;
   made->touched_box_ = box_of_touched(made->cells_);

@@ -324,8 +324,8 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
     edit.material = read_material(r);
     edit.shape = read_shape(r, tag);
   }
-  if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
-  if (const auto valid = validate(edit); !valid) return Unexpected<Error>{valid.error()};
+  if (const auto done = r.finish(); !done) return failure(done.error());
+  if (const auto valid = validate(edit); !valid) return failure(valid.error());
   return edit;
 }
 

@@ -83,11 +83,11 @@ Result<EditRecord> decode_record(ByteView in) {
   const auto length = r.varint_max(kRecordDescriptorBytesMax, "descriptor too long");
   const std::uint64_t at = r.offset();
   const ByteView bytes = r.bytes(static_cast<std::size_t>(length));
-  if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+  if (const auto done = r.finish(); !done) return failure(done.error());
   auto edit = decode_descriptor(bytes);
   if (!edit) return fail(edit.error().code, edit.error().what, at + edit.error().offset);
   record.edit = *std::move(edit);
-  if (auto valid = validate_fields(record); !valid) return Unexpected<Error>{valid.error()};
+  if (auto valid = validate_fields(record); !valid) return failure(valid.error());
   if (box != bounding_box(record.edit)) {
     return fail(ErrorCode::bad_value, "bounding box is not the descriptor's", at);
   }

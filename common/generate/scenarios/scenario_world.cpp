@@ -46,7 +46,7 @@ Result<std::unique_ptr<Generator>> ScenarioWorld::make(const ScenarioParameters&
                                                        const MaterialTable& materials) {
   const auto model = scenario_model(static_cast<unsigned>(parameters.number),
                                     static_cast<unsigned>(parameters.edge));
-  if (!model) return Unexpected<Error>{model.error()};
+  if (!model) return failure(model.error());
   const auto material = materials.find(parameters.material);
   if (!material) return fail(ErrorCode::not_found, "the scenario's material is none of the table");
   return std::unique_ptr<Generator>(std::make_unique<ScenarioWorld>(*model, *material));

@@ -77,9 +77,8 @@ ServerEditsResult Changes::order_edits(const std::vector<EditOffer>& offers, Aut
 Result<Sequence, std::string> Changes::change_rights(const RightsChange& change,
                                                      const RightsActor& actor, AuthorId author,
                                                      const Clocks& now) {
-  if (auto why = rights_.change_refusal(change, actor)) return Unexpected<std::string>{*why};
-  if (author != 0 && !order_.players().key_of(author))
-    return Unexpected<std::string>{"the player has left"};
+  if (auto why = rights_.change_refusal(change, actor)) return failure(*why);
+  if (author != 0 && !order_.players().key_of(author)) return failure("the player has left");
   // What waits was allowed, and is ordered before the change that may forbid it. A claim does not
   // hurry: players could use it to send large edits faster than others.
   if (has_power(actor)) commits_.commit_all(LargeEdits::all, now);
@@ -88,8 +87,8 @@ Result<Sequence, std::string> Changes::change_rights(const RightsChange& change,
   const ServerEditsResult ordered = order_edits({offer}, author, now);
   if (ordered.state == ServerEditsResult::State::ordered) return rights_.newest();
   if (ordered.state == ServerEditsResult::State::closed)
-    return Unexpected<std::string>{"the world takes no changes any more"};
-  return Unexpected<std::string>{std::string(ordered.reason) + ": try again later"};
+    return failure("the world takes no changes any more");
+  return failure(std::string(ordered.reason) + ": try again later");
 }
 
 Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<MaterialRow>& rows,

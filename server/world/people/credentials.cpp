@@ -58,13 +58,12 @@ std::optional<std::string> Credentials::accept(const Session& session,
 Result<Bytes, Refusal> Credentials::take_key(const Session& session, const KeySlot& slot,
                                              const Clocks& now) {
   if (!guesses_.has(session.address, kGuessPrice, now.steady_us))
-    return Unexpected<Refusal>{{GoodbyeReason::flooding, kTooManyGuesses}};
+    return failure(Refusal{GoodbyeReason::flooding, kTooManyGuesses});
   auto sealed = keys_.take(slot, now.steady_us);
   if (sealed) return *std::move(sealed);
   guesses_.take(session.address, kGuessPrice, now.steady_us);
-  return Unexpected<Refusal>{
-      {GoodbyeReason::not_admitted,
-       "no key is here for this code: it was mistyped, used before, or too old"}};
+  return failure(Refusal{GoodbyeReason::not_admitted,
+                         "no key is here for this code: it was mistyped, used before, or too old"});
 }
 
 std::optional<std::string> Credentials::leave_key(const Session& session, const KeyDeposit& deposit,

@@ -57,9 +57,8 @@ bool Names::is_claim_unwritten(const Session& session) const {
 Result<NameClaim, std::string> Names::release(const std::string& name) {
   const std::string folded = folded_name(name);
   if (order_.names().find(folded) == nullptr)
-    return Unexpected<std::string>{"nobody owns \"" + name + "\" (names lists who owns what)"};
-  if (!order_.log_has_room())
-    return Unexpected<std::string>{"the log has no room; try again later"};
+    return failure("nobody owns \"" + name + "\" (names lists who owns what)");
+  if (!order_.log_has_room()) return failure("the log has no room; try again later");
   NameChange change = *order_.names().release(folded);
   order_.append_names({change});
   return std::move(change.claim);

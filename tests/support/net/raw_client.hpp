@@ -231,7 +231,7 @@ class RawClient {
     const auto on_message = [this](MessageKind kind, ByteView body) -> Result<void> {
       if (on_body) on_body(kind, body);
       auto message = decode_message(Sender::server, kind, body, chunk_edge_);
-      if (!message) return Unexpected<Error>{message.error()};
+      if (!message) return failure(message.error());
       // The chunk edge is known from welcome on, also for messages of the same read.
       if (const auto* w = std::get_if<Welcome>(&*message)) chunk_edge_ = w->chunk_edge;
       const auto* uniform = cuts_chunks ? std::get_if<UniformChunks>(&*message) : nullptr;

@@ -104,7 +104,7 @@ class WebPlayer {
  private:
   Result<void> decode(MessageKind kind, ByteView body) {
     auto message = decode_message(Sender::server, kind, body, chunk_edge_);
-    if (!message) return Unexpected<Error>{message.error()};
+    if (!message) return failure(message.error());
     if (const auto* welcome = std::get_if<Welcome>(&*message)) chunk_edge_ = welcome->chunk_edge;
     arrived_.push_back(*std::move(message));
     ++messages_;

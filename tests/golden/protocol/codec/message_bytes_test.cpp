@@ -580,7 +580,7 @@ TEST_CASE("the framed message of the protocol page is read", "[protocol][golden]
   const auto fed = reader.feed(
       from_hex(page_example("view-frame")), [&](MessageKind kind, ByteView bytes) -> Result<void> {
         const auto decoded = decode_message(Sender::client, kind, bytes, kChunkEdge);
-        if (!decoded) return Unexpected<Error>{decoded.error()};
+        if (!decoded) return failure(decoded.error());
         CHECK(*decoded == Message(View{12, {1, -2, 3}, 6, 3}));
         ++count;
         return {};

@@ -52,7 +52,7 @@ class HostileServer {
       const auto fed =
           reader.feed(ByteView(buffer.data(), count), [&](MessageKind kind, ByteView body) {
             auto message = decode_message(Sender::client, kind, body, kHostileEdge);
-            if (!message) return Result<void>(Unexpected<Error>{message.error()});
+            if (!message) return Result<void>(failure(message.error()));
             answer(*message, socket);
             return Result<void>{};
           });

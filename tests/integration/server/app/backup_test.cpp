@@ -89,7 +89,7 @@ TEST_CASE("a running server takes over new settings, or none if one is wrong", "
   CHECK_FALSE(command(client, "reload").is_ok);
   CHECK_FALSE(command(client, "backup x").is_ok);
 
-  next = Unexpected<std::string>{"server.toml:3: idle_s: is out of range"};
+  next = failure("server.toml:3: idle_s: is out of range");
   const Answer wrong = control(config.world, {"reload"});
   CHECK_FALSE(wrong.is_ok);
   CHECK(contains(wrong.text, "server.toml:3"));

@@ -22,7 +22,7 @@ Result<Message> walked(ByteView bytes) {
     commit.edits.push_back(edit.ordered);
     return {};
   });
-  if (!is_valid) return Unexpected<Error>{is_valid.error()};
+  if (!is_valid) return failure(is_valid.error());
   return Message{std::move(commit)};
 }
 

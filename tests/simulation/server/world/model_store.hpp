@@ -113,7 +113,7 @@ class ModelStore final : public Store {
     return {};
   }
   StoreResult<Epoch> raise_epoch() override {
-    if (const auto may = may_write(); !may) return Unexpected<StoreError>{may.error()};
+    if (const auto may = may_write(); !may) return failure(may.error());
     return database_.raise_epoch(*term_);
   }
   Epoch epoch() const override { return database_.epoch(); }
@@ -171,10 +171,10 @@ class ModelStore final : public Store {
   }
   StoreResult<void> may_write() const {
     if (database_.is_disk_full)
-      return Unexpected<StoreError>{{StoreError::Kind::full, file_, "", "no space is left"}};
+      return failure(StoreError{StoreError::Kind::full, file_, "", "no space is left"});
     if (term_ && database_.may_write(*term_)) return {};
-    return Unexpected<StoreError>{
-        {StoreError::Kind::locked, file_, "lease", "another server has taken this world over"}};
+    return failure(StoreError{StoreError::Kind::locked, file_, "lease",
+                              "another server has taken this world over"});
   }
 
   ModelDatabase& database_;

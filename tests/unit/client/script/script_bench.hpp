@@ -47,7 +47,7 @@ struct FakeScriptHost final : ScriptHost {
     if (name == "air" || name == "0") return kEmpty;
     if (name == "stone") return Material{5};
     if (name == "sand") return Material{2};
-    return Unexpected<std::string>{"the world has no material \"" + std::string(name) + "\""};
+    return failure("the world has no material \"" + std::string(name) + "\"");
   }
   std::optional<Material> shown_at(VoxelPos pos) const override {
     if (pos.x > 1000) return std::nullopt;

@@ -197,8 +197,7 @@ TEST_CASE("an interrupted keyframe does no harm and is made again", "[history][k
           if (chunks_left-- > 0) part.push_back(chunk);
         }
         if (auto saved = logged.store->save_keyframe(part, std::nullopt); !saved) return saved;
-        return StoreResult<void>(
-            Unexpected<StoreError>{{StoreError::Kind::full, "w", "", "disk full"}});
+        return StoreResult<void>(failure(StoreError{StoreError::Kind::full, "w", "", "disk full"}));
       });
   REQUIRE_FALSE(broken.has_value());
   CHECK(broken.error().message() == "w: disk full");

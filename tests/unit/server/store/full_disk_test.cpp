@@ -48,7 +48,7 @@ class FillingSink final : public WorldSink {
 
  private:
   static StoreResult<void> no_room() {
-    return Unexpected<StoreError>{{StoreError::Kind::full, "w", "", "disk full"}};
+    return failure(StoreError{StoreError::Kind::full, "w", "", "disk full"});
   }
 };
 

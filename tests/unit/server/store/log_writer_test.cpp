@@ -39,7 +39,7 @@ class FakeSink final : public WorldSink {
     entered.release();
     gate.acquire();
     if (fail_at == commits.size())
-      return Unexpected<StoreError>{{StoreError::Kind::io, "w", "", "disk broken"}};
+      return failure(StoreError{StoreError::Kind::io, "w", "", "disk broken"});
     commits.push_back(std::move(commit));
     return {};
   }
@@ -55,7 +55,7 @@ class FakeSink final : public WorldSink {
   StoreResult<void> save_keyframe(ChunkSpan chunks,
                                   const std::optional<Keyframe>& keyframe) override {
     if (refuse_keyframes)
-      return Unexpected<StoreError>{{StoreError::Kind::full, "w", "keyframe", "disk full"}};
+      return failure(StoreError{StoreError::Kind::full, "w", "keyframe", "disk full"});
     return commit({{}, {}, chunks.size(), {}, keyframe});
   }
   StoreResult<void> save_tiles(ChunkSpan tiles) override {

@@ -35,7 +35,7 @@ void make_world(const std::string& place) {
 /// Opens and checks a world. Returns the place of the first damage, or "fine".
 std::string audit(const std::string& place) {
   auto store = open_world(place, StoreAccess::read_only);
-  const auto verdict = store ? (*store)->check() : Unexpected<StoreError>{store.error()};
+  const auto verdict = store ? (*store)->check() : failure(store.error());
   if (verdict) return "fine";
   if (verdict.error().kind != StoreError::Kind::corrupt)
     return "not corrupt: " + verdict.error().message();

@@ -416,7 +416,7 @@ TEST_CASE("a chunk of the past that cannot be read fails its tile, and a damaged
   const auto make = [&](StoreError::Kind kind) {
     return world.source->make(
         world.past_request({1, {0, 0, 0}}, 1), *world.visibility, [kind](const ChunkKey& /*key*/) {
-          return StoreResult<Chunk>(Unexpected<StoreError>{{kind, "file", "table", "row"}});
+          return StoreResult<Chunk>(failure(StoreError{kind, "file", "table", "row"}));
         });
   };
   CHECK_FALSE(make(StoreError::Kind::io).has_value());

@@ -113,7 +113,7 @@ TEST_CASE("a log that cannot be read is a refusal, and a full queue loses the an
   MarksBench bench;
   bench.join_with(1, 1);
   bench.ask(1, 1);
-  bench.answer_one(Unexpected<std::string>{"the log cannot be read now"});
+  bench.answer_one(failure("the log cannot be read now"));
   REQUIRE(bench.answers(1).size() == 1);
   CHECK(bench.answers(1)[0].refusal == "the log cannot be read now");
   bench.ask(1, 2);

@@ -193,7 +193,7 @@ TEST_CASE(
   bench.view(1, kSmall);
   bench.go_to(1, 1, 99);
   bench.environment.history_requests.clear();
-  bench.server.ground().history_opened(1, 1, Unexpected<std::string>{"no such edit"}, bench.now());
+  bench.server.ground().history_opened(1, 1, failure("no such edit"), bench.now());
   CHECK(bench.states(1).back() == ViewState{1, 1, ViewPhase::refused, false, 0, 0, "no such edit"});
   CHECK(bench.environment.history_loads.empty());
 
@@ -201,8 +201,8 @@ TEST_CASE(
   bench.open_one();
   const auto load = bench.environment.history_loads.front();
   bench.environment.history_loads.pop_front();
-  bench.server.ground().history_chunk_loaded(1, load.history, load.key,
-                                             Unexpected<std::string>{"row damaged"}, bench.now());
+  bench.server.ground().history_chunk_loaded(1, load.history, load.key, failure("row damaged"),
+                                             bench.now());
   const auto unavailable = bench.environment.messages<ChunkUnavailable>(1, kEdge);
   REQUIRE(unavailable.size() == 1);
   CHECK(unavailable[0].keys == std::vector<ChunkKey>{load.key});
@@ -221,7 +221,7 @@ TEST_CASE("a refused request and a view that is complete describe the past that 
   bench.load_all();
   bench.go_to(1, 2, 99);
   bench.environment.history_requests.clear();
-  bench.server.ground().history_opened(1, 2, Unexpected<std::string>{"no such edit"}, bench.now());
+  bench.server.ground().history_opened(1, 2, failure("no such edit"), bench.now());
   CHECK(bench.states(1).back() ==
         ViewState{2, 1, ViewPhase::refused, true, 5, 1000, "no such edit"});
   bench.tick(2'000'000);
