@@ -1,11 +1,12 @@
 // WorldServer: the world strand: it takes what sessions, workers, the log and other servers say, in
-// order, and passes it to the rooms of the world. Time and bytes are arguments; everything that it wants
-// done is a call of WorldEnvironment. It uses no clock, socket, disk or thread, so a test runs it in
-// virtual time. Call received() for each message that arrived, then commit() once: edits that were queued
-// together become one commit. Call tick() some 20 times a second.
-// Threads: all calls on one strand. WorldEnvironment must not call in; its answers come as later
-// calls. Sessions that are closed in a call are removed at its end, or at the end of the next one if the
-// call went to a room.
+// order, and passes it to the rooms of the world. Time and bytes are arguments; everything that it
+// wants done is a call of WorldEnvironment. It uses no clock, socket, disk or thread, so a test
+// runs it in virtual time. Call received() for each message that arrived, then commit() once: edits
+// that were queued together become one commit. Call tick() some 20 times a second.
+// Threads: all
+// calls on one strand. WorldEnvironment must not call in; its answers come as later calls. Sessions
+// that are closed in a call are removed at its end, or at the end of the next one if the call went
+// to a room.
 #pragma once
 #include <memory>
 #include <optional>
@@ -46,8 +47,8 @@ class WorldServer {
   /// session.
   void replay_onto_stack(const EditRecord& record);
   /// Takes over what may change while the world runs: sessions of a key and of an address, the time
-  /// without a message, reach, speed, the operators and the message of the day. Sessions that are open
-  /// stay.
+  /// without a message, reach, speed, the operators and the message of the day. Sessions that are
+  /// open stay.
   void reconfigure(const WorldConfig& config);
 
   // Sessions.

@@ -1,5 +1,6 @@
-// Cluster: this server among the servers of one world: those that follow it while it owns the world, the
-// owner that it follows otherwise, and the change from one to the other.
+// Cluster: this server among the servers of one world: those that follow it while it owns the
+// world, the owner that it follows otherwise, and the change from one to the other.
+//
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -37,8 +38,8 @@ class Cluster {
   bool is_live() const { return !is_following() || link_.is_live(); }
   /// Returns true if this server has edits that the log does not have. It cannot go on then.
   bool has_forked() const { return world_.order.ownership().is(OwnershipState::forked); }
-  /// Returns when this server last heard the owner that it follows, by the steady clock, or nullopt if
-  /// it is not connected with one.
+  /// Returns when this server last heard the owner that it follows, by the steady clock, or nullopt
+  /// if it is not connected with one.
   std::optional<TimeUs> owner_heard_us() const { return link_.heard_us(); }
   /// Returns the number of servers that follow this one.
   std::size_t follower_count() const { return followers_.count(); }
@@ -60,14 +61,15 @@ class Cluster {
   void owner_disconnected();
   /// Handles the answer to WorldEnvironment::read_log().
   void log_read(const Result<ReadLog, std::string>& read, const Clocks& now);
-  /// Reports that the owner has moved the checkpoint: every edit up to it is contained in snapshots.
+  /// Reports that the owner has moved the checkpoint: every edit up to it is contained in
+  /// snapshots.
   void checkpoint_moved(Sequence checkpoint);
-  /// Stops following, because the caller has the lease of the world. Players stay; what they do waits.
-  /// Returns the parts of the log that the earlier owner may not have written, in order. The caller
-  /// writes those whose records the log lacks, then calls take_over().
+  /// Stops following, because the caller has the lease of the world. Players stay; what they do
+  /// waits. Returns the parts of the log that the earlier owner may not have written, in order. The
+  /// caller writes those whose records the log lacks, then calls take_over().
   std::vector<LogPart> stop_following();
-  /// Makes this server the owner. Sessions go on, and edits that wait are ordered. Returns false if the
-  /// log has other edits than this server: nothing may be written then.
+  /// Makes this server the owner. Sessions go on, and edits that wait are ordered. Returns false if
+  /// the log has other edits than this server: nothing may be written then.
   bool take_over(const Takeover& start, const Clocks& now);
   /// Reports that the database failed before take_over(). The server must be stopped.
   void takeover_failed() { world_.order.ownership().fail_takeover(); }
@@ -95,8 +97,8 @@ class Cluster {
     return is_following() && following_.on_message(session, message, now);
   }
   void on_resumed(Session& session) { resumes_.on_resumed(session); }
-  /// Returns true if edits of the session were sent before its client knew that another server orders
-  /// now. They will be offered again.
+  /// Returns true if edits of the session were sent before its client knew that another server
+  /// orders now. They will be offered again.
   bool ignores_edits(const Session& session) const { return resumes_.ignores_edits(session); }
   void count_edit(const Session& session) { handover_.count_edit(session); }
   void forget(const Session& session);

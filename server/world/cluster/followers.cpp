@@ -91,8 +91,8 @@ void Followers::on_follow_request(SessionId link, const FollowRequest& request) 
   feed.begin(link);
   follower.player_address = request.player_address;
   follower.page_address = request.page_address;
-  // If the follower has records that are not durable, it compares them with the database first. So it
-  // does if very many are not durable, because the database is slow.
+  // If the follower has records that are not durable, it compares them with the database first. So
+  // it does if very many are not durable, because the database is slow.
   const bool sends_rest = feed.keeps_unwritten() && request.after.seq <= order_.durable() &&
                           feed.unwritten().parts().size() <= kUnwrittenSentMax;
   feed.send(link, encode_message(FollowAnswer{sends_rest ? order_.durable() : order_.head()}));

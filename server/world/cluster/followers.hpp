@@ -1,8 +1,8 @@
-// Followers: the other servers of the world that follow this one, which owns it. Each is connected like
-// a player, but has proved that it holds the world's own key. It gets every record of the log (LogFeed),
-// and passes on what its players do: their sessions are handled here like those of players who are
-// connected here, except that the follower sends them terrain and commits.
-// Bounds: a follower whose send queue is full is closed. It connects again and reads what it has missed
+// Followers: the other servers of the world that follow this one, which owns it. Each is connected
+// like a player, but has proved that it holds the world's own key. It gets every record of the log
+// (LogFeed), and passes on what its players do: their sessions are handled here like those of
+// players who are connected here, except that the follower sends them terrain and commits. Bounds:
+// a follower whose send queue is full is closed. It connects again and reads what it has missed
 // from the database. Its players pay for their messages like all others.
 // Thread: the world strand.
 #pragma once
@@ -31,8 +31,8 @@ struct Follower {
 
 /// A follower that has sent nothing for so long is closed. It sends a ping each second.
 inline constexpr TimeUs kFollowerSilentUsMax = 5'000'000;
-/// After a handover, other followers stay connected for so long without an owner, from the moment when
-/// the log is written.
+/// After a handover, other followers stay connected for so long without an owner, from the moment
+/// when the log is written.
 inline constexpr TimeUs kFollowersKeptUs = 1'000'000;
 
 /// A message of a player at another server.
@@ -64,28 +64,28 @@ class Followers {
 
   /// Makes a follower of a session that has proved the world's own key.
   void admit(Session& session, const Clocks& now);
-  /// Handles a message of a follower. Returns the message of a player that it has passed on, for the
-  /// caller to handle. Requires that the link is a follower's.
+  /// Handles a message of a follower. Returns the message of a player that it has passed on, for
+  /// the caller to handle. Requires that the link is a follower's.
   std::optional<RelayedMessage> received(SessionId link, const Message& message, const Clocks& now);
   /// Forgets a follower, and the sessions of its players.
   void forget(SessionId link);
   /// Reports that a session is removed. Its follower forgets it, too.
   void forget_session(const Session& session);
-  /// Closes the followers that are silent, or whose queue was full, and those that have waited for long
-  /// enough since this server handed the world over.
+  /// Closes the followers that are silent, or whose queue was full, and those that have waited for
+  /// long enough since this server handed the world over.
   void close_lost(const Clocks& now);
-  /// Closes all followers, with this text, and forgets the sessions of their players, who stay connected
-  /// to the followers.
+  /// Closes all followers, with this text, and forgets the sessions of their players, who stay
+  /// connected to the followers.
   void close_all(const std::string& text);
-  /// Hands the followers' sessions back, since this server owns the world no more: closes `successor`,
-  /// and those that have not asked for the log yet. The others stay connected and get no records, so
-  /// that messages of this server still arrive there, and they leave the free lease to the successor
-  /// (TakeoverWatch).
+  /// Hands the followers' sessions back, since this server owns the world no more: closes
+  /// `successor`, and those that have not asked for the log yet. The others stay connected and get
+  /// no records, so that messages of this server still arrive there, and they leave the free lease
+  /// to the successor (TakeoverWatch).
   void keep_without_log(SessionId successor);
   /// Ends the wait of the followers that were kept.
   void close_kept_at(TimeUs steady_us) { kept_until_us_ = steady_us; }
-  /// Sends the durable watermark to the followers, also to those that a former owner still has. So they
-  /// need not read from the database what they know already.
+  /// Sends the durable watermark to the followers, also to those that a former owner still has. So
+  /// they need not read from the database what they know already.
   void send_durable();
 
  private:

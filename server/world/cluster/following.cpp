@@ -12,8 +12,8 @@ using Stage = OwnerLink::Stage;
 
 constexpr TimeUs kReadPauseUs = 20'000;
 constexpr std::size_t kWaitingMax = 65'536;
-// Rows of players and names without records have no sequence that tells when they are durable. They are
-// written within some 50 ms.
+// Rows of players and names without records have no sequence that tells when they are durable. They
+// are written within some 50 ms.
 constexpr TimeUs kRowsKeptUs = 10'000'000;
 
 }  // namespace
@@ -58,8 +58,8 @@ void Following::connected(const std::optional<ChannelBinding>& binding, const Cl
   if (!world_.link.connected(binding, now)) leave_slow();
 }
 
-/// Takes what a reader has found. Returns why the log is not the one that this server has followed, or
-/// nullopt. Records that are known already must be the same.
+/// Takes what a reader has found. Returns why the log is not the one that this server has followed,
+/// or nullopt. Records that are known already must be the same.
 std::optional<std::string> Following::take(const ReadLog& read, const Clocks& now) {
   const Version known = world_.order.last_record();
   if (read.last < known.seq) return std::nullopt;
@@ -91,8 +91,8 @@ void Following::go_live(const Clocks& now) {
     world_.commits.begin_epoch(world_.link.owner_epoch());
   world_.environment.report(OperatorLogLevel::info,
                             "follows the owner from seq=" + std::to_string(world_.order.head()));
-  // If this server owned the world before, followers may still be connected. They look for the next owner
-  // now.
+  // If this server owned the world before, followers may still be connected. They look for the next
+  // owner now.
   world_.followers.close_all("another server owns the world");
   if (!world_.players.send_all()) return leave_slow();
   while (world_.link.is_live() && !waiting_.empty()) {

@@ -1,17 +1,18 @@
-// Following: what this server does while another one owns the world. It gets every record of the log
-// from the owner, applies it as the owner did, and sends it to its own players, who also get terrain,
-// tiles and the past from here. What a player does goes to the owner (PlayersAtOwner). So no order is
-// made here.
+// Following: what this server does while another one owns the world. It gets every record of the
+// log from the owner, applies it as the owner did, and sends it to its own players, who also get
+// terrain, tiles and the past from here. What a player does goes to the owner (PlayersAtOwner). So
+// no order is made here.
 //   - The records that the owner had before the connection are read from the database.
-//   - Records that are not durable are kept. If this server takes the world over, it writes those that
-//     the owner has not written. So nothing is lost that has arrived here.
-//   - What a client has sent is lost if the owner ends, or if the connection with it breaks, before the
-//     owner has handled it. Clients are told so (Resumes), and send again the edits that have no answer.
-//     The operation id keeps them from being applied twice.
-//   - If the owner has ordered edits differently from what arrived here (it took the world over from a
-//     server that had sent them), this server cannot go on (Ownership::find_fork()).
-// Bounds: records that are not durable: those of the owner's log queue; messages of the owner that wait
-// while records are read: kWaitingMax, then the connection is made anew.
+//   - Records that are not durable are kept. If this server takes the world over, it writes those
+//     that the owner has not written. So nothing is lost that has arrived here.
+//   - What a client has sent is lost if the owner ends, or if the connection with it breaks, before
+//     the owner has handled it. Clients are told so (Resumes), and send again the edits that have
+//     no answer. The operation id keeps them from being applied twice.
+//   - If the owner has ordered edits differently from what arrived here (it took the world over
+//     from a server that had sent them), this server cannot go on (Ownership::find_fork()).
+// Bounds: records that are not durable: those of the owner's log queue; messages of the owner that
+// wait while records are read: kWaitingMax, then the connection is made anew.
+//
 // Thread: the world strand.
 #pragma once
 #include <deque>
@@ -65,11 +66,11 @@ class Following {
 
   /// Begins to follow. There is no connection with the owner yet.
   void begin();
-  /// Ends the connection with the owner, and what it says. Returns the parts of the log that the owner
-  /// may not have written, in order.
+  /// Ends the connection with the owner, and what it says. Returns the parts of the log that the
+  /// owner may not have written, in order.
   std::vector<LogPart> stop();
-  /// Takes what a reader has found, up to the end of the log. Returns false if the log has other edits
-  /// than this server.
+  /// Takes what a reader has found, up to the end of the log. Returns false if the log has other
+  /// edits than this server.
   bool catch_up(const ReadLog& read, const Clocks& now);
 
   // The connection with the owner.

@@ -21,8 +21,8 @@ SessionId Handover::follower_with_most_players() const {
   return *best;
 }
 
-/// Closes the sessions that have not joined yet. They know what this server offers as the owner, and
-/// may be other servers that want to follow it.
+/// Closes the sessions that have not joined yet. They know what this server offers as the owner,
+/// and may be other servers that want to follow it.
 void Handover::close_joining_sessions() {
   for (Session* session : sessions_.all()) {
     if (session->stage == SessionStage::authenticating && !session->is_relayed)

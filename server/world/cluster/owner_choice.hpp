@@ -1,8 +1,9 @@
-// OwnerChoice: finds out whether the world should move to another server, because most edits come from
-// the players there. An edit of a player at a server that follows takes the way to the owner and back.
+// OwnerChoice: finds out whether the world should move to another server, because most edits come
+// from the players there. An edit of a player at a server that follows takes the way to the owner
+// and back.
 //   - The owner looks at the edits of each server in windows of kOwnerWindowUs.
-//   - The world should move to a server whose players made more than three quarters of all edits, and
-//     at least kOwnerEditsPerSecond, in kOwnerWindows windows in a row.
+//   - The world should move to a server whose players made more than three quarters of all edits,
+//     and at least kOwnerEditsPerSecond, in kOwnerWindows windows in a row.
 //   - It moves at most once in kOwnerPauseUs.
 // Thread: the world strand. Times are arguments (microseconds of one steady clock).
 #pragma once
@@ -28,8 +29,8 @@ class OwnerChoice {
     std::map<SessionId, std::uint64_t> there;  // by the session of the server
   };
 
-  /// Begins anew. For a server that owns the world from now on. Without this call, it has always owned
-  /// it.
+  /// Begins anew. For a server that owns the world from now on. Without this call, it has always
+  /// owned it.
   void begin(TimeUs now_us) {
     *this = {};
     next_us_ = now_us + kOwnerPauseUs;

@@ -1,5 +1,5 @@
-// OwnerLink: the connection of a server that follows with the owner of the world: its handshake and its
-// pings.
+// OwnerLink: the connection of a server that follows with the owner of the world: its handshake and
+// its pings.
 // Thread: the world strand.
 #pragma once
 #include <optional>

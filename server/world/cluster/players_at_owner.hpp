@@ -1,6 +1,6 @@
-// PlayersAtOwner: the players of a server that follows. What they do goes to the owner of the world: to
-// join, to edit, to move, to write a line, to give a command.
-// Bounds: edits whose wait is measured: kForwardedMax.
+// PlayersAtOwner: the players of a server that follows. What they do goes to the owner of the
+// world: to join, to edit, to move, to write a line, to give a command. Bounds: edits whose wait is
+// measured: kForwardedMax.
 // Thread: the world strand.
 #pragma once
 #include <map>
@@ -33,8 +33,8 @@ class PlayersAtOwner {
         edits_(edits),
         presence_(presence) {}
 
-  /// Takes an authenticated player to the owner, now or when there is one. Returns false if the owner
-  /// takes nothing.
+  /// Takes an authenticated player to the owner, now or when there is one. Returns false if the
+  /// owner takes nothing.
   [[nodiscard]] bool join(Session& session, const ClientAuth& auth);
   /// Tells the owner of all sessions. Returns false if it takes nothing.
   [[nodiscard]] bool send_all();
@@ -52,8 +52,8 @@ class PlayersAtOwner {
   void disconnected();
   /// Tells the owner that a session has ended.
   void forget(const Session& session);
-  /// Returns the players who wait for an owner, and forgets them here, because this server has become
-  /// the owner.
+  /// Returns the players who wait for an owner, and forgets them here, because this server has
+  /// become the owner.
   std::vector<std::pair<Session*, JoinCredentials>> take_joining();
 
  private:

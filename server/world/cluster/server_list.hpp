@@ -2,7 +2,8 @@
 // may connect. The owner makes it: itself and the servers that follow. It sends the list to its
 // players, and to those servers, which pass it on to their own players. A server that follows keeps
 // the last list while there is no owner.
-// Bounds: kServersMax servers. Thread: the world strand.
+// Bounds: kServersMax servers.
+// Thread: the world strand.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -34,8 +35,8 @@ class ServerList {
   void take(const Servers& list);
   /// Keeps the list of the earlier owner for kServersGatherUs.
   void hold(const Clocks& now) { held_until_us_ = now.steady_us + kServersGatherUs; }
-  /// Sends the newest list to the players and servers that lack it. Those whose queue is full get it
-  /// on a later call.
+  /// Sends the newest list to the players and servers that lack it. Those whose queue is full get
+  /// it on a later call.
   void send();
   void forget(SessionId session) { sent_.erase(session); }
 

@@ -44,14 +44,14 @@ class Changes {
   /// session. An author without a session pays by the key alone. Nobody pays if `payer` is 0.
   ServerEditsResult order_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                 const Clocks& now);
-  /// Orders a change of rights as a record of the log, made by the author (0: the console), who pays
-  /// for it as for an edit. Sessions that may not stay are closed. Returns its sequence, or why it was
-  /// refused, as a sentence.
+  /// Orders a change of rights as a record of the log, made by the author (0: the console), who
+  /// pays for it as for an edit. Sessions that may not stay are closed. Returns its sequence, or
+  /// why it was refused, as a sentence.
   Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
                                               AuthorId author, const Clocks& now);
-  /// Orders the addition of materials by the console, as one record of the log: all or none. Refuses
-  /// bad rows (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them, and while
-  /// the log takes no edits.
+  /// Orders the addition of materials by the console, as one record of the log: all or none.
+  /// Refuses bad rows (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them,
+  /// and while the log takes no edits.
   Result<AddedAt, MaterialsRefusal> add_materials(const std::vector<MaterialRow>& rows,
                                                   const Clocks& now);
 

@@ -1,6 +1,6 @@
-// Commits: takes a commit from the queue to the sessions: orders its edits, applies its changes of rights
-// and materials, appends it to the log, and sends it. A session gets the edits that concern it and no
-// others. Sessions that get the same edits share one message.
+// Commits: takes a commit from the queue to the sessions: orders its edits, applies its changes of
+// rights and materials, appends it to the log, and sends it. A session gets the edits that concern
+// it and no others. Sessions that get the same edits share one message.
 // Thread: the world strand.
 #pragma once
 #include <span>
@@ -29,9 +29,9 @@ class Commits {
     return order_.has_ready_edits(sessions_.count(), now_us);
   }
   /// Orders the queued edits of one commit, appends them to the log, and sends each edit to the
-  /// subscribers of the chunks that it touched and to the session of its client. Returns false if no
-  /// edit is queued that may be ordered now. Cost: O(edits + subscribers of touched chunks), and that of
-  /// audiences_of().
+  /// subscribers of the chunks that it touched and to the session of its client. Returns false if
+  /// no edit is queued that may be ordered now. Cost: O(edits + subscribers of touched chunks), and
+  /// that of audiences_of().
   bool commit(LargeEdits large, const Clocks& now);
   /// Orders and sends queued edits as long as there are any that may be ordered.
   void commit_all(LargeEdits large, const Clocks& now) {
@@ -45,11 +45,11 @@ class Commits {
   void begin_epoch(Epoch epoch);
 
  private:
-  /// Applies the changes of rights and materials among these records. Sessions that may not stay are
-  /// closed.
+  /// Applies the changes of rights and materials among these records. Sessions that may not stay
+  /// are closed.
   void apply(const std::vector<EditRecord>& records);
-  /// Sends edits that were ordered to the sessions, and does what they make necessary for tiles and for
-  /// chunks that are not in memory.
+  /// Sends edits that were ordered to the sessions, and does what they make necessary for tiles and
+  /// for chunks that are not in memory.
   void publish(const OrderedBatch& batch, const Clocks& now);
   void send(const OrderedBatch& batch, const Clocks& now);
   std::vector<std::vector<SessionId>> receivers_of(const OrderedBatch& batch) const;

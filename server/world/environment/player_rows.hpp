@@ -1,6 +1,7 @@
-// PlayerRow, UsedName, NameClaim and HighWater: the values about players that the world strand, the store
-// and the commands share. PlayerRow maps an author number to a key and a name. UsedName is a name
-// that a player uses or has used. NameClaim says which key owns a name. HighWater is the watermark of one client process.
+// PlayerRow, UsedName, NameClaim and HighWater: the values about players that the world strand, the
+// store and the commands share. PlayerRow maps an author number to a key and a name. UsedName is a
+// name that a player uses or has used. NameClaim says which key owns a name. HighWater is the
+// watermark of one client process.
 #pragma once
 #include <string>
 

@@ -78,14 +78,13 @@ class WorldEnvironment {
   /// Reports that the session has authenticated its key. It may still wait for the claim of its
   /// name.
   virtual void opened(SessionId /*session*/) {}
-  /// Encodes a snapshot on a worker, in the session's encoding of chunks or tiles, and queues it like
-  /// send(), as an
-  /// answer to the view of this number. Returns false as send() does. WorldServer::drained() is
-  /// called when the queue has room again.
+  /// Encodes a snapshot on a worker, in the session's encoding of chunks or tiles, and queues it
+  /// like send(), as an answer to the view of this number. Returns false as send() does.
+  /// WorldServer::drained() is called when the queue has room again.
   virtual bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
                              const ChunkPtr& chunk) = 0;
-  /// Does the same for a tile that replaces one that the session has, in the encoding of chunks. After
-  /// an edit many sessions get the tile, and the time to read it delays their edits.
+  /// Does the same for a tile that replaces one that the session has, in the encoding of chunks.
+  /// After an edit many sessions get the tile, and the time to read it delays their edits.
   virtual bool send_changed_tile(SessionId session, std::uint32_t view, const ChunkKey& key,
                                  const ChunkPtr& tile) {
     return send_snapshot(session, view, key, tile);
@@ -109,8 +108,8 @@ class WorldEnvironment {
   /// size says. The server then waits longer before it reads from the session again.
   virtual void charge_reading(SessionId /*session*/, std::size_t /*bytes*/) {}
 
-  /// Returns false while another server may own the world. Then nobody is let in, because that server
-  /// may know more of the player.
+  /// Returns false while another server may own the world. Then nobody is let in, because that
+  /// server may know more of the player.
   virtual bool owns_world() const { return true; }
   /// Returns true if the log queue has room for `records` more. If not, edits are rejected busy.
   virtual bool log_has_room(std::size_t records) const = 0;
@@ -128,8 +127,8 @@ class WorldEnvironment {
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().
   virtual void load_chunk(const ChunkKey& key) = 0;
   /// Makes a tile on a worker. Called at most once for a tile until it is answered. Answer:
-  /// WorldServer::tiles_made() or tile_stopped(). Without tiles (WorldConfig::tile_levels_max is 0),
-  /// neither this nor the next five calls are made.
+  /// WorldServer::tiles_made() or tile_stopped(). Without tiles (WorldConfig::tile_levels_max is
+  /// 0), neither this nor the next five calls are made.
   virtual void make_tile(TileRequest /*request*/) {}
   /// Makes the tile of a request that has `at`, for a session that sees the past. Answer:
   /// WorldServer::past_tile_made() or past_tile_stopped().
@@ -139,7 +138,8 @@ class WorldEnvironment {
   virtual void tiles_edited(std::span<const ChunkKey> /*chunks*/, Sequence /*seq*/) {}
   /// Returns the newest edit below a tile that tiles_edited() recorded, or 0.
   virtual Sequence newest_tile_edit(const ChunkKey& /*tile*/) const { return 0; }
-  /// Returns true if a client's copy of a tile is known to be the tile as it is now, without making it.
+  /// Returns true if a client's copy of a tile is known to be the tile as it is now, without making
+  /// it.
   virtual bool is_tile_current(const CachedChunk& /*copy*/) const { return false; }
   /// Writes tiles to the folder, at a low priority. If the queue is full, they are not written.
   virtual void save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> /*tiles*/) {}
@@ -160,8 +160,8 @@ class WorldEnvironment {
   virtual void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                               Sequence checkpoint) = 0;
 
-  /// Queues a message for the owner of the world, which this server follows. Returns false if there is
-  /// no room, or no connection.
+  /// Queues a message for the owner of the world, which this server follows. Returns false if there
+  /// is no room, or no connection.
   virtual bool send_to_owner(const EncodedMessage& /*message*/) { return false; }
   /// Ends the connection with the owner. Answer: WorldServer::owner_disconnected().
   virtual void leave_owner(const std::string& /*why*/) {}
@@ -175,8 +175,8 @@ class WorldEnvironment {
   virtual void command(SessionId /*session*/, AuthorId /*author*/, const PublicKey& /*key*/,
                        const std::string& /*text*/) {}
 
-  /// Reports that a player has joined or left. A session that leaves is closed, or its connection has
-  /// ended.
+  /// Reports that a player has joined or left. A session that leaves is closed, or its connection
+  /// has ended.
   virtual void player_came(const PlayerVisit& /*visit*/) {}
   virtual void player_left(const PlayerVisit& /*visit*/) {}
   /// Writes one line for the operator, with fields as in "session=7 chunk=1,0,-3 seq=9120".

@@ -1,5 +1,5 @@
-// WorldStart: what the store remembers when a server starts. The log above the checkpoint follows by
-// WorldServer::replay_onto_stack().
+// WorldStart: what the store remembers when a server starts. The log above the checkpoint follows
+// by WorldServer::replay_onto_stack().
 #pragma once
 #include <utility>
 #include <vector>

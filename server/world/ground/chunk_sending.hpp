@@ -1,8 +1,8 @@
 // ChunkSending: sends chunks to sessions. A session is subscribed in the same call that takes the
-// snapshot's version, so every commit after the snapshot reaches the session.
-// A client may claim copies of chunks that it has. A claim waits until its chunk is about to be sent, and
-// is answered with less than a snapshot where that is possible. The answer is made in the call that
-// subscribes the session, from the chunk's version V at that time. It is one of:
+// snapshot's version, so every commit after the snapshot reaches the session. A client may claim
+// copies of chunks that it has. A claim waits until its chunk is about to be sent, and is answered
+// with less than a snapshot where that is possible. The answer is made in the call that subscribes
+// the session, from the chunk's version V at that time. It is one of:
 //   - "not modified", if the copy is at V;
 //   - the edits that lead from the copy to V;
 //   - a snapshot at V.
@@ -29,7 +29,8 @@ class ChunkSending {
 
   /// Returns true if the session's queue was full a moment ago.
   bool is_stalled(const Viewer& viewer, const Clocks& now) const;
-  /// Returns the number of the session's view in force, or 0 before the first one. Answers carry it.
+  /// Returns the number of the session's view in force, or 0 before the first one. Answers carry
+  /// it.
   std::uint32_t view_in_force(const Viewer& viewer) const;
   /// Describes the state of the world that the session sees.
   ViewState view_state(const Viewer& viewer, ViewPhase phase) const;
@@ -39,18 +40,20 @@ class ChunkSending {
   /// wanted.
   bool send_chunk(Viewer& viewer, const ChunkKey& key, const ChunkPtr& chunk, ChunkInterest then,
                   const Clocks& now);
-  /// Queues a chunk of one material to be sent together with others. Returns false if too many wait.
+  /// Queues a chunk of one material to be sent together with others. Returns false if too many
+  /// wait.
   bool queue_uniform(Viewer& viewer, const ChunkKey& key, const Chunk& chunk, const Clocks& now);
-  /// Sends the uniform chunks that are due for the session, in one message for each level of detail.
-  /// Returns false if its queue is full; the chunks that are not sent stay due.
+  /// Sends the uniform chunks that are due for the session, in one message for each level of
+  /// detail. Returns false if its queue is full; the chunks that are not sent stay due.
   bool send_uniform(Viewer& viewer, const Clocks& now);
-  /// Sends the "not modified" answers that are due. While more may follow (`is_more`), it sends only
-  /// full messages. Returns false if the session's queue is full; the rest stays due.
+  /// Sends the "not modified" answers that are due. While more may follow (`is_more`), it sends
+  /// only full messages. Returns false if the session's queue is full; the rest stays due.
   bool send_not_modified(Viewer& viewer, bool is_more);
-  /// Sends the reports that must precede the session's next chunk. Returns false if its queue is full.
+  /// Sends the reports that must precede the session's next chunk. Returns false if its queue is
+  /// full.
   bool send_view_states(Viewer& viewer, const Clocks& now);
-  /// Ends a delivery: sends the uniform chunks that are due unless loads under way may soon add more,
-  /// and reports once that every chunk of the view was answered.
+  /// Ends a delivery: sends the uniform chunks that are due unless loads under way may soon add
+  /// more, and reports once that every chunk of the view was answered.
   void end_delivery(Viewer& viewer, const Clocks& now);
 
   /// Drops chunks that are queued for the session and lie outside of its view or will be answered

@@ -12,8 +12,8 @@ class DigestChecks {
  public:
   explicit DigestChecks(GroundBase& base) : base_(base) {}
 
-  /// Sends the digest checks that are due: one to every session in digest_check_interval_us. Call it
-  /// on every tick. Cost: O(their digests).
+  /// Sends the digest checks that are due: one to every session in digest_check_interval_us. Call
+  /// it on every tick. Cost: O(their digests).
   void send_due(const Clocks& now);
 
  private:

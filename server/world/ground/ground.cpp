@@ -8,8 +8,8 @@
 namespace runstone {
 namespace {
 
-// The most chunks that one task of the world strand sends. It takes about a millisecond, so that edits
-// do not wait long for a task.
+// The most chunks that one task of the world strand sends. It takes about a millisecond, so that
+// edits do not wait long for a task.
 constexpr std::size_t kChunksPerDelivery = 512;
 // Bytes that count as read for each chunk that a client requests: with the default
 // `read_kib_per_second`, a session gets 4,096 chunks a second.
@@ -219,9 +219,9 @@ bool Ground::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
   loads_.ended(key);
   loads_.forget_failures(key);
   if (chunk.version > chunks.version(key) && !base_.order.owns_world()) {
-    // The owner has saved it, and what made this version is still on its way. That may take as long as
-    // the owner does not answer, so these attempts do not count. A server that has lost the lease may read
-    // what the next owner has saved.
+    // The owner has saved it, and what made this version is still on its way. That may take as long
+    // as the owner does not answer, so these attempts do not count. A server that has lost the
+    // lease may read what the next owner has saved.
     loads_.load_again(key, OperatorLogLevel::debug, "it is newer than what has arrived", now);
     return false;
   }

@@ -1,6 +1,7 @@
-// Ground: the world as sessions see it: their views, and the chunks and tiles that follow from these, in
-// the present and in the past. Its parts stand in files of their own; this class passes the messages of
-// sessions and the answers of workers to them, and delivers.
+// Ground: the world as sessions see it: their views, and the chunks and tiles that follow from
+// these, in the present and in the past. Its parts stand in files of their own; this class passes
+// the messages of sessions and the answers of workers to them, and delivers.
+//
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -45,8 +46,8 @@ class Ground {
 
   // Messages of open sessions.
   void on_view(Session& session, const View& view, const Clocks& now);
-  /// Stores the claims of chunks and tiles that were not sent yet. Closes the session (flooding) if it
-  /// has more than kClaimsPerSessionMax claims.
+  /// Stores the claims of chunks and tiles that were not sent yet. Closes the session (flooding) if
+  /// it has more than kClaimsPerSessionMax claims.
   void on_cached_chunks(Session& session, const CachedChunks& cached);
   /// Sends chunks of the session's view again. Chunks outside of it are ignored.
   void on_chunk_request(Session& session, const ChunkRequest& request, const Clocks& now);
@@ -54,8 +55,8 @@ class Ground {
   void on_log_marks_request(Session& session, const LogMarksRequest& request, const Clocks& now);
 
   // Commits.
-  /// Reports that a commit touched these chunks, ascending, which have their new versions. Loads those
-  /// with long stacks.
+  /// Reports that a commit touched these chunks, ascending, which have their new versions. Loads
+  /// those with long stacks.
   void edited(const std::vector<ChunkKey>& chunks, const Clocks& now);
   /// Marks chunks as outdated for a session because a commit did not fit its queue.
   void mark_outdated(const Session& session, std::span<const ChunkKey> chunks, const Clocks& now);
@@ -69,7 +70,8 @@ class Ground {
   bool has_deliveries() const { return !base_.deliveries.empty(); }
   /// Sends some chunks of one session. Sessions take turns.
   void deliver_next(const Clocks& now);
-  /// Returns true if changed tiles wait to be sent. Then call resend_tiles() after kTileResendBurstUs.
+  /// Returns true if changed tiles wait to be sent. Then call resend_tiles() after
+  /// kTileResendBurstUs.
   bool has_tile_resends() const { return tiles_.has_resends(); }
   void resend_tiles(const Clocks& now) { tiles_.resend(now); }
 
@@ -82,8 +84,8 @@ class Ground {
   void hurry_loads(const Clocks& now);
 
   // Answers of WorldEnvironment.
-  /// Takes a loaded chunk. Returns false if it is loaded again later, because it is newer than what has
-  /// arrived here.
+  /// Takes a loaded chunk. Returns false if it is loaded again later, because it is newer than what
+  /// has arrived here.
   bool chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now);
   /// Quarantines a damaged chunk. Returns false if it could not be read and is loaded again later.
   bool chunk_failed(const ChunkKey& key, LoadFailure failure, const std::string& what,
@@ -101,7 +103,8 @@ class Ground {
   // Periodic work, in this order.
   /// Applies the views that are due, and sends the rights and boxes that are due.
   void apply_views(const Clocks& now);
-  /// Sends digest checks, answers requests that had to wait, and loads again what could not be read.
+  /// Sends digest checks, answers requests that had to wait, and loads again what could not be
+  /// read.
   void serve_waiting(const Clocks& now);
   /// Collects chunks without users, keeps the memory within its bounds, and starts loads and tiles.
   void start_work(const Clocks& now);
@@ -112,8 +115,8 @@ class Ground {
   Viewer& at(const Session& session) { return base_.viewers.at(session.id); }
   const Viewer& at(const Session& session) const { return base_.viewers.at(session.id); }
   /// Sends the session's wanted chunks, nearest first: chunks in memory at once, the others after a
-  /// load. Stops when the session's queue is full or it waits for loads_per_session_max loads. After
-  /// some hundred chunks the delivery goes on in a task of its own.
+  /// load. Stops when the session's queue is full or it waits for loads_per_session_max loads.
+  /// After some hundred chunks the delivery goes on in a task of its own.
   void deliver(Viewer& viewer, const Clocks& now);
   /// Sends a loaded chunk, or "chunk unavailable", to the sessions that wait for it.
   void deliver_loaded(const ChunkKey& key, const Clocks& now);

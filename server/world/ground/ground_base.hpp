@@ -1,5 +1,5 @@
-// GroundBase: what all parts of the ground use: the rooms below, who sees what, and the sessions whose
-// delivery goes on.
+// GroundBase: what all parts of the ground use: the rooms below, who sees what, and the sessions
+// whose delivery goes on.
 // Thread: the world strand.
 #pragma once
 #include <map>

@@ -80,11 +80,12 @@ std::size_t Loads::mean_chunk_bytes() const {
   return chunks.resident_bytes() / std::max<std::size_t>(1, chunks.resident_count());
 }
 
-/// Returns the sessions that may load no chunk because their address sees more than its share. From half
-/// of view_bytes_max on, an address may load chunks only while those that its sessions see take less than
-/// twice the memory that is left. So however many addresses see as much as they can, some memory is left
-/// for others. Source: the dynamic thresholds of A. K. Choudhury and E. L. Hahne, "Dynamic queue length
-/// thresholds for shared-memory packet switches", 1998, with alpha = 2. Cost: O(sessions).
+/// Returns the sessions that may load no chunk because their address sees more than its share. From
+/// half of view_bytes_max on, an address may load chunks only while those that its sessions see
+/// take less than twice the memory that is left. So however many addresses see as much as they can,
+/// some memory is left for others. Source: the dynamic thresholds of A. K. Choudhury and E. L.
+/// Hahne, "Dynamic queue length thresholds for shared-memory packet switches", 1998, with alpha =
+/// 2. Cost: O(sessions).
 std::set<SessionId> Loads::sessions_over_share(const WorldMemory& use) const {
   const std::size_t mean = mean_chunk_bytes();
   const std::size_t voxels = std::min(use.voxels, mean * base_.interest.used_count());

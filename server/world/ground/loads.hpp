@@ -1,5 +1,5 @@
-// Loads: chunks that workers load, for sessions and for the world itself, and what keeps the memory that
-// they take within its bounds (server/world/order/world_memory.hpp).
+// Loads: chunks that workers load, for sessions and for the world itself, and what keeps the memory
+// that they take within its bounds (server/world/order/world_memory.hpp).
 // Thread: the world strand.
 #pragma once
 #include <set>
@@ -16,8 +16,8 @@ class Loads {
  public:
   explicit Loads(GroundBase& base) : base_(base), queue_(base.config.loads_in_flight_max) {}
 
-  /// Queues a load that the world itself needs, and starts what may start. Does nothing unless the chunk
-  /// is absent.
+  /// Queues a load that the world itself needs, and starts what may start. Does nothing unless the
+  /// chunk is absent.
   void request(const ChunkKey& key, const Clocks& now);
   /// Queues a load for a session. It is paid by the session's player (Quotas::pay_load()).
   void request_for(const Viewer& viewer, const ChunkKey& key) { queue_.request(viewer.id(), key); }
@@ -45,9 +45,9 @@ class Loads {
   /// Makes chunks that lost their last user candidates for eviction: some thousands, and the others
   /// with the next calls.
   void collect_released();
-  /// Makes chunks without users leave memory, lets the sessions wait whose address sees more than its
-  /// share, and warns the operator when the memory is full and when it is no longer. Call it on each
-  /// tick.
+  /// Makes chunks without users leave memory, lets the sessions wait whose address sees more than
+  /// its share, and warns the operator when the memory is full and when it is no longer. Call it on
+  /// each tick.
   void keep_memory_bounds();
 
  private:

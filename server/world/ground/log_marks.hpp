@@ -1,7 +1,7 @@
-// LogMarkReads: answers the requests of clients for marks of the log. A reader reads them; the world
-// strand adds the names of their authors. A session has one read under way, and its requests
-// take effect view_interval_us apart, as its views and moments of the past. Who may not see the past
-// may not see its authors either.
+// LogMarkReads: answers the requests of clients for marks of the log. A reader reads them; the
+// world strand adds the names of their authors. A session has one read under way, and its requests
+// take effect view_interval_us apart, as its views and moments of the past. Who may not see the
+// past may not see its authors either.
 // Thread: the world strand.
 #pragma once
 #include <string>

@@ -26,8 +26,8 @@ void want_differing(const WorldEnvironment& environment, TileInterest& tiles, co
   const Sequence newest = environment.newest_tile_edit(key);
   if (newest <= std::min(move.from, move.to)) return;
   const TileStatus status = tiles.status(key);
-  // A live tile that the session waits for is compared with its moment when it is made. A past one is
-  // of another moment.
+  // A live tile that the session waits for is compared with its moment when it is made. A past one
+  // is of another moment.
   const bool waits_for_past = status == TileStatus::waiting && newest > move.from;
   if (waits_for_past || client_has(status)) {
     tiles.want_again(key);
@@ -38,8 +38,8 @@ void want_differing(const WorldEnvironment& environment, TileInterest& tiles, co
     want_differing(environment, tiles, tile_child(key, i), move, left);
 }
 
-/// Returns true if the session still waits for the tile of this request. A tile of which it requested
-/// the past state is a past tile as long as it sees that moment.
+/// Returns true if the session still waits for the tile of this request. A tile of which it
+/// requested the past state is a past tile as long as it sees that moment.
 bool is_needed(const Viewer& viewer, const TileRequest& request) {
   return viewer.sees_past() && viewer.past.view->seq == *request.at &&
          viewer.tiles.interest->status(request.key) == TileStatus::waiting;

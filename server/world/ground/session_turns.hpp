@@ -1,4 +1,6 @@
-// SessionTurns: the sessions that wait for a piece of work, which take turns. Thread: the world strand.
+// SessionTurns: the sessions that wait for a piece of work, which take turns.
+//
+// Thread: the world strand.
 #pragma once
 #include <optional>
 #include <set>
@@ -14,8 +16,8 @@ class SessionTurns {
   void erase(SessionId session) { waiting_.erase(session); }
   bool empty() const { return waiting_.empty(); }
   /// Removes and returns the session whose turn it is: the one with the lowest number above that of
-  /// the last turn, or the lowest of all if there is none. Returns nullopt if nobody waits. The session
-  /// may be closed by now.
+  /// the last turn, or the lowest of all if there is none. Returns nullopt if nobody waits. The
+  /// session may be closed by now.
   std::optional<SessionId> take_next() {
     if (waiting_.empty()) return std::nullopt;
     auto next = waiting_.upper_bound(last_);

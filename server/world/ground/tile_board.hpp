@@ -1,5 +1,5 @@
-// TileBoard: the tiles that workers are to make, and which sessions have which tile. Edits make the tiles
-// above the touched chunks outdated.
+// TileBoard: the tiles that workers are to make, and which sessions have which tile. Edits make the
+// tiles above the touched chunks outdated.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -32,9 +32,9 @@ struct TileState {
 struct TileReceivers {
   std::vector<SessionId> sessions;  // ascending
   std::optional<TimeUs> made_us;    // when it was made last
-  /// The state in which it was made last, and MadeTile::through of that. All of them have it, or one
-  /// that they claimed, or get it from TileResends. A session that sees the past may have an earlier
-  /// one.
+  /// The state in which it was made last, and MadeTile::through of that. All of them have it, or
+  /// one that they claimed, or get it from TileResends. A session that sees the past may have an
+  /// earlier one.
   std::optional<TileState> state;
   Sequence through = 0;
 };
@@ -56,13 +56,13 @@ class TileBoard {
   /// Forgets a request of a tile that nobody waits for and nobody has.
   void drop_if_unused(const ChunkKey& key);
 
-  /// Reports that a commit touched these chunks of level of detail 0, ascending, which have their new
-  /// versions. The tiles above them become outdated with mark_outdated(), on a tick at the
+  /// Reports that a commit touched these chunks of level of detail 0, ascending, which have their
+  /// new versions. The tiles above them become outdated with mark_outdated(), on a tick at the
   /// latest. So edits of one chunk between two calls of it cost as much as one.
   void edited(std::span<const ChunkKey> chunks, const Clocks& now);
-  /// Makes the tiles outdated above the chunks that were edited since the last call. Every function that
-  /// reads the state of tiles, or the newest edit below one, must call it first. Cost: O(edited chunks *
-  /// levels).
+  /// Makes the tiles outdated above the chunks that were edited since the last call. Every function
+  /// that reads the state of tiles, or the newest edit below one, must call it first. Cost:
+  /// O(edited chunks * levels).
   void mark_outdated(const Clocks& now);
 
  private:

@@ -1,11 +1,12 @@
 // TileQueue: the tiles that workers are to make, and the sessions that wait for them. The order:
-//   1. The tiles for which sessions wait: the coarsest level first, within a level the earliest request.
-//   2. The tiles that sessions have and that an edit has changed: the one that has been due for longest
-//      first.
-// A tile that takes long is made in several turns. Between them it waits behind the others, and every
-// second turn is given to such a tile, the one that waits for longest.
-// Bounds: the waited ones by kTilesWaitingMax for each session, the changed ones by the tiles that
-// sessions have. Thread: the world strand.
+//   1. The tiles for which sessions wait: the coarsest level first, within a level the earliest
+//      request.
+//   2. The tiles that sessions have and that an edit has changed: the one that has been due for
+//      longest first.
+// A tile that takes long is made in several turns. Between them it waits behind the others, and
+// every second turn is given to such a tile, the one that waits for longest. Bounds: the waited
+// ones by kTilesWaitingMax for each session, the changed ones by the tiles that sessions have.
+// Thread: the world strand.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -38,23 +39,24 @@ class TileQueue {
   void charge_changed(TimeUs now_us, TimeUs cost_us) {
     changed_from_us_ = std::max(changed_from_us_, now_us - kChangedBurstUs) + cost_us;
   }
-  /// Removes a session that waits for a tile. If nobody waits any more, the tile is not made for it.
+  /// Removes a session that waits for a tile. If nobody waits any more, the tile is not made for
+  /// it.
   void cancel(const ChunkKey& key, SessionId session);
   /// Removes a tile that is to be made again, because no session has it any more.
   void cancel_again(const ChunkKey& key);
 
-  /// Removes and returns the next tile. Returns nullopt if none is due or in_flight_max are under way.
-  /// A tile that is under way is not returned again before finished().
+  /// Removes and returns the next tile. Returns nullopt if none is due or in_flight_max are under
+  /// way. A tile that is under way is not returned again before finished().
   std::optional<ChunkKey> next(TimeUs now_us, std::size_t in_flight_max);
   /// Ends a tile that next() returned. Returns the sessions that wait for it, in the order of their
   /// requests. They wait no longer.
   std::vector<SessionId> finished(const ChunkKey& key);
-  /// Ends a tile that next() returned and that could not be made. It is due again at this time, like a
-  /// changed one; the sessions go on waiting.
+  /// Ends a tile that next() returned and that could not be made. It is due again at this time,
+  /// like a changed one; the sessions go on waiting.
   void failed(const ChunkKey& key, TimeUs due_us);
 
-  /// Ends the turn of a tile that next() returned. The sessions go on waiting; if there are none, it is
-  /// due at this time.
+  /// Ends the turn of a tile that next() returned. The sessions go on waiting; if there are none,
+  /// it is due at this time.
   void stopped(const ChunkKey& key, TimeUs now_us);
   /// Returns how many turns of the tile have ended with stopped().
   std::size_t stops(const ChunkKey& key) const {

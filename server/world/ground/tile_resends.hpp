@@ -1,5 +1,6 @@
-// TileResends: changed tiles on their way to the sessions that have them. They are sent one session after
-// another at a steady pace: if a crowd got a tile at once, its edits would wait behind hundreds of tiles.
+// TileResends: changed tiles on their way to the sessions that have them. They are sent one session
+// after another at a steady pace: if a crowd got a tile at once, its edits would wait behind
+// hundreds of tiles.
 // Thread: the world strand.
 #pragma once
 #include <deque>
@@ -24,8 +25,8 @@ class TileResends {
     ChunkKey key;
     ChunkPtr tile;
   };
-  /// Adds a tile for some sessions, the next one last. `is_first`: before the other tiles. Requires that
-  /// the tile does not wait in another state.
+  /// Adds a tile for some sessions, the next one last. `is_first`: before the other tiles. Requires
+  /// that the tile does not wait in another state.
   void add(const ChunkKey& key, ChunkPtr tile, std::vector<SessionId> sessions,
            bool is_first = false);
   /// Removes a tile. Returns the sessions that did not get it.

@@ -52,7 +52,8 @@ void TileSending::send_same(Viewer& viewer, const ChunkKey& key, Sequence seq) {
   record_sent(viewer, key, false);
 }
 
-/// Queues a tile. Returns false if the session's queue is full. Then the session wants the tile again.
+/// Queues a tile. Returns false if the session's queue is full. Then the session wants the tile
+/// again.
 bool TileSending::queue(Cause cause, Viewer& viewer, const ChunkKey& key, const ChunkPtr& tile,
                         const Clocks& now) {
   // An older state that still waits to be sent must not arrive after this one.

@@ -33,8 +33,8 @@ class TileSending {
   }
   /// Queues "not modified". The session claims only tiles that are not uniform.
   void send_same(Viewer& viewer, const ChunkKey& key, Sequence seq);
-  /// Sends a tile of the moment that the session sees, which waits for it. Later changes of the present
-  /// tile are not sent to the session.
+  /// Sends a tile of the moment that the session sees, which waits for it. Later changes of the
+  /// present tile are not sent to the session.
   void send_past(Viewer& viewer, const ChunkKey& key, const ChunkPtr& tile, const Clocks& now);
   /// Makes a tile wanted again, and forgets that the session has it or waits for it.
   void want_again(Viewer& viewer, const ChunkKey& key);

@@ -27,8 +27,8 @@ void Tiles::charge(const ChunkKey& key, const std::vector<MadeTile>& made, const
   payers_.erase(payer);
 }
 
-/// Queues a tile for the sessions that have it in another state. A tile is often made because one more
-/// session wants it: then the others have it already.
+/// Queues a tile for the sessions that have it in another state. A tile is often made because one
+/// more session wants it: then the others have it already.
 void Tiles::resend_changed(const ChunkKey& key, const MadeTile& made, const Clocks& now) {
   const TileReceivers* const having = board_.receivers(key);
   if (having == nullptr || having->state == state_of(made)) return;

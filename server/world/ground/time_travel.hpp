@@ -21,16 +21,16 @@ class TimeTravel {
       : base_(base), loads_(loads), sending_(sending), tiles_(tiles) {}
 
   // Each of these returns true if the session has something to be delivered now.
-  /// Replaces the session's earlier request, if that is still waiting. A session's requests take effect
-  /// view_interval_us apart, as its views. A request for the past also waits until a worker has opened
-  /// it; kHistoriesOpeningMax are opened at a time.
+  /// Replaces the session's earlier request, if that is still waiting. A session's requests take
+  /// effect view_interval_us apart, as its views. A request for the past also waits until a worker
+  /// has opened it; kHistoriesOpeningMax are opened at a time.
   [[nodiscard]] bool on_request(Viewer& viewer, const HistoryRequest& request, const Clocks& now);
   /// Carries out the session's newest request, unless it must wait: for the answer to the request
   /// before, for a worker, or because every state makes the whole view wanted again and so costs as
   /// much as a new view.
   [[nodiscard]] bool open_next(Viewer& viewer, const Clocks& now);
-  /// Handles the answer to WorldEnvironment::open_history() for a session: the end of the view, or the
-  /// reason of a failure.
+  /// Handles the answer to WorldEnvironment::open_history() for a session: the end of the view, or
+  /// the reason of a failure.
   [[nodiscard]] bool opened(Viewer& viewer, std::uint32_t request,
                             const Result<OpenedHistory, std::string>& opened, const Clocks& now);
   /// Handles the answer to WorldEnvironment::load_history_chunk(). `chunk` is null if it cannot be
@@ -38,8 +38,8 @@ class TimeTravel {
   [[nodiscard]] bool chunk_made(Viewer& viewer, HistoryNumber history, const ChunkKey& key,
                                 const ChunkPtr& chunk, const Clocks& now);
 
-  /// Counts the end of a request that a worker opened. Call it before opened(), or if the session has
-  /// left.
+  /// Counts the end of a request that a worker opened. Call it before opened(), or if the session
+  /// has left.
   void opening_ended() { --opening_; }
   /// Returns true if another request may be given to a worker.
   bool can_open() const { return opening_ < kHistoriesOpeningMax; }

@@ -1,5 +1,5 @@
-// Viewer: what an open session sees of the world, and what it was sent. Each record belongs to one part
-// of the ground.
+// Viewer: what an open session sees of the world, and what it was sent. Each record belongs to one
+// part of the ground.
 #pragma once
 #include <cstddef>
 #include <map>

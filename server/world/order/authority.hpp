@@ -66,8 +66,8 @@ class Authority {
   const WaitHistogram& edit_waits() const { return edit_waits_; }
   /// Adds the wait of an edit that another server has ordered for a player here.
   void add_edit_wait(TimeUs wait_us) { edit_waits_.add(wait_us); }
-  /// Advances the log's time, and orders the edits that EditQueue::take(large_room) returns. Returns
-  /// nullopt if there are none. Cost: O(runs + edits) for each touched chunk.
+  /// Advances the log's time, and orders the edits that EditQueue::take(large_room) returns.
+  /// Returns nullopt if there are none. Cost: O(runs + edits) for each touched chunk.
   std::optional<OrderedBatch> commit(const Clocks& now, std::uint64_t large_room = kAllLargeEdits);
 
   // A server that follows. It orders nothing itself.

@@ -30,8 +30,8 @@ struct EditOffer {
   TimeUs arrived_us = 0;  // an edit of a player: when it was accepted, by the server's steady clock
 };
 
-/// Returns the work of an edit: an upper bound of its bytes in a commit message, in which its chunks
-/// weigh more because each of them is swept. Cost: O(1); stroke: O(points).
+/// Returns the work of an edit: an upper bound of its bytes in a commit message, in which its
+/// chunks weigh more because each of them is swept. Cost: O(1); stroke: O(points).
 std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge);
 /// Returns true if an edit with this work waits for room: a large edit of a player.
 constexpr bool waits_for_room(std::size_t work, Cause cause) {

@@ -1,11 +1,11 @@
-// LargeEditPace: computes how much of the players' large edits the next commit may send. One paste of
-// 48 KB in front of 40 players is 2 MB to send, and it costs each of these players the time to apply
-// it. A budget that was saved up pays for several of them at once, and attackers have many keys. So
-// the work of large edits (edit_work()), times the sessions that see them, is at most kPerSecond.
-// Large edits beyond it wait in EditQueue, and small edits of other clients overtake them.
-// Method: a balance of time grows with the clock. What is sent costs the time that it takes at
-// kPerSecond. Large edits are ordered while the balance is above zero.
-// Pure: times are arguments (microseconds of one steady clock). One thread.
+// LargeEditPace: computes how much of the players' large edits the next commit may send. One paste
+// of 48 KB in front of 40 players is 2 MB to send, and it costs each of these players the time to
+// apply it. A budget that was saved up pays for several of them at once, and attackers have many
+// keys. So the work of large edits (edit_work()), times the sessions that see them, is at most
+// kPerSecond. Large edits beyond it wait in EditQueue, and small edits of other clients overtake
+// them. Method: a balance of time grows with the clock. What is sent costs the time that it takes
+// at kPerSecond. Large edits are ordered while the balance is above zero. Pure: times are arguments
+// (microseconds of one steady clock). One thread.
 #pragma once
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
-// LogFeed: the log as it is appended: to the log writer, and to the servers that follow this one. It
-// keeps the parts that may not be durable, for servers that begin to follow.
-// Bounds: a server whose send queue is full gets nothing more (is_full()). It connects again, and reads
-// what it has missed from the database.
+// LogFeed: the log as it is appended: to the log writer, and to the servers that follow this one.
+// It keeps the parts that may not be durable, for servers that begin to follow. Bounds: a server
+// whose send queue is full gets nothing more (is_full()). It connects again, and reads what it has
+// missed from the database.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -21,7 +21,8 @@ class LogFeed {
   LogFeed(WorldEnvironment& environment, bool may_be_followed)
       : environment_(environment), may_be_followed_(may_be_followed) {}
 
-  // What is appended. Each call queues it for the log writer and sends it to the servers that follow.
+  // What is appended. Each call queues it for the log writer and sends it to the servers that
+  // follow.
   void append(std::vector<PlayerRow> players, OrderedBatch& batch);
   /// Rows of players without records.
   void append_players(Epoch epoch, std::vector<PlayerRow> players);

@@ -51,7 +51,8 @@ class OperationWatermarks {
     return found == instance->second.reasons.end() ? RejectReason::already_resolved : found->second;
   }
   /// Resolves an operation as accepted. Never lowers a watermark. A rejection of the operation is
-  /// dropped: another owner of the world has ordered an edit whose rejection never reached the client.
+  /// dropped: another owner of the world has ordered an edit whose rejection never reached the
+  /// client.
   void raise(const OperationId& op) {
     ClientSequence& mark = marks_[{op.author, op.instance}];
     mark = std::max(mark, op.seq);

@@ -42,8 +42,8 @@ Order::Order(const WorldConfig& config, const WorldStart& start, WorldEnvironmen
   std::memcpy(&own_instance_, instance.data(), sizeof own_instance_);
 }
 
-/// Returns the work of large edits that the next commit may have if every session sees them. There is no
-/// room while another server may own the world.
+/// Returns the work of large edits that the next commit may have if every session sees them. There
+/// is no room while another server may own the world.
 std::uint64_t Order::large_room(std::size_t sessions, TimeUs now_us) const {
   if (!environment_.owns_world()) return 0;
   return large_edits_.room(now_us) / std::max<std::size_t>(1, sessions);

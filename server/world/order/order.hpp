@@ -36,8 +36,8 @@ enum class LargeEdits { paced, all };
 
 class Order {
  public:
-  /// `config`, `environment` and `counters` must outlive the object. `random` gives the client instance
-  /// of the server's own edits.
+  /// `config`, `environment` and `counters` must outlive the object. `random` gives the client
+  /// instance of the server's own edits.
   Order(const WorldConfig& config, const WorldStart& start, WorldEnvironment& environment,
         WorldCounters& counters, const RandomBytes& random);
 
@@ -71,10 +71,11 @@ class Order {
   bool has_waiting_edit(AuthorId author) const { return authority_.queue().has_of(author); }
   /// Returns true if commit() would order edits that are paced.
   bool has_ready_edits(std::size_t sessions, TimeUs now_us) const;
-  /// Orders the queued edits of one commit. Returns nullopt if no edit is queued that may be ordered
-  /// now. `sessions`: the number of sessions that may see a large edit.
+  /// Orders the queued edits of one commit. Returns nullopt if no edit is queued that may be
+  /// ordered now. `sessions`: the number of sessions that may see a large edit.
   std::optional<OrderedBatch> commit(LargeEdits large, std::size_t sessions, const Clocks& now);
-  /// Appends the materials of these records, which were ordered just now. Returns true if there are any.
+  /// Appends the materials of these records, which were ordered just now. Returns true if there are
+  /// any.
   bool apply_materials(const std::vector<EditRecord>& records);
   /// Returns the record that added materials last in this run, or 0.
   Sequence newest_materials() const { return materials_seq_; }
@@ -102,8 +103,8 @@ class Order {
   bool log_accepts() const { return !is_stopping() && !ownership_.is(OwnershipState::log_lost); }
   /// Returns true if another server orders the edits, or is to do so.
   bool is_following() const { return !owns(ownership_.state()); }
-  /// Returns false if this server orders no edits: it stops, its log has failed, or another server owns
-  /// the world.
+  /// Returns false if this server orders no edits: it stops, its log has failed, or another server
+  /// owns the world.
   bool accepts_edits() const { return log_accepts() && !is_following(); }
   /// Returns true if this server is the owner, and no other one can be it.
   bool owns_world() const { return !is_following() && environment_.owns_world(); }
@@ -111,8 +112,8 @@ class Order {
   // Players.
   /// Reports that a session of the author has ended, or that the author got a number in vain.
   void author_left(AuthorId author) { gone_authors_.push_back(author); }
-  /// Removes authors that have left without a row, except those in `present`. Does nothing for an author
-  /// of whom an edit is queued.
+  /// Removes authors that have left without a row, except those in `present`. Does nothing for an
+  /// author of whom an edit is queued.
   void forget_gone_authors(const std::set<AuthorId>& present);
   bool has_gone_authors() const { return !gone_authors_.empty(); }
 
@@ -121,7 +122,8 @@ class Order {
   std::vector<ChunkKey> step_checkpointer(const Clocks& now);
   void snapshots_saved() { checkpointer_.saved(chunks()); }
   Sequence checkpoint() const { return checkpointer_.checkpoint(); }
-  /// Returns the number of chunks with edits that only the log has. Quarantined chunks do not count.
+  /// Returns the number of chunks with edits that only the log has. Quarantined chunks do not
+  /// count.
   std::size_t dirty_chunks() const { return chunks().dirty().size(); }
   /// Cost: O(1).
   WorldMemory memory() const;

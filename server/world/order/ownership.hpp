@@ -7,14 +7,14 @@
 //   lose_log()       owning -> log_lost,  handing_over -> handover_failed
 //   find_fork()      following, taking_over -> forked
 //   fail_takeover()  taking_over -> takeover_failed
-//
-// The lease of the world (server/store/postgres_lease.hpp) goes with it: a server has the lease while it
-// owns the world, hands it over, or takes it over. The lease alone keeps two servers from writing. A
-// server whose lease may have run out still owns the world here, and orders nothing meanwhile
-// (WorldEnvironment::owns_world()). How a server is connected with the owner is no part of this state
-// (Following::Link), and neither is whether the server stops.
-// Threads: state() any. Transitions are made one at a time: on the world strand, or by the caller of a
-// takeover or handover while the strand makes none.
+//  The lease of the world (server/store/postgres_lease.hpp) goes with it: a server has the lease
+// while it owns the world, hands it over, or takes it over. The lease alone keeps two servers from
+// writing. A server whose lease may have run out still owns the world here, and orders nothing
+// meanwhile (WorldEnvironment::owns_world()). How a server is connected with the owner is no part
+// of this state (Following::Link), and neither is whether the server stops.
+// Threads: state() any.
+// Transitions are made one at a time: on the world strand, or by the caller of a takeover or
+// handover while the strand makes none.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -33,8 +33,8 @@ enum class OwnershipState : std::uint8_t {
   takeover_failed,  // it had the lease, and the database failed
 };
 
-/// Returns true if no other server orders edits, as far as this server knows: it owns the world, or has
-/// lost its log. Otherwise what players do waits for an owner, or goes to it.
+/// Returns true if no other server orders edits, as far as this server knows: it owns the world, or
+/// has lost its log. Otherwise what players do waits for an owner, or goes to it.
 constexpr bool owns(OwnershipState state) {
   return state == OwnershipState::owning || state == OwnershipState::log_lost;
 }
@@ -51,21 +51,22 @@ class Ownership {
   OwnershipState state() const { return state_.load(); }
   bool is(OwnershipState state) const { return state_.load() == state; }
 
-  // Each transition requires that the server is in a state from which it leads, as the table above says.
+  // Each transition requires that the server is in a state from which it leads, as the table above
+  // says.
   /// The server starts while another one owns the world. No other transition may come before it.
   void follow();
   /// The server orders nothing from now on, because another one is to take the world over.
   void begin_handover();
   /// The log is complete, and the caller gives the lease up.
   void end_handover();
-  /// The server has the lease. A server that has forked tries as well, because the log decides whether
-  /// it has forked: its owner may be the one that was wrong.
+  /// The server has the lease. A server that has forked tries as well, because the log decides
+  /// whether it has forked: its owner may be the one that was wrong.
   void begin_takeover();
   /// The log is the one that this server has.
   void end_takeover();
 
-  /// The log cannot be written any more. In a state without a log nothing changes: the report of a log
-  /// that has ended may come late.
+  /// The log cannot be written any more. In a state without a log nothing changes: the report of a
+  /// log that has ended may come late.
   void lose_log();
   /// The log has other edits than this server. It may be found again.
   void find_fork();

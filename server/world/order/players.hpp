@@ -38,8 +38,8 @@ class Players {
   /// Gives no number up to `author_max` to a new key. The rows of such numbers may be lost. Call it
   /// before the first enter().
   void begin_above(AuthorId author_max) { next_ = std::max(next_, author_max + 1); }
-  /// Adds a player to whom another server has given the number. Returns false if another key has it, or
-  /// the key has another number.
+  /// Adds a player to whom another server has given the number. Returns false if another key has
+  /// it, or the key has another number.
   bool adopt(const PlayerRow& player) {
     const auto named = by_key_.find(player.key);
     if (named != by_key_.end()) return named->second == player.author;

@@ -1,6 +1,6 @@
-// Receipts: what each session was told of its edits and of the log: rejects, how far the log is durable,
-// its epoch, and new materials.
-// Bounds: a session with too many rejects that do not fit its queue is closed.
+// Receipts: what each session was told of its edits and of the log: rejects, how far the log is
+// durable, its epoch, and new materials. Bounds: a session with too many rejects that do not fit
+// its queue is closed.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -36,19 +36,20 @@ class Receipts {
 
   // The durable watermark.
   Durable durable() const { return {order_.epoch(), order_.durable(), order_.is_disk_full()}; }
-  /// The session's client has an edit up to `seq`, and gets the watermark at once until it covers that.
+  /// The session's client has an edit up to `seq`, and gets the watermark at once until it covers
+  /// that.
   void await(const Session& session, Sequence seq);
   /// Sends the watermark to the sessions whose client has edits that are not yet acknowledged.
   void send_durable_to_authors();
-  /// Sends the watermark to every session, once in durable_interval_us. Sessions without edits need it
-  /// only to resume, so they do not get a message for every group commit of the log.
+  /// Sends the watermark to every session, once in durable_interval_us. Sessions without edits need
+  /// it only to resume, so they do not get a message for every group commit of the log.
   void broadcast_durable(const Clocks& now);
   /// The next broadcast_durable() sends it.
   void hurry_durable() { durable_due_us_ = 0; }
 
   // The epoch.
-  /// Tells an open session of the epoch, unless it knows it. Closes the session if its client cannot go
-  /// on in another epoch.
+  /// Tells an open session of the epoch, unless it knows it. Closes the session if its client
+  /// cannot go on in another epoch.
   void send_epoch(Session& session);
   void send_epoch_to_all();
 
@@ -67,8 +68,9 @@ class Receipts {
     Sequence awaits_durable = 0;  // of its client's last edit
     std::vector<Reject> rejects;  // that did not fit the session's queue, in order
   };
-  /// Sends the watermark, which `encoded` holds, unless the session has it. Does nothing while rejects
-  /// are pending, because they precede it. If the session's queue is full, a later call sends it.
+  /// Sends the watermark, which `encoded` holds, unless the session has it. Does nothing while
+  /// rejects are pending, because they precede it. If the session's queue is full, a later call
+  /// sends it.
   void send_durable(const Session& session, Told& told, const EncodedMessage& encoded);
 
   const WorldConfig& config_;

@@ -1,7 +1,7 @@
 // UnwrittenLog: the parts of the log that the owner has sent to the log writer, and that may not be
-// durable. A server that begins to follow gets them from here, and reads the others from the database.
-// Bounds: the records are those of the log's queue, and their memory is counted as theirs is
-// (WorldMemory). kUnwrittenRowsMax parts without records.
+// durable. A server that begins to follow gets them from here, and reads the others from the
+// database. Bounds: the records are those of the log's queue, and their memory is counted as theirs
+// is (WorldMemory). kUnwrittenRowsMax parts without records.
 // Thread: the world strand.
 #pragma once
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace runstone {
 
-/// Rows without records are known to be durable when a later record is. They are written within some
-/// 50 ms, so of this many the oldest ones are written.
+/// Rows without records are known to be durable when a later record is. They are written within
+/// some 50 ms, so of this many the oldest ones are written.
 inline constexpr std::size_t kUnwrittenRowsMax = 1'024;
 
 class UnwrittenLog {

@@ -1,7 +1,7 @@
 // WaitHistogram: how many edits waited how long on the server: from the moment in which the world
-// strand handled the request to the moment in which it ordered the edit, whose commit is then sent at
-// once. The network's time is not in it. At a server that follows the owner of the world, an edit waits
-// until the owner's answer has arrived, so the time between the servers is in it.
+// strand handled the request to the moment in which it ordered the edit, whose commit is then sent
+// at once. The network's time is not in it. At a server that follows the owner of the world, an
+// edit waits until the owner's answer has arrived, so the time between the servers is in it.
 // Thread: the world strand.
 #pragma once
 #include <array>

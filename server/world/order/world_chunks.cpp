@@ -14,8 +14,8 @@ constexpr std::size_t kStackOverheadBytes = 256;  // an estimate
 // Edits whose room the empty stack of a resident chunk keeps for the next ones.
 constexpr std::size_t kStackKeptMax = 16;
 
-// Returns the memory that an allocation takes: glibc adds a word, rounds up to 16 bytes and gives no
-// less than 32.
+// Returns the memory that an allocation takes: glibc adds a word, rounds up to 16 bytes and gives
+// no less than 32.
 constexpr std::size_t allocated(std::size_t bytes) {
   return bytes == 0 ? 0 : std::max<std::size_t>(32, (bytes + sizeof(void*) + 15) / 16 * 16);
 }

@@ -60,8 +60,8 @@ TimeUs Chat::repeat_wait_us(AuthorId author, const std::string& text, TimeUs now
   return wait_us;
 }
 
-/// Takes the price of a line from the budgets of the player, the address and the server. Returns the
-/// refusal, and takes nothing, if one of them is used up.
+/// Takes the price of a line from the budgets of the player, the address and the server. Returns
+/// the refusal, and takes nothing, if one of them is used up.
 std::optional<Chat::Refusal> Chat::pay(const Session& session, TimeUs now_us) {
   if (const TimeUs wait_us = state_.all.wait_us(1, now_us); wait_us > 0)
     return Refusal{"too many players write at once" + again_in(wait_us), "too many at once"};

@@ -23,14 +23,15 @@ class Chat {
   Chat(const WorldConfig& config, const WorldStart& start, WorldEnvironment& environment,
        Sessions& sessions, Order& order, Rights& rights);
 
-  /// Queues the line for everybody, or answers with the reason why it is not passed on. A session gets
-  /// few such answers a second. Each refused line counts as more bytes read than it has.
+  /// Queues the line for everybody, or answers with the reason why it is not passed on. A session
+  /// gets few such answers a second. Each refused line counts as more bytes read than it has.
   void on_line(Session& session, const ChatRequest& request, const Clocks& now);
-  /// Queues a line of the host. `by` is the key of the player who gave the command; zeros: the console.
-  /// Returns the number of sessions that get the line. Requires a text that chat_text() returned.
+  /// Queues a line of the host. `by` is the key of the player who gave the command; zeros: the
+  /// console. Returns the number of sessions that get the line. Requires a text that chat_text()
+  /// returned.
   std::size_t say(const std::string& text, const PublicKey& by, const Clocks& now);
-  /// Sends one session a line of the host, which nobody else gets and no log keeps. It is skipped if
-  /// the session reads no chat or has no room. Requires a text that chat_text() returned.
+  /// Sends one session a line of the host, which nobody else gets and no log keeps. It is skipped
+  /// if the session reads no chat or has no room. Requires a text that chat_text() returned.
   void tell(const Session& session, const std::string& text, const Clocks& now);
   /// Sends a session that has opened the newest lines, and then the message of the day.
   void send_recent(const Session& session, const Clocks& now);

@@ -22,8 +22,8 @@ inline constexpr std::uint64_t kChatLinesPerSecond = 20, kChatLinesAtOnce = 60;
 /// A line costs so much, of chat_per_minute units a second.
 inline constexpr std::uint64_t kChatPrice = 60;
 
-/// Returns the budget of a player who may write so many lines a minute, a few of them at once; 0: no
-/// limit.
+/// Returns the budget of a player who may write so many lines a minute, a few of them at once; 0:
+/// no limit.
 constexpr Budget chat_budget(std::uint64_t per_minute) {
   constexpr std::uint64_t kAtOnceMax = 10;
   return {per_minute, kChatPrice * (per_minute < kAtOnceMax ? per_minute : kAtOnceMax)};

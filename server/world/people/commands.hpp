@@ -1,5 +1,6 @@
-// Commands: accepts a client's command and sends its output. WorldEnvironment carries it out. A client
-// has at most one command under way and may give kCommandsPerSecond a second.
+// Commands: accepts a client's command and sends its output. WorldEnvironment carries it out. A
+// client has at most one command under way and may give kCommandsPerSecond a second.
+//
 // Thread: the world strand.
 #pragma once
 #include <map>
@@ -23,15 +24,15 @@ class Commands {
 
   /// Carries out the command, or rejects it with a line of output.
   void on_command(Session& session, const CommandRequest& request, const Clocks& now);
-  /// Sends output of the session's command under way, as lines. `is_done` ends the command. Does nothing
-  /// if the session is closed or has no command under way.
+  /// Sends output of the session's command under way, as lines. `is_done` ends the command. Does
+  /// nothing if the session is closed or has no command under way.
   void answer(SessionId session, const std::vector<std::string>& lines, bool is_done, bool is_ok);
   /// Returns the view in which a session shows the changes of a rollback before it is applied, or
   /// nullopt if there is no such session, it has no view, or its client cannot show them.
   std::optional<View> restore_preview_view(SessionId session) const;
-  /// Sends what a rollback would change, for the session's command under way. Does nothing if there is
-  /// none, or if the client cannot show it. If the session's queue is full, the client gets the text
-  /// of the answer alone.
+  /// Sends what a rollback would change, for the session's command under way. Does nothing if there
+  /// is none, or if the client cannot show it. If the session's queue is full, the client gets the
+  /// text of the answer alone.
   void show_restore(SessionId session, RestorePreview preview);
   void forget(SessionId session) { of_.erase(session); }
 

@@ -1,5 +1,5 @@
-// Credentials: what a player brings to get a role or a key: an invite, the world's password, the code of
-// a key that was left for another device. Guesses are charged to the player's address.
+// Credentials: what a player brings to get a role or a key: an invite, the world's password, the
+// code of a key that was left for another device. Guesses are charged to the player's address.
 // Thread: the world strand.
 #pragma once
 #include <optional>
@@ -11,9 +11,9 @@
 
 namespace runstone {
 
-/// A wrong password or device code costs its address so much of kGuessBudget, and so does a key that
-/// is left for another device: ten at once, then one a minute. People mistype less often, and whoever
-/// guesses gets nowhere. A setting would only serve to weaken it.
+/// A wrong password or device code costs its address so much of kGuessBudget, and so does a key
+/// that is left for another device: ten at once, then one a minute. People mistype less often, and
+/// whoever guesses gets nowhere. A setting would only serve to weaken it.
 inline constexpr std::uint64_t kGuessPrice = 60;
 inline constexpr Budget kGuessBudget{1, 10 * kGuessPrice};
 /// A player who joins with the password for the first time costs the address one of these: a school
@@ -33,13 +33,13 @@ class Credentials {
   Credentials(const WorldConfig& config, Order& order, Rights& rights, Changes& changes)
       : config_(config), order_(order), rights_(rights), changes_(changes) {}
 
-  /// Gives an authenticated player without a granted role the role of an invite or, if there is none, of
-  /// the password. Returns why nothing was granted, as a sentence, or nullopt. The session may be closed
-  /// on return, if the role may not see the world.
+  /// Gives an authenticated player without a granted role the role of an invite or, if there is
+  /// none, of the password. Returns why nothing was granted, as a sentence, or nullopt. The session
+  /// may be closed on return, if the role may not see the world.
   std::optional<std::string> accept(const Session& session, const JoinCredentials& brought,
                                     const Clocks& now);
-  /// Removes the sealed key of a slot and returns it, or returns why the session ends: there is none,
-  /// which counts as a guess, or the address has guessed too often.
+  /// Removes the sealed key of a slot and returns it, or returns why the session ends: there is
+  /// none, which counts as a guess, or the address has guessed too often.
   Result<Bytes, Refusal> take_key(const Session& session, const KeySlot& slot, const Clocks& now);
   /// Keeps a sealed key of the player. Returns why not, or nullopt.
   std::optional<std::string> leave_key(const Session& session, const KeyDeposit& deposit,

@@ -10,8 +10,8 @@
 namespace runstone {
 namespace {
 
-// Bytes that count as read for each rejection, so that messages that gain nothing do not keep the world
-// busy: with the default `read_kib_per_second`, a session gets some 220 rejections a second.
+// Bytes that count as read for each rejection, so that messages that gain nothing do not keep the
+// world busy: with the default `read_kib_per_second`, a session gets some 220 rejections a second.
 constexpr std::size_t kRejectionBytes = 4'096;
 constexpr const char* kActionRefused = "an earlier edit of the same action was refused";
 

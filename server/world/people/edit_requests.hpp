@@ -1,5 +1,6 @@
-// EditRequests: decides about the edits of players: each is queued for the next commit, or answered with
-// a reject. An edit passes a list of checks, and the first refusal wins.
+// EditRequests: decides about the edits of players: each is queued for the next commit, or answered
+// with a reject. An edit passes a list of checks, and the first refusal wins.
+//
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -25,10 +26,12 @@ class EditRequests {
         rights_(rights),
         quotas_(quotas) {}
 
-  /// Queues the edit for the next commit, or answers with a reject. Returns true if it was accepted.
+  /// Queues the edit for the next commit, or answers with a reject. Returns true if it was
+  /// accepted.
   bool on_edit(Session& session, const EditRequest& request, const Clocks& now);
-  /// Rejects an edit that no server accepts, for a server that passes edits on: it does not decode, or
-  /// an earlier edit of its action was rejected here for that reason. Returns true if it was rejected.
+  /// Rejects an edit that no server accepts, for a server that passes edits on: it does not decode,
+  /// or an earlier edit of its action was rejected here for that reason. Returns true if it was
+  /// rejected.
   bool reject_invalid(Session& session, const EditRequest& request);
   void forget(SessionId session) { refused_.erase(session); }
 
@@ -58,8 +61,8 @@ class EditRequests {
   void refuse(const Attempt& attempt, Refusal refusal);
   const char* why_busy(const Attempt& attempt) const;
 
-  /// The last action of which an edit was refused, and why: its later edits are refused as well. A move
-  /// then does not clear a place whose copy was refused.
+  /// The last action of which an edit was refused, and why: its later edits are refused as well. A
+  /// move then does not clear a place whose copy was refused.
   struct RefusedAction {
     ClientSequence action = 0;
     RejectReason reason = RejectReason::busy;

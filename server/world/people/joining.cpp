@@ -21,8 +21,8 @@ ChunkEncoding choose_encoding(const WorldConfig& config, std::uint8_t offered) {
   return ChunkEncoding::coded;
 }
 
-/// Tiles are `coded` where chunks are `packed`, if the client reads that: it takes fewer bytes and more
-/// time to read. A player waits for chunks near the eye, and less for far ground.
+/// Tiles are `coded` where chunks are `packed`, if the client reads that: it takes fewer bytes and
+/// more time to read. A player waits for chunks near the eye, and less for far ground.
 ChunkEncoding choose_tile_encoding(ChunkEncoding of_chunks, std::uint8_t offered) {
   const bool is_coded = of_chunks == ChunkEncoding::packed && offers(offered, ChunkEncoding::coded);
   return is_coded ? ChunkEncoding::coded : of_chunks;
@@ -99,8 +99,8 @@ bool Joining::close_if_banned(Session& session) {
   return true;
 }
 
-/// Closes a session whose player may not see the world. An invite or a password is used only if that
-/// helps: a player who has a role keeps it.
+/// Closes a session whose player may not see the world. An invite or a password is used only if
+/// that helps: a player who has a role keeps it.
 bool Joining::close_if_not_admitted(Session& session, const JoinCredentials& brought,
                                     const Clocks& now) {
   const auto no_role = credentials_.accept(session, brought, now);
@@ -146,8 +146,8 @@ bool Joining::is_server(const Session& session) const {
   return session.key == world_.config.server_keys.public_key && session.has(kFeatureServers);
 }
 
-/// Makes the session one of the world, under this author number. `is_listed`: this server makes the list
-/// of players.
+/// Makes the session one of the world, under this author number. `is_listed`: this server makes the
+/// list of players.
 void Joining::enter(Session& session, AuthorId author, bool is_listed, const Clocks& now) {
   world_.sessions.enter(session, author, now.steady_us);
   world_.ground.add(session);
@@ -170,8 +170,8 @@ bool Joining::send_accepted(Session& session, ClientSequence resolved) {
 }
 
 void Joining::open(Session& session, const Clocks& now) {
-  // Its player joined at another server, and has been there since before this server owned the world, or
-  // since before the connection with that server broke.
+  // Its player joined at another server, and has been there since before this server owned the
+  // world, or since before the connection with that server broke.
   const bool goes_on = session.author != 0;
   if (Session* const other = other_session_of(session))
     world_.sessions.close(*other, GoodbyeReason::already_connected,

@@ -1,5 +1,5 @@
-// Joining: the handshake. Hello is answered with welcome, client auth with session accepted. The server
-// sends nothing of the world before session accepted.
+// Joining: the handshake. Hello is answered with welcome, client auth with session accepted. The
+// server sends nothing of the world before session accepted.
 // Thread: the world strand.
 #pragma once
 #include <map>
@@ -38,20 +38,21 @@ class Joining {
   };
   Joining(const World& world, RandomBytes random);
 
-  /// Sends a signed welcome, or closes the session: wrong_protocol (the text names both versions) or
-  /// server_full, name_refused or not_admitted.
+  /// Sends a signed welcome, or closes the session: wrong_protocol (the text names both versions)
+  /// or server_full, name_refused or not_admitted.
   void on_hello(Session& session, const Hello& hello);
   /// Returns true if the client auth proves the session's key. Otherwise closes the session.
   bool proves_key(Session& session, const ClientAuth& auth);
   /// Returns true for another server of the world. Requires that the features are in force.
   bool is_server(const Session& session) const;
-  /// Lets an authenticated player in, at once or when the claim of the name is on disk, or closes the
-  /// session: not_authenticated, server_full, name_refused or not_admitted. Closes an older session of
-  /// the key and client instance (already_connected). The signature shows that both are the same
-  /// client, and the older connection is usually dead without a sign of it.
+  /// Lets an authenticated player in, at once or when the claim of the name is on disk, or closes
+  /// the session: not_authenticated, server_full, name_refused or not_admitted. Closes an older
+  /// session of the key and client instance (already_connected). The signature shows that both are
+  /// the same client, and the older connection is usually dead without a sign of it.
   void let_in(Session& session, const JoinCredentials& brought, const Clocks& now);
-  /// Handles the session of a player at another server, which has authenticated the player: lets the
-  /// player in, or closes the session. A session of a player whom an earlier owner let in goes on.
+  /// Handles the session of a player at another server, which has authenticated the player: lets
+  /// the player in, or closes the session. A session of a player whom an earlier owner let in goes
+  /// on.
   void join_relayed(Session& session, const RelayOpen& open, const Clocks& now);
   /// Opens an authenticated session whose player the owner of the world has let in.
   void open_let_in(Session& session, const SessionAccepted& accepted, const Clocks& now);
@@ -65,12 +66,12 @@ class Joining {
   /// Notes that the key is proved, and the rest is decided elsewhere or later.
   void set_authenticated(Session& session);
 
-  /// Sends the sealed key of a slot and removes it, or closes the session: not_admitted, or flooding
-  /// after too many requests for empty slots. Whoever has the code may take the key, so the player needs
-  /// no rights. The session ends in any case.
+  /// Sends the sealed key of a slot and removes it, or closes the session: not_admitted, or
+  /// flooding after too many requests for empty slots. Whoever has the code may take the key, so
+  /// the player needs no rights. The session ends in any case.
   void on_key_request(Session& session, const KeyRequest& request, const Clocks& now);
-  /// Keeps a sealed key of a player who may join, or answers why not. The session ends in any case, and
-  /// closes with not_authenticated or not_admitted if the player may not join.
+  /// Keeps a sealed key of a player who may join, or answers why not. The session ends in any case,
+  /// and closes with not_authenticated or not_admitted if the player may not join.
   void on_key_deposit(Session& session, const KeyDeposit& deposit, const Clocks& now);
   void forget(SessionId session) { of_.erase(session); }
 

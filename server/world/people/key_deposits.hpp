@@ -1,7 +1,8 @@
-// KeyDeposits: the sealed keys that players leave for another device (docs/protocol.md). They are in
-// memory only, for kDepositUs, and each can be taken once. Nobody can open them without the code.
-// Bounds: kDepositsMax in all, kDepositsPerAddress of one address, one of a key: a new one replaces
-// it. Thread: the world strand. Times are arguments (microseconds of one steady clock).
+// KeyDeposits: the sealed keys that players leave for another device (docs/protocol.md). They are
+// in memory only, for kDepositUs, and each can be taken once. Nobody can open them without the
+// code. Bounds: kDepositsMax in all, kDepositsPerAddress of one address, one of a key: a new one
+// replaces it.
+// Thread: the world strand. Times are arguments (microseconds of one steady clock).
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -43,7 +44,8 @@ class KeyDeposits {
   }
 
   /// Removes the key of a slot and returns it, or returns nullopt if there is none. All slots are
-  /// compared, each in full, so the time says nothing about those that are in use. Cost: O(deposits).
+  /// compared, each in full, so the time says nothing about those that are in use. Cost:
+  /// O(deposits).
   std::optional<Bytes> take(const KeySlot& slot, TimeUs now_us) {
     const auto found = find(slot);
     if (found == kept_.end()) return std::nullopt;

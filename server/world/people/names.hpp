@@ -10,7 +10,8 @@
 
 namespace runstone {
 
-/// A claim of a name costs its address so much, of names_per_address units a second: an hour's worth.
+/// A claim of a name costs its address so much, of names_per_address units a second: an hour's
+/// worth.
 inline constexpr std::uint64_t kClaimPrice = 3'600;
 
 class Names {

@@ -1,5 +1,5 @@
-// People: the players: how they join, under which names, who is here, what they write, and what they ask
-// for. Its parts stand in files of their own.
+// People: the players: how they join, under which names, who is here, what they write, and what
+// they ask for. Its parts stand in files of their own.
 // Thread: the world strand.
 #pragma once
 #include <string>

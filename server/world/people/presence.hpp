@@ -29,8 +29,8 @@ class Presence {
   void forget(const Session& session);
   /// Stores the player's pose.
   void on_move(Session& session, const Move& move, const Clocks& now);
-  /// Sends the changes of the player list since the last call to every session, and the full list to
-  /// sessions that have none. A session whose queue is full gets the full list on a later call.
+  /// Sends the changes of the player list since the last call to every session, and the full list
+  /// to sessions that have none. A session whose queue is full gets the full list on a later call.
   void broadcast_player_list();
   /// Sends changed poses to every session if the interval has passed, round robin over the players.
   void broadcast_poses(const Clocks& now);

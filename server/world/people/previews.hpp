@@ -1,5 +1,5 @@
-// Previews: passes on what a player is about to do to those who see the place. A preview is in
-// no log and changes nothing. It is dropped, not queued, where it does not fit: the sender's next one
+// Previews: passes on what a player is about to do to those who see the place. A preview is in no
+// log and changes nothing. It is dropped, not queued, where it does not fit: the sender's next one
 // replaces it.
 // Thread: the world strand.
 #pragma once
@@ -25,11 +25,11 @@ class Previews {
       : config_(config), sessions_(sessions), order_(order), receipts_(receipts), ground_(ground) {}
 
   /// Sends the preview to the sessions that see, together with the sender, a chunk that it touches:
-  /// sessions with the feature that are in the live world, whose queue is not full, of other players.
-  /// Sessions that got the sender's last preview and do not get this one are told that it is gone. A
-  /// preview that the server would refuse as an edit, because of reach, heights, size or materials, is
-  /// passed on as none; rights are not checked. What is passed on counts as read from the sender.
-  /// Cost: O(touched chunks + their subscribers).
+  /// sessions with the feature that are in the live world, whose queue is not full, of other
+  /// players. Sessions that got the sender's last preview and do not get this one are told that it
+  /// is gone. A preview that the server would refuse as an edit, because of reach, heights, size or
+  /// materials, is passed on as none; rights are not checked. What is passed on counts as read from
+  /// the sender. Cost: O(touched chunks + their subscribers).
   void on_share(Session& session, const PreviewShare& share, const Clocks& now);
   void forget(SessionId session) { of_.erase(session); }
 

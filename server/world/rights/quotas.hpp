@@ -1,5 +1,5 @@
-// Quotas: how much a player may use, and who pays for it. The settings give each player the same; a role
-// may give its players another amount.
+// Quotas: how much a player may use, and who pays for it. The settings give each player the same; a
+// role may give its players another amount.
 // Thread: the world strand.
 #pragma once
 #include <cstdint>
@@ -28,8 +28,8 @@ class Quotas {
 
   /// Returns who pays for the chunks that are loaded for a session.
   Payer load_payer(const Session& session) const;
-  /// Takes the price of a chunk that is generated or read from the budgets of the session's player and
-  /// address. Returns false, and takes nothing, if one of them is used up.
+  /// Takes the price of a chunk that is generated or read from the budgets of the session's player
+  /// and address. Returns false, and takes nothing, if one of them is used up.
   bool pay_load(const Session& session, const Clocks& now);
   /// Takes the price of chunks that were generated or read already (BudgetLedger::owe()).
   void owe_loads(const Payer& payer, std::uint64_t chunks, TimeUs now_us) {

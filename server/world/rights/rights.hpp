@@ -1,5 +1,5 @@
-// Rights: what the rights of the world allow its players. The server's setting `operators` names keys
-// that have every right, whatever the log says. Changes are made in server/world/commit.
+// Rights: what the rights of the world allow its players. The server's setting `operators` names
+// keys that have every right, whatever the log says. Changes are made in server/world/commit.
 // Thread: the world strand.
 #pragma once
 #include <cstdint>
@@ -23,8 +23,8 @@ class Rights {
          Sessions& sessions);
 
   const RightsState& state() const { return state_; }
-  /// Returns the time by which restrictions end (UTC): that of the log, which a wrong clock does not set
-  /// back.
+  /// Returns the time by which restrictions end (UTC): that of the log, which a wrong clock does
+  /// not set back.
   TimeUs time() const { return order_.authority().log_clock().time(); }
   /// Returns the sequence of the last change of rights in this run, or 0.
   Sequence newest() const { return newest_; }
@@ -44,19 +44,20 @@ class Rights {
   std::optional<std::string> freeze_text(const PublicKey& key) const;
   /// Why the player may not write to the others: a mute with its reason and end, or the role.
   std::optional<std::string> chat_refusal(const PublicKey& key) const;
-  /// Why nobody with this key may join from this address, for goodbye not_admitted. Administrators may
-  /// join from everywhere, so that no ban of addresses locks them out.
+  /// Why nobody with this key may join from this address, for goodbye not_admitted. Administrators
+  /// may join from everywhere, so that no ban of addresses locks them out.
   std::optional<std::string> address_refusal(const PublicKey& key, AddressBlock address) const;
-  /// Why the player may not join from this address: address_refusal(), a ban, or the role may not see
-  /// the world.
+  /// Why the player may not join from this address: address_refusal(), a ban, or the role may not
+  /// see the world.
   std::optional<std::string> join_refusal(const PublicKey& key, AddressBlock address) const;
   /// Why the player may not make the edit, for reject not_permitted. Requires a valid edit. Cost:
   /// RightsState::decide_edit().
   std::optional<std::string> edit_refusal(const PublicKey& key, const EditDescriptor& edit) const;
   /// Why the author may not make the edit. The server (0) may make every edit.
   std::optional<std::string> edit_refusal(AuthorId author, const EditDescriptor& edit) const;
-  /// Why the change may not be made: why_refused(), no player acts on an operator, and no player but an
-  /// administrator bans an address from which somebody is here on whom that player may not act.
+  /// Why the change may not be made: why_refused(), no player acts on an operator, and no player
+  /// but an administrator bans an address from which somebody is here on whom that player may not
+  /// act.
   std::optional<std::string> change_refusal(const RightsChange& change,
                                             const RightsActor& actor) const;
 

@@ -19,8 +19,8 @@ struct Session {
   SessionStage stage = SessionStage::greeting;
   /// It gets nothing any more, and is removed at the end of the task (Sessions::close()).
   bool is_closed = false;
-  /// The player has proved the key. The session opens when the claim of its name is on disk, or when the
-  /// owner of the world lets the player in.
+  /// The player has proved the key. The session opens when the claim of its name is on disk, or
+  /// when the owner of the world lets the player in.
   bool is_authenticated = false;
   /// The server that owns the world decides whether the player may join.
   bool awaits_owner = false;

@@ -1,6 +1,7 @@
 // SessionOutput: sends to the sessions of players, wherever they are connected: here, or to another
 // server that follows this one. Messages for sessions there go through the link with that server
-// (docs/protocol.md, "Between servers"): send_to_all() makes one message for all sessions of a link.
+// (docs/protocol.md, "Between servers"): send_to_all() makes one message for all sessions of a
+// link.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -25,8 +26,8 @@ class SessionOutput {
   /// `environment` must outlive the object.
   explicit SessionOutput(WorldEnvironment& environment) : environment_(environment) {}
 
-  /// Adds a session at another server, and returns the number that it has here. Sockets have smaller
-  /// numbers.
+  /// Adds a session at another server, and returns the number that it has here. Sockets have
+  /// smaller numbers.
   SessionId add(const RelayedSession& relayed);
   void remove(SessionId session) { relayed_.erase(session); }
   /// Returns where the session is connected, or null if it is connected here.

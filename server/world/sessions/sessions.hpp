@@ -1,7 +1,8 @@
-// Sessions: the connections of players, here and through other servers, and what is sent to them.
-// A session that is closed is marked, and removed when the task of the world strand ends. So a reference
-// stays valid as long as the task that found it, and whoever keeps one looks at Session::is_closed. A
-// closed session accepts everything: its messages are dropped.
+// Sessions: the connections of players, here and through other servers, and what is sent to them. A
+// session that is closed is marked, and removed when the task of the world strand ends. So a
+// reference stays valid as long as the task that found it, and whoever keeps one looks at
+// Session::is_closed. A closed session accepts everything: its messages are dropped.
+//
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -52,15 +53,16 @@ class Sessions {
   void leave(Session& session);
   /// Removes a connection that is no player's any more, without closing it.
   void release(Session& session) { mark_closed(session); }
-  /// Returns the sessions that were closed and are still known, in the order in which they were closed.
+  /// Returns the sessions that were closed and are still known, in the order in which they were
+  /// closed.
   const std::vector<Session*>& closed() const { return closed_; }
   /// Removes the closed sessions. No reference to one may be in use.
   void remove_closed();
 
   /// Queues a message. Returns false if the session's queue is full; the message is dropped then.
   bool send(const Session& session, const EncodedMessage& message);
-  /// Sends a message that the session must not miss. Closes the session if its queue is full. Returns
-  /// true if the message is queued.
+  /// Sends a message that the session must not miss. Closes the session if its queue is full.
+  /// Returns true if the message is queued.
   bool send_or_close(Session& session, const Message& message);
   /// Sends a message that a later one of its kind replaces. Returns false, and only counts, if the
   /// session's queue is full.
